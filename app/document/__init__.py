@@ -48,6 +48,7 @@ from app.document.queries import (
     changed_stretches as changed_stretches,
     clip_of as clip_of,
     closes as closes,
+    comes_round as comes_round,
     exported_frames as exported_frames,
     falls_short as falls_short,
     find_shortfall as find_shortfall,

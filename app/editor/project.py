@@ -24,12 +24,10 @@ from app.document import (
 from app.editor.timeline_view import Timing
 from app.editor.work import Afterwards, Derived, Promise, Pull
 from app.motion import (
-    HERE,
     Box,
     IntervalStore,
     Joints,
     MotionPaths,
-    Placement,
     PosableMesh,
     PoseSampler,
     Shown,
@@ -41,6 +39,7 @@ from app.solving import Renewal, Rig
 from app.storage import Cut, Hold, Origin, Picture, cut_picture
 from engine.arrays import Bytes
 from engine.domain import CutOut
+from engine.geometry import HERE, RigidMotion
 from engine.maps import Bounds
 
 EXTENTS = 32  # of the motion, which are remembered for undo and redo
@@ -290,7 +289,7 @@ class Project:
         follows = self.joints.follows(joints_source(self.document))
         return self.joints.value if follows else None
 
-    def placements(self, frames: Iterable[int], unknown: Placement) -> list[Placement]:
+    def placements(self, frames: Iterable[int], unknown: RigidMotion) -> list[RigidMotion]:
         """Return where the figure that is posed is at some frames: `unknown` till that is known."""
         if len(self.document.carriers(self.active)) == 1:
             return [HERE for _ in frames]

@@ -20,14 +20,12 @@ from app.motion.intervals import (
     KnownInterval as KnownInterval,
 )
 from app.motion.joints import (
-    HERE as HERE,
     Joints as Joints,
-    Placement as Placement,
     hung_animations as hung_animations,
     joints_source as joints_source,
 )
-from app.motion.motion_paths import MotionPaths as MotionPaths, trace_paths as trace_paths
 from app.motion.paint_order import PaintOrder as PaintOrder
 from app.motion.posable_mesh import AttachedPoints as AttachedPoints, PosableMesh as PosableMesh
 from app.motion.shown_frame import Shown as Shown, hang_shown as hang_shown, show as show
+from app.motion.tracing import MotionPaths as MotionPaths, trace_paths as trace_paths
 from app.motion.vertices import Placed as Placed, Streamed as Streamed, Vertices as Vertices

@@ -8,15 +8,13 @@ from itertools import chain
 from typing import Literal
 
 from app.document import Clip, Moment, Pose, intervals, resting_pose, time_of, transits
-from app.motion.inbetweens import PoseSampler
+from app.motion.inbetweens import Pair, PoseSampler, pair_of
 from app.motion.intervals import (
     AnyInbetweens,
     Build,
     FoundIntervals,
     KnownInterval,
     OneFrame,
-    Pair,
-    pair_of,
     prepare_frame,
     prepare_intervals,
 )

@@ -5,16 +5,12 @@ from typing import NamedTuple
 
 from app.document import Clip, Pose, time_of, transits
 from app.motion.compared import RememberedFrames, prepare_compared
-from app.motion.inbetweens import PoseSampler
+from app.motion.inbetweens import Pair, PoseSampler, pair_of
 from app.motion.posable_mesh import PosableMesh
 from engine.arrays import Complexes
 from engine.interpolation import Inbetweens, Sites
 from engine.streaming import Channels, Distortions, Positions, Series, build_series
 
-# By what the in-betweens of two keys are known: the maps, their own and those of the keys around
-# that the motion passes through, since handles may come and go; turns, joints, bounds, anchor and
-# variant. The same keys have the same, whichever clip they are in.
-Pair = tuple[object, ...]
 # All in-betweens of two keys, ready to be evaluated.
 AnyInbetweens = Inbetweens | RememberedFrames
 
@@ -70,19 +66,6 @@ class FoundIntervals(NamedTuple):
 
     sampler: PoseSampler | None
     intervals: Mapping[Pair, KnownInterval]
-
-
-def pair_of(clip: Clip, interval: int) -> Pair:
-    """Return the key by which the in-betweens of one of a clip's intervals are stored."""
-    transit, figure = transits(clip)[interval], clip.figure
-    # As numbers, which are hashed far sooner than the dataclass.
-    bounds = (figure.bounds.k, figure.bounds.sigma_a, figure.bounds.sigma_b)
-    maps = [identity for key in transit.keys for identity in (id(key.pose.phi), id(key.pose.psi))]
-    joined = (transit.start, transit.end, bounds) if transit.is_joined else ()
-    if clip.baseline is None:
-        return *maps, *transit.turns, *joined, figure.anchor, figure.variant
-    rest = (bounds, tuple(handle.position for handle in figure.handles), clip.frames)
-    return *maps, *transit.turns, *joined, figure.anchor, clip.baseline, *rest
 
 
 def prepare_intervals(

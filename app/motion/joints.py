@@ -1,6 +1,7 @@
 """Where figures that hang on others are, at any time (Section 7, "a user curve for the anchor")."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 from itertools import product
 from typing import NamedTuple
 
@@ -9,10 +10,10 @@ import numpy as np
 from app.document import Attachment, Document, Figure, Pose, clip_of
 from app.errors import LissomError
 from app.motion.inbetweens import Animation, PoseSampler
-from app.motion.tracked_points import TrackedPoints
+from app.motion.tracing import TrackedPoints
 from engine.arrays import Complexes
 from engine.errors import EngineError
-from engine.geometry import box_diagonal, contains, deepest_point
+from engine.geometry import HERE, RigidMotion, box_diagonal, contains, deepest_point
 
 # Newton steps towards the point of a parent that is at a place; each squares the error.
 MOST_STEPS = 20
@@ -23,26 +24,6 @@ MOST_STARTS = 2_000  # triangles among which the nearest one is where the search
 BATCH, MOST_LOOKED_AT = 60, 5_000
 
 
-class Placement(NamedTuple):
-    """A rigid motion z ↦ factor · z + shift, the factor of modulus 1."""
-
-    factor: complex = 1.0 + 0j
-    shift: complex = 0j
-
-    def on(self, places: Complexes) -> Complexes:
-        """Return where places of the figure by itself are in the scene."""
-        if self == HERE:
-            return places
-        return self.factor * places + self.shift
-
-    def back(self, place: complex) -> complex:
-        """Return which place of the figure by itself is at a place of the scene."""
-        return (place - self.shift) * self.factor.conjugate()
-
-
-HERE = Placement()
-
-
 class Hinge(NamedTuple):
     """Where a point of a figure by itself is, and by what the figure turns there."""
 
@@ -50,7 +31,7 @@ class Hinge(NamedTuple):
     turn: complex  # of modulus 1
 
 
-def along(chain: Sequence[Figure], hinge: Callable[[Figure, complex], Hinge]) -> Placement:
+def along(chain: Sequence[Figure], hinge: Callable[[Figure, complex], Hinge]) -> RigidMotion:
     """Return where a figure is that hangs on a chain of others.
 
     Parameters
@@ -68,7 +49,7 @@ def along(chain: Sequence[Figure], hinge: Callable[[Figure, complex], Hinge]) ->
         if joint.turns:
             factor = placement.factor * at.turn * np.exp(-1j * joint.rest)
         place = placement.factor * at.place + placement.shift
-        placement = Placement(complex(factor), complex(place - factor * held.place))
+        placement = RigidMotion(complex(factor), complex(place - factor * held.place))
     return placement
 
 
@@ -114,13 +95,17 @@ class Joints:
         siblings = siblings or {}
         self.tracked: dict[int, TrackedPoints] = {
             figure: TrackedPoints(
-                clip_of(document, figure), np.array(points), siblings.get(figure), known.get(figure)
+                clip_of(document, figure),
+                np.array(points),
+                siblings.get(figure),
+                known.get(figure),
+                partial(self.carried, figure),
             )
             for figure, points in self.points.items()
             if points
         }
         self._siblings = siblings
-        self._placements: dict[tuple[int, float], Placement] = {}
+        self._placements: dict[tuple[int, float], RigidMotion] = {}
         frames = range(document.frames.first, document.frames.last + 1)
         self._ahead = product(frames, self.tracked.values())
 
@@ -131,7 +116,7 @@ class Joints:
 
     def placement(
         self, figure: int, frame: float, poses: Mapping[int, Pose] | None = None
-    ) -> Placement:
+    ) -> RigidMotion:
         """Return where a figure, by its id, is at a frame.
 
         Parameters
@@ -150,6 +135,22 @@ class Joints:
             self._placements[figure, frame] = self._work_out(chain, frame, {})
         return self._placements[figure, frame]
 
+    def carried(self, figure: int, frame: float) -> RigidMotion:
+        """Return where a figure hangs, but for what is corrected of itself.
+
+        That leaves its anchor in place and does not turn it.
+        """
+        chain = self.document.carriers(figure)
+
+        def hinge(each: Figure, place: complex) -> Hinge:
+            if each.id != figure:
+                return self._joint(each, place, frame, {})
+            index = self.points[figure].index(place)
+            found = self.tracked[figure].base_at(frame)
+            return _joint(found.positions[index], found.fz[index])
+
+        return along(chain, hinge)
+
     def advance(self) -> "Joints":
         """Go through some frames, so that asking for them takes no time."""
         end = self.worked_out + BATCH
@@ -162,7 +163,7 @@ class Joints:
 
     def _work_out(
         self, chain: tuple[Figure, ...], frame: float, poses: Mapping[int, Pose]
-    ) -> Placement:
+    ) -> RigidMotion:
         return along(chain, lambda figure, place: self._joint(figure, place, frame, poses))
 
     def hang(
@@ -223,7 +224,8 @@ class Joints:
             points=points,
             sibling=self._siblings.get(figure.id),
         )
-        return Animation(clip_of(self.document, figure.id), sampler=sampler)
+        clip, carried = clip_of(self.document, figure.id), partial(self.carried, figure.id)
+        return Animation(clip, sampler=sampler, carried=carried)
 
     def _at(self, figure: Figure, place: complex, frame: float) -> Hinge:
         moved = self._animation_at(figure, np.array([place])).frame(frame)
@@ -280,6 +282,8 @@ class HungAnimation:
 
     def __init__(self, animation: Animation, joints: Joints) -> None:
         self._animation = animation
+        if animation.clip.figure.attachment is not None:
+            animation.carried = partial(joints.carried, animation.clip.figure.id)
         self._joints = joints
 
     def positions(self, frame: float) -> Complexes:

@@ -8,11 +8,12 @@ import numpy as np
 from app.document import Clip, Document, Pose, resting_pose, time_of
 from app.motion.interval_store import IntervalStore
 from app.motion.intervals import OneFrame
-from app.motion.joints import HERE, Hinge, Joints, Placement, along
+from app.motion.joints import Hinge, Joints, along
 from app.motion.posable_mesh import AttachedPoints, PosableMesh
 from app.motion.vertices import Streamed, Vertices
 from engine.arrays import Complexes
 from engine.domain import Domain
+from engine.geometry import HERE, RigidMotion
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -29,7 +30,7 @@ class Shown:
     # in-betweens; or what was drawn of another domain.
     stand_in: Pose | OneFrame | Domain | None = None
     # Where the figure is in the scene; all else is where it is by itself.
-    placement: Placement = HERE
+    placement: RigidMotion = HERE
 
     @property
     def is_current(self) -> bool:

@@ -2,8 +2,9 @@
 
 import moderngl
 
-from app.motion import HERE, Placement, Streamed, Vertices
+from app.motion import Streamed, Vertices
 from app.render.gpu import GpuMesh, PosedMesh, PositionBuffer, SeriesBuffer, is_software, singles
+from engine.geometry import HERE, RigidMotion
 from engine.streaming import MOST_ROWS, Series
 
 
@@ -29,7 +30,7 @@ class DrawnMesh:
         self._current: tuple[Vertices, PosedMesh] | None = None
 
     def pose(
-        self, vertices: Vertices, *, placement: Placement = HERE, opacity: float = 1.0
+        self, vertices: Vertices, *, placement: RigidMotion = HERE, opacity: float = 1.0
     ) -> PosedMesh:
         """Return the mesh with its vertices there and painted in their order; new ones go up."""
         if self._current is None or self._current[0] is not vertices:

@@ -62,11 +62,7 @@ class IntervalReport:
     @property
     def excess(self) -> Extremes:
         """By how much what is proven is beyond the limits."""
-        return Extremes(
-            k=max(self.proof.k - self.limits.k, 0.0),
-            sigma_a=max(self.proof.sigma_a - self.limits.sigma_a, 0.0),
-            sigma_b=max(self.limits.sigma_b - self.proof.sigma_b, 0.0),
-        )
+        return self._proven.beyond(self.limits)
 
     @property
     def may_fold(self) -> bool:
@@ -76,11 +72,11 @@ class IntervalReport:
     @property
     def error(self) -> Extremes:
         """By how much the true extremes may be worse than the measured ones: what is proven is."""
-        return Extremes(
-            k=max(self.proof.k - self.reached.k, 0.0),
-            sigma_a=max(self.proof.sigma_a - self.reached.sigma_a, 0.0),
-            sigma_b=max(self.reached.sigma_b - self.proof.sigma_b, 0.0),
-        )
+        return self._proven.beyond(self.reached)
+
+    @property
+    def _proven(self) -> Extremes:
+        return Extremes(self.proof.k, self.proof.sigma_a, self.proof.sigma_b)
 
     @property
     def verdict(self) -> Verdict:

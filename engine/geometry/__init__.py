@@ -29,6 +29,7 @@ from engine.geometry.polygon import (
     signed_area as signed_area,
     winding as winding,
 )
+from engine.geometry.rigid import HERE as HERE, RigidMotion as RigidMotion
 from engine.geometry.segments import (
     Pieces as Pieces,
     bisect as bisect,

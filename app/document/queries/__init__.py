@@ -33,4 +33,8 @@ from app.document.queries.timeline import (
     time_of as time_of,
 )
 from app.document.queries.tracks import TrackPlace as TrackPlace, track_at as track_at
-from app.document.queries.transits import Transit as Transit, transits as transits
+from app.document.queries.transits import (
+    Transit as Transit,
+    comes_round as comes_round,
+    transits as transits,
+)

@@ -63,6 +63,14 @@ class Extremes(NamedTuple):
             sigma_b=min(self.sigma_b, other.sigma_b),
         )
 
+    def beyond(self, other: "Extremes") -> "Extremes":
+        """Return by how much each is worse than another's, or 0."""
+        return Extremes(
+            k=max(self.k - other.k, 0.0),
+            sigma_a=max(self.sigma_a - other.sigma_a, 0.0),
+            sigma_b=max(other.sigma_b - self.sigma_b, 0.0),
+        )
+
     def uses(self, bounds: Bounds) -> tuple[Use, ...]:
         """Return how much of each limit is used; stretches count by their logarithms."""
         share_a = log(self.sigma_a) / log(bounds.sigma_a)

@@ -38,6 +38,13 @@ class Transit:
         """Whether it goes straight from key to key, as quickly as the easing says."""
         return self.start == self.end == 1.0
 
+    @property
+    def paces(self) -> tuple[float, float]:
+        """How fast `weight` grows with the share at the first key and at the second one."""
+        if self.is_even or isinstance(self.start, Joint) or isinstance(self.end, Joint):
+            return 1.0, 1.0
+        return self.start, self.end
+
     def weight(self, share: float) -> float:
         """Return which share of the way is done after a share of the interval's time."""
         if self.is_even or isinstance(self.start, Joint) or isinstance(self.end, Joint):
@@ -75,6 +82,11 @@ def _transits(
             turns.append(clip.keys[after.first].turns)
         found.append(Transit(keys=tuple(window), turns=tuple(turns), start=start, end=end))
     return tuple(found)
+
+
+def comes_round(clip: Clip) -> bool:
+    """Tell whether the motion goes on from the last key to the first one."""
+    return _passages(clip).gap is not None
 
 
 def _passages(clip: Clip) -> Passages[Keyframe]:

@@ -119,9 +119,7 @@ def part(session: Session, project: Project, slit: Slit) -> None:
     figure = project.figure
     width = SLIT_WIDTH * box_diagonal(figure.domain.outline)
     for handle in figure.handles:
-        place = np.array([handle.position - figure.corner])
-        away = distance_to_segments(place, slit.points[:-1], slit.points[1:]).min()
-        if away < BESIDE * width:
+        if _away_from(slit, handle.position - figure.corner) < BESIDE * width:
             session.tell(
                 f"The knife's line goes through {handle.name}. Draw it beside, or move the handle.",
                 tone="error",
@@ -133,14 +131,16 @@ def part(session: Session, project: Project, slit: Slit) -> None:
 @with_project
 def join_again(session: Session, project: Project, place: complex, reach: float) -> None:
     """Take away the line of the knife that is nearest to a place, and no farther than `reach`."""
-    slits, point = project.figure.cut_out.slits, np.array([place - project.figure.corner])
-    away = [
-        float(distance_to_segments(point, slit.points[:-1], slit.points[1:]).min())
-        for slit in slits
-    ]
+    slits = project.figure.cut_out.slits
+    away = [_away_from(slit, place - project.figure.corner) for slit in slits]
     if min(away, default=np.inf) <= reach:
         nearest = away.index(min(away))
         change(session, slits=slits[:nearest] + slits[nearest + 1 :])
+
+
+def _away_from(slit: Slit, point: complex) -> float:
+    """Return how far a point of the picture is from a line of the knife."""
+    return float(distance_to_segments(np.array([point]), slit.points[:-1], slit.points[1:]).min())
 
 
 @with_project

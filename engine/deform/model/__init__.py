@@ -11,6 +11,17 @@ from engine.deform.model.barrier import (
     Walls as Walls,
     with_samples_between as with_samples_between,
 )
+from engine.deform.model.energy import (
+    Radial as Radial,
+    symmetric_dirichlet as symmetric_dirichlet,
+    symmetric_dirichlet_derivatives as symmetric_dirichlet_derivatives,
+)
+from engine.deform.model.factors import (
+    SHIFT as SHIFT,
+    factor_of as factor_of,
+    factor_shifted as factor_shifted,
+    solved as solved,
+)
 from engine.deform.model.hessian import (
     projected_hessian as projected_hessian,
     stiffening as stiffening,
@@ -28,3 +39,4 @@ from engine.deform.model.newton import (
     sketched_direction as sketched_direction,
 )
 from engine.deform.model.objective import Objective as Objective
+from engine.deform.model.unknowns import by_unknowns as by_unknowns, in_basis as in_basis

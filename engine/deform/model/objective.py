@@ -23,6 +23,7 @@ from engine.deform.handles import Handles, Wish
 from engine.deform.model.barrier import Barrier
 from engine.deform.model.energy import Radial, symmetric_dirichlet_derivatives
 from engine.deform.model.jet import Jet
+from engine.deform.model.unknowns import by_unknowns, in_basis
 from engine.maps import Boundary
 
 
@@ -59,12 +60,12 @@ class Objective:
 
     def coefficients(self, unknowns: Floats) -> tuple[Complexes, Complexes]:
         """Return the columns (n,) of coefficients of φ and ψ that unknowns (u,) stand for."""
-        of_phi, of_psi = self._in_basis(unknowns)
+        of_phi, of_psi = in_basis(self.boundary, unknowns)
         return self.boundary.basis @ of_phi, self.boundary.basis @ of_psi
 
     def change(self, unknowns: Floats) -> Jet:
         """Measure a change of a map by its unknowns (u,)."""
-        of_phi, of_psi = self._in_basis(unknowns)
+        of_phi, of_psi = in_basis(self.boundary, unknowns)
         rows, coordinates = self.boundary.basis_derivatives, self.handles.basis_coordinates
         return Jet(
             f=rows @ of_phi,
@@ -72,14 +73,6 @@ class Objective:
             positions=coordinates @ of_phi + (coordinates @ of_psi).conj(),
             fz=self.handles.basis_derivatives @ of_phi,
         )
-
-    def _in_basis(self, unknowns: Floats) -> tuple[Complexes, Complexes]:
-        """Return φ and ψ (r,) in the basis."""
-        r, count = self.boundary.basis.shape[1], len(self.boundary.holes)
-        conjugates = np.ascontiguousarray(unknowns).view(np.complex128).conj()
-        of_phi = conjugates[:r]
-        of_psi = np.concatenate([[0.0], conjugates[r:], of_phi[r - count :].conj()])
-        return of_phi, of_psi
 
     def jet(self, phi: Complexes, psi: Complexes) -> Jet:
         """Measure a map, or a change of a map, by the columns (n,) of its coefficients."""
@@ -190,10 +183,7 @@ class Objective:
 
     def by_unknowns(self, by_phi: Complexes, by_psi: Complexes) -> Floats:
         """Return a gradient (u,) from what multiplies φ and ψ (r,), logarithms included."""
-        count = len(self.boundary.holes)
-        if count:
-            by_phi[-count:] += by_psi[-count:].conj()
-        return np.concatenate([by_phi, by_psi[1 : len(by_psi) - count]]).view(np.float64)
+        return by_unknowns(self.boundary, by_phi, by_psi)
 
     @cached_property
     def turning_stiffness(self) -> Floats:

@@ -24,6 +24,7 @@ ROUND_END, SWOLLEN = 0.55, 1.15
 # Limbs that are so many radii long have a joint, legs sooner; each so many more give one more.
 JOINTED, JOINTED_LEG, SUPPLE = 5.0, 2.4, 14.0
 MOST_JOINTS = 3
+CLEAR = 1.2  # radii by which a joint is away from other handles
 BENT = 0.44  # from what angle on a limb is bent, in radians
 THICKENED = 1.45  # or thicker by what factor
 MARGIN = 0.35  # parts of a limb, on either side, in which no joint is
@@ -89,7 +90,7 @@ class _Body:
         self.middle = int(thick[farthest.argmin()])
         _, self.before = self.skeleton.ways([self.middle])
         self.neck, self.head = self._neck_and_head()
-        self.in_head = self._beyond(self.neck) if self.head is not None else set()
+        self.in_head = self._in_head()
         self.trunk = self._trunk()
         bottom, top = loops[0].imag.min(), loops[0].imag.max()
         self.ground = float(bottom + GROUND * (top - bottom))
@@ -118,6 +119,14 @@ class _Body:
                 neck = int(path[outside[-1]]) if outside.size else self.middle
                 head, widest = found, self.radii[found]
         return neck, head
+
+    def _in_head(self) -> set[int]:
+        """Return the nodes beyond the neck; all limbs begin in it where it is the middle."""
+        if self.head is None:
+            return set()
+        return self._beyond(
+            int(self._path(self.head)[1]) if self.neck == self.middle else self.neck
+        )
 
     def _ends_at(self, head: int, neck: int) -> bool:
         """Tell whether no limb reaches far out of what may be a head, as out of a chest."""
@@ -196,7 +205,7 @@ class _Body:
             joints = []
             for joint in self._joints(path[leaving:], JOINTED_LEG if is_leg else JOINTED):
                 at, radius = complex(self.places[joint]), self.radii[joint]
-                if all(abs(at - other) > 1.2 * radius for other in [*taken, place]):
+                if all(abs(at - other) > CLEAR * radius for other in [*taken, place]):
                     joints.append(at)
             taken += [place, *joints]
             yield Limb(place, joints, is_leg)

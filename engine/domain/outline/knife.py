@@ -277,7 +277,9 @@ def _lines_of(
 ) -> list[tuple[complex, complex] | None]:
     """Return for each edge of a loop the piece of a line of whose slit it is a side, if it is."""
     starts = np.concatenate([way[:-1] for way in ways])
-    ends = np.concatenate([way[1:] for way in ways])
+    pieces = np.concatenate([way[1:] for way in ways]) - starts
+    lengths = np.abs(pieces)
+    directions = pieces / lengths
     lines: list[tuple[complex, complex] | None] = []
     is_near: Booleans = _distances(loop, ways) < BESIDE * width
     for here, there, near, is_next in zip(
@@ -286,12 +288,11 @@ def _lines_of(
         lines.append(None)
         if near and is_next:
             middle = (here + there) / 2
-            along = (ends - starts) / np.abs(ends - starts)
-            share = np.clip(((middle - starts) / along).real, 0, np.abs(ends - starts))
-            away = np.abs(middle - starts - share * along)
+            along = np.clip(((middle - starts) / directions).real, 0, lengths)
+            away = np.abs(middle - starts - along * directions)
             nearest = int(away.argmin())
             if away[nearest] < BESIDE * width:
-                lines[-1] = complex(starts[nearest]), complex(along[nearest])
+                lines[-1] = complex(starts[nearest]), complex(directions[nearest])
     return lines
 
 

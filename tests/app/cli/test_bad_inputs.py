@@ -9,9 +9,9 @@ import zipfile
 
 import numpy as np
 import pytest
+from refusals import refusal
 
 from app.cli import process
-from app.cli.main import main
 from app.cli.process import LEAST_MEMORY
 from app.storage import sample_images
 
@@ -27,14 +27,6 @@ MAPS = {
 BY_BOUNDARY = {name: MAPS[name] for name in ("outline", "cage", "points")}
 HOLE = np.array([0.4 + 0.4j, 0.4 + 0.6j, 0.6 + 0.6j, 0.6 + 0.4j])
 HUGE = 2**63 - 1
-
-
-def refusal(capsys, *words):
-    with pytest.raises(SystemExit) as leaving:
-        main([str(word) for word in words])
-    assert leaving.value.code == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    return line
 
 
 def interpolated(capsys, tmp_path, *paths, variant="nu"):

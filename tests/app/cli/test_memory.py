@@ -11,6 +11,7 @@ import pytest
 from animations import moving_document
 from layered import blob, openraster
 from PIL import Image
+from refusals import refusal
 
 from app.cli.main import main
 from app.errors import LissomError
@@ -34,14 +35,6 @@ else:
 print(1024 * int(told))
 raise SystemExit(status)
 """
-
-
-def refusal(capsys, *words):
-    with pytest.raises(SystemExit) as leaving:
-        main([str(word) for word in words])
-    assert leaving.value.code == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    return line
 
 
 @pytest.fixture

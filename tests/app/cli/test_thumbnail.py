@@ -4,20 +4,13 @@ import numpy as np
 import pytest
 from documents import disc_document
 from PIL import Image
+from refusals import refusal
 
 from app.cli.main import main
 from app.storage import draw_thumbnail, sample_images, save_project
 from app.storage.thumbnail import SIDE
 
 RGBA = np.full((600, 900, 4), (200, 30, 90, 255), np.uint8)
-
-
-def refusal(words, capsys):
-    with pytest.raises(SystemExit) as leaving:
-        main(["thumbnail", *map(str, words)])
-    assert leaving.value.code == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    return line
 
 
 @pytest.mark.parametrize(("size", "longer"), [(128, 128), (7, 7), (1000, SIDE), (None, 256)])
@@ -41,9 +34,11 @@ def test_the_samples_have_small_pictures(tmp_path):
 def test_what_cannot_be_done_is_said(tmp_path, capsys):
     project, out = tmp_path / "bare.lissom", tmp_path / "out.png"
     save_project(project, disc_document())
-    assert "holds no small picture" in refusal([project, "--out", out], capsys)
-    assert "is a folder" in refusal([project, "--out", tmp_path], capsys)
+    assert "holds no small picture" in refusal(capsys, "thumbnail", project, "--out", out)
+    assert "is a folder" in refusal(capsys, "thumbnail", project, "--out", tmp_path)
     project.write_bytes(b"PK")
-    assert "holds no small picture" in refusal([project, "--out", out], capsys)
-    assert "at least 1, not 'large'" in refusal([project, "--out", out, "--size", "large"], capsys)
+    assert "holds no small picture" in refusal(capsys, "thumbnail", project, "--out", out)
+    assert "at least 1, not 'large'" in refusal(
+        capsys, "thumbnail", project, "--out", out, "--size", "large"
+    )
     assert not out.exists()

@@ -11,10 +11,11 @@ from app.document.keyframe import Keyframe, Passing
 from app.document.layering import Attachment
 from app.document.settings import FrameRange
 from app.errors import LissomError
-from app.motion import HERE, Animation, IntervalStore, Joints, PosableMesh, Streamed
+from app.motion import Animation, IntervalStore, Joints, PosableMesh, Streamed
 from app.motion.joints import BATCH
 from app.storage import load_project, save_project
 from engine.domain.meshing import triangulate
+from engine.geometry import HERE
 from engine.maps import distortion
 
 SIZE = 200.0

@@ -18,10 +18,10 @@ from app.document import (
 )
 from app.editor import layering
 from app.editor.actions import editing, files, playback, posing, viewing
-from app.motion import HERE
 from app.storage import Autosave, Origin
 from app.ui.style import PALETTES
 from app.ui.viewport.marks import find_anchor, mark_all
+from engine.geometry import HERE
 
 WIDTH, HEIGHT = 240, 200
 LAYERS = {

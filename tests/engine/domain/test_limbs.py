@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose
 from shapes import regular_polygon
 
 from engine.domain import suggest_handles
+from engine.domain.limbs.handle_places import _Body
 from engine.domain.limbs.medial_axis import medial_axis
 from engine.geometry import as_xy, contains
 
@@ -179,4 +180,23 @@ def test_a_large_head_is_not_taken_for_the_body():
     assert -60 < handles["chest"].imag < 200
     assert handles["head"].imag > 330
     assert {"left foot", "right foot", "neck"} <= handles.keys()
+    assert sum("tip" in name for name in handles) == 2
+
+
+@pytest.mark.parametrize(
+    ("width", "head", "up"),
+    [(100, 90, 110), (80, 100, 140), (80, 105, 150), (100, 110, 130), (80, 120, 160)],
+)
+def test_limbs_that_leave_a_body_at_its_neck_belong_to_it(width, head, up):
+    """On a short body the disc of a large head reaches near the middle, where the neck is then."""
+    strokes = [(np.array([0, 60j]), width), (np.array([60j, 1j * up]), 40)]
+    strokes += [(1j * up + np.array([0, 1]), 2 * head)]
+    for side in (1, -1):
+        strokes += [(np.array([side * 20, side * 60 - 200j]), 34)]
+        strokes += [(np.array([50j, side * 200 + 10j]), 28)]
+    loops = drawn(*strokes)
+    body = _Body(loops)
+    assert body.neck == body.middle
+    handles = suggested(*loops)
+    assert {"head", "left foot", "left knee", "right foot", "right knee"} <= handles.keys()
     assert sum("tip" in name for name in handles) == 2

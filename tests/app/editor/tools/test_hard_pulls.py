@@ -66,10 +66,11 @@ def session(request, tmp_path):
 
 
 def outwards(project):
-    """Return the first handle, and the way that leads from all others to it."""
+    """Return the first handle, and the way from all others to it, as long as the drawing."""
     places = [handle.position for handle in project.figure.handles]
     away = places[0] - np.mean(places[1:])
-    return project.figure.handles[0].id, complex(away / abs(away))
+    size = box_diagonal(project.figure.domain.outline)
+    return project.figure.handles[0].id, complex(size * away / abs(away))
 
 
 def where(project):
@@ -100,6 +101,13 @@ def drag(session, identity, way, *, rests=30):
     return start + way
 
 
+def drag_too_far(session, **rests):
+    """Drag the first handle beyond its reach; return it, where to, and where all were."""
+    hand, out = outwards(session.project)
+    before, _ = where(session.project)
+    return hand, drag(session, hand, 1.2 * out, **rests), before
+
+
 def per_mille(session, lengths):
     size = box_diagonal(session.project.figure.domain.outline)
     return 1000 * float(np.max(np.abs(lengths))) / size
@@ -107,10 +115,7 @@ def per_mille(session, lengths):
 
 def test_a_hand_beyond_reach_moves_a_limb_and_leaves_the_rest(session):
     project = session.project
-    size = box_diagonal(project.figure.domain.outline)
-    hand, out = outwards(project)
-    before, _ = where(project)
-    asked = drag(session, hand, 1.2 * size * out)
+    hand, asked, before = drag_too_far(session)
     pointing.end(session, asked)
     _, released = where(project)
     settle(session)
@@ -139,9 +144,7 @@ def test_a_hand_beyond_reach_moves_a_limb_and_leaves_the_rest(session):
 @pytest.mark.parametrize("session", ["person"], indirect=True)
 def test_loosen_pulls_once_more_to_where_the_hand_went(session):
     project = session.project
-    size = box_diagonal(project.figure.domain.outline)
-    hand, out = outwards(project)
-    asked = drag(session, hand, 1.2 * size * out)
+    hand, asked, _ = drag_too_far(session)
     pointing.end(session, asked)
     settle(session)
     short = abs(where(project)[0][hand] - asked)
@@ -159,10 +162,7 @@ def test_loosen_pulls_once_more_to_where_the_hand_went(session):
 @pytest.mark.parametrize("session", ["person"], indirect=True)
 def test_alt_keeps_the_wish_and_pulls_as_strongly_as_it_takes(session):
     project = session.project
-    size = box_diagonal(project.figure.domain.outline)
-    hand, out = outwards(project)
-    before, _ = where(project)
-    asked = drag(session, hand, 1.2 * size * out)
+    hand, asked, before = drag_too_far(session)
     pointing.end_insisting(session, asked)
     settle(session)
     after, _ = where(project)
@@ -175,26 +175,24 @@ def test_alt_keeps_the_wish_and_pulls_as_strongly_as_it_takes(session):
 @pytest.mark.parametrize("rests", [0, 2])
 def test_the_next_drag_does_not_pull_on_at_what_the_hand_has_left(session, rests):
     project = session.project
-    size = box_diagonal(project.figure.domain.outline)
-    hand, out = outwards(project)
-    before, _ = where(project)
-    pointing.end(session, drag(session, hand, 1.2 * size * out, rests=rests))
+    hand, asked, before = drag_too_far(session, rests=rests)
+    pointing.end(session, asked)
     for _ in range(rests):
         picture(session)
-    other = project.figure.handles[1].id
-    pointing.end(session, drag(session, other, 0.03 * size, rests=rests))
+    other, way = project.figure.handles[1].id, 0.03 * box_diagonal(project.figure.domain.outline)
+    pointing.end(session, drag(session, other, way, rests=rests))
     settle(session)
     after, _ = where(project)
     rest = [i for i in before if i not in (hand, other)]
     assert per_mille(session, [after[i] - before[i] for i in rest]) < 3
-    assert per_mille(session, after[other] - before[other] - 0.03 * size) < 1
+    assert per_mille(session, after[other] - before[other] - way) < 1
 
 
 @pytest.mark.parametrize("session", ["person"], indirect=True)
 def test_a_drag_within_reach_is_wanted_where_it_was_let_go(session):
     project = session.project
     hand, out = outwards(project)
-    asked = drag(session, hand, -0.05 * box_diagonal(project.figure.domain.outline) * out)
+    asked = drag(session, hand, -0.05 * out)
     pointing.end(session, asked)
     settle(session)
     assert project.figure.key(0).pose.targets[hand].position == asked

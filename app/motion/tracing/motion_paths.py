@@ -6,7 +6,7 @@ import numpy as np
 
 from app.document import Clip
 from app.motion.inbetweens import PoseSampler
-from app.motion.tracked_points import TrackedPoints
+from app.motion.tracing.tracked_points import TrackedPoints
 from engine.arrays import Complexes, Indices, freeze
 
 MOST = 1000  # frames that are traced; of longer animations every second, third …

@@ -1,12 +1,13 @@
-"""The in-betweens of a figure at any frame: the one way to them for window, export and checks."""
+"""Points of a domain at which in-betweens are wanted, and the samples of poses there."""
 
 import threading
 from collections.abc import Sequence, Set as AbstractSet
 
 import numpy as np
 
-from app.document import Clip, Pose, Transit, Variant, resting_pose, time_of, transits
+from app.document import Pose, Transit, Variant
 from app.errors import tell
+from app.motion.inbetweens.correction import Correction
 from engine.arrays import Complexes
 from engine.dirichlet import Extension, HilbertTransform
 from engine.domain import Domain
@@ -29,6 +30,34 @@ from engine.interpolation import (
 )
 from engine.maps import Bounds, HarmonicMap
 from engine.paths import root_sheets
+
+
+class OutlineKnowledge:
+    """What samplers of one outline and cage share, worked out when it is asked for first.
+
+    Attributes
+    ----------
+    corrections : dict
+        Of frames, by all that they follow from; those that were wanted longest ago first.
+    """
+
+    def __init__(self, domain: Domain) -> None:
+        self._domain = domain
+        # Of its own, so that others wait for the transform alone.
+        self._lock = threading.RLock()
+        self._transform: HilbertTransform | None = None
+        self.corrections: dict[object, Correction] = {}
+
+    @property
+    def transform(self) -> HilbertTransform:
+        """The Hilbert transform of the outline."""
+        with self._lock:
+            if self._transform is None:
+                domain = self._domain
+                self._transform = HilbertTransform.on(
+                    domain.outline, domain.cage, domain.holes, progress=tell
+                )
+            return self._transform
 
 
 class PoseSampler:
@@ -72,35 +101,21 @@ class PoseSampler:
             anchor=anchor,
         )
         self._lock = threading.RLock()
-        # Of its own, so that a sibling waits for the transform alone.
-        self._transform_lock = threading.RLock()
         self._samples: dict[Pose, KeyframeSamples] = {}
         self._tangents: dict[tuple[tuple[Pose, ...], Joint, Bounds, Variant], Tangent] = {}
-        self._sibling = sibling
-        self._transform: HilbertTransform | None = None
         self._extension: Extension | None = None
-
-    @property
-    def transform(self) -> HilbertTransform:
-        """The Hilbert transform of the outline, worked out when it is asked for first."""
-        with self._transform_lock:
-            if self._transform is None:
-                self._transform = (
-                    HilbertTransform.on(
-                        self.domain.outline, self.domain.cage, self.domain.holes, progress=tell
-                    )
-                    if self._sibling is None
-                    else self._sibling.transform
-                )
-                self._sibling = None
-            return self._transform
+        # Of its own, so that nothing else waits for it.
+        self._extension_lock = threading.RLock()
+        self.known: OutlineKnowledge = (
+            OutlineKnowledge(domain) if sibling is None else sibling.known
+        )
 
     @property
     def extension(self) -> Extension:
         """The transform at the nodes of the paths, prepared when it is asked for first."""
-        with self._transform_lock:
+        with self._extension_lock:
             if self._extension is None:
-                self._extension = self.transform.at(self.sites.paths.nodes, single=True)
+                self._extension = self.known.transform.at(self.sites.paths.nodes, single=True)
             return self._extension
 
     def keep_only(self, poses: AbstractSet[Pose]) -> None:
@@ -212,63 +227,3 @@ class PoseSampler:
             bounds=bounds,
             transform=self.extension if variant.needs_transform else None,
         )
-
-
-class Animation:
-    """A clip's motion at the points of a sampler.
-
-    Parameters
-    ----------
-    variant : str, optional
-        The figure's own by default.
-    points : complex128, shape (m,), optional
-        By default the vertices of the domain's mesh.
-    sampler : PoseSampler, optional
-        An earlier animation's; it is used again if its domain and anchor are the figure's: poses
-        that it has sampled are not sampled again.
-    """
-
-    def __init__(
-        self,
-        clip: Clip,
-        variant: Variant | None = None,
-        *,
-        points: Complexes | None = None,
-        sampler: PoseSampler | None = None,
-    ) -> None:
-        self.clip = clip
-        self.variant: Variant = clip.figure.variant if variant is None else Variant(variant)
-        if (
-            sampler is None
-            or sampler.domain is not clip.figure.domain
-            or sampler.anchor != clip.figure.anchor
-            or (points is not None and points is not sampler.sites.points)
-        ):
-            sampler = PoseSampler(clip.figure.domain, anchor=clip.figure.anchor, points=points)
-        self.sampler = sampler
-        sampler.keep_only({key.pose for key in clip.keys})
-        self._prepared: dict[int, Inbetweens] = {}
-
-    def positions(self, frame: float) -> Complexes:
-        """Return where the points (m,) are at a frame, which may lie between two numbers."""
-        moment = time_of(self.clip, frame)
-        resting = resting_pose(self.clip, moment)
-        if resting is not None:
-            return self.sampler.samples(resting).positions
-        return self._inbetweens(moment.interval).frame(moment.weight).positions
-
-    def frame(self, frame: float) -> Frame:
-        """Return positions and derivatives of the points at a frame."""
-        moment = time_of(self.clip, frame)
-        resting = resting_pose(self.clip, moment)
-        if resting is None:
-            return self._inbetweens(moment.interval).frame(moment.weight)
-        positions = self.sampler.samples(resting).positions
-        fz, fzbar = self.clip.figure.map_of(resting).derivatives(self.sampler.sites.points)
-        return Frame(positions=positions, fz=fz, fzbar=fzbar, rho=None)
-
-    def _inbetweens(self, interval: int) -> Inbetweens:
-        if interval not in self._prepared:
-            transit, bounds = transits(self.clip)[interval], self.clip.figure.bounds
-            self._prepared[interval] = self.sampler.inbetweens_of(transit, bounds, self.variant)
-        return self._prepared[interval]

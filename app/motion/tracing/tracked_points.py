@@ -5,8 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from app.document import Clip, Pose, resting_pose, time_of, transits
-from app.motion.inbetweens import Animation, PoseSampler
-from app.motion.intervals import Pair, pair_of
+from app.motion.inbetweens import Animation, Carried, PoseSampler, is_corrected, pair_of
 from engine.arrays import Complexes
 
 REMEMBERED = 4  # times as many moments as a clip has frames, for undo and redo
@@ -21,7 +20,7 @@ class TrackedFrame(NamedTuple):
 
 
 class TrackedPoints:
-    """Some points of a figure at any frame of a clip.
+    """Some points of a figure at any frame of a clip, as it is shown.
 
     Parameters
     ----------
@@ -31,6 +30,8 @@ class TrackedPoints:
         With the same outline and cage; what it knows of them is used again.
     earlier : TrackedPoints, optional
         If it is of the same points, what it knows is used again.
+    carried : callable, optional
+        Where the figure hangs, at a frame.
 
     Attributes
     ----------
@@ -39,7 +40,8 @@ class TrackedPoints:
     sampler : PoseSampler or None
         None until the first of them.
     known : dict
-        What was found, by the pair of the keys around and the weight between them.
+        What was found, by the pair of the keys around and the weight between them; where frames are
+        corrected, by the clip and the frame.
     """
 
     def __init__(
@@ -48,13 +50,16 @@ class TrackedPoints:
         points: Complexes,
         sibling: PoseSampler | None = None,
         earlier: "TrackedPoints | None" = None,
+        carried: Carried | None = None,
     ) -> None:
         self.clip = clip
         self.points = points
         self.worked_out = 0
         self.sampler: PoseSampler | None = None
-        self.known: dict[tuple[Pair, float], TrackedFrame] = {}
+        self.known: dict[tuple[object, float], TrackedFrame] = {}
         self._sibling = sibling
+        self._carried = carried
+        self._is_corrected = is_corrected(clip)
         self._animation: Animation | None = None
         if earlier is None:
             return
@@ -69,7 +74,10 @@ class TrackedPoints:
         """Return where the points are at a frame."""
         moment = time_of(self.clip, frame)
         resting = resting_pose(self.clip, moment)
-        if resting is None:
+        key: tuple[object, float]
+        if self._is_corrected:
+            key = self.clip, frame
+        elif resting is None:
             key = pair_of(self.clip, moment.interval), moment.weight
         else:
             key = (id(resting.phi), id(resting.psi)), 0.0
@@ -81,11 +89,17 @@ class TrackedPoints:
             self.worked_out += 1
         return self.known[key]
 
+    def base_at(self, frame: float) -> TrackedFrame:
+        """Return the same before anything is corrected."""
+        moved = self._animate().base.frame(frame)
+        return TrackedFrame(moved.positions, moved.fz, ())
+
     def _animate(self) -> Animation:
         if self._animation is None:
             figure = self.clip.figure
             sampler = self.sampler or PoseSampler(
                 figure.domain, anchor=figure.anchor, points=self.points, sibling=self._sibling
             )
-            self._animation, self.sampler = Animation(self.clip, sampler=sampler), sampler
+            self._animation = Animation(self.clip, sampler=sampler, carried=self._carried)
+            self.sampler = sampler
         return self._animation

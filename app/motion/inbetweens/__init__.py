@@ -1,0 +1,16 @@
+"""The motion of a clip at some points: in-betweens, and how handles stay and go their own ways.
+
+In: a clip and points.
+Out: where they are at any frame, with f_z and f_z̄.
+Imports: `app.document`, `app.errors`.
+"""
+
+from app.motion.inbetweens.animation import Animation as Animation
+from app.motion.inbetweens.correction import Correction as Correction
+from app.motion.inbetweens.corrections import (
+    Corrections as Corrections,
+    is_corrected as is_corrected,
+)
+from app.motion.inbetweens.own_clocks import Carried as Carried
+from app.motion.inbetweens.pairs import Pair as Pair, pair_of as pair_of
+from app.motion.inbetweens.pose_sampler import PoseSampler as PoseSampler

@@ -1,0 +1,85 @@
+"""A clip's motion at any frame: the one way to it for exports, joints and checks."""
+
+from app.document import Clip, Variant
+from app.motion.inbetweens.base_motion import BaseMotion
+from app.motion.inbetweens.correction import Correction
+from app.motion.inbetweens.corrections import Corrections, is_corrected
+from app.motion.inbetweens.own_clocks import Carried
+from app.motion.inbetweens.pose_sampler import PoseSampler
+from engine.arrays import Complexes
+from engine.interpolation import Frame
+from engine.maps import Span
+
+
+class Animation:
+    """A clip's motion at the points of a sampler: from key to key, and as handles stay and go.
+
+    Parameters
+    ----------
+    variant : str, optional
+        The figure's own by default.
+    points : complex128, shape (m,), optional
+        By default the vertices of the domain's mesh.
+    sampler : PoseSampler, optional
+        An earlier animation's; it is used again if its domain and anchor are the figure's: poses
+        that it has sampled are not sampled again.
+
+    Attributes
+    ----------
+    base : BaseMotion
+        The closed-form motion from key to key.
+    carried : callable, optional
+        Where the figure hangs, for what is planted in the scene; by itself without.
+    """
+
+    def __init__(
+        self,
+        clip: Clip,
+        variant: Variant | None = None,
+        *,
+        points: Complexes | None = None,
+        sampler: PoseSampler | None = None,
+        carried: Carried | None = None,
+    ) -> None:
+        self.clip = clip
+        self.variant: Variant = clip.figure.variant if variant is None else Variant(variant)
+        if (
+            sampler is None
+            or sampler.domain is not clip.figure.domain
+            or sampler.anchor != clip.figure.anchor
+            or (points is not None and points is not sampler.sites.points)
+        ):
+            sampler = PoseSampler(clip.figure.domain, anchor=clip.figure.anchor, points=points)
+        self.sampler = sampler
+        self.base = BaseMotion(clip, self.variant, sampler)
+        self.carried = carried
+        self._corrections: Corrections | None = None
+
+    @property
+    def corrections(self) -> Corrections | None:
+        """What is added to the base motion; None where nothing ever is."""
+        if self._corrections is None and is_corrected(self.clip):
+            self._corrections = Corrections(self.clip, self.variant, self.sampler, self.carried)
+        return self._corrections
+
+    def positions(self, frame: float) -> Complexes:
+        """Return where the points (m,) are at a frame, which may lie between two numbers."""
+        return self.frame(frame).positions
+
+    def frame(self, frame: float) -> Frame:
+        """Return positions and derivatives of the points at a frame."""
+        corrections = self.corrections
+        return self._corrected(frame, corrections.at(frame) if corrections else None)
+
+    def still_frame(self, frame: float) -> Frame:
+        """Return the same without tracks and springs."""
+        corrections = self.corrections
+        return self._corrected(frame, corrections.still_at(frame) if corrections else None)
+
+    def _corrected(self, frame: float, correction: Correction | None) -> Frame:
+        base = self.base.frame(frame)
+        if correction is None:
+            return base
+        domain = self.clip.figure.domain
+        span = Span(cage=domain.cage, holes=domain.holes)
+        return correction.of(base, span, self.sampler.sites.points)

@@ -1,0 +1,237 @@
+"""The corrections of a clip's frames: stillness first, then springs and tracks over it.
+
+Each frame is worked out by itself, and known by all that it follows from, so that undo, a copied
+key and another window onto the same figure find what was made before.
+"""
+
+import threading
+from collections.abc import Callable, Iterable
+
+import numpy as np
+
+from app.document import Clip, Variant, resting_pose, time_of, transits
+from app.motion.inbetweens.base_motion import BaseMotion
+from app.motion.inbetweens.correction import Correction
+from app.motion.inbetweens.own_clocks import Carried, OwnClocks, Wanted
+from app.motion.inbetweens.pairs import pair_of
+from app.motion.inbetweens.pose_sampler import PoseSampler
+from app.motion.inbetweens.stillness import Lack, Stillness, still_handles
+from engine.arrays import Complexes, Floats
+from engine.deform.relative import Base, Corrected, Corrector, Pins, best_rigid
+from engine.geometry import RigidMotion
+
+LEFT_OVER = 0.02  # pixels that handles may lack after the rigid motion without being solved for
+KEPT = 2**26  # bytes of corrections of one outline that are kept
+
+
+def is_corrected(clip: Clip) -> bool:
+    """Tell whether some frame of a clip may be other than its closed-form motion."""
+    if clip.baseline is not None:
+        return False
+    figure = clip.figure
+    own = [each.enabled for each in figure.tracks] + [each.enabled for each in figure.springs]
+    return any(own) or bool(still_handles(clip).any())
+
+
+class Corrections:
+    """The corrections of a clip.
+
+    Parameters
+    ----------
+    clip : Clip
+    variant : Variant
+    sampler : PoseSampler
+        Of the figure's domain, at any points; what it knows of the outline is used, and kept there.
+    carried : callable, optional
+        Where the figure hangs, at a frame; by itself without.
+    """
+
+    def __init__(
+        self, clip: Clip, variant: Variant, sampler: PoseSampler, carried: Carried | None = None
+    ) -> None:
+        figure = clip.figure
+        self._clip, self._variant = clip, variant
+        self._known = sampler.known.corrections
+        self._lock = threading.RLock()
+        self._handles = slice(0, len(figure.handles))
+        points = [handle.position for handle in figure.handles]
+        # What hangs is held by its anchor.
+        self._is_hung = figure.attachment is not None and figure.anchor is not None
+        if figure.anchor is not None and self._is_hung:
+            points.append(figure.anchor)
+        self._points = np.array(points, dtype=np.complex128)
+        boundary = sampler.sites.boundary
+        self._corrector = Corrector(boundary=boundary, points=self._points)
+        own = PoseSampler(
+            figure.domain,
+            anchor=figure.anchor,
+            points=np.concatenate([self._points, boundary.points]),
+            sibling=sampler,
+        )
+        self._motion = BaseMotion(clip, variant, own)
+        self._stillness = Stillness(self._motion, self._handles)
+        self._own = OwnClocks(clip, self._still_places, carried)
+
+    def at(self, frame: float) -> Correction | None:
+        """Return what is added to the base motion at a frame; None where that is nothing."""
+        with self._lock:
+            base = self._base(frame)
+            lack = self._lack(frame, base)
+            still = self._still(frame, base, lack)
+            if not self._own.acts(frame):
+                return still
+            moved = self._with(base, still)
+            wanted = self._own.wanted(
+                frame, moved.positions[self._handles], moved.fz[self._handles]
+            )
+            if wanted is None:
+                return still
+            return self._gone(frame, moved, lack, still or Correction(), wanted)
+
+    def still_at(self, frame: float) -> Correction | None:
+        """Return the same without tracks and springs."""
+        with self._lock:
+            base = self._base(frame)
+            return self._still(frame, base, self._lack(frame, base))
+
+    def rigid_at(self, frame: float) -> Correction | None:
+        """Return the rigid motion of a frame, which takes next to no time."""
+        with self._lock:
+            base = self._base(frame)
+            lack = self._lack(frame, base)
+            return None if lack is None else Correction(motion=self._rigid(base, lack))
+
+    def base_at(self, frame: float) -> Base:
+        """Return the closed-form motion of the handles, then of the anchor of what hangs."""
+        with self._lock:
+            return self._base(frame)
+
+    def _still_places(self, frame: float) -> Complexes:
+        """Return where the handles are at a frame before springs and tracks, (h,)."""
+        base = self._base(frame)
+        still = self._still(frame, base, self._lack(frame, base))
+        return self._with(base, still).positions[self._handles]
+
+    def _base(self, frame: float) -> Base:
+        found, count = self._motion.frame(frame), len(self._points)
+        return Base(
+            f=found.fz[count:],
+            g=found.fzbar[count:].conj(),
+            positions=found.positions[:count],
+            fz=found.fz[:count],
+        )
+
+    def _with(self, base: Base, correction: Correction | None) -> Base:
+        """Return a base corrected."""
+        if correction is None:
+            return base
+        moved = base.moved(correction.motion)
+        if correction.phi is None or correction.psi is None:
+            return moved
+        return moved.plus(self._corrector.measured(correction.phi, correction.psi))
+
+    def _lack(self, frame: float, base: Base) -> Lack | None:
+        return self._stillness.lack(frame, base.positions[self._handles])
+
+    def _rigid(self, base: Base, lack: Lack) -> RigidMotion:
+        pivot = complex(base.positions[-1]) if self._is_hung else None
+        places = base.positions[self._handles]
+        return best_rigid(places, lack.offsets, lack.weights, pivot)
+
+    def _still(self, frame: float, base: Base, lack: Lack | None) -> Correction | None:
+        """Return the correction by which handles stay."""
+        if lack is None or not lack.offsets.any():
+            return None
+        motion = self._rigid(base, lack)
+        moved = base.moved(motion)
+        places = moved.positions.copy()
+        wanted = base.positions[self._handles] + lack.offsets
+        places[self._handles] += lack.weights * (wanted - places[self._handles])
+        if np.abs(places - moved.positions).max() < LEFT_OVER:
+            return Correction(motion=motion)
+        pins = self._pins(places, lack.weights, np.full(len(wanted), np.nan), 1.0)
+
+        def solve() -> Correction:
+            found = self._corrector.correct(moved, pins, self._clip.figure.bounds)
+            phi, psi = self._anchored(found)
+            return Correction(
+                motion=motion,
+                phi=phi,
+                psi=psi,
+                is_held_back=found.is_held_back,
+                steps=found.steps,
+            )
+
+        return self._remembered((*self._whose(frame), *_content(lack)), solve)
+
+    def _gone(
+        self, frame: float, base: Base, lack: Lack | None, still: Correction, wanted: Wanted
+    ) -> Correction:
+        """Return the correction by which handles also go their own ways."""
+        firmness = wanted.firmness if lack is None else np.maximum(wanted.firmness, lack.weights)
+        places = base.positions.copy()
+        places[self._handles] = wanted.places
+        pins = self._pins(places, firmness, wanted.turns, wanted.reach)
+
+        def solve() -> Correction:
+            found = self._corrector.correct(base, pins, self._clip.figure.bounds)
+            phi, psi = self._anchored(found)
+            misses = {
+                handle.id: float(miss)
+                for handle, miss in zip(self._clip.figure.handles, found.misses, strict=False)
+                if handle.id in wanted.tracked
+            }
+            return Correction(
+                motion=still.motion,
+                phi=phi if still.phi is None else phi + still.phi,
+                psi=psi if still.psi is None else psi + still.psi,
+                misses=misses,
+                is_held_back=found.is_held_back,
+                steps=still.steps + found.steps,
+            )
+
+        key = (*self._whose(frame), *_content(lack or ()), *_content(wanted))
+        return self._remembered(key, solve)
+
+    def _pins(self, places: Complexes, firmness: Floats, turns: Floats, reach: float) -> Pins:
+        """Return what is wanted of the points; what hangs is held by its anchor."""
+        more = len(places) - len(firmness)
+        return Pins(
+            places,
+            np.concatenate([firmness, np.ones(more)]),
+            np.concatenate([turns, np.full(more, np.nan)]),
+            reach,
+        )
+
+    def _remembered(self, key: tuple[object, ...], solve: Callable[[], Correction]) -> Correction:
+        """Return the correction that is known by a key, solved where it is not."""
+        known = self._known.pop(key, None)
+        if known is None:
+            known = solve()
+            while len(self._known) > KEPT // max(known.nbytes, 1):
+                del self._known[next(iter(self._known))]
+        self._known[key] = known
+        return known
+
+    def _anchored(self, corrected: Corrected) -> tuple[Complexes, Complexes]:
+        """Return the coefficients of a correction that leaves the anchor of what hangs in place."""
+        phi = corrected.phi
+        if self._is_hung:
+            phi = phi.copy()
+            phi[: len(self._clip.figure.domain.cage)] -= corrected.change.positions[-1]
+        return phi, corrected.psi
+
+    def _whose(self, frame: float) -> tuple[object, ...]:
+        """Return what the motion of a frame follows from; the poses stay alive with it."""
+        clip, moment = self._clip, time_of(self._clip, frame)
+        resting, bounds = resting_pose(clip, moment), clip.figure.bounds
+        if resting is not None:
+            return resting, self._points.tobytes(), bounds
+        poses = tuple(key.pose for key in transits(clip)[moment.interval].keys)
+        pair = pair_of(clip, moment.interval, self._variant)
+        return poses, pair, moment.weight, self._points.tobytes(), bounds
+
+
+def _content(parts: Iterable[object]) -> tuple[object, ...]:
+    """Return values by which what follows from them is known."""
+    return tuple(each.tobytes() if isinstance(each, np.ndarray) else each for each in parts)

@@ -1,0 +1,20 @@
+"""By what the in-betweens of two keys are known, whichever clip they are in."""
+
+from app.document import Clip, Variant, transits
+
+# The maps, their own and those of the keys around that the motion passes through, since handles may
+# come and go; turns, joints, bounds, anchor and variant.
+Pair = tuple[object, ...]
+
+
+def pair_of(clip: Clip, interval: int, variant: Variant | None = None) -> Pair:
+    """Return the key by which the in-betweens of one of a clip's intervals are known."""
+    transit, figure = transits(clip)[interval], clip.figure
+    # As numbers, which are hashed far sooner than the dataclass.
+    bounds = (figure.bounds.k, figure.bounds.sigma_a, figure.bounds.sigma_b)
+    maps = [identity for key in transit.keys for identity in (id(key.pose.phi), id(key.pose.psi))]
+    joined = (transit.start, transit.end, bounds) if transit.is_joined else ()
+    if clip.baseline is None:
+        return *maps, *transit.turns, *joined, figure.anchor, variant or figure.variant
+    rest = (bounds, tuple(handle.position for handle in figure.handles), clip.frames)
+    return *maps, *transit.turns, *joined, figure.anchor, clip.baseline, *rest

@@ -1,0 +1,172 @@
+"""Handles that two neighbouring keys have at one place stay there in between: what that asks.
+
+In a span, from one key to the next in h frames, with τ from 0 to 1, a handle has in the base
+motion the place b and reaches p₀ and p₁ at the keys. Still ones are to go from p₀ to p₁ as
+3τ² − 2τ³ does; what they lack is o = p − b. Where a handle is still on one side of a key and moves
+on the other, its velocity is that of the still side: in the span where it moves it lacks
+h (ȯ₀ τ(1−τ)² − ȯ₁ τ²(1−τ)), with ȯ = minus the base's velocity on the still side, and what it lacks
+counts with a weight that fades, (1−τ)³ and τ³.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from app.document import (
+    HOLD,
+    Clip,
+    Moment,
+    comes_round,
+    intervals,
+    time_of,
+    transits,
+)
+from app.motion.inbetweens.base_motion import BaseMotion
+from engine.arrays import Booleans, Complexes, Floats
+
+SAME = 0.5  # pixels between two targets that are at one place
+RARELY = 1e-12  # a weight below it is none
+
+
+class Span(NamedTuple):
+    """From one key to the next: their indices, and in how many frames."""
+
+    first: int
+    last: int
+    start: int
+    frames: int
+
+
+class Lack(NamedTuple):
+    """What handles lack in a frame.
+
+    Parameters
+    ----------
+    offsets : complex128, shape (h,)
+        From where the base has them to where they should be, in pixels.
+    weights : float64, shape (h,)
+        How much each counts, from 0 to 1.
+    """
+
+    offsets: Complexes
+    weights: Floats
+
+
+def spans_of(clip: Clip) -> list[Span]:
+    """Return the spans of a clip's intervals, in their order."""
+    keys, found = clip.keys, []
+    for first, last in intervals(clip):
+        start, end = keys[first].frame, keys[last].frame
+        frames = end - start if last > first else end + clip.period - start
+        found.append(Span(first, last, start, frames))
+    return found
+
+
+def still_handles(clip: Clip) -> Booleans:
+    """Return which handles (k, h) are still in which of the clip's spans."""
+    figure, keys, spans = clip.figure, clip.keys, spans_of(clip)
+    following = {spring.handle for spring in figure.springs if spring.enabled}
+    still = np.zeros((len(spans), len(figure.handles)), dtype=bool)
+    if not figure.stillness or clip.baseline is not None:
+        return still
+    for number, span in enumerate(spans):
+        one, other = keys[span.first], keys[span.last]
+        # A whole turn between equal targets is meant: it would be unwound.
+        if one.easing == HOLD or one.turns:
+            continue
+        for index, handle in enumerate(figure.handles):
+            if handle.free or handle.id in following:
+                continue
+            places = (key.pose.targets[handle.id].position for key in (one, other))
+            still[number, index] = handle.locked or abs(next(places) - next(places)) < SAME
+    return still
+
+
+class Stillness:
+    """What the stillness of handles asks of each frame of a clip.
+
+    Parameters
+    ----------
+    motion : BaseMotion
+        At points of which the handles are a part.
+    places : slice
+        Which of them are the handles.
+    """
+
+    def __init__(self, motion: BaseMotion, places: slice) -> None:
+        clip = motion.clip
+        self._clip = clip
+        self._spans = spans_of(clip)
+        self._still = still_handles(clip)
+        shape = (len(self._spans), 2, self._still.shape[1])
+        self._ends = np.zeros(shape, dtype=np.complex128)
+        velocities = np.zeros(shape, dtype=np.complex128)
+        for number, span in enumerate(self._spans):
+            if not self._still[number].any():
+                continue
+            paces = transits(clip)[number].paces
+            easing = clip.keys[span.first].easing.paces
+            for side, key in enumerate((span.first, span.last)):
+                samples = motion.sampler.samples(clip.keys[key].pose)
+                self._ends[number, side] = samples.positions[places]
+                pace = paces[side] * easing[side] / span.frames
+                if pace and np.isfinite(pace):
+                    speed = motion.velocity(number, at_end=side == 1)[places]
+                    velocities[number, side] = pace * speed
+        self._weights = np.zeros(shape)
+        self._slopes = np.zeros(shape, dtype=np.complex128)
+        for number in range(len(self._spans)):
+            for side, other in enumerate((self._before(number), self._after(number))):
+                if other is not None:
+                    there, here = self._still[other], self._still[number]
+                    self._weights[number, side] = there & ~here
+                    slope = -velocities[other, 1 - side]
+                    self._slopes[number, side] = np.where(there & ~here, slope, 0.0)
+
+    @property
+    def asks(self) -> bool:
+        """Whether anything is still at any time."""
+        return bool(self._still.any())
+
+    def lack(self, frame: float, places: Complexes) -> Lack | None:
+        """Return what the handles, which the base has at these places (h,), lack at a frame.
+
+        None where nothing is asked.
+        """
+        moment = time_of(self._clip, frame)
+        if not self._spans or not (
+            self._still[moment.interval].any() or self._weights[moment.interval].any()
+        ):
+            return None
+        span = self._spans[moment.interval]
+        share = self._share(span, frame)
+        if moment.weight in (0.0, 1.0) or not 0.0 < share < 1.0:
+            return None
+        return self._lack(moment, span.frames, share, places)
+
+    def _lack(self, moment: Moment, frames: int, share: float, places: Complexes) -> Lack:
+        number, rest = moment.interval, 1.0 - share
+        still, ends, slopes = self._still[number], self._ends[number], self._slopes[number]
+        goal = ends[0] + share * share * (3.0 - 2.0 * share) * (ends[1] - ends[0])
+        moving = frames * share * rest * (rest * slopes[0] - share * slopes[1])
+        before, after = self._weights[number]
+        weights = np.where(still, 1.0, rest**3 * before + share**3 * after)
+        offsets = np.where(still, goal - places, moving)
+        return Lack(offsets, np.where(weights > RARELY, weights, 0.0))
+
+    def _share(self, span: Span, frame: float) -> float:
+        """Return which share of a span's frames is over at a frame."""
+        since = frame - span.start
+        if self._clip.loop and self._clip.period and not 0 <= since <= span.frames:
+            since %= self._clip.period
+        return since / span.frames
+
+    def _before(self, number: int) -> int | None:
+        if number > 0:
+            return number - 1
+        return len(self._spans) - 1 if comes_round(self._clip) else None
+
+    def _after(self, number: int) -> int | None:
+        if number + 1 < len(self._spans):
+            return number + 1
+        return 0 if comes_round(self._clip) else None

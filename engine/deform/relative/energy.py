@@ -1,0 +1,315 @@
+"""The energy of a map relative to another one, with the barrier of its bounds and its pins.
+
+With B = f_z and C = conj(f_z̄) of the base, J = |B|² − |C|², α = conj(B) / J and β = −C / J, the map
+g = f ∘ base⁻¹ has
+
+    P = ∂_w g = α F + β conj(G),    Q = conj(∂_w̄ g) = α G + β conj(F),
+
+and Re(p dP + q dQ) = Re((p α + conj(q β)) dF + (conj(p β) + q α) dG): rows of the derivatives by P
+and Q become rows by φ and ψ, and the projection of the Hessian is that of the energy in P and Q.
+The identity is the minimum of the energy; so that it is that of all together, the barrier's own
+gradient at the base is taken off as a dead load.
+"""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from engine.arrays import Complexes, Floats, Indices, Singles
+from engine.deform.model import (
+    Barrier,
+    Radial,
+    by_unknowns,
+    in_basis,
+    symmetric_dirichlet,
+    symmetric_dirichlet_derivatives,
+)
+from engine.deform.relative.base import Base, Pins
+from engine.maps import Boundary
+
+# A prescribed turn is as stiff as two points this far (of L) on either side.
+ARM = 0.02
+# κ: how strongly the outline is held where the base has it, times (1 − reach)², over L².
+HELD = 300.0
+# Samples of the Hessian of the energy for each function of the span; and how much stiffer by the
+# barrier than by the energy a sample is that enters it by itself.
+SAMPLES_PER_FUNCTION = 6
+FELT = 0.02
+TINY = 1e-300
+LOOSE = 1e4  # stiffness of constants on the cages of holes, which change no map
+
+# Rows by φ and ψ (k,), and of which of some samples.
+Block = tuple[Complexes, Complexes, Indices]
+
+
+class Rows(NamedTuple):
+    """What does not depend on the base, of a boundary and points in its domain.
+
+    Parameters
+    ----------
+    boundary : Boundary
+        With its own samples only.
+    coordinates, derivatives : complex128, shape (h, r)
+        Of the functions of the basis, at the points.
+    held : float64, shape (u, u)
+        The Hessian of the mean over the outline's vertices of |δ|² / L².
+    some : intp, shape (s,)
+        The samples of the Hessian of the energy.
+    some_weights : float64, shape (s,)
+    some_rows : complex64, shape (s, r)
+        The derivatives of the basis there.
+    """
+
+    boundary: Boundary
+    coordinates: Complexes
+    derivatives: Complexes
+    held: Floats
+    some: Indices
+    some_weights: Floats
+    some_rows: Complexes
+
+    @classmethod
+    def of(cls, boundary: Boundary, points: Complexes) -> "Rows":
+        """Prepare them."""
+        span, basis = boundary.span, boundary.basis
+        count = len(boundary.points)
+        stride = max(1, count // (SAMPLES_PER_FUNCTION * len(span)))
+        starts = np.arange(0, count, stride)
+        some = np.minimum(starts + stride // 2, count - 1)
+        vertices = boundary.vertex_coordinates @ basis / boundary.size
+        held = _squared(boundary, vertices / np.sqrt(len(vertices)))
+        return cls(
+            boundary=boundary,
+            coordinates=span.coordinates(points) @ basis,
+            derivatives=span.derivatives(points) @ basis,
+            held=held,
+            some=some,
+            some_weights=np.add.reduceat(boundary.weights, starts),
+            some_rows=boundary.basis_derivatives[some].astype(np.complex64),
+        )
+
+    def change(self, unknowns: Floats) -> Base:
+        """Return the map of the span that unknowns (u,) stand for."""
+        phi, psi = in_basis(self.boundary, unknowns)
+        rows = self.boundary.basis_derivatives
+        return Base(
+            f=rows @ phi,
+            g=rows @ psi,
+            positions=self.coordinates @ phi + (self.coordinates @ psi).conj(),
+            fz=self.derivatives @ phi,
+        )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RelativeEnergy:
+    """What a correction of a base minimises.
+
+    Parameters
+    ----------
+    rows : Rows
+    base : Base
+    pins : Pins
+    fixed : float64, shape (u, u)
+        The Hessian of the places of the pins and of what holds the outline, twice the upper
+        triangle's sum: it does not change in a solve.
+    """
+
+    rows: Rows
+    base: Base
+    pins: Pins
+    alpha: Complexes = field(init=False)
+    beta: Complexes = field(init=False)
+    fixed: Floats = field(init=False)
+
+    def __post_init__(self) -> None:
+        f, g, boundary = self.base.f, self.base.g, self.rows.boundary
+        area = np.abs(f) ** 2 - np.abs(g) ** 2
+        object.__setattr__(self, "alpha", f.conj() / area)
+        object.__setattr__(self, "beta", -g / area)
+        root = np.sqrt(2.0 * self.stiffness)[:, None]
+        fixed = _squared(boundary, root * self.rows.coordinates)
+        if self.held:
+            fixed += 2.0 * self.held * self.rows.held
+        r = boundary.basis.shape[1]
+        for constant in range(1, 1 + len(boundary.holes)):
+            for first in (2 * constant, 2 * (constant + r - 1)):
+                fixed[[first, first + 1], [first, first + 1]] += LOOSE
+        object.__setattr__(self, "fixed", fixed)
+
+    @cached_property
+    def stiffness(self) -> Floats:
+        """λ of the points (h,)."""
+        return self.pins.stiffness / self.rows.boundary.size**2
+
+    @cached_property
+    def held(self) -> float:
+        """κ, for the mean over the outline of |δ|² / L²."""
+        return HELD * (1.0 - self.pins.reach) ** 2
+
+    @cached_property
+    def turning(self) -> Indices:
+        """The points that are to be turned, (t,)."""
+        return np.flatnonzero(~np.isnan(self.pins.turns))
+
+    def relative(self, at: Base) -> tuple[Complexes, Complexes]:
+        """Return P and Q (m,)."""
+        return (
+            self.alpha * at.f + self.beta * at.g.conj(),
+            self.alpha * at.g + self.beta * at.f.conj(),
+        )
+
+    def dead_load(self, barrier: Barrier) -> tuple[Complexes, Complexes]:
+        """Return the gradient of the barrier by F and G at the base, per weight."""
+        f, g = self.base.f, self.base.g
+        radial = barrier.derivatives(np.abs(f), np.abs(g))
+        return radial.a * f.conj() / np.abs(f), radial.b_per_b * g.conj()
+
+    def value(
+        self, at: Base, unknowns: Floats, barrier: Barrier, load: tuple[Complexes, Complexes]
+    ) -> float:
+        """Return what is minimised; ∞ beyond the walls."""
+        a, b = np.abs(at.f), np.abs(at.g)
+        if not np.all(barrier.slacks(a, b) > 0):
+            return np.inf
+        p, q = self.relative(at)
+        density = symmetric_dirichlet(np.abs(p), np.abs(q)) + barrier.value(a, b)
+        density -= (load[0] * (at.f - self.base.f) + load[1] * (at.g - self.base.g)).real
+        value = self.rows.boundary.weights @ density
+        value += self.stiffness @ np.abs(at.positions - self.pins.places) ** 2
+        if self.held:
+            value += self.held * (unknowns @ (self.rows.held @ unknowns))
+        if len(self.turning):
+            value += self._turning_stiffness @ self._turned(at) ** 2
+        return float(value)
+
+    def model(
+        self, at: Base, unknowns: Floats, barrier: Barrier, load: tuple[Complexes, Complexes]
+    ) -> tuple[Floats, Floats, Floats]:
+        """Return the gradient (u,), the projected Hessian (u, u), and what the projection removed.
+
+        With that taken off again the Hessian is the exact one, which need not be positive.
+        """
+        boundary, weights = self.rows.boundary, self.rows.boundary.weights
+        a, b = np.abs(at.f), np.abs(at.g)
+        p, q = self.relative(at)
+        energy = symmetric_dirichlet_derivatives(np.abs(p), np.abs(q))
+        bar = barrier.derivatives(a, b)
+        by_p = weights * energy.a * p.conj() / np.abs(p)
+        by_q = weights * energy.b_per_b * q.conj()
+        by_f = by_p * self.alpha + (by_q * self.beta).conj()
+        by_g = (by_p * self.beta).conj() + by_q * self.alpha
+        by_f += weights * (bar.a * at.f.conj() / a - load[0])
+        by_g += weights * (bar.b_per_b * at.g.conj() - load[1])
+        pull = 2.0 * self.stiffness * (at.positions - self.pins.places)
+        by_phi = by_f @ boundary.basis_derivatives + pull.conj() @ self.rows.coordinates
+        by_psi = by_g @ boundary.basis_derivatives + pull @ self.rows.coordinates
+        hessian = self.fixed.copy()
+        if len(self.turning):
+            slope = 2.0 * self._turning_stiffness * self._turned(at)
+            frames = -1j / at.fz[self.turning]
+            by_phi += (slope * frames) @ self.rows.derivatives[self.turning]
+            roots = np.sqrt(2.0 * self._turning_stiffness)[:, None] * frames[:, None]
+            rows = roots * self.rows.derivatives[self.turning]
+            _add_squared(hessian, by_unknowns(boundary, rows, np.zeros_like(rows)))
+        gradient = by_unknowns(boundary, by_phi, by_psi)
+        if self.held:
+            gradient = gradient + 2.0 * self.held * (self.rows.held @ unknowns)
+        removed = np.zeros_like(hessian)
+        self._add_energy(hessian, removed, (p, q), energy)
+        self._add_barrier(hessian, removed, at, bar, energy)
+        return gradient, hessian, removed
+
+    @cached_property
+    def _turning_stiffness(self) -> Floats:
+        arm = ARM * self.rows.boundary.size
+        stiffness: Floats = 2.0 * arm**2 * self.stiffness[self.turning]
+        return stiffness
+
+    def _turned(self, at: Base) -> Floats:
+        """Return by how much the points are turned too far, (t,)."""
+        wanted = np.exp(-1j * self.pins.turns[self.turning])
+        angles: Floats = np.angle(at.fz[self.turning] * wanted)
+        return angles
+
+    def _add_energy(
+        self, hessian: Floats, removed: Floats, pair: tuple[Complexes, Complexes], energy: Radial
+    ) -> None:
+        some = self.rows.some
+        alpha, beta = self.alpha[some].astype(np.complex64), self.beta[some].astype(np.complex64)
+        for into, roots in zip(
+            (hessian, removed), _roots(pair, energy, some, self.rows.some_weights), strict=True
+        ):
+            blocks = []
+            for by_p, by_q, which in roots:
+                x, y = by_p.astype(np.complex64), by_q.astype(np.complex64)
+                a, b = alpha[which], beta[which]
+                blocks.append((x * a + (y * b).conj(), (x * b).conj() + y * a, which))
+            self._add(into, blocks, self.rows.some_rows)
+
+    def _add_barrier(
+        self, hessian: Floats, removed: Floats, at: Base, barrier: Radial, energy: Radial
+    ) -> None:
+        felt = np.flatnonzero(barrier.aa + barrier.bb > FELT * (energy.aa + energy.bb))
+        if not len(felt):
+            return
+        boundary = self.rows.boundary
+        rows = boundary.basis_derivatives[felt]
+        for into, roots in zip(
+            (hessian, removed),
+            _roots((at.f, at.g), barrier, felt, boundary.weights[felt]),
+            strict=True,
+        ):
+            self._add(into, roots, rows)
+
+    def _add(self, hessian: Floats, blocks: list[Block], rows: Complexes) -> None:
+        """Add the squares of rows by φ and ψ to a Hessian, in the rows' own precision."""
+        if not blocks:
+            return
+        by_phi = np.concatenate([x[:, None] * rows[which] for x, _, which in blocks])
+        by_psi = np.concatenate([y[:, None] * rows[which] for _, y, which in blocks])
+        _add_squared(hessian, by_unknowns(self.rows.boundary, by_phi, by_psi))
+
+
+def _roots(
+    pair: tuple[Complexes, Complexes], radial: Radial, which: Indices, weights: Floats
+) -> tuple[list[Block], list[Block]]:
+    """Return rows by both of a pair whose squares are the projected Hessian of samples (s,).
+
+    Then those whose squares the projection removed.
+    """
+    x, y = pair[0][which], pair[1][which]
+    aa, ab, bb = radial.aa[which], radial.ab[which], radial.bb[which]
+    root = np.sqrt(weights)
+    first = np.sqrt(aa)
+    mixed = ab / first
+    second = np.sqrt(np.maximum(bb - mixed**2, 0.0))
+    size = np.abs(y)
+    frame_x = root * x.conj() / np.abs(x)
+    frame_y = root * np.where(size > 0, y.conj() / np.maximum(size, TINY), 1.0)
+    nothing, every = np.zeros_like(frame_x), np.arange(len(which))
+    around = radial.around_a[which]
+    tangential = -1j * np.sqrt(np.abs(around)) * frame_x
+    up, down = np.flatnonzero(around > 0), np.flatnonzero(around < 0)
+    kept = [
+        (first * frame_x, mixed * frame_y, every),
+        (nothing, second * frame_y, every),
+        (nothing, -1j * np.sqrt(radial.around_b[which]) * frame_y, every),
+        (tangential[up], nothing[up], up),
+    ]
+    return kept, [(tangential[down], nothing[down], down)] if len(down) else []
+
+
+def _squared(boundary: Boundary, rows: Complexes) -> Floats:
+    """Return the Hessian (u, u) of Σ |δ|² / 2 of places whose rows of the basis are these."""
+    real = by_unknowns(boundary, rows.copy(), rows.copy())
+    imaginary = by_unknowns(boundary, -1j * rows, 1j * rows)
+    both = np.concatenate([real, imaginary])
+    squared: Floats = both.T @ both
+    return squared
+
+
+def _add_squared(hessian: Floats, rows: Floats | Singles) -> None:
+    """Add the product of real rows (k, u) with themselves, in their own precision."""
+    hessian += rows.T @ rows

@@ -1,0 +1,37 @@
+"""The rigid motion that brings points nearest to where they are wanted."""
+
+import numpy as np
+
+from engine.arrays import Complexes, Floats
+from engine.geometry import HERE, RigidMotion
+
+TOWARDS_REST = 1e-3  # how strongly all points together pull towards no motion
+
+
+def best_rigid(
+    places: Complexes, offsets: Complexes, weights: Floats, pivot: complex | None = None
+) -> RigidMotion:
+    """Return argmin over R of Σ w |R p − p − o|² + (ε / h) Σ |R p − p|².
+
+    In closed form, and as smooth as what is given; the identity where all offsets are 0.
+
+    Parameters
+    ----------
+    places, offsets : complex128, shape (h,)
+        p, and by how much each is wanted elsewhere.
+    weights : float64, shape (h,)
+        Not negative.
+    pivot : complex, optional
+        A point that stays.
+    """
+    if not len(places) or not weights.any():
+        return HERE
+    total = weights + TOWARDS_REST / len(places)
+    wanted = places + offsets * weights / total
+    if pivot is None:
+        mean, wanted_mean = total @ places / total.sum(), total @ wanted / total.sum()
+    else:
+        mean = wanted_mean = pivot
+    turn = complex(np.sum(total * np.conj(places - mean) * (wanted - wanted_mean)))
+    factor = turn / abs(turn) if turn else 1.0 + 0j
+    return RigidMotion(factor, complex(wanted_mean - factor * mean))
