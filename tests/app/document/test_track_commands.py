@@ -10,12 +10,14 @@ from numpy.testing import assert_allclose
 from app.document import (
     figure_commands,
     handle_commands,
+    key_commands,
     layer_commands,
     scene_commands,
     track_commands as tracks,
 )
 from app.document.history import History
 from app.document.keyframe import Keyframe
+from app.document.queries.timeline import changed_stretches, exported_frames
 from app.document.settings import FrameRange
 from app.document.timing import HOLD, LINEAR, PRESETS, Easing, Passing, Spring, Track, TrackKey
 from app.errors import LissomError
@@ -312,3 +314,27 @@ def test_a_duplicated_layer_has_tracks_and_springs_of_its_own():
     assert (copy.tracks, copy.springs) == (first.tracks, first.springs)
     changed = tracks.set_delay(copy.id, 0, 7)(document)
     assert [figure.tracks[0].delay for figure in changed.figures] == [0, 7]
+
+
+def test_undo_tells_where_tracks_have_changed():
+    document = tracked(row(4, 10, 20, delay=3))
+
+    def changed(command):
+        return [span.first for span in changed_stretches(document, command(document))]
+
+    assert changed(tracks.put_track_key(0, 0, 10, 7)) == [13]
+    assert changed(tracks.move_track_keys(0, 0, {10}, 2)) == [13, 15]
+    assert changed(tracks.set_delay(0, 0, 5)) == [7, 9, 13, 15, 23, 25]
+    assert changed(tracks.set_reach(0, 0, 0.5)) == [7, 13, 23]
+    assert changed(tracks.put_track(0, row(46, handles=(1,), delay=9))) == [48]
+    assert changed(tracks.remove_tracks(0, {0})) == [7, 13, 23]
+    assert changed(scene_commands.set_fps(12)) == []
+
+
+def test_the_last_frame_of_a_loop_is_exported_where_a_track_has_another_end():
+    document = key_commands.match_ends(0)(tracked(row(0, 20, 48), loop=True))
+    assert exported_frames(document) == FrameRange(0, 48)
+    for same in (row(0, 20), row(20, 48, delay=4), row(0, 20, 48, enabled=False)):
+        assert exported_frames(altered(document, tracks=(same,))) == FrameRange(0, 47)
+    closed = tracks.put_track_key(0, 0, 48, 0)(document)
+    assert exported_frames(closed) == FrameRange(0, 47)
