@@ -15,6 +15,7 @@ from app.document.commands import (
     layer_commands as layer_commands,
     pose_commands as pose_commands,
     scene_commands as scene_commands,
+    track_commands as track_commands,
 )
 from app.document.figure import (
     Figure as Figure,

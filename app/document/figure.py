@@ -134,6 +134,14 @@ class Figure:
         return frozenset(key.frame for key in self.keys)
 
     @property
+    def ends(self) -> tuple[int, int]:
+        """The frames of the first key and of the last one, those of tracks among them."""
+        frames = [self.keys[0].frame, self.keys[-1].frame]
+        for track in self.tracks:
+            frames += [track.keys[0].frame, track.keys[-1].frame]
+        return min(frames), max(frames)
+
+    @property
     def poses(self) -> tuple[Pose, ...]:
         """Those of the keys, then those of the library."""
         return (*(key.pose for key in self.keys), *(kept.pose for kept in self.library))
@@ -183,6 +191,14 @@ class Figure:
         groups = {handle.id: handle.group for handle in self.handles}
         own = groups.get(identity)
         return frozenset({identity, *(i for i, group in groups.items() if own and group == own)})
+
+    def track_of(self, identity: int) -> Track | None:
+        """Return the track of the handle with this id, if it has one."""
+        return next((track for track in self.tracks if identity in track.handles), None)
+
+    def spring_of(self, identity: int) -> Spring | None:
+        """Return the spring by which the handle with this id follows, if it does."""
+        return next((spring for spring in self.springs if spring.handle == identity), None)
 
     def is_locked(self, identity: int) -> bool:
         """Tell whether there is a handle with this id that is locked."""

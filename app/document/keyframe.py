@@ -4,6 +4,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
+from typing import Self
 
 import numpy as np
 
@@ -169,3 +170,9 @@ class Keyframe:
     def shown_passing(self) -> Passing:
         """How the motion passes the key, by a hold too."""
         return Passing.HOLD if self.easing == HOLD else self.passing
+
+    def with_way(self, other: Self, *, backwards: bool = False) -> Self:
+        """Return the key with the way on from another one, or with that way run backwards."""
+        if backwards:
+            return replace(self, easing=other.easing.reversed(), turns=-other.turns)
+        return replace(self, easing=other.easing, turns=other.turns)

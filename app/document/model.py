@@ -88,10 +88,8 @@ class Document:
         """Return the document with another figure of the same id, and with room for its keys."""
         if changed is self.figure(changed.id):
             return self
-        frames = FrameRange(
-            min(self.frames.first, changed.keys[0].frame),
-            max(self.frames.last, changed.keys[-1].frame),
-        )
+        first, last = changed.ends
+        frames = FrameRange(min(self.frames.first, first), max(self.frames.last, last))
         figures = tuple(changed if figure.id == changed.id else figure for figure in self.figures)
         return replace(self, figures=figures, frames=frames)
 
@@ -113,10 +111,10 @@ class Document:
         require_distinct((figure.id for figure in self.figures), "Two figures have the id {!r}.")
         require_distinct((figure.name for figure in self.figures), "Two figures are called {!r}.")
         for figure in self.figures:
-            for key in figure.keys:
+            for frame in figure.ends:
                 require(
-                    key.frame in self.frames,
-                    f"The key at frame {key.frame} lies outside the animation's frames "
+                    frame in self.frames,
+                    f"The key at frame {frame} lies outside the animation's frames "
                     f"{self.frames.first} to {self.frames.last}.",
                 )
         for figure in self.figures:
@@ -130,7 +128,7 @@ class Document:
             require(
                 track.delay <= period,
                 f"A track of {figure.name!r} is late by {track.delay} frames, which is longer than "
-                f"the loop of {period}.",
+                f"the loop of {period}; make its delay shorter first.",
             )
         for spring in figure.springs if self.loop else ():
             require(

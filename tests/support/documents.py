@@ -18,13 +18,14 @@ from app.document.commands import (
     layer_commands,
     pose_commands,
     scene_commands,
+    track_commands,
 )
 from app.document.figure import PictureFile, new_figure
 from app.document.keyframe import Handle, KeptPose, Keyframe, Passing, Pose, Target
 from app.document.layering import Attachment, Switch
 from app.document.model import Document
 from app.document.settings import FRAMINGS, VARIANTS, ExportSettings, FrameRange, Marker, Meshing
-from app.document.timing import HOLD, PRESETS, Easing
+from app.document.timing import HOLD, LINEAR, PRESETS, Easing, Spring, Track, TrackKey
 from app.export_formats import EXPORT_FORMATS, ShapeDetail, SheetLayout
 from engine.domain.build import Domain
 from engine.domain.meshing.mesh import Mesh
@@ -95,8 +96,9 @@ def random_command(rng: np.random.Generator, document: Document) -> Command:
         _random_layer_command,
         _random_pose_command,
         _random_settings_command,
+        _random_track_command,
     )
-    return makers[rng.integers(5)](rng, document)
+    return makers[rng.integers(6)](rng, document)
 
 
 def _random_layer_command(rng: np.random.Generator, document: Document) -> Command:
@@ -157,6 +159,7 @@ def _random_handle_command(rng: np.random.Generator, document: Document) -> Comm
             handle_commands.remove_handles(0, {handle.id}),
             handle_commands.lock_handles(0, {handle.id}, locked=bool(rng.integers(2))),
             handle_commands.group_handles(0, {handle.id}, ("", "arms", "é")[rng.integers(3)]),
+            handle_commands.free_handles(0, {handle.id}, free=bool(rng.integers(2))),
         ]
     return commands[rng.integers(len(commands))]
 
@@ -185,6 +188,77 @@ def _random_key_command(rng: np.random.Generator, document: Document) -> Command
         key_commands.set_easing(0, frames, easing),
         key_commands.set_turns(0, frames, int(rng.integers(-1, 2))),
         key_commands.set_passing(0, frames, Passing(rng.choice(list(Passing)))),
+    ]
+    return commands[rng.integers(len(commands))]
+
+
+def random_track(rng: np.random.Generator, handles: tuple[int, ...]) -> Track:
+    frames = np.sort(rng.choice(60, rng.integers(1, 6), replace=False)).tolist()
+    return Track(
+        handles=handles,
+        planted=bool(rng.integers(2)),
+        keys=tuple(
+            TrackKey(
+                frame=frame,
+                place=inside(rng),
+                turn=float(rng.choice([0.0, rng.normal()])),
+                easing=rng.choice(np.array([*PRESETS.values()], object)),
+                passing=Passing(rng.choice(["through", "corner", "stop"])),
+            )
+            for frame in frames
+        ),
+        delay=int(rng.integers(6)),
+        reach=float(rng.choice([1.0, rng.random()])),
+        turns=bool(rng.integers(2)),
+        enabled=bool(rng.integers(2)),
+    )
+
+
+def random_spring(rng: np.random.Generator, handle: int) -> Spring:
+    return Spring(
+        handle=handle,
+        frequency=0.1 + 5 * rng.random(),
+        damping=float(rng.choice([0.0, rng.random()])),
+        lag=float(rng.integers(3)),
+        strength=float(rng.choice([1.0, rng.random()])),
+        enabled=bool(rng.integers(2)),
+    )
+
+
+def _random_track_command(rng: np.random.Generator, document: Document) -> Command:
+    figure = document.figures[0]
+    ids = [handle.id for handle in figure.handles] or [99]
+    one, other = rng.choice(ids, 2).tolist()
+    some = tuple(rng.permutation(ids)[: rng.integers(1, 4)].tolist())
+    track = figure.track_of(one) or random_track(rng, some)
+    every = [key.frame for key in track.keys]
+    frames = rng.choice(every, rng.integers(1, len(every) + 1), replace=False).tolist()
+    by, factor = int(rng.integers(-8, 9)), rng.choice([0.5, 1.0, 1.5, 2.0])
+    places = [inside(rng) for _ in every]
+    flag = bool(rng.integers(2))
+    commands = [
+        *3 * [track_commands.put_track(0, random_track(rng, some))],
+        *2 * [track_commands.put_spring(0, random_spring(rng, one))],
+        track_commands.put_track_key(0, one, int(rng.integers(60)), inside(rng), planted=flag),
+        track_commands.put_track_key(0, one, every[0], inside(rng), turn=rng.normal()),
+        track_commands.put_track_keys(0, one, random_track(rng, (one,)).keys),
+        track_commands.move_track_keys(0, one, frames, by),
+        track_commands.copy_track_keys(0, one, frames, by),
+        track_commands.delete_track_keys(0, one, frames),
+        track_commands.reverse_track_keys(0, one, frames),
+        track_commands.scale_track_keys(0, one, frames, factor),
+        track_commands.set_track_easing(0, one, frames, PRESETS["in"] if flag else LINEAR),
+        track_commands.set_track_passing(0, one, frames, Passing(rng.choice(list(Passing)))),
+        track_commands.set_delay(0, one, int(rng.integers(50))),
+        track_commands.set_reach(0, one, rng.random()),
+        track_commands.set_turning(0, one, turns=flag),
+        track_commands.enable_track(0, one, enabled=flag),
+        track_commands.plant_track(0, one, places, planted=flag),
+        track_commands.set_track_handles(0, one, some),
+        track_commands.copy_track(0, one, other),
+        track_commands.mirror_track(0, one),
+        track_commands.remove_tracks(0, {one}),
+        track_commands.remove_springs(0, {one}),
     ]
     return commands[rng.integers(len(commands))]
 
@@ -222,6 +296,7 @@ def _random_settings_command(rng: np.random.Generator, document: Document) -> Co
         scene_commands.delete_marker(at),
         scene_commands.set_loop(loop=bool(rng.integers(2))),
         figure_commands.set_variant(0, VARIANTS[rng.integers(len(VARIANTS))]),
+        figure_commands.set_stillness(0, stillness=bool(rng.integers(2))),
         figure_commands.set_anchor(0, None if rng.random() < 0.3 else inside(rng)),
         scene_commands.set_export(_random_export(rng)),
         figure_commands.set_bounds(0, bounds),
@@ -323,6 +398,7 @@ def full_document() -> Document:
             Keyframe(frame=40, pose=bent, easing=HOLD, fronts={4: 0.25, 1: 0.0}),
         ),
         anchor=100.5 + 99j,
+        stillness=False,
         variant="scaled-eta",
         bounds=Bounds(k=0.5, sigma_a=3.0, sigma_b=0.4),
         library=(
@@ -358,6 +434,34 @@ def full_document() -> Document:
         ),
         unknown=MappingProxyType({"extension": [1, 2], "export": {"quality": 4}}),
     )
+
+
+def clocked_document() -> Document:
+    """The full document with clocks of single handles: tracks and springs."""
+    full = full_document()
+    figure = full.figures[0]
+    nose, foot = figure.handles
+    more = MappingProxyType({"colour": "#123456"})
+    keys = (
+        TrackKey(frame=2, place=0j, unknown=more),
+        TrackKey(frame=9, place=3 - 4j, turn=0.25, easing=PRESETS["in"], passing=Passing.STOP),
+        TrackKey(frame=60, place=complex(1 / 3, -0.0), easing=Easing((0.1, 0.2, 1 / 3, 1.0))),
+    )
+    track = Track(
+        handles=(4, 1), keys=keys, delay=7, reach=0.3, turns=True, enabled=False, unknown=more
+    )
+    planted = Track(handles=(1,), planted=True, keys=(TrackKey(frame=1, place=70 + 90.5j),))
+    spring = Spring(
+        handle=1, frequency=3.1, damping=0.2, lag=1.5, strength=0.7, enabled=False, unknown=more
+    )
+    parent = dataclasses.replace(
+        full.figures[1],
+        handles=(nose, dataclasses.replace(foot, free=True)),
+        stillness=True,
+        tracks=(planted,),
+    )
+    child = dataclasses.replace(figure, tracks=(track,), springs=(spring,))
+    return dataclasses.replace(full, figures=(child, parent))
 
 
 def differences(first: object, second: object, where: str = "document") -> list[str]:

@@ -12,6 +12,7 @@ from app.document.commands import (
     layer_commands as layer_commands,
     pose_commands as pose_commands,
     scene_commands as scene_commands,
+    track_commands as track_commands,
 )
 from app.document.commands.command import Command as Command
 from app.document.commands.pose_commands import Settled as Settled, exchanged as exchanged

@@ -24,6 +24,12 @@ def set_anchor(figure: Figure, anchor: complex | None) -> Figure:
     return figure if anchor == figure.anchor else replace(figure, anchor=anchor)
 
 
+@figure_command("Set stillness")
+def set_stillness(figure: Figure, *, stillness: bool) -> Figure:
+    """Let handles that two keys have at one place stay there in between, or move as they like."""
+    return figure if stillness == figure.stillness else replace(figure, stillness=stillness)
+
+
 @figure_command("Set bounds")
 def set_bounds(figure: Figure, bounds: Bounds, poses: Sequence[Pose] | None = None) -> Figure:
     """Set the distortion that is allowed.

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from app.document.commands.command import figure_command, numbered
+from app.document.commands.track_handles import with_moved_handle, without_handles
 from app.document.figure import Figure
 from app.document.keyframe import Handle, Pose, Target
 
@@ -52,12 +53,13 @@ def move_handle(figure: Figure, identity: int, position: complex) -> Figure:
         return figure
     handle = replace(figure.handle(identity), position=position)
     handles = tuple(handle if handle.id == other.id else other for other in figure.handles)
-    return _with_poses(figure, partial(_follow, figure, handle), handles)
+    moved = with_moved_handle(figure, identity, position)
+    return _with_poses(moved, partial(_follow, figure, handle), handles)
 
 
 @figure_command("Delete handle")
 def remove_handles(figure: Figure, identities: Collection[int]) -> Figure:
-    """Remove handles by their ids. The poses stay."""
+    """Remove handles by their ids, their springs and what tracks are of them. The poses stay."""
     gone = {figure.handle(identity).id for identity in identities}
     if not gone:
         return figure
@@ -71,7 +73,8 @@ def remove_handles(figure: Figure, identities: Collection[int]) -> Figure:
         replace(key, fronts={i: front for i, front in key.fronts.items() if i not in gone})
         for key in figure.keys
     )
-    return _with_poses(replace(figure, keys=keys), remaining, handles)
+    left = without_handles(replace(figure, keys=keys), gone)
+    return _with_poses(left, remaining, handles)
 
 
 @figure_command("Rename handle")
@@ -90,6 +93,12 @@ def weigh_handles(figure: Figure, identities: Collection[int], weight: float) ->
 def lock_handles(figure: Figure, identities: Collection[int], *, locked: bool) -> Figure:
     """Lock handles in their places, or unlock them."""
     return with_handles(figure, identities, locked=locked)
+
+
+@figure_command("Free or keep still")
+def free_handles(figure: Figure, identities: Collection[int], *, free: bool) -> Figure:
+    """Let handles move as they like between keys that have them at one place, or keep them."""
+    return with_handles(figure, identities, free=free)
 
 
 @figure_command("Group handles")

@@ -5,7 +5,8 @@ from dataclasses import replace
 from itertools import pairwise
 
 from app.document.commands.command import command, numbered
-from app.document.commands.key_commands import require_factor, scaled, stretched
+from app.document.commands.key_commands import stretched
+from app.document.commands.keys_in_time import require_factor, scaled
 from app.document.model import Document
 from app.document.settings import ExportSettings, FrameRange, Marker
 from app.errors import LissomError
@@ -22,8 +23,8 @@ def set_frames(document: Document, frames: FrameRange) -> Document:
     """Set the first and last frame, which cut the preview range; no key may be left outside."""
     if frames == document.frames:
         return document
-    keys = (key for figure in document.figures for key in figure.keys)
-    outside = next((key.frame for key in keys if key.frame not in frames), None)
+    ends = (frame for figure in document.figures for frame in figure.ends)
+    outside = next((frame for frame in ends if frame not in frames), None)
     if outside is not None:
         raise LissomError(
             f"The key at frame {outside} would lie outside frames {frames.first} to {frames.last}; "

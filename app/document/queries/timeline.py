@@ -9,6 +9,7 @@ from app.document.figure import Figure
 from app.document.keyframe import Pose
 from app.document.model import Document
 from app.document.queries.clips import Clip, clip_of, closes
+from app.document.queries.tracks import track_at
 from app.document.queries.transits import transits
 from app.document.settings import FrameRange
 from app.errors import LissomError
@@ -63,7 +64,7 @@ def resting_pose(clip: Clip, moment: Moment) -> Pose | None:
 
 
 def changed_stretches(before: Document, after: Document) -> list[FrameRange]:
-    """Return where in time two documents differ: keys, the ways from them, and markers.
+    """Return where in time two documents differ: keys, the ways from them, tracks, and markers.
 
     A change of everything that is shown, such as of handles or of a domain, is nowhere.
     """
@@ -74,6 +75,9 @@ def changed_stretches(before: Document, after: Document) -> list[FrameRange]:
         is_alike = other and other.domain is figure.domain and other.handles == figure.handles
         if other and is_alike and other.keys is not figure.keys:
             stretches += _changed_keys(other, figure)
+        if other:
+            frames = {after.frames.clamp(frame) for frame in _changed_in_tracks(other, figure)}
+            stretches += [FrameRange(frame, frame) for frame in sorted(frames)]
     marks = set(before.markers) ^ set(after.markers)
     return stretches + [FrameRange(marker.frame, marker.frame) for marker in marks]
 
@@ -90,6 +94,18 @@ def _changed_keys(before: Figure, after: Figure) -> list[FrameRange]:
         elif old is not key:
             stretches.append(FrameRange(key.frame, following.get(key.frame, key.frame)))
     return stretches
+
+
+def _changed_in_tracks(before: Figure, after: Figure) -> set[int]:
+    """Return the frames of tracks' keys that differ, or of all keys of tracks that differ else."""
+    one, other = (
+        {(track.handles, track.delay, key) for track in figure.tracks for key in track.keys}
+        for figure in (before, after)
+    )
+    if one != other:
+        return {delay + key.frame for _, delay, key in one ^ other}
+    tracks = set(before.tracks) ^ set(after.tracks)
+    return {track.delay + key.frame for track in tracks for key in track.keys}
 
 
 def exported_frames(document: Document) -> FrameRange:
@@ -118,7 +134,14 @@ def framed_frames(document: Document, exported: FrameRange) -> FrameRange:
 def _is_same(document: Document, first: int, second: int) -> bool:
     """Tell whether two frames show the same pose, or two that were solved for the same wishes."""
     clips = (clip_of(document, figure.id) for figure in document.figures)
-    return all(_poses_alike(clip, time_of(clip, first), time_of(clip, second)) for clip in clips)
+    return all(
+        _poses_alike(clip, time_of(clip, first), time_of(clip, second))
+        and all(
+            track_at(track, clip, first) == track_at(track, clip, second)
+            for track in clip.figure.tracks
+        )
+        for clip in clips
+    )
 
 
 def _poses_alike(clip: Clip, first: Moment, second: Moment) -> bool:

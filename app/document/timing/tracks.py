@@ -1,12 +1,15 @@
 """Tracks: keys of single handles, beside those of whole poses."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
+from typing import Self
 
 from app.document.checks import NOTHING, Unknown, require, require_distinct, require_place
 from app.document.timing.easing import HOLD, LINEAR, Easing
 from app.document.timing.passing import Passing, require_passing
+
+LONGEST_DELAY = 999_999  # frames: an animation is no longer
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,6 +37,10 @@ class TrackKey:
         """How the motion passes the key, by a hold too."""
         return Passing.HOLD if self.easing == HOLD else self.passing
 
+    def with_way(self, other: Self, *, backwards: bool = False) -> Self:
+        """Return the key with the way on from another one, or with that way run backwards."""
+        return replace(self, easing=other.easing.reversed() if backwards else other.easing)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Track:
@@ -59,8 +66,11 @@ class Track:
         require(len(self.keys) > 0, "A track has at least one key; remove the track instead.")
         for before, after in pairwise(key.frame for key in self.keys):
             require(after != before, f"A track has two keys at frame {before}.")
-            require(after > before, f"A track's keys at {before} and {after} are mixed up.")
-        require(self.delay >= 0, f"A track is late by 0 frames or more, not by {self.delay}.")
+            require(after > before, f"A track's keys at frames {before} and {after} are mixed up.")
+        require(
+            0 <= self.delay <= LONGEST_DELAY,
+            f"The delay of a track is from 0 to {LONGEST_DELAY:,} frames, not {self.delay:,}.",
+        )
         require(
             0 <= self.reach <= 1, f"The reach of a track is between 0 and 1, not {self.reach:g}."
         )

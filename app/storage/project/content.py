@@ -24,8 +24,11 @@ from app.document import (
     Meshing,
     Passing,
     Pose,
+    Spring,
     Switch,
     Target,
+    Track,
+    TrackKey,
 )
 from app.errors import LissomError
 from app.export_formats import FormatOptions, FormatSettings
@@ -112,6 +115,7 @@ HANDLE = record(
     Field("extent", optional(NUMBER), usual=None),
     Field("locked", FLAG, usual=False),
     Field("group", TEXT, usual=""),
+    Field("free", FLAG, usual=False),
 )
 FRONTS = several(pair(WHOLE, NUMBER, "a handle and a number"))
 TARGETS = several(
@@ -124,10 +128,11 @@ TARGETS = several(
     )
 )
 # Keys and poses are read as their fields, which have no map yet.
+EASING = Codec(Easing.written, lambda content, _: Easing.parse(content))
 KEY = record(
     dict,
     Field("frame", WHOLE),
-    Field("easing", Codec(Easing.written, lambda content, _: Easing.parse(content))),
+    Field("easing", EASING),
     # Before there were passings, every key had a corner.
     Field("passing", TEXT, earlier=Passing.CORNER),
     Field("turns", WHOLE),
@@ -138,6 +143,37 @@ KEPT_POSE = record(
     dict,
     Field("name", TEXT),
     Field("targets", TARGETS, lambda kept: kept.pose.targets.items()),
+)
+TRACK = record(
+    Track,
+    Field("handles", several(WHOLE)),
+    Field("planted", FLAG, usual=False),
+    Field(
+        "keys",
+        several(
+            record(
+                TrackKey,
+                Field("frame", WHOLE),
+                Field("place", POINT),
+                Field("turn", NUMBER, usual=0.0),
+                Field("easing", EASING),
+                Field("passing", TEXT),
+            )
+        ),
+    ),
+    Field("delay", WHOLE, usual=0),
+    Field("reach", NUMBER, usual=1.0),
+    Field("turns", FLAG, usual=False),
+    Field("enabled", FLAG, usual=True),
+)
+SPRING = record(
+    Spring,
+    Field("handle", WHOLE),
+    Field("frequency", NUMBER),
+    Field("damping", NUMBER),
+    Field("lag", NUMBER, usual=0.0),
+    Field("strength", NUMBER, usual=1.0),
+    Field("enabled", FLAG, usual=True),
 )
 BACKGROUND = Codec(
     lambda value: list(value) if isinstance(value, tuple) else value,
@@ -184,6 +220,10 @@ FIGURE = record(
     Field("next_handle", WHOLE),
     Field("keys", several(KEY)),
     Field("anchor", optional(POINT)),
+    # Before there was stillness, handles moved as they liked between keys.
+    Field("stillness", FLAG, usual=False),
+    Field("tracks", several(TRACK), usual=()),
+    Field("springs", several(SPRING), usual=()),
     Field("variant", TEXT),
     Field("bounds", part(Bounds, *(Field(name, NUMBER) for name in ("k", "sigma_a", "sigma_b")))),
     Field("library", several(KEPT_POSE)),

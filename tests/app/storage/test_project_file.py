@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from documents import (
     altered,
+    clocked_document,
     differences,
     disc_document,
     disc_domain,
@@ -19,7 +20,7 @@ from documents import (
 )
 from hypothesis import given, settings, strategies as st
 
-from app.document.commands import handle_commands, key_commands, layer_commands
+from app.document.commands import handle_commands, key_commands, layer_commands, track_commands
 from app.document.keyframe import Passing
 from app.errors import LissomError
 from app.storage.assets import sample_images
@@ -38,6 +39,8 @@ STORED_2 = Path(__file__).parent / "data" / "schema_2.lissom"
 # The fields that a scene of one figure says nothing of.
 LAYER = ("name", "corner", "still", "reference", "locked", "hidden", "switches", "opacity")
 LAYER += ("attachment",)
+# What an animation has that is more than poses: older projects have none of it.
+CLOCKS = ("free", "stillness", "tracks", "springs")
 
 
 @pytest.fixture(scope="module")
@@ -81,12 +84,29 @@ def test_a_full_document_comes_back_to_the_last_bit(tmp_path):
     save_project(path, full_document(), thumbnail=THUMBNAIL)
     assert not differences(load_project(path), full_document())
     assert load_thumbnail(path) == THUMBNAIL
+    save_project(path, clocked_document())
+    assert not differences(load_project(path), clocked_document())
 
 
-@settings(max_examples=25)
-@given(st.lists(st.integers(0, 2**32 - 1), max_size=12), st.booleans())
-def test_any_document_comes_back_to_the_last_bit(tmp_path_factory, seeds, is_full):
-    document = full_document() if is_full else disc_document()
+def test_only_clocks_that_there_are_are_written(tmp_path):
+    for document, written in ((full_document(), set()), (clocked_document(), set(CLOCKS))):
+        save_project(tmp_path / "a", document)
+        text = read_members(tmp_path / "a")["project.json"]
+        assert {name for name in CLOCKS if f'"{name}"'.encode() in text} == written
+    # What is new keeps still what is still; what older versions made does as it did.
+    save_project(tmp_path / "a", disc_document())
+    assert load_project(tmp_path / "a").figures[0].stillness
+    assert not load_project(STORED).figures[0].stillness
+    assert not load_project(STORED_2).figures[1].stillness
+
+
+@settings(max_examples=40)
+@given(
+    st.lists(st.integers(0, 2**32 - 1), max_size=12),
+    st.sampled_from([disc_document, full_document, clocked_document]),
+)
+def test_any_document_comes_back_to_the_last_bit(tmp_path_factory, seeds, begin):
+    document = begin()
     for seed in seeds:
         try:
             document = random_command(np.random.default_rng(seed), document)(document)
@@ -208,6 +228,80 @@ def test_unknown_fields_are_kept_everywhere(tmp_path, members):
     save_project(tmp_path / "b", changed)
     figure["handles"][1]["name"] = "other"
     assert json.loads(read_members(tmp_path / "b")["project.json"]) == content
+
+
+def test_unknown_fields_of_tracks_and_springs_are_kept(tmp_path):
+    save_project(tmp_path / "a", clocked_document())
+    members = read_members(tmp_path / "a")
+    content = json.loads(members["project.json"])
+    figure = content["figures"][0]
+    track = figure["tracks"][0]
+    for index, place in enumerate([track, track["keys"][1], figure["springs"][0]]):
+        place["from the future"] = {"list": [index, None]}
+    text = json.dumps(content).encode()
+    document = load_project(pack(tmp_path / "a", members | {"project.json": text}))
+    save_project(tmp_path / "b", track_commands.set_delay(0, 1, 8)(document))
+    track["delay"] = 8
+    assert json.loads(read_members(tmp_path / "b")["project.json"]) == content
+
+
+@pytest.mark.parametrize(
+    ("way", "value", "message"),
+    [
+        (["stillness"], 1, "stillness must be true or false"),
+        (["handles", 0, "free"], "no", r"handles\[0\].free must be true or false"),
+        (["tracks"], {}, "tracks must be a list"),
+        (["tracks", 0], 7, r"tracks\[0\] must be an object"),
+        (["tracks", 0, "handles"], [], "track is of at least one handle"),
+        (["tracks", 0, "handles"], [4, 4], "track has the handle 4 twice"),
+        (["tracks", 0, "handles"], [7], "track is of the handle 7, which is not there"),
+        (["tracks", 0, "handles"], ["4"], r"handles\[0\] must be a whole number"),
+        (["tracks", 0, "planted"], 1, "planted must be true or false"),
+        (["tracks", 0, "keys"], [], "track has at least one key"),
+        (["tracks", 0, "keys", 1, "frame"], 2, "track has two keys at frame 2"),
+        (["tracks", 0, "keys", 1, "frame"], 1, "frames 2 and 1 are mixed up"),
+        (["tracks", 0, "keys", 2, "frame"], 61, "key at frame 61 lies outside"),
+        (["tracks", 0, "keys", 0, "frame"], 0, "key at frame 0 lies outside"),
+        (["tracks", 0, "keys", 1, "frame"], 2.5, "frame must be a whole number"),
+        (["tracks", 0, "keys", 1, "place"], [1], r"keys\[1\].place must be a point"),
+        (["tracks", 0, "keys", 1, "place"], [1e9, 0], "A track's key must be within"),
+        (["tracks", 0, "keys", 1, "turn"], "left", "turn must be a number"),
+        (["tracks", 0, "keys", 1, "turn"], 10**400, "turn must be finite"),
+        (["tracks", 0, "keys", 1, "easing"], "bounce", "no easing 'bounce'"),
+        (["tracks", 0, "keys", 1, "passing"], "hold", "to hold is an easing"),
+        (["tracks", 0, "delay"], -1, "delay of a track is from 0"),
+        (["tracks", 0, "delay"], 10**30, "delay of a track is from 0"),
+        (["tracks", 0, "delay"], 60, "late by 60 frames, which is longer than the loop of 59"),
+        (["tracks", 0, "reach"], 1.1, "reach of a track is between 0 and 1"),
+        (["tracks", 0, "enabled"], None, "enabled must be true or false"),
+        (["tracks", 0, "turns"], 0.1, "turns must be true or false"),
+        (["springs", 0, "handle"], 7, "spring is of the handle 7, which is not there"),
+        (["springs", 0, "frequency"], 0, "frequency of a spring is above 0"),
+        (["springs", 0, "damping"], -1, "damping of a spring is from 0"),
+        (["springs", 0, "lag"], 1e9, "lag of a spring is from 0"),
+        (["springs", 0, "strength"], -0.1, "strength of a spring is from 0"),
+        (["springs", 0, "damping"], "none", "damping must be a number"),
+    ],
+)
+def test_clocks_that_make_no_sense_are_named(tmp_path, way, value, message):
+    save_project(tmp_path / "a", clocked_document())
+    broken = with_json(read_members(tmp_path / "a"), "figures", 0, *way, value=value)
+    with pytest.raises(LissomError, match=message) as raised:
+        load_project(pack(tmp_path / "a.lissom", broken))
+    assert str(raised.value).startswith(f"cannot open {tmp_path / 'a.lissom'}: ")
+
+
+def test_a_spring_without_damping_is_refused_in_a_loop(tmp_path):
+    save_project(tmp_path / "a", clocked_document())
+    members = read_members(tmp_path / "a")
+    undamped = with_json(members, "figures", 0, "springs", 0, "damping", value=0)
+    # It swings nowhere as long as it is switched off.
+    assert load_project(pack(tmp_path / "b", undamped)).figures[0].springs[0].damping == 0
+    swinging = with_json(undamped, "figures", 0, "springs", 0, "enabled", value=True)
+    with pytest.raises(LissomError, match="no damping, so that it never comes round in a loop"):
+        load_project(pack(tmp_path / "b", swinging))
+    once = with_json(swinging, "loop", value=False)
+    assert load_project(pack(tmp_path / "b", once)).figures[0].springs[0].enabled
 
 
 def test_an_unknown_field_of_a_joint_goes_with_the_joint(tmp_path, members):
@@ -373,7 +467,7 @@ def test_every_field_is_needed(tmp_path, members):
     kept |= {"names", "sheet", "shapes"}  # of exports; earlier versions did not write them
     # Of the cut-out, likewise.
     kept |= {"background", "enclosed", "mask", "strokes", "holes", "swapped", "stale"}
-    kept |= {"slits", "parted"}
+    kept |= {"slits", "parted", *CLOCKS}
     missing = [way for way in ways(known) if way[-1] not in kept]
     assert len(missing) > 60
     for way in missing:

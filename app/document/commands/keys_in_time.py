@@ -1,0 +1,151 @@
+"""Keys moved about in time, be they of poses or of a track: pure functions of rows of keys.
+
+A row is in the order of its frames, and has at most one key at each.
+"""
+
+from collections import Counter
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import replace
+from itertools import chain, pairwise
+from typing import TypeVar
+
+from app.document.keyframe import Keyframe
+from app.document.timing import HOLD, LINEAR, Easing, Passing, TrackKey
+from app.errors import LissomError
+
+Key = TypeVar("Key", Keyframe, TrackKey)
+Row = tuple[Key, ...]
+
+
+def at_frames(keys: Row[Key], frames: Iterable[int]) -> list[Key]:
+    """Return the keys at these frames in order of time."""
+    found = {key.frame: key for key in keys}
+    for frame in frames:
+        if frame not in found:
+            raise LissomError(f"There is no key at frame {frame}.")
+    return [found[frame] for frame in sorted(set(frames))]
+
+
+def in_order(keys: Iterable[Key]) -> Row[Key]:
+    """Return a row of keys."""
+    ordered = tuple(sorted(keys, key=lambda key: key.frame))
+    frame, count = Counter(key.frame for key in ordered).most_common(1)[0]
+    if count > 1:
+        raise LissomError(
+            f"Two keys would be at frame {frame}; move or delete the one there first."
+        )
+    return ordered
+
+
+def exchanged(keys: Row[Key], changed: Mapping[int, Key]) -> Row[Key]:
+    """Return a row with others for the keys at some frames, itself if there are none."""
+    return in_order(changed.get(key.frame, key) for key in keys) if changed else keys
+
+
+def inserted(keys: Row[Key], new: Key) -> Row[Key]:
+    """Return a row with one more key.
+
+    A key that divides an interval takes its easing. Else the new way, that from a new first or last
+    key, has the new key's, and so has that from the key that was last, unless it was given one.
+    """
+    row: list[Key] = list(keys)
+    before = [key for key in row if key.frame < new.frame]
+    if new.frame > row[-1].frame:
+        if row[-1].easing == LINEAR:
+            row[-1] = replace(row[-1], easing=new.easing)
+    elif before:
+        new = replace(new, easing=before[-1].easing)
+    return in_order(chain(row, [new]))
+
+
+def put(keys: Row[Key], others: Iterable[Key]) -> Row[Key]:
+    """Return a row with other keys at their frames, in place of those that are there."""
+    return in_order(
+        ({key.frame: key for key in keys} | {key.frame: key for key in others}).values()
+    )
+
+
+def moved(keys: Row[Key], frames: Collection[int], by: int) -> Row[Key]:
+    """Return a row with the keys at some frames moved by a number of frames."""
+    chosen = at_frames(keys, frames)
+    return exchanged(keys, {key.frame: replace(key, frame=key.frame + by) for key in chosen if by})
+
+
+def copied(keys: Row[Key], frames: Collection[int], by: int) -> Row[Key]:
+    """Return a row with the keys at some frames repeated a number of frames later, or earlier."""
+    copies: list[Key] = [replace(key, frame=key.frame + by) for key in at_frames(keys, frames)]
+    return in_order(chain(keys, copies)) if copies else keys
+
+
+def without(keys: Row[Key], frames: Collection[int]) -> Row[Key]:
+    """Return a row without the keys at some frames; it may be empty."""
+    gone = at_frames(keys, frames)
+    return tuple(key for key in keys if key not in gone) if gone else keys
+
+
+def backwards(
+    keys: Row[Key], frames: Collection[int], span: tuple[int, int] | None = None
+) -> Row[Key]:
+    """Return a row in which the keys at some frames, and the motion between them, run backwards.
+
+    By default they do so between the first of them and the last one, else within the span.
+    """
+    chosen = at_frames(keys, frames)
+    ends = sum(span) if span else chosen[0].frame + chosen[-1].frame if chosen else 0
+    if len(chosen) < 2 and all(2 * key.frame == ends for key in chosen):
+        return keys
+    # A way belongs to the interval after its key: those between the keys turn round with them, and
+    # those after the last key stay where they are.
+    turned = {chosen[0].frame: chosen[0].with_way(chosen[-1])}
+    for before, key in pairwise(chosen):
+        turned[key.frame] = key.with_way(before, backwards=True)
+    return exchanged(
+        keys, {frame: replace(key, frame=ends - frame) for frame, key in turned.items()}
+    )
+
+
+def spread(
+    keys: Row[Key], frames: Collection[int], factor: float, first: int | None = None
+) -> Row[Key]:
+    """Return a row with the keys at some frames moved apart or together around one that stays."""
+    chosen = at_frames(keys, frames)
+    require_factor(factor)
+    if factor == 1 or not chosen:
+        return keys
+    first = chosen[0].frame if first is None else first
+    changed = {}
+    for key in chosen:
+        if key.frame != first:
+            changed[key.frame] = replace(key, frame=scaled(key.frame, first, factor))
+    return exchanged(keys, changed)
+
+
+def eased(keys: Row[Key], frames: Collection[int], easing: Easing) -> Row[Key]:
+    """Return a row in which time runs so from the keys at some frames to the next ones."""
+    chosen = [key for key in at_frames(keys, frames) if key.easing != easing]
+    return exchanged(keys, {key.frame: replace(key, easing=easing) for key in chosen})
+
+
+def passed(keys: Row[Key], frames: Collection[int], passing: Passing) -> Row[Key]:
+    """Return a row whose keys at some frames are passed so; what was held is no longer."""
+    changed = {}
+    for key in at_frames(keys, frames):
+        if key.shown_passing is passing:
+            continue
+        if passing is Passing.HOLD:
+            changed[key.frame] = replace(key, easing=HOLD)
+        else:
+            easing = LINEAR if key.easing == HOLD else key.easing
+            changed[key.frame] = replace(key, easing=easing, passing=passing)
+    return exchanged(keys, changed)
+
+
+def scaled(frame: int, first: int, factor: float) -> int:
+    """Return where a frame comes when time is stretched from the first frame on."""
+    return first + round((frame - first) * factor)
+
+
+def require_factor(factor: float) -> None:
+    """Refuse a factor by which time cannot be scaled."""
+    if not 0 < factor <= 1000:
+        raise LissomError(f"Time can be scaled by more than 0 and up to 1000, not by {factor:g}.")

@@ -1,0 +1,81 @@
+"""What becomes of tracks and springs where handles go, are put elsewhere, or are others."""
+
+from collections.abc import Collection
+from dataclasses import replace
+
+import numpy as np
+
+from app.document.figure import Figure
+from app.document.handle_pairs import pairs_by_name
+from app.document.timing import Track, TrackKey
+
+
+def without_handles(figure: Figure, gone: Collection[int]) -> Figure:
+    """Return the figure whose tracks and springs have nothing of some handles any more."""
+    tracks = (left(figure, track, gone) for track in figure.tracks)
+    springs = (spring for spring in figure.springs if spring.handle not in gone)
+    return replace(figure, tracks=tuple(filter(None, tracks)), springs=tuple(springs))
+
+
+def with_moved_handle(figure: Figure, identity: int, position: complex) -> Figure:
+    """Return the figure whose tracks want what they did of a handle that is put elsewhere."""
+    old = figure.handle(identity).position
+    tracks = (
+        _replanted(figure, track, old, position) if track.handles[0] == identity else track
+        for track in figure.tracks
+    )
+    return replace(figure, tracks=tuple(tracks))
+
+
+def mirrored_track(figure: Figure, track: Track) -> Track:
+    """Return a track mirrored at the figure's axis, for the partners of its handles, by name."""
+    pairs, axis = pairs_by_name(figure.handles), figure.axis
+    handles = tuple(pairs.get(handle, handle) for handle in track.handles)
+    old, new = (figure.handle(each[0]).position for each in (track.handles, handles))
+    # A drawing is hardly its own mirror image: what the partner is beside that of the handle.
+    beside = new - _reflected(old, axis)
+    keys = (
+        replace(
+            key,
+            place=_reflected(key.place, axis) + beside
+            if track.planted
+            else _reflected(key.place, 0.0),
+            turn=0.0 - key.turn,
+        )
+        for key in track.keys
+    )
+    return replace(track, handles=handles, keys=tuple(keys))
+
+
+def _reflected(place: complex, axis: float) -> complex:
+    return complex(2 * axis - place.real, place.imag)
+
+
+def left(figure: Figure, track: Track, gone: Collection[int]) -> Track | None:
+    """Return what is left of a track without some handles."""
+    handles = tuple(handle for handle in track.handles if handle not in gone)
+    return moved_to(figure, track, handles) if handles else None
+
+
+def moved_to(figure: Figure, track: Track, handles: tuple[int, ...]) -> Track:
+    """Return a track that moves other handles alike."""
+    changed = replace(track, handles=handles)
+    old, new = (figure.handle(each.handles[0]).position for each in (track, changed))
+    return _replanted(figure, changed, old, new)
+
+
+def _replanted(figure: Figure, track: Track, old: complex, new: complex) -> Track:
+    """Return a track that was for a point of the drawing for another one.
+
+    A planted key's place comes to be as far from it as the two points are apart in the pose of the
+    figure's nearest key; what is beside the pose stays so.
+    """
+    if not track.planted or old == new:
+        return track
+
+    def moved(key: TrackKey) -> TrackKey:
+        nearest = min(figure.keys, key=lambda each: abs(each.frame - key.frame))
+        before, after = figure.map_of(nearest.pose)(np.array([old, new])).tolist()
+        return replace(key, place=key.place + after - before)
+
+    return replace(track, keys=tuple(map(moved, track.keys)))

@@ -1,0 +1,340 @@
+"""Commands on tracks, springs and stillness, and what other commands do to them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from documents import CENTRE, altered, disc_document, random_pose
+from numpy.testing import assert_allclose
+
+from app.document import (
+    figure_commands,
+    handle_commands,
+    key_commands,
+    layer_commands,
+    scene_commands,
+    track_commands as tracks,
+)
+from app.document.history import History
+from app.document.keyframe import Keyframe
+from app.document.queries.timeline import changed_stretches, exported_frames
+from app.document.settings import FrameRange
+from app.document.timing import HOLD, LINEAR, PRESETS, Easing, Passing, Spring, Track, TrackKey
+from app.errors import LissomError
+
+NAMES = {"arm.L": -40 + 10j, "arm.R": 35 + 12j, "tail": 5 - 50j}
+AXIS = CENTRE.real
+SLOW = Easing((0.25, 0.0, 1.0, 1.0))
+SPRING = Spring(handle=2, frequency=3.0, damping=0.25)
+
+
+def row(*frames, handles=(0,), **changes):
+    """Return a track whose key at frame t is at t + 2t i."""
+    keys = tuple(TrackKey(frame=frame, place=complex(frame, 2 * frame)) for frame in frames)
+    return Track(handles=handles, keys=keys, **changes)
+
+
+def tracked(*made, springs=(), **settings):
+    """Return a document of three handles and keys at 0, 20 and 48, with tracks."""
+    document = disc_document()
+    for name, beside in NAMES.items():
+        document = handle_commands.add_handle(0, CENTRE + beside, name=name)(document)
+    rng = np.random.default_rng(5)
+    keys = tuple(Keyframe(frame=f, pose=random_pose(rng, document)) for f in (0, 20, 48))
+    return altered(document, keys=keys, tracks=made, springs=springs, **settings)
+
+
+def only(document):
+    (track,) = document.figures[0].tracks
+    return track
+
+
+def frames(document, handle=0):
+    return [key.frame for key in document.figures[0].track_of(handle).keys]
+
+
+def test_a_handle_is_keyed_by_itself():
+    document = tracks.put_track_key(0, 1, 10, 3 + 4j, turn=0.5, easing=PRESETS["in"])(tracked())
+    assert only(document) == Track(
+        handles=(1,),
+        keys=(TrackKey(frame=10, place=3 + 4j, turn=0.5, easing=PRESETS["in"]),),
+    )
+    later = tracks.put_track_key(0, 1, 20, 5)(document)
+    between = tracks.put_track_key(0, 1, 15, 1j)(later)
+    # What divides an interval takes its easing; a new last key has none.
+    assert [key.easing for key in only(between).keys] == [PRESETS["in"], PRESETS["in"], LINEAR]
+    held = tracks.set_track_passing(0, 1, {15}, Passing.STOP)(between)
+    again = tracks.put_track_key(0, 1, 15, 7)(held)
+    assert only(again).keys[1] == replace(only(held).keys[1], place=7)
+    assert tracks.put_track_key(0, 1, 10, 9)(again).figures[0].tracks[0].keys[0].turn == 0.5
+    assert tracks.put_track_key(0, 1, 15, 7)(again) is again
+    planted = tracks.put_track_key(0, 2, 4, 80j, planted=True)(again)
+    assert planted.figures[0].track_of(2).planted
+
+
+def test_keys_of_a_track_are_moved_about_in_time_as_those_of_poses_are():
+    document = tracked(row(4, 10, 16), row(5, handles=(1,)))
+    assert frames(tracks.move_track_keys(0, 0, {10, 16}, 3)(document)) == [4, 13, 19]
+    assert frames(tracks.copy_track_keys(0, 0, {4, 10}, 20)(document)) == [4, 10, 16, 24, 30]
+    assert frames(tracks.delete_track_keys(0, 0, {10})(document)) == [4, 16]
+    assert frames(tracks.scale_track_keys(0, 0, {4, 10, 16}, 1.5)(document)) == [4, 13, 22]
+    assert frames(tracks.scale_track_keys(0, 0, {10, 16}, 0.5, 4)(document)) == [4, 7, 10]
+    pasted = tracks.put_track_keys(0, 0, row(10, 40).keys[1:])(document)
+    assert frames(pasted) == [4, 10, 16, 40]
+    for command in (
+        tracks.move_track_keys(0, 0, {4}, 6),
+        tracks.copy_track_keys(0, 0, {4}, 6),
+        tracks.scale_track_keys(0, 0, {4, 10, 16}, 0.01),
+    ):
+        with pytest.raises(LissomError, match="Two keys would be at frame"):
+            command(document)
+    with pytest.raises(LissomError, match="no key at frame 5"):
+        tracks.move_track_keys(0, 0, {4, 5}, 1)(document)
+    with pytest.raises(LissomError, match="'tail' has no track"):
+        tracks.move_track_keys(0, 2, {4}, 1)(document)
+    assert tracks.move_track_keys(0, 0, {4}, 0)(document) is document
+
+
+def test_a_track_goes_with_its_last_key():
+    document = tracked(row(4, 10), row(5, handles=(1,)))
+    left = tracks.delete_track_keys(0, 0, {4, 10})(document)
+    assert only(left) == document.figures[0].tracks[1]
+    assert tracks.remove_tracks(0, {0, 1})(document).figures[0].tracks == ()
+
+
+def test_a_track_runs_backwards():
+    document = tracked(row(4, 10, 20))
+    document = tracks.set_track_easing(0, 0, {4}, SLOW)(document)
+    document = tracks.set_track_easing(0, 0, {10}, HOLD)(document)
+    back = tracks.reverse_track_keys(0, 0, {4, 10, 20})(document)
+    assert [(key.frame, key.place) for key in only(back).keys] == [
+        (4, 20 + 40j),
+        (14, 10 + 20j),
+        (20, 4 + 8j),
+    ]
+    assert [key.easing for key in only(back).keys] == [HOLD, SLOW.reversed(), LINEAR]
+    again = tracks.reverse_track_keys(0, 0, {4, 14, 20})(back)
+    assert only(again) == only(document)
+
+
+def test_how_time_runs_between_keys_of_a_track_and_how_they_are_passed():
+    document = tracked(row(4, 10, 20))
+    held = tracks.set_track_passing(0, 0, {10}, Passing.HOLD)(document)
+    assert [key.shown_passing for key in only(held).keys] == ["through", "hold", "through"]
+    stopped = tracks.set_track_passing(0, 0, {4, 10}, Passing.STOP)(held)
+    assert [key.shown_passing for key in only(stopped).keys] == ["stop", "stop", "through"]
+    assert only(stopped).keys[1].easing == LINEAR
+
+
+def test_what_a_track_is_like_is_set():
+    document = tracked(row(4, 10))
+    for command, name, value in (
+        (tracks.set_delay(0, 0, 5), "delay", 5),
+        (tracks.set_reach(0, 0, 0.25), "reach", 0.25),
+        (tracks.set_turning(0, 0, turns=True), "turns", True),
+        (tracks.enable_track(0, 0, enabled=False), "enabled", False),
+        (tracks.plant_track(0, 0, [1, 2j], planted=True), "planted", True),
+        (tracks.set_track_handles(0, 0, [2, 0]), "handles", (2, 0)),
+    ):
+        history = History(document, saved=True)
+        history.do(command)
+        assert getattr(only(history.document), name) == value
+        assert command(history.document) is history.document
+        history.undo()
+        assert history.document is document
+    planted = tracks.plant_track(0, 0, [1, 2j], planted=True)(document)
+    assert [key.place for key in only(planted).keys] == [1, 2j]
+    with pytest.raises(LissomError, match="The track has 2 keys, not 1"):
+        tracks.plant_track(0, 0, [1], planted=True)(document)
+    with pytest.raises(LissomError, match="at least one handle"):
+        tracks.set_track_handles(0, 0, [])(document)
+    with pytest.raises(LissomError, match="no handle with the id 9"):
+        tracks.set_track_handles(0, 0, [9])(document)
+
+
+def test_a_handle_has_one_track():
+    document = tracked(row(4, handles=(0, 1)), row(5, handles=(2,)))
+    new = row(7, 8, handles=(1, 2))
+    figure = tracks.put_track(0, new)(document).figures[0]
+    assert figure.tracks == (row(4), new)
+    assert figure.track_of(1) is figure.track_of(2)
+    # One of the same handles takes the old one's place.
+    same = row(9, handles=(0, 1))
+    assert tracks.put_track(0, same)(document).figures[0].tracks == (
+        same,
+        document.figures[0].tracks[1],
+    )
+
+
+def test_a_copied_track_moves_another_handle_alike():
+    document = tracked(row(4, 10, handles=(0, 1), delay=3))
+    figure = tracks.copy_track(0, 1, 2)(document).figures[0]
+    assert figure.tracks == (row(4, 10, handles=(0, 1), delay=3), row(4, 10, handles=(2,), delay=3))
+    # To one of its own handles it is that one's alone.
+    figure = tracks.copy_track(0, 0, 1)(document).figures[0]
+    assert figure.tracks == (row(4, 10, delay=3), row(4, 10, handles=(1,), delay=3))
+
+
+def reached(figure, frame, handle):
+    (place,) = figure.map_of(figure.key(frame).pose)(np.array([figure.handle(handle).position]))
+    return complex(place)
+
+
+def test_a_planted_track_keeps_its_distance_from_what_it_is_of():
+    document = tracked(row(2, 19, handles=(0, 1), planted=True))
+    figure = document.figures[0]
+    wanted = [
+        key.place + reached(figure, at, 1) - reached(figure, at, 0)
+        for key, at in zip(figure.tracks[0].keys, (0, 20), strict=True)
+    ]
+    copied = tracks.copy_track(0, 0, 1)(document).figures[0].track_of(1)
+    left = only(handle_commands.remove_handles(0, {0})(document))
+    for track in (copied, left):
+        assert track.handles == (1,)
+        assert_allclose([key.place for key in track.keys], wanted, rtol=0, atol=1e-9)
+    assert only(handle_commands.remove_handles(0, {1})(document)).keys == figure.tracks[0].keys
+    # So does one whose handle is put elsewhere on the drawing.
+    moved = handle_commands.move_handle(0, 0, figure.handle(1).position + 1e-7)(document)
+    assert_allclose([key.place for key in only(moved).keys], wanted, rtol=0, atol=1e-5)
+    beside = tracked(row(2, 19))
+    assert only(handle_commands.move_handle(0, 0, CENTRE)(beside)) == row(2, 19)
+
+
+@pytest.mark.parametrize("planted", [False, True])
+def test_a_mirrored_track_is_that_of_the_other_side(planted):
+    document = tracked(row(4, 10, planted=planted, turns=True), mirror=AXIS)
+    keys = tuple(replace(key, turn=0.1 * key.frame) for key in only(document).keys)
+    document = altered(document, tracks=(replace(only(document), keys=keys),))
+    figure = tracks.mirror_track(0, 0)(document).figures[0]
+    other = figure.track_of(1)
+    assert len(figure.tracks) == 2
+    assert (other.planted, other.turns) == (planted, True)
+    assert [key.turn for key in other.keys] == [-key.turn for key in keys]
+    places = np.array([key.place for key in keys])
+    if planted:
+        # Beside its mirror image by as much as the handles are beside each other's.
+        places = places - figure.handle(0).position
+        found = [key.place - figure.handle(1).position for key in other.keys]
+    else:
+        found = [key.place for key in other.keys]
+    assert_allclose(found, -places.conj(), rtol=0, atol=1e-12)
+    back = tracks.mirror_track(0, 1)(
+        tracks.remove_tracks(0, {0})(tracks.mirror_track(0, 0)(document))
+    )
+    assert_allclose(
+        [key.place for key in back.figures[0].track_of(0).keys],
+        [key.place for key in keys],
+        rtol=0,
+        atol=1e-12,
+    )
+
+
+def test_a_handle_without_a_partner_does_its_own_mirror_image():
+    document = tracked(row(4, handles=(2,)))
+    assert only(tracks.mirror_track(0, 2)(document)).keys[0].place == -4 + 8j
+    assert only(tracks.mirror_track(0, 2)(document)).handles == (2,)
+
+
+def test_springs_are_set_and_removed():
+    document = tracks.put_spring(0, SPRING)(tracked())
+    assert document.figures[0].spring_of(2) == SPRING
+    assert tracks.put_spring(0, SPRING)(document) is document
+    stiff = replace(SPRING, frequency=5.0)
+    assert tracks.put_spring(0, stiff)(document).figures[0].springs == (stiff,)
+    assert tracks.remove_springs(0, {2})(document).figures[0].springs == ()
+    assert tracks.remove_springs(0, {0})(document) is document
+    with pytest.raises(LissomError, match="spring is of the handle 9, which is not there"):
+        tracks.put_spring(0, replace(SPRING, handle=9))(document)
+
+
+def test_stillness_is_switched_for_a_figure_and_for_handles():
+    document = tracked()
+    assert document.figures[0].stillness
+    loose = figure_commands.set_stillness(0, stillness=False)(document)
+    assert not loose.figures[0].stillness
+    assert figure_commands.set_stillness(0, stillness=False)(loose) is loose
+    freed = handle_commands.free_handles(0, {0, 2}, free=True)(document)
+    assert [handle.free for handle in freed.figures[0].handles] == [True, False, True]
+
+
+def test_a_deleted_handle_takes_its_track_and_spring_along_in_one_step():
+    document = tracked(row(4, handles=(0, 1)), row(5, handles=(2,)), springs=(SPRING,))
+    history = History(document, saved=True)
+    history.do(handle_commands.remove_handles(0, {0, 2}))
+    figure = history.document.figures[0]
+    assert figure.tracks == (row(4, handles=(1,)),)
+    assert figure.springs == ()
+    history.undo()
+    assert history.document is document
+    renamed = handle_commands.rename_handle(0, 2, "tuft")(document).figures[0]
+    assert (renamed.tracks, renamed.springs) == (document.figures[0].tracks, (SPRING,))
+
+
+def test_the_animation_grows_for_keys_of_tracks_and_is_not_cut_under_them():
+    document = tracked(row(4, 10))
+    grown = tracks.move_track_keys(0, 0, {10}, 60)(document)
+    assert grown.frames == FrameRange(0, 70)
+    with pytest.raises(LissomError, match="key at frame 70 would lie outside frames 0 to 48"):
+        scene_commands.set_frames(FrameRange(0, 48))(grown)
+    with pytest.raises(LissomError):
+        tracks.move_track_keys(0, 0, {4}, -5)(document)
+    # A delay moves no key.
+    assert tracks.set_delay(0, 0, 45)(document).frames == document.frames
+
+
+def test_tracks_are_stretched_with_the_scene():
+    document = tracked(row(4, 10, delay=3), springs=(SPRING,))
+    longer = scene_commands.scale_time(2)(document)
+    assert frames(longer) == [8, 20]
+    assert only(longer).delay == 6
+    assert longer.figures[0].springs == (SPRING,)
+    with pytest.raises(LissomError, match="Two keys would be at frame"):
+        scene_commands.scale_time(0.1)(tracked(row(30, 31)))
+    assert only(scene_commands.set_fps(12)(document)) == only(document)
+
+
+def test_what_does_not_come_round_is_refused_in_a_loop():
+    loop = scene_commands.set_loop(loop=True)
+    late = tracked(row(4, 10, delay=50))
+    with pytest.raises(LissomError, match=r"late by 50 frames, .* longer than the loop of 48"):
+        loop(late)
+    undamped = tracks.put_spring(0, replace(SPRING, damping=0.0))
+    with pytest.raises(LissomError, match="no damping, so that it never comes round"):
+        loop(undamped(tracked()))
+    with pytest.raises(LissomError, match="no damping"):
+        undamped(loop(tracked()))
+    with pytest.raises(LissomError, match="longer than the loop"):
+        tracks.set_delay(0, 0, 49)(loop(tracked(row(4))))
+
+
+def test_a_duplicated_layer_has_tracks_and_springs_of_its_own():
+    document = tracked(row(4, 10), springs=(SPRING,))
+    document = layer_commands.duplicate_figure(0)(document)
+    first, copy = document.figures
+    assert (copy.tracks, copy.springs) == (first.tracks, first.springs)
+    changed = tracks.set_delay(copy.id, 0, 7)(document)
+    assert [figure.tracks[0].delay for figure in changed.figures] == [0, 7]
+
+
+def test_undo_tells_where_tracks_have_changed():
+    document = tracked(row(4, 10, 20, delay=3))
+
+    def changed(command):
+        return [span.first for span in changed_stretches(document, command(document))]
+
+    assert changed(tracks.put_track_key(0, 0, 10, 7)) == [13]
+    assert changed(tracks.move_track_keys(0, 0, {10}, 2)) == [13, 15]
+    assert changed(tracks.set_delay(0, 0, 5)) == [7, 9, 13, 15, 23, 25]
+    assert changed(tracks.set_reach(0, 0, 0.5)) == [7, 13, 23]
+    assert changed(tracks.put_track(0, row(46, handles=(1,), delay=9))) == [48]
+    assert changed(tracks.remove_tracks(0, {0})) == [7, 13, 23]
+    assert changed(scene_commands.set_fps(12)) == []
+
+
+def test_the_last_frame_of_a_loop_is_exported_where_a_track_has_another_end():
+    document = key_commands.match_ends(0)(tracked(row(0, 20, 48), loop=True))
+    assert exported_frames(document) == FrameRange(0, 48)
+    for same in (row(0, 20), row(20, 48, delay=4), row(0, 20, 48, enabled=False)):
+        assert exported_frames(altered(document, tracks=(same,))) == FrameRange(0, 47)
+    closed = tracks.put_track_key(0, 0, 48, 0)(document)
+    assert exported_frames(closed) == FrameRange(0, 47)
