@@ -11,6 +11,7 @@ from app.reports.certification import (
     Verdict as Verdict,
     certify_clip as certify_clip,
 )
+from app.reports.corrected_frames import CorrectedReport as CorrectedReport, Short as Short
 from app.reports.curve_picture import draw_curves as draw_curves
 from app.reports.curves import (
     TIMES as TIMES,

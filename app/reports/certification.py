@@ -9,6 +9,7 @@ import numpy as np
 
 from app.document import HOLD, Clip, Extremes, Transit, Variant, intervals, time_of, transits
 from app.motion import Animation
+from app.reports.corrected_frames import CorrectedReport, report_corrected
 from engine.arrays import Floats
 from engine.interpolation import Inbetweens, Proof, prove
 from engine.maps import Boundary, Certificate, certify
@@ -94,12 +95,7 @@ class IntervalReport:
     @property
     def is_within(self) -> bool:
         """Whether the in-betweens as measured keep the limits, but for rounding."""
-        reached, limits = self.reached, self.limits
-        return (
-            reached.k <= limits.k + ACCURACY
-            and reached.sigma_a <= limits.sigma_a * (1 + ACCURACY)
-            and reached.sigma_b >= limits.sigma_b * (1 - ACCURACY)
-        )
+        return _are_within(self.reached, self.limits)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -108,13 +104,31 @@ class Report:
 
     keys: tuple[tuple[int, Certificate], ...]
     intervals: tuple[IntervalReport, ...]
+    corrected: CorrectedReport | None = None
 
     @property
     def verdict(self) -> Verdict:
-        """The worst of the intervals'; over if a keyframe is not certified."""
+        """The worst of the intervals' and the frames'; over if a keyframe is not certified."""
         if not all(certificate.certified for _, certificate in self.keys):
             return Verdict.OVER
-        return Verdict.worst(interval.verdict for interval in self.intervals)
+        return Verdict.worst([*(each.verdict for each in self.intervals), self.corrected_verdict])
+
+    @property
+    def corrected_verdict(self) -> Verdict:
+        """What is known of the frames that are corrected."""
+        if self.corrected is None or not self.corrected.solved:
+            return Verdict.PROVEN
+        reached, limits = self.corrected.reached, self.corrected.limits
+        return Verdict.MEASURED if _are_within(reached, limits) else Verdict.OVER
+
+
+def _are_within(reached: Extremes, limits: Extremes) -> bool:
+    """Tell whether measured extremes keep limits, but for rounding."""
+    return (
+        reached.k <= limits.k + ACCURACY
+        and reached.sigma_a <= limits.sigma_a * (1 + ACCURACY)
+        and reached.sigma_b >= limits.sigma_b * (1 - ACCURACY)
+    )
 
 
 def certify_clip(clip: Clip, variant: Variant | None = None) -> Report:
@@ -127,9 +141,10 @@ def certify_clip(clip: Clip, variant: Variant | None = None) -> Report:
     |ν| and log σ_a are subharmonic, so that the worst distortion of every in-between is on the
     outline; there it is measured at graded samples, some hundred an edge, the same for keys and
     in-betweens. The proof leaves nothing out between samples and times, and is of the in-betweens
-    as they are defined; what is measured is as they are worked out.
+    as they are defined; what is measured is as they are worked out. Frames in which handles are
+    held still or go their own ways are solved one by one, and measured.
     """
-    domain = clip.figure.domain
+    figure, domain = clip.figure, clip.figure.domain
     boundary = Boundary.sample(domain.outline, domain.cage, domain.holes)
     keys = tuple(
         (key.frame, certify(clip.figure.map_of(key.pose), boundary, clip.figure.bounds))
@@ -140,7 +155,12 @@ def certify_clip(clip: Clip, variant: Variant | None = None) -> Report:
         _interval_report(clip, animation, boundary, pair, transit)
         for pair, transit in zip(intervals(clip), transits(clip), strict=True)
     )
-    return Report(keys=keys, intervals=reports)
+    every = [each.limits for each in reports]
+    every += [Extremes(own.k, own.sigma_a, own.sigma_b) for _, own in keys]
+    bounds = Extremes(figure.bounds.k, figure.bounds.sigma_a, figure.bounds.sigma_b)
+    limits = reduce(Extremes.joined, every, bounds)
+    corrected = report_corrected(clip, boundary, limits, variant)
+    return Report(keys=keys, intervals=reports, corrected=corrected)
 
 
 def _interval_report(

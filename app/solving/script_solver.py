@@ -61,8 +61,9 @@ def pose_document(
         its shape.
     """
     named = _by_figure(document, script)
-    last = max(part.keys[-1].frame for part in script.figures)
-    document = replace(document, frames=FrameRange(0, last), fps=script.fps, loop=script.loop)
+    document = replace(
+        document, frames=FrameRange(0, script.last), fps=script.fps, loop=script.loop
+    )
     for identity, part in named.items():
         with _whose(part):
             document = _prepared(document, identity, part)
@@ -113,10 +114,12 @@ def _layer(names: Mapping[str, Figure], layer: str) -> Figure:
 
 def _prepared(document: Document, identity: int, part: FigureScript) -> Document:
     """Return the document with a figure's handles, settings and joint."""
+    first = document.figure(identity).next_handle
     for name, handle in part.handles.items():
         added = document.figure(identity).next_handle
         document = handle_commands.add_handle(identity, handle.at, name=name)(document)
         document = layer_commands.set_front(identity, added, handle.front, handle.extent)(document)
+        document = handle_commands.free_handles(identity, {added}, free=not handle.still)(document)
     switches = tuple(Switch(frame, visible) for frame, visible in part.visible)
     document = document.with_figure(
         replace(
@@ -125,6 +128,12 @@ def _prepared(document: Document, identity: int, part: FigureScript) -> Document
             bounds=part.bounds,
             anchor=part.anchor,
             switches=switches,
+            stillness=part.still,
+            tracks=tuple(
+                replace(track, handles=tuple(first + number for number in track.handles))
+                for track in part.tracks
+            ),
+            springs=tuple(replace(spring, handle=first + spring.handle) for spring in part.springs),
         )
     )
     if part.attach is None:

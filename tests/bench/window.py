@@ -31,7 +31,6 @@ from tests.bench.stage.driver import (
 )
 from tests.bench.table import Row, Table, row_at_most, row_of
 
-SAMPLE, PICTURE = "giraffe.lissom", "dragon.png"
 TABS = ("Handle", "Deform", "Distortion", "Mesh", "Export")
 HARD = 6.0  # how much farther a hard pull goes
 LATER = 20  # pictures that are shown while a hand goes from a handle to the timeline
@@ -41,6 +40,8 @@ LATER = 20  # pictures that are shown while a hand goes from a handle to the tim
 class Extent:
     """How much is measured."""
 
+    sample: str = "giraffe.lissom"
+    picture: str = "dragon.png"  # that is opened
     triangles: int = 100_000
     repeats: int = 3  # of the start, of opening, and of releases
     frames: int = 60
@@ -52,6 +53,8 @@ class Extent:
 
 
 BRIEF = Extent(
+    sample="ring.lissom",
+    picture="bar.png",
     triangles=1_000,
     repeats=1,
     frames=2,
@@ -72,7 +75,7 @@ def tables(extent: Extent) -> Iterator[Table]:
         stage = Driver(Path(folder), extent.size)
         yield _opening(stage, extent)
         stage.settle()
-        files.show(stage.session, Path(folder) / SAMPLE, _giraffe(extent))
+        files.show(stage.session, Path(folder) / extent.sample, _sample(extent))
         stage.settle()
         yield from _frames(stage, extent)
         yield _latency(stage, extent)
@@ -84,12 +87,12 @@ def tables(extent: Extent) -> Iterator[Table]:
 def _opening(stage: Driver, extent: Extent) -> Table:
     """Measure from a dropped picture to a drag."""
     stage.session.meshing = Meshing(triangles=extent.triangles)
-    path = sample_images() / PICTURE
+    path = sample_images() / extent.picture
     times = [_open_and_drag(stage, path, extent.reach) for _ in range(extent.repeats)]
     names = ("until a click adds a handle", "until that handle has followed the pointer")
     triangles = len(stage.project.figure.domain.mesh.triangles)
     return Table(
-        title=f"From a dropped picture ({PICTURE}, {triangles:,} triangles) to a drag",
+        title=f"From a dropped picture ({extent.picture}, {triangles:,} triangles) to a drag",
         rows=tuple(map(row_at_most, names, zip(*times, strict=True))),
     )
 
@@ -121,15 +124,15 @@ def _open_and_drag(stage: Driver, path: Path, reach: float) -> tuple[float, floa
     return shown, followed
 
 
-def _giraffe(extent: Extent) -> files.Opened:
+def _sample(extent: Extent) -> files.Opened:
     """Return the animated sample on a finer mesh."""
-    document = load_project(sample_images() / SAMPLE)
+    document = load_project(sample_images() / extent.sample)
     figure = document.figures[0]
     mesh = mesh_inside(*figure.domain.loops, triangles=extent.triangles)
     domain = replace(figure.domain, mesh=mesh)
     figure = replace(figure, domain=domain, variant=extent.variant)
     document = document.with_figure(figure)
-    picture = decode_picture(figure.picture.data, SAMPLE)
+    picture = decode_picture(figure.picture.data, extent.sample)
     puppet = Puppet.of(clip_of(document, figure.id), picture)
     return files.Opened(document, {figure.id: puppet}, ())
 

@@ -58,6 +58,25 @@ def _block(report: Report) -> dict[str, Any]:
         **_judged(report.verdict),
         "keys": keys,
         "intervals": [_interval_block(interval) for interval in report.intervals],
+        "corrected": None if report.corrected is None else _corrected_block(report),
+    }
+
+
+def _corrected_block(report: Report) -> dict[str, Any] | None:
+    corrected = report.corrected
+    if corrected is None:
+        return None
+    return {
+        "verdict": report.corrected_verdict,
+        "frames": corrected.frames,
+        "solved": corrected.solved,
+        "points": corrected.points,
+        **_named(corrected.reached),
+        "excess": list(_named(corrected.excess).values()),
+        "out_of_reach": [
+            {"handle": short.handle, "from": short.first, "to": short.last, "pixels": short.lag}
+            for short in corrected.short
+        ],
     }
 
 
@@ -105,6 +124,7 @@ def _as_table(report: Report) -> str:
         )
     for interval in report.intervals:
         lines += _interval_lines(interval)
+    lines += _corrected_lines(report)
     lines.append(
         "In brackets: the worse of the two keyframes; of what is proven, how far that is beyond it"
         " (or beyond the figure's bounds, where the motion passes through a key)."
@@ -118,6 +138,30 @@ def _as_table(report: Report) -> str:
             "kept of the bounds is proven above."
         )
     return "\n".join(lines)
+
+
+def _corrected_lines(report: Report) -> list[str]:
+    """Return what is measured of frames in which handles stay or go their own ways."""
+    corrected = report.corrected
+    if corrected is None or not corrected.frames:
+        return []
+    lines = []
+    if corrected.solved:
+        reached = zip(_numbers(corrected.reached), ("+", "+", "-"), corrected.excess, strict=True)
+        cells = [f"{value:.4f} ({sign}{by:.4f})" for value, sign, by in reached]
+        lines.append(_line("own ways", cells, WORDS[report.corrected_verdict]))
+    lines.append(
+        f"In {corrected.frames} frames handles are held still or go their own ways; "
+        f"{corrected.solved} of them are measured at {corrected.points:,} points of the outline "
+        "each, the others are moved as a whole, which distorts nothing. Between frames nothing is "
+        "measured."
+    )
+    lines += [
+        f"{short.handle!r} is out of reach of its track by up to {short.lag:.1f} px in frame"
+        f"{f's {short.first} to {short.last}' if short.last > short.first else f' {short.first}'}."
+        for short in corrected.short
+    ]
+    return lines
 
 
 def _interval_lines(interval: IntervalReport) -> list[str]:

@@ -38,7 +38,7 @@ from app.ui.shortcuts import ARROWS, BINDINGS, MODIFIERS
 from engine.domain.picture.cut_out import Stroke
 from engine.maps.bounds import Bounds
 
-SEEDS = range(6)
+SEEDS = (0, 1, 2, 15)  # both drawings, each by two variants
 MOST_FRAMES = 400  # until the worker has caught up
 REMEMBERED = 20  # actions that are told where the walk fails
 LOOKED_AT, SAVED = 25, 150  # steps between two looks at the invariants, and between two saves
