@@ -18,6 +18,7 @@ from app.document import (
 from app.editor import Action, Project, Session, do, layering
 from app.editor.actions import editing, posing
 from app.ui.panels import depth
+from app.ui.panels.clocks import draw_spring, draw_stillness, draw_track
 from app.ui.shortcuts import BINDINGS, CTRL, bound_button, bound_text_button, with_key
 from app.ui.style import (
     FILL,
@@ -63,6 +64,7 @@ def draw(session: Session, look: Look, project: Project) -> list[Action]:
         heading(look, f"{len(chosen)} handles")
         small(look, "Dragging one of them moves them all; arrows nudge them.")
         actions += _firmness(session, look, chosen)
+        actions += bound_text_button(session, "key handle", FILL)
     else:
         small(look, "Select a handle to see its settings.")
     if len(chosen) != 1 and session.tints_depth:
@@ -147,6 +149,9 @@ def _details(session: Session, look: Look, project: Project, handle: Handle) -> 
     if placed is not None:
         actions.append(do(editing.edit_figure, handle_commands.move_handle, handle.id, placed))
     actions += _wish(look, project, handle)
+    actions += draw_stillness(look, project, handle)
+    actions += draw_track(session, look, project, handle)
+    actions += draw_spring(look, project, handle)
     return actions + depth.draw(session, look, project, handle)
 
 
