@@ -200,6 +200,15 @@ class Figure:
         """Return the spring by which the handle with this id follows, if it does."""
         return next((spring for spring in self.springs if spring.handle == identity), None)
 
+    @property
+    def followers(self) -> frozenset[int]:
+        """The ids of the handles that follow by springs, which poses are not held by.
+
+        A track of a handle comes first.
+        """
+        tracked = {i for track in self.tracks if track.enabled for i in track.handles}
+        return frozenset(each.handle for each in self.springs if each.enabled) - tracked
+
     def is_locked(self, identity: int) -> bool:
         """Tell whether there is a handle with this id that is locked."""
         return any(handle.locked for handle in self.handles if handle.id == identity)
