@@ -220,6 +220,10 @@ class Figure:
                 return key
         raise LissomError(f"There is no key at frame {frame}.")
 
+    def nearest_key(self, frame: int) -> Keyframe:
+        """Return the key that is nearest to a frame, of two the earlier one."""
+        return min(self.keys, key=lambda key: abs(key.frame - frame))
+
     def map_of(self, pose: Pose) -> HarmonicMap:
         """Return the map of a pose."""
         return HarmonicMap(
