@@ -204,10 +204,12 @@ class Figure:
     def followers(self) -> frozenset[int]:
         """The ids of the handles that follow by springs, which poses are not held by.
 
-        A track of a handle comes first.
+        A track of a handle comes first, and so does the joint where it sits.
         """
-        tracked = {i for track in self.tracks if track.enabled for i in track.handles}
-        return frozenset(each.handle for each in self.springs if each.enabled) - tracked
+        joint = None if self.attachment is None else self.anchor
+        held = {handle.id for handle in self.handles if handle.position == joint}
+        held |= {i for track in self.tracks if track.enabled for i in track.handles}
+        return frozenset(each.handle for each in self.springs if each.enabled) - held
 
     def is_locked(self, identity: int) -> bool:
         """Tell whether there is a handle with this id that is locked."""

@@ -9,8 +9,8 @@ from animations import still_document
 from numpy.testing import assert_allclose
 from sessions import session_of, settle
 
-from app.document import Spring, Target, Track, TrackKey
-from app.document.commands import handle_commands, track_commands
+from app.document import Attachment, Spring, Target, Track, TrackKey
+from app.document.commands import handle_commands, layer_commands, track_commands
 from app.editor.actions import posing
 from app.solving import flip_poses, pose_document
 from app.solving.drag import Drag, Rig
@@ -99,6 +99,17 @@ def test_a_person_who_pulls_at_it_does_pull(bar):
     after = drag.towards(pose.targets, 600)
     assert abs(places(figure, after.pose(pose.targets))[MIDDLE] - to) > 5
     assert drag.rig.deformer.handles is not after.rig.deformer.handles
+
+
+def test_what_sits_on_a_joint_is_held_by_it(bar):
+    document = layer_commands.duplicate_figure(0)(bar)
+    (body, _) = document.figures
+    at = body.handle(MIDDLE).position
+    hung = layer_commands.attach(0, at, Attachment(to=1, at=at))(document).figures[0]
+    assert (body.followers, hung.followers) == ({MIDDLE}, frozenset())
+    assert Rig.of(hung).pins == ()
+    elsewhere = layer_commands.attach(0, at + 20, Attachment(to=1, at=at))(document).figures[0]
+    assert elsewhere.followers == {MIDDLE}
 
 
 def test_all_handles_may_follow(bar):
