@@ -48,6 +48,10 @@ class CorrectedFrames:
             return None
         return self._exact[frame] if frame in self._exact else self._rough.get(frame)
 
+    def corrects(self, clip: Clip) -> bool:
+        """Tell whether frames of a clip may be corrected."""
+        return clip == self.clip and self._is_asked
+
     def is_exact(self, clip: Clip, frame: int) -> bool:
         """Tell whether that is what the frame has."""
         return clip != self.clip or not self._is_asked or frame in self._exact

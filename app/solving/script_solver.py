@@ -165,7 +165,7 @@ def _posed(
     for key in part.keys:
         progress(f"solving {whose}the key at frame {key.frame}")
         pose, told = _solve(rig, pose, key)
-        if loop and key is part.keys[-1] and keys and pose.targets == keys[0].pose.targets:
+        if loop and key is part.keys[-1] and keys and _wishes_alike(rig, pose, keys[0].pose):
             # The same moment again, to the last digit.
             pose, told = keys[0].pose, []
         notices += [f"{whose}{notice}" for notice in told]
@@ -178,20 +178,33 @@ def _posed(
     return replace(figure, keys=tuple(keys)), notices
 
 
+def _wishes_alike(rig: Rig, pose: Pose, other: Pose) -> bool:
+    """Tell whether two poses are wanted alike where they are held."""
+    return all(pose.targets[held.id] == other.targets[held.id] for held in rig.handles)
+
+
 def _solve(rig: Rig, start: Pose, key: PoseKey) -> tuple[Pose, list[str]]:
     """Drag the handles from a pose to the targets of a key."""
     figure = rig.figure
     identities = {handle.name: handle.id for handle in figure.handles}
     named = {identities[name]: Target(position=place) for name, place in key.targets.items()}
+    carried = figure.followers & named.keys()
+    notices = [
+        f"frame {key.frame}: {figure.handle(identity).name!r} follows by its spring, and goes "
+        "where the body carries it, whatever its target"
+        for identity in sorted(carried)
+    ]
+    for identity in carried:
+        del named[identity]
     targets = {**start.targets, **named}
     if all(start.targets[i].position == target.position for i, target in targets.items()):
-        return start, []
+        return start, notices
     hands = tuple(Hand((identity,), key.pull) for identity in named)
     drag = _at_rest(Drag.begin(rig, start), targets, hands)
     shortfall = find_shortfall(figure, drag.pose(targets))
     left = {**targets, **drag.let_go(targets, hands)}
     pose = (drag if left == targets else _at_rest(drag, left)).pose(left)
-    notices = [
+    notices += [
         f"frame {key.frame}: {figure.handle(identity).name!r} is {lag:.1f} px short of "
         f"its target, {shortfall.reason}"
         for identity, lag in shortfall.lags.items()

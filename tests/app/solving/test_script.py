@@ -220,6 +220,7 @@ def test_handles_stay_where_keys_have_them_unless_a_script_says_otherwise():
         (["tracks", 0, "keys", 1, "at"], [1, 2], "has 'at', but its track is with the pose"),
         (["tracks", 1, "keys", 0, "offset"], [1, 2], "'offset', but its track is with the picture"),
         (["tracks", 0, "keys", 1, "turn"], float("inf"), r"keys\[1\].turn must be finite"),
+        (["tracks", 0, "keys", 1, "turn"], 7201, "by at most 20 whole turns, not by 20.0028"),
         (["tracks", 0, "keys", 1, "turn"], True, r"keys\[1\].turn must be a number"),
         (["tracks", 0, "keys", 1, "ease"], "bouncy", "no easing 'bouncy'"),
         (["tracks", 0, "keys", 1, "passing"], "over", "passing must be one of through"),

@@ -86,7 +86,7 @@ def test_gradient_and_hessian_are_those_of_the_value(make, monkeypatch):
     energy = RelativeEnergy(rows=rows, base=base, pins=wish)
     walls = Walls.around(WIDE, len(base.f))
     barrier = Barrier(walls=walls, weight=0.05)
-    load = energy.dead_load(barrier)
+    load = energy.load(barrier)
     count = len(energy.fixed)
     at = 1e-3 * rng.normal(size=count)
     # Constants on the cages of holes change no map: their stiffness is of the Hessian alone.
@@ -115,7 +115,7 @@ def test_gradient_and_hessian_are_those_of_the_value(make, monkeypatch):
 def test_nothing_is_the_minimum_where_nothing_is_asked():
     corrector = star()
     base = bent(corrector)
-    # Also where a wall is felt: its own gradient is a dead load.
+    # Also where a wall is felt: its own slope is taken off.
     for bounds in (WIDE, Bounds(k=0.3, sigma_a=1.4, sigma_b=0.7)):
         found = corrector.correct(base, pins(base, 0.0), bounds)
         assert np.abs(found.change.positions).max() < 1e-12
