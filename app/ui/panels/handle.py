@@ -38,6 +38,7 @@ from app.ui.style import (
     text_button,
     tip,
 )
+from app.ui.viewport import staying
 
 MOST_ROWS = 5.5
 WEIGHTS = Scale(left=0.01, right=100.0, logarithmic=True)
@@ -202,7 +203,8 @@ def _wish(look: Look, project: Project, handle: Handle) -> list[Action]:
     shortfall = _shortfall(project)
     lag = shortfall.lags.get(handle.id)
     if lag is None:
-        small(look, "" if is_wanted else "Between keys it goes with the shape.")
+        goes = "stays until the next key" if handle.id in staying(shown) else "goes with the shape"
+        small(look, "" if is_wanted else f"Between keys it {goes}.")
     else:
         is_coming = project.pull is not None and not project.pull.is_at_rest
         why = "on its way" if is_coming else shortfall.reason

@@ -212,8 +212,8 @@ def _variant(project: Project) -> list[Action]:
         imgui.separator()
         stays = project.figure.stillness
         if imgui.menu_item("Handles stay between keys", "", stays)[0]:
-            command = figure_commands.set_stillness
-            actions.append(do(editing.edit_figure, command, stillness=not stays))
+            command = figure_commands.set_stillness(project.active, stillness=not stays)
+            actions.append(do(editing.edit, command))
         tip("Handles stay in between where two keys have them at one place")
         imgui.end_combo()
     tip("How in-betweens are made")

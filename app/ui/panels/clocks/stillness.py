@@ -15,12 +15,12 @@ def draw_stillness(look: Look, project: Project, handle: Handle) -> list[Action]
     changed, free = imgui.checkbox("Free between keys", handle.free)
     tip("Let it move between two keys that have it at one place; else it stays there")
     if changed:
-        free_it, these = handle_commands.free_handles, frozenset({handle.id})
-        actions.append(do(editing.edit_figure, free_it, these, free=free))
+        command = handle_commands.free_handles(project.active, frozenset({handle.id}), free=free)
+        actions.append(do(editing.edit, command))
     if not figure.stillness:
         small(look, "In this drawing no handle stays between keys.")
         hint = "Let handles stay in between where two keys have them at one place"
         if text_button("Let handles stay", FILL, hint):
-            let_stay = figure_commands.set_stillness
-            actions.append(do(editing.edit_figure, let_stay, stillness=True))
+            command = figure_commands.set_stillness(project.active, stillness=True)
+            actions.append(do(editing.edit, command))
     return actions

@@ -44,7 +44,7 @@ def draw_track(session: Session, look: Look, project: Project, handle: Handle) -
         actions.append(do(editing.edit_figure, command, (handle.id,)))
     actions += bound_text_button(session, "key handle", FILL)
     _together(look, project, track)
-    actions += _kind(look, handle, track) + _numbers(look, project, handle, track)
+    actions += _kind(look, project, handle, track) + _numbers(look, project, handle, track)
     actions += _copies(project, handle)
     _out_of_reach(session, look, project, handle)
     return actions
@@ -57,7 +57,7 @@ def _together(look: Look, project: Project, track: Track) -> None:
         small(look, f"It moves {names} together.")
 
 
-def _kind(look: Look, handle: Handle, track: Track) -> list[Action]:
+def _kind(look: Look, project: Project, handle: Handle, track: Track) -> list[Action]:
     """Draw whether a track acts, what its keys are places in, and whether they turn the shape."""
     actions: list[Action] = []
     label(look, "Keys are")
@@ -69,14 +69,14 @@ def _kind(look: Look, handle: Handle, track: Track) -> list[Action]:
     changed, enabled = imgui.checkbox("on##track", track.enabled)
     tip("Whether the track acts; its keys stay")
     if changed:
-        enable = track_commands.enable_track
-        actions.append(do(editing.edit_figure, enable, handle.id, enabled=enabled))
+        command = track_commands.enable_track(project.active, handle.id, enabled=enabled)
+        actions.append(do(editing.edit, command))
     imgui.same_line()
     changed, turns = imgui.checkbox("Keys turn it, too", track.turns)
     tip("Let its keys turn the shape at the handle; else it turns as the shape likes")
     if changed:
-        turn = track_commands.set_turning
-        actions.append(do(editing.edit_figure, turn, handle.id, turns=turns))
+        command = track_commands.set_turning(project.active, handle.id, turns=turns)
+        actions.append(do(editing.edit, command))
     return actions
 
 
