@@ -179,16 +179,14 @@ class Corrections:
         def solve() -> Correction:
             found = self._corrector.correct(base, pins, self._clip.figure.bounds)
             phi, psi = self._anchored(found)
-            misses = {
-                handle.id: float(miss)
-                for handle, miss in zip(self._clip.figure.handles, found.misses, strict=False)
-                if handle.id in wanted.tracked
-            }
+            handles = self._clip.figure.handles
+            tracked = [i for i, handle in enumerate(handles) if handle.id in wanted.tracked]
             return Correction(
                 motion=still.motion,
                 phi=phi if still.phi is None else phi + still.phi,
                 psi=psi if still.psi is None else psi + still.psi,
-                misses=misses,
+                misses={handles[i].id: float(found.misses[i]) for i in tracked},
+                wishes={handles[i].id: complex(wanted.places[i]) for i in tracked},
                 is_held_back=found.is_held_back,
                 steps=still.steps + found.steps,
             )

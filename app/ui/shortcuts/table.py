@@ -253,7 +253,7 @@ MENUS: dict[str, dict[str, Binding]] = {
             do(tracks.key_selected),
             "Shift+I",
             icon=icons.ICON_FA_KEY,
-            hint="Give it a key of its own here, on a track beside the keys of whole poses",
+            hint="Give it a key of its own in this frame: it gets a track beside the keys of poses",
             possible=_selected,
             parted=True,
         ),

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from imgui_bundle import ImVec2
+from imgui_bundle import ImVec2, imgui
 
 from app.document import clip_of, track_at, track_commands
 from app.document.timing import PRESETS, Passing, Spring, Track, TrackKey
@@ -11,7 +11,7 @@ from app.editor.timeline_view import TrackRow, frames_in
 from app.motion import Animation
 from app.ui.style import PALETTES
 from app.ui.timeline.misses import misses_of, told
-from app.ui.viewport.marks import mark_all, staying
+from app.ui.viewport.marks import mark_all, staying, unreached
 
 LEFT, RIGHT = 0, 1  # ids of the bar's handles
 WAVE = ((0, 0), (8, 12 + 6j), (16, 0))
@@ -68,8 +68,11 @@ class Rows:
     def y(self, handle=RIGHT):
         return self.robot.item_info(self.of("name", handle)).rect_full.get_center().y
 
+    def x(self, frame):
+        return self._origin + frame * self._step
+
     def go_to(self, frame, y):
-        self.robot.mouse_move_to_pos(ImVec2(self._origin + frame * self._step, y))
+        self.robot.mouse_move_to_pos(ImVec2(self.x(frame), y))
 
     def drag(self, item, *frames, key=None):
         self.robot.mouse_move(self.of(item))
@@ -391,10 +394,47 @@ def test_what_the_limits_hold_back_is_told_with_its_pixels(window, bent):
     assert f"{misses[10]:.0f} px" in text
     assert "limits" in text
     assert told(bent, bent.figure, track, 4) == ""
+    # In the viewport a dashed line leads from where it is to where it is wanted.
+    window.act(playback.seek, 10)
+    window.settle()
+    shown = bent.puppet.shown
+    wish = shown.correction.wishes[RIGHT]
+    assert abs(abs(shown.handle_places[RIGHT] - wish) - misses[10]) < 1
+    palette = PALETTES[window.session.preferences.theme]
+    ends = [line.points[0] for line in mark_all(window.session, bent, shown, palette)[0]]
+    assert wish in ends
     # Switched off, it misses nothing.
     window.act(editing.edit, track_commands.enable_track(bent.active, RIGHT, enabled=False))
     window.settle()
     assert not misses_of(bent, bent.figure, bent.figure.track_of(RIGHT))
+
+
+def test_a_red_stretch_of_a_row_tells_by_how_much_it_is_missed(window, bent, play):
+    hold = Track(handles=(LEFT,), keys=tuple(TrackKey(frame=f, place=0j) for f in (4, 16)))
+    editing.edit(window.session, track_commands.put_track(bent.active, hold))
+    with_track(window, bent, keys=((4, 0), (10, FAR), (16, 0)))
+    at = []
+    play(lambda rows: at.extend([ImVec2(rows.x(20), rows.y()), ImVec2(rows.x(9), rows.y())]))
+    assert tooltip_at(window, at[0]) is None
+    assert tooltip_at(window, at[1]) is not None
+
+
+def test_a_tracked_handle_at_a_key_of_poses_is_not_short_of_that(window, bent):
+    with_track(window, bent, keys=((20, 0), (24, 60j), (30, 0)))
+    window.act(playback.seek, 24)
+    window.settle()
+    shown = bent.puppet.shown
+    target = shown.pose.targets[RIGHT].position
+    assert abs(shown.handle_places[RIGHT] - target) > 50
+    assert not unreached(bent, shown)
+
+
+def tooltip_at(window, place):
+    """Return the tooltip that there is some time after the pointer came to a place, if any."""
+    imgui.get_io().add_mouse_pos_event(place.x, place.y)
+    window.frames(40)
+    windows = imgui.get_current_context().windows
+    return next((w for w in windows if w.name.startswith("##Tooltip") and w.active), None)
 
 
 def test_handles_that_stay_have_a_mark_and_can_be_freed(window, bent, press):

@@ -5,9 +5,7 @@ from imgui_bundle import icons_fontawesome_6 as icons, imgui
 from app.document import Handle, Track, falls_short, pairs_by_name, track_commands
 from app.editor import Action, Project, Session, do
 from app.editor.actions import editing, playback, tracks
-from app.ui.shortcuts import bound_text_button
 from app.ui.style import (
-    FILL,
     Look,
     Scale,
     at_end,
@@ -28,21 +26,17 @@ KINDS = (("pose", "With the pose"), ("picture", "Planted"))
 
 
 def draw_track(session: Session, look: Look, project: Project, handle: Handle) -> list[Action]:
-    """Draw the track of a handle, and what makes it one."""
+    """Draw the track of a handle, if it has one."""
     track = project.figure.track_of(handle.id)
     if track is None:
-        heading(look, "Own track")
-        actions = bound_text_button(session, "key handle", FILL)
-        small(look, "It moves with the whole pose. Keyed alone, it gets keys of its own.")
-        return actions
+        return []
     heading(look, "Own track", framed=True)
     at_end(1.15 * imgui.get_frame_height())
-    actions = []
+    actions: list[Action] = []
     hint = "Delete the track: the handle moves with the whole pose again"
     if icon_button(look, icons.ICON_FA_TRASH, "delete track", hint):
         command = track_commands.remove_tracks
         actions.append(do(editing.edit_figure, command, (handle.id,)))
-    actions += bound_text_button(session, "key handle", FILL)
     _together(look, project, track)
     actions += _kind(look, project, handle, track) + _numbers(look, project, handle, track)
     actions += _copies(project, handle)
