@@ -207,6 +207,16 @@ class Project:
         """The figure that is posed, as it is now."""
         return self.document.figure(self.active)
 
+    @property
+    def rows(self) -> list[KeyRow]:
+        """The rows of the timeline from top to bottom: the figure in front comes first."""
+        rows: list[KeyRow] = []
+        for figure in reversed(self.document.figures):
+            rows.append(figure.id)
+            if figure.id in self.timing.unfolded:
+                rows += [row_of(figure, track) for track in figure.tracks]
+        return rows
+
     def track_in(self, row: KeyRow) -> Track | None:
         """Return the track of a row; None where it is of poses, or not there any more."""
         if not isinstance(row, TrackRow) or row.figure not in self.puppets:

@@ -416,7 +416,7 @@ MENUS: dict[str, dict[str, Binding]] = {
         ),
         "insert key": Binding(
             "Insert key",
-            do(posing.insert_key),
+            do(keys.insert),
             "I",
             icon=icons.ICON_FA_DIAMOND,
             hint="Keep this pose in a key",

@@ -290,6 +290,56 @@ def test_a_key_in_the_pose_ends_a_track_without_a_jump(window, bent, play):
     assert (key.frame, key.place) == (18, 0)
 
 
+def test_what_is_chosen_is_where_keys_come_and_go(window, bent, play):
+    with_track(window, bent, delay=1)
+    poses = bent.figure.keys
+    window.act(playback.seek, 5)
+    window.run(lambda robot: robot.key_press(int(window.Key.i)))
+    window.settle()
+    assert frames_of(bent) == (0, 4, 8, 16)
+    assert bent.figure.keys is poses
+    seen = []
+    for _ in range(3):
+        window.act(playback.to_key, 1)
+        seen.append(playback.current_frame(window.session, bent))
+    assert seen == [9, 17, 17]
+    window.session.in_timeline = True
+    window.act(editing.select_all)
+    assert bent.chosen_of == {bent.active: {0, 24}, row(bent): {0, 4, 8, 16}}
+    # The row of the poses takes it back.
+    play(lambda rows: rows.robot.item_click(f"**/name {bent.active}"))
+    assert bent.chosen_track is None
+    window.act(keys.insert_at, 12)
+    window.settle()
+    assert [key.frame for key in bent.figure.keys] == [0, 12, 24]
+
+
+def test_a_chosen_track_is_deleted_in_the_timeline_and_its_handle_stays(window, bent, play):
+    with_track(window, bent)
+    before = bent.document
+
+    def delete(rows):
+        rows.robot.item_click(rows.of("name"))
+        rows.robot.key_press(int(window.Key.delete))
+
+    play(delete)
+    assert not bent.figure.tracks
+    assert len(bent.figure.handles) == 2
+    window.act(editing.undo)
+    assert bent.document is before
+    # Folded away, it is not what is meant any more.
+    tracks.choose(window.session, RIGHT)
+    play(lambda rows: rows.robot.item_click(f"**/fold {bent.active}"))
+    assert bent.chosen_track is None
+
+
+def test_a_row_switches_its_track_off(window, bent, play):
+    with_track(window, bent)
+    play(lambda rows: rows.robot.item_click(rows.of("switch")))
+    assert not bent.figure.track_of(RIGHT).enabled
+    assert bent.figure.track_of(RIGHT).keys
+
+
 def test_keys_of_a_track_are_copied_and_pasted(window, bent):
     with_track(window, bent, delay=2)
     before = bent.document
@@ -359,6 +409,14 @@ def test_the_panel_sets_what_a_track_has(window, bent, press):
         )
         window.settle()
 
+    window.act(playback.seek, 12)
+    enter("track x", 9.0)
+    enter("track y", 4.0)
+    (key,) = (key for key in bent.figure.track_of(RIGHT).keys if key.frame == 12)
+    assert key.place == 9 - 4j, "y goes down for people"
+    enter("track turn", 90.0)
+    (key,) = (key for key in bent.figure.track_of(RIGHT).keys if key.frame == 12)
+    assert abs(key.turn - np.pi / 2) < 1e-6
     enter("delay", 5.0)
     enter("reach", 0.4)
     track = bent.figure.track_of(RIGHT)
