@@ -16,7 +16,11 @@ from app.motion.extent import (
     measure_extent as measure_extent,
     motion_box as motion_box,
 )
-from app.motion.inbetweens import Animation as Animation, PoseSampler as PoseSampler
+from app.motion.inbetweens import (
+    Animation as Animation,
+    PoseSampler as PoseSampler,
+    still_handles as still_handles,
+)
 from app.motion.interval_store import IntervalPart as IntervalPart, IntervalStore as IntervalStore
 from app.motion.intervals import (
     AnyInbetweens as AnyInbetweens,
