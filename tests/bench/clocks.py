@@ -7,7 +7,7 @@ import numpy as np
 
 from app.document import Clip, Spring, Track, TrackKey, clip_of
 from app.motion import Animation
-from app.motion.inbetweens import is_corrected
+from app.motion.inbetweens import FrameCorrection, is_corrected
 from app.storage import load_project, sample_images
 from tests.bench.table import Row, Table, measure
 
@@ -60,7 +60,7 @@ def _row(name: str, clip: Clip, frames: int) -> Row:
     if corrections is None:
         raise ValueError(f"nothing of {name} is corrected")
     corrections.at(0.0)  # what is prepared once
-    found = []
+    found: list[FrameCorrection | None] = []
 
     def play() -> None:
         animation.sampler.known.corrections.clear()
