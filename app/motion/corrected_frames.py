@@ -5,13 +5,13 @@ from functools import partial
 from typing import NamedTuple
 
 from app.document import Clip, Document, clip_of
-from app.motion.inbetweens import Correction, Corrections, PoseSampler, is_corrected
+from app.motion.inbetweens import Corrections, FrameCorrection, PoseSampler, is_corrected
 from app.motion.joints import Joints
 
 BATCH = 2  # frames that are solved before a worker looks for more urgent work
 MOST_ROUGH = 2_000  # frames of which the rigid motion is worked out ahead
 
-Found = Mapping[int, Correction | None]
+Found = Mapping[int, FrameCorrection | None]
 
 
 class FoundCorrections(NamedTuple):
@@ -37,12 +37,12 @@ class CorrectedFrames:
         self.clip = clip
         self._is_asked = is_corrected(clip)
         self._corrections: Corrections | None = None
-        self._exact: dict[int, Correction | None] = {}
-        self._rough: dict[int, Correction | None] = {}
+        self._exact: dict[int, FrameCorrection | None] = {}
+        self._rough: dict[int, FrameCorrection | None] = {}
         if earlier is not None and self._is_asked:
             self._rough = {**earlier._rough, **earlier._exact}  # noqa: SLF001 - its own
 
-    def at(self, clip: Clip, frame: int) -> Correction | None:
+    def at(self, clip: Clip, frame: int) -> FrameCorrection | None:
         """Return the best that is known of a frame of a clip; of another one there is nothing."""
         if clip != self.clip or not self._is_asked:
             return None

@@ -13,7 +13,7 @@ from engine.maps import Span
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Correction:
+class FrameCorrection:
     """A rigid motion after the base motion, and a map of the figure's span.
 
     Parameters

@@ -101,7 +101,7 @@ def _missed(shown: Shown) -> dict[int, complex]:
 def _acting(shown: Shown) -> list[Track]:
     """Return the tracks that want something in the frame that is shown."""
     clip = shown.clip
-    return [track for track in clip.figure.tracks if track_at(track, clip, shown.frame)]
+    return [track for track in clip.figure.tracks if track_at(track, clip, shown.frame) is not None]
 
 
 def find_anchor(project: Project, shown: Shown) -> complex | None:
