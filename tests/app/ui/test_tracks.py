@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from imgui_bundle import ImVec2, imgui
 
-from app.document import clip_of, track_at, track_commands
+from app.document import clip_of, figure_commands, key_commands, track_at, track_commands
 from app.document.timing import PRESETS, Passing, Spring, Track, TrackKey
-from app.editor.actions import editing, keys, playback, timeline_pointing, tracks
+from app.editor.actions import editing, keys, playback, springs, timeline_pointing, tracks
 from app.editor.timeline_view import TrackRow, frames_in
 from app.motion import Animation
 from app.ui.style import PALETTES
@@ -439,6 +439,37 @@ def test_a_handle_follows_like_a_tail(window, bent, press):
     for _ in range(4):
         window.act(editing.undo)
     assert bent.document is before
+
+
+def test_a_spring_becomes_keys_that_swing_as_it_did(window, bent, press):
+    spring = Spring(handle=RIGHT, frequency=2.0, damping=0.3)
+    editing.edit(window.session, track_commands.put_spring(bent.active, spring))
+    window.act(editing.select, frozenset({RIGHT}))
+    window.settle()
+    before, frames = bent.document, range(0, 49, 4)
+    swung = np.array([place_of(bent, RIGHT, frame) for frame in frames])
+    press("Make keys of it")
+    track = bent.figure.track_of(RIGHT)
+    assert bent.figure.spring_of(RIGHT) is None
+    assert bent.chosen_track == RIGHT
+    assert len(track.keys) < 40
+    keyed = np.array([place_of(bent, RIGHT, frame) for frame in frames])
+    assert np.abs(keyed - swung).max() < 1, "half a pixel, and what is solved"
+    window.act(editing.undo)
+    assert bent.document is before
+
+
+def test_a_spring_that_nothing_moves_stays_a_spring(window, bent):
+    editing.edit(window.session, figure_commands.set_stillness(bent.active, stillness=False))
+    editing.edit(window.session, key_commands.delete_keys(bent.active, {24}))
+    spring = Spring(handle=RIGHT, frequency=2.0, damping=0.3)
+    editing.edit(window.session, track_commands.put_spring(bent.active, spring))
+    window.settle()
+    before = bent.document
+    window.act(springs.make_keys, RIGHT)
+    window.settle()
+    assert bent.document is before
+    assert "does not swing" in window.session.toasts[-1].text
 
 
 def test_what_the_limits_hold_back_is_told_with_its_pixels(window, bent):
