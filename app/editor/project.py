@@ -183,6 +183,8 @@ class Project:
     selected: frozenset[int] = frozenset()  # ids of handles
     # The frames of the chosen keys of figures, by their ids; figures without any are not in it.
     chosen_of: Mapping[int, frozenset[int]] = field(default_factory=dict)
+    # The row of a track that is chosen: by the ids of its figure and of a handle.
+    track_row: tuple[int, int] | None = None
     camera: View | None = None  # None fits the picture into the viewport
     awaits_extent: bool = False  # whether the camera fits the motion once that is measured
     flip: Flip | None = None
@@ -213,6 +215,20 @@ class Project:
     @chosen.setter
     def chosen(self, frames: frozenset[int]) -> None:
         self.chosen_of = {self.active: frames} if frames else {}
+
+    @property
+    def chosen_track(self) -> int | None:
+        """The id of the handle whose track's row is chosen, of the figure that is posed.
+
+        None where its whole pose's row is. Setting it chooses a row.
+        """
+        figure, handle = self.track_row or (-1, -1)
+        is_there = figure == self.active and self.figure.track_of(handle) is not None
+        return handle if is_there else None
+
+    @chosen_track.setter
+    def chosen_track(self, handle: int | None) -> None:
+        self.track_row = None if handle is None else (self.active, handle)
 
     @property
     def count_chosen(self) -> int:

@@ -10,14 +10,17 @@ from app.editor.actions import (
     editing as editing,
     exporting as exporting,
     files as files,
-    keys as keys,
     playback as playback,
     posing as posing,
     rebuilding as rebuilding,
     saving as saving,
-    timeline_pointing as timeline_pointing,
     upkeep as upkeep,
     viewing as viewing,
+)
+from app.editor.actions.timing import (
+    keys as keys,
+    timeline_pointing as timeline_pointing,
+    tracks as tracks,
 )
 from app.editor.actions.viewing import (
     OverlayName as OverlayName,

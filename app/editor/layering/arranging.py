@@ -17,6 +17,7 @@ def choose(session: Session, project: Project, identity: int) -> None:
     posing.let_go(session)
     project.active = identity
     project.selected = project.chosen = frozenset()
+    project.chosen_track = None
     project.meshing = project.drafted_bounds = None
     session.hovered = None
 

@@ -14,7 +14,7 @@ from app.document import (
     scene_commands,
 )
 from app.editor.actions import editing, playback
-from app.editor.actions.keys import retime
+from app.editor.actions.timing.keys import retime
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.timeline_view import (

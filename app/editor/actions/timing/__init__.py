@@ -1,0 +1,12 @@
+"""What is done in time: keys of poses and of tracks, and the pointer in the timeline.
+
+In: a session, and keys by their figures, handles and frames.
+Out: the document's keys and clocks, and what is chosen of them.
+Imports: the other `app.editor.actions`.
+"""
+
+from app.editor.actions.timing import (
+    keys as keys,
+    timeline_pointing as timeline_pointing,
+    tracks as tracks,
+)
