@@ -1,0 +1,9 @@
+"""Single places that move, whatever they are places of.
+
+In: where a place is at frames, or was recorded at any times.
+Out: how a spring swings about it, at any time; few keys for what was recorded.
+Imports: `engine.arrays`, `engine.errors`.
+"""
+
+from engine.geometry.kinematics.recordings import fit_keys as fit_keys
+from engine.geometry.kinematics.springs import Swing as Swing, swing as swing

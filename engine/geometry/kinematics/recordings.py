@@ -1,0 +1,259 @@
+"""Recorded drags: few keys whose motion stays near what a hand did."""
+
+import numpy as np
+import numpy.typing as npt
+from scipy.linalg import solveh_banded
+
+from engine.arrays import Booleans, Complexes, Floats, Indices, as_points
+from engine.errors import EngineError
+
+# Neighbours that are nearer, in pixels, are meant to be one place: a motion stops at both.
+SAME = 0.01
+# Frames between two places beyond which the way from one to the other counts as recorded.
+GAP = 1.0
+EARLY = 0.1  # frames that the first key may be before the recording, and the last one after it
+# Of a sample's weight: how strongly a key that nothing else decides is held on the recording.
+TIE = 1e-6
+# Keys that are so many apart hardly know of each other.
+APART = 8
+SLACK = 1.05  # by what factor more may be missed where the tolerance cannot be kept
+REACH = 3  # intervals on either side of a key that is dropped in which much changes
+
+
+def fit_keys(
+    times: npt.ArrayLike, places: npt.ArrayLike, tolerance: float
+) -> tuple[Indices, Complexes]:
+    """Return few keys on whole frames whose motion stays near recorded places; none could go.
+
+    Parameters
+    ----------
+    times : array_like of float, shape (n,)
+        When each place was recorded, in frames, n ≥ 1; in no even steps, and never going back. Of
+        places at one time the last one counts.
+    places : array_like of complex, shape (n,)
+        Pixels. Between two that are more than a frame apart the way counts as straight.
+    tolerance : float
+        Pixels, 0 or more, that a recorded place may be beside the motion; 0 for a key in each
+        frame, unless fewer miss nothing.
+
+    Returns
+    -------
+    frames : intp, shape (k,)
+        Those of the keys, from the first whole frame of the recording to its last one; one key
+        where there are not two.
+    values : complex128, shape (k,)
+        Their places. The tolerance is kept where keys in all frames around can keep it.
+
+    Raises
+    ------
+    EngineError
+        If something is not finite, if times go back, or if the tolerance is below 0.
+
+    Notes
+    -----
+    The motion is that of keys which are passed through: cubic Hermite polynomials between them,
+    with the slope of the parabola through a key and its neighbours, straight at both ends, and with
+    a stop at each of two neighbours at one place. It is linear in the keys' places, which are found
+    all at once by least squares. Keys are put where the motion misses most, until it is within the
+    tolerance; then the one that is least needed goes, again and again, far from each other many at
+    once.
+    """
+    when, where = np.asarray(times, dtype=np.float64), as_points(places, "Recorded places")
+    if when.shape != where.shape or not len(where):
+        raise EngineError(
+            f"A recording has a time for each place and at least one, not {when.shape} times and "
+            f"{len(where)} places."
+        )
+    if not np.isfinite(when).all():
+        raise EngineError("The times of a recording must be finite.")
+    if (np.diff(when) < 0).any():
+        raise EngineError("The times of a recording must not go back.")
+    if not tolerance >= 0:
+        raise EngineError(f"The tolerance of a recording is 0 pixels or more, not {tolerance:g}.")
+    is_last = np.append(np.diff(when) > 0, True)
+    when, where = _filled(when[is_last], where[is_last])
+    first, last = int(np.ceil(when[0] - EARLY)), int(np.floor(when[-1] + EARLY))
+    if first >= last:
+        middle = round((when[0] + when[-1]) / 2)
+        nearest = np.array([first if first == last else middle], dtype=np.intp)
+        return nearest, _along(nearest, when, where)
+    recording = _Recording(when, where, first, last, tolerance)
+    keys = recording.split(np.array([first, last], dtype=np.intp))
+    if tolerance:
+        keys = recording.thin(keys)
+    return keys, recording.fitted(keys)[0]
+
+
+def key_motion(frames: Indices, values: Complexes, times: Floats) -> Complexes:
+    """Return where the motion through keys (k,), k ≥ 2, is at times (t,) from first to last."""
+    interval, rows = _rows(frames, _stops(values), times)
+    return _motion(rows, values, interval)
+
+
+class _Recording:
+    """Places (n,) by their times, from the first frame to the last, and how near keys stay."""
+
+    def __init__(
+        self, times: Floats, places: Complexes, first: int, last: int, tolerance: float
+    ) -> None:
+        self.at_frames = _along(np.arange(first, last + 1), times, places)
+        inside = (times >= first) & (times <= last)
+        self.times, self.places = times[inside], places[inside]
+        self.tolerance = tolerance
+
+    def fitted(self, keys: Indices) -> tuple[Complexes, Floats]:
+        """Return the best places of keys, and by how much each recorded place is missed."""
+        values, motion = self._solved(keys, np.zeros(len(keys), dtype=bool))
+        stops = _stops(values)
+        if stops.any():
+            values, _ = self._solved(keys, stops)
+            motion = key_motion(keys, values, self.times)
+        return values, np.abs(motion - self.places)
+
+    def _solved(self, keys: Indices, stops: Booleans) -> tuple[Complexes, Complexes]:
+        """Solve the normal equations, in bands; also return the motion at the recorded times."""
+        interval, rows = _rows(keys, stops, self.times)
+        # The unknowns are how far keys are beside the recording, where nothing else holds them.
+        near = self.at_frames[keys - keys[0]]
+        rest = self.places - _motion(rows, near, interval)
+        count = len(keys) - 1
+        starts = np.searchsorted(self.times, keys[:-1])
+
+        def of_intervals(products: Floats) -> Floats:
+            # None of them is empty.
+            sums: Floats = np.add.reduceat(products, starts)
+            return sums
+
+        # Before the first key and after the last one is one more, of which no row knows.
+        bands, right = np.zeros((4, count + 3)), np.zeros((count + 3, 2))
+        for i in range(4):
+            right[i : i + count, 0] += of_intervals(rows[i] * rest.real)
+            right[i : i + count, 1] += of_intervals(rows[i] * rest.imag)
+            for j in range(i + 1):
+                bands[3 - i + j, i : i + count] += of_intervals(rows[i] * rows[j])
+        bands[3] += TIE
+        beside = solveh_banded(bands, right, check_finite=False)[1:-1]
+        values: Complexes = near + beside[:, 0] + 1j * beside[:, 1]
+        return values, _motion(rows, values, interval)
+
+    def split(self, keys: Indices) -> Indices:
+        """Put keys where the motion misses most, half way between two, until it is near."""
+        while True:
+            missed = self.fitted(keys)[1]
+            most = np.zeros(len(keys) - 1)
+            np.maximum.at(most, _intervals(keys, self.times), missed)
+            # Where there is no frame between two keys, those beside may tell how they are passed.
+            is_short = np.diff(keys) == 1
+            most = np.where(is_short, 0.0, np.maximum(most, _around(np.where(is_short, most, 0.0))))
+            worst = np.flatnonzero((most > self.tolerance) & (most == _around(most)))
+            if not worst.size:
+                return keys
+            keys = np.sort(np.append(keys, (keys[worst] + keys[worst + 1]) // 2))
+
+    def thin(self, keys: Indices) -> Indices:
+        """Drop keys that need not be there, the one first without which it misses least."""
+        needed: list[int] = []  # frames of keys without which too much is missed far from them
+        missed = self.fitted(keys)[1]
+        allowed = np.where(missed > self.tolerance, SLACK * missed, self.tolerance)
+        while True:
+            excesses = self._excesses(keys, allowed)
+            excesses[np.isin(keys, needed)] = np.inf
+            dropped = self._far_apart(excesses)
+            if not len(dropped):
+                return keys
+            while len(dropped):
+                rest = np.delete(keys, dropped)
+                beyond = self.times[self.fitted(rest)[1] > allowed]
+                if not len(beyond):
+                    keys = rest
+                    break
+                if len(dropped) == 1:
+                    needed.append(int(keys[dropped[0]]))
+                # Those that are nearest to where too much is missed stay, or one of them.
+                near = np.unique(np.abs(keys[dropped][:, None] - beyond).argmin(axis=0))
+                dropped = np.delete(dropped, near if len(near) < len(dropped) else near[:1])
+
+    @staticmethod
+    def _far_apart(excesses: Floats) -> Indices:
+        """Return keys that may go, the least needed ones first, and none near another."""
+        dropped, is_near = [], excesses > 0
+        for key in np.argsort(excesses, kind="stable").tolist():
+            if not is_near[key]:
+                dropped.append(key)
+                is_near[max(key - APART + 1, 0) : key + APART] = True
+        return np.array(dropped, dtype=np.intp)
+
+    def _excesses(self, keys: Indices, allowed: Floats) -> Floats:
+        """Return by how much too much is missed around each key without it; ends cannot go."""
+        excesses = np.full(len(keys), np.inf)
+        for start in range(1, min(APART, len(keys) - 2) + 1):
+            without = np.arange(start, len(keys) - 1, APART)
+            excess = self.fitted(np.delete(keys, without))[1] - allowed
+            for key in without.tolist():
+                ends = keys[max(key - REACH - 1, 0)], keys[min(key + REACH + 1, len(keys) - 1)]
+                since, until = np.searchsorted(self.times, ends)
+                excesses[key] = excess[since : until + 1].max(initial=-np.inf)
+        return excesses
+
+
+def _filled(times: Floats, places: Complexes) -> tuple[Floats, Complexes]:
+    """Return a recording with places at the frames in its gaps, straight across."""
+    frames = np.arange(np.ceil(times[0]), times[-1])
+    following = np.searchsorted(times, frames, side="right")
+    frames = frames[times[following] - times[following - 1] > GAP]
+    where = np.searchsorted(times, frames)
+    return np.insert(times, where, frames), np.insert(places, where, _along(frames, times, places))
+
+
+def _along(frames: Indices | Floats, times: Floats, places: Complexes) -> Complexes:
+    """Return where a recording is at frames, straight between its places."""
+    return np.asarray(
+        np.interp(frames, times, places.real) + 1j * np.interp(frames, times, places.imag)
+    )
+
+
+def _intervals(keys: Indices, times: Floats) -> Indices:
+    """Return the interval (t,) between keys in which each time is."""
+    return np.clip(np.searchsorted(keys, times, side="right") - 1, 0, len(keys) - 2)
+
+
+def _around(values: Floats) -> Floats:
+    """Return the largest of each value and two on either side."""
+    windows = np.lib.stride_tricks.sliding_window_view(np.pad(values, 2), 5)
+    largest: Floats = windows.max(axis=1)
+    return largest
+
+
+def _stops(values: Complexes) -> Booleans:
+    """Return at which keys the motion stops: those with a neighbour at the same place."""
+    same: Booleans = np.abs(np.diff(values)) <= SAME
+    stops: Booleans = np.append(same, False) | np.append(False, same)
+    return stops
+
+
+def _rows(keys: Indices, stops: Booleans, times: Floats) -> tuple[Indices, Floats]:
+    """Return in which intervals times are, and the weights (4, t) there of the keys around them."""
+    lengths, interval = np.diff(keys).astype(float), _intervals(keys, times)
+    # The weights (3, k) of the key before, each one and the next one in its velocity.
+    slopes = np.zeros((3, len(keys)))
+    before, after = lengths[:-1], lengths[1:]
+    slopes[0, 1:-1] = -after / (before * (before + after))
+    slopes[2, 1:-1] = before / (after * (before + after))
+    slopes[:, 1:-1][:, stops[1:-1]] = 0
+    slopes[2, 0], slopes[0, -1] = 1 / lengths[0], -1 / lengths[-1]
+    slopes[1] = -slopes[0] - slopes[2]
+    length = lengths[interval]
+    share = (times - keys[interval]) / length
+    rest = 1 - share
+    rows = np.zeros((4, len(times)))
+    rows[1], rows[2] = (1 + 2 * share) * rest**2, (3 - 2 * share) * share**2
+    rows[:3] += (length * share * rest**2) * slopes.take(interval, axis=1)
+    rows[1:] -= (length * share**2 * rest) * slopes.take(interval + 1, axis=1)
+    return interval, rows
+
+
+def _motion(rows: Floats, values: Complexes, interval: Indices) -> Complexes:
+    """Return the motion (t,) of values by the weights of the keys around intervals."""
+    padded = np.pad(values, 1)
+    motion: Complexes = sum(rows[i] * padded[interval + i] for i in range(4))
+    return motion

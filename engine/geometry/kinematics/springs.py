@@ -1,0 +1,291 @@
+"""Springs: a place that follows another one late, and swings about it."""
+
+from dataclasses import dataclass
+from math import hypot
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from engine.arrays import Complexes, Floats, Indices, as_points, freeze
+from engine.errors import EngineError
+
+GONE = 0.01  # pixels: a swing that stays below is not seen, and ends
+FADE = 6  # frames in which it ends
+# Pixels to which a jump of the base's velocity would make it swing: less is what rounding leaves.
+SILENT = 1e-9
+CLOSED = 1e-12  # smallest singular value of the equation of a loop that can be solved
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Swing:
+    """By how much a place is beside the one that it follows, at any time; made by `swing`.
+
+    Parameters
+    ----------
+    angle : float
+        ω/fps, by how much a swing without damping would turn in a frame, in radians.
+    damping : float
+        ζ; 1 is critical.
+    lag : float
+        Frames by which it is late.
+    limit : float
+        Pixels that it never reaches.
+    loop : bool
+        Whether it comes round after as many frames as there are states.
+    states : complex128, shape (n, 2)
+        o and ȯ/ω right after each frame, in pixels.
+    fading : float64, shape (n,)
+        Part of the fade that is over at each frame; negative where it does not fade.
+    """
+
+    angle: float
+    damping: float
+    lag: float
+    limit: float
+    loop: bool
+    states: Complexes
+    fading: Floats
+
+    def at(self, times: npt.ArrayLike) -> Complexes:
+        """Return the offsets at some times.
+
+        Parameters
+        ----------
+        times : array_like of float
+            In frames from the first place on, of any shape, not rounded: the flow from the frame
+            before leads there. Before the first frame nothing swings; what is after the last one
+            is as it is there. In a loop times come round.
+
+        Returns
+        -------
+        complex128, of the shape of `times`
+            Pixels along the axes of the world; exactly 0 at rest.
+
+        Raises
+        ------
+        EngineError
+            If a time is not finite.
+        """
+        asked = np.asarray(times, dtype=np.float64)
+        if not np.isfinite(asked).all():
+            raise EngineError("A spring cannot be asked for at a time that is not finite.")
+        time, last = asked - self.lag, len(self.states) - 1
+        time = time % (last + 1) if self.loop else np.clip(time, 0.0, last)
+        frames = np.minimum(time.astype(np.intp), last)
+        since = time - frames
+        place, velocity = np.moveaxis(self.states[frames], -1, 0)
+        row = flow(self.angle * since, self.damping)[..., 0, :]
+        fading = self.fading[frames]
+        over = np.where(fading < 0, 0.0, np.minimum(fading + since / FADE, 1.0))
+        offsets = (row[..., 0] * place + row[..., 1] * velocity) * (1 + 2 * over) * (1 - over) ** 2
+        limited: Complexes = offsets / np.sqrt(1 + (np.abs(offsets) / self.limit) ** 2)
+        return limited
+
+
+def swing(
+    places: npt.ArrayLike,
+    fps: float,
+    *,
+    frequency: float,
+    damping: float,
+    lag: float = 0.0,
+    strength: float = 1.0,
+    limit: float = np.inf,
+    loop: bool = False,
+) -> Swing:
+    """Return how a spring swings about a place whose motion drives it.
+
+    Parameters
+    ----------
+    places : array_like of complex, shape (n,)
+        q, where the place is at n ≥ 1 consecutive frames, in pixels of the world. In a loop the
+        last frame is the first one again.
+    fps : float
+        Frames a second, above 0.
+    frequency : float
+        Of the swing without damping, in Hz, above 0.
+    damping : float
+        ζ, 0 or more: 1 is critical, above it nothing swings over. In a loop it is above 0.
+    lag : float
+        Frames, 0 or more, also parts of one, by which all of it is late; in a loop it comes round.
+    strength : float
+        Factor of the offsets.
+    limit : float
+        Pixels, above 0. Offsets o are o/√(1 + |o/limit|²), so that they stay below it.
+    loop : bool
+        Whether the motion comes round.
+
+    Returns
+    -------
+    Swing
+        To be asked for offsets from q at any time.
+
+    Raises
+    ------
+    EngineError
+        If a value is not finite or out of its range, or if a loop has no damping.
+
+    Notes
+    -----
+    The offset o obeys ö + 2ζωȯ + ω²o = −q̈. Between frames q is linear, so that q̈ is an impulse at
+    each frame, where ȯ jumps by −Δq̇, and between frames the exact flow of the free oscillator does:
+    every frame rate of an export sees one motion. q stands still before its first frame, and the
+    spring is at rest there: where q sets out at once, what follows it does not.
+
+    In a loop it is the periodic motion, s = (I − Mᴺ)⁻¹c, with the flow M of a frame and what one
+    round c from rest leads to.
+
+    A swing ends where its amplitude, √(|o|² + |ȯ/ω|²), which never grows by itself, is below `GONE`
+    and nothing drives it for `FADE` frames: in so many it fades by a cubic, and is exactly 0 until
+    q's velocity changes again. A cost of some microseconds a frame is paid once.
+    """
+    q = as_points(places, "The places that drive a spring", at_least=1)
+    _require(np.isfinite(fps) and fps > 0, f"A spring needs frames a second above 0, not {fps:g}.")
+    _require(
+        np.isfinite(frequency) and frequency > 0,
+        f"The frequency of a spring is finite and above 0 Hz, not {frequency:g}.",
+    )
+    _require(
+        np.isfinite(damping) and damping >= 0,
+        f"The damping of a spring is finite and 0 or more, not {damping:g}.",
+    )
+    _require(
+        np.isfinite(lag) and lag >= 0, f"The lag of a spring is finite and 0 or more, not {lag:g}."
+    )
+    _require(np.isfinite(strength), f"The strength of a spring is finite, not {strength:g}.")
+    _require(limit > 0, f"The limit of a spring is above 0 pixels, not {limit:g}.")
+    _require(
+        not loop or damping > 0,
+        "A spring without damping swings on forever and never comes round in a loop; give it some.",
+    )
+    angle = 2 * np.pi * frequency / fps
+    jumps = _jumps(q, loop=loop) * (strength / angle)
+    jumps[np.abs(jumps) <= SILENT] = 0
+    step = flow(np.array(angle), damping)
+    run = _round(jumps, step) if loop else _run(jumps, step, _until_next(jumps))
+    return Swing(
+        angle=angle,
+        damping=damping,
+        lag=lag,
+        limit=limit,
+        loop=loop,
+        states=freeze(run.states),
+        fading=freeze(run.fading),
+    )
+
+
+def flow(angles: Floats, damping: float) -> Floats:
+    """Return exp(A h) of the free oscillator, ö + 2ζωȯ + ω²o = 0, for the state (o, ȯ/ω).
+
+    Parameters
+    ----------
+    angles : float64, shape (...)
+        ωh, 0 or more.
+    damping : float
+        ζ, 0 or more.
+
+    Returns
+    -------
+    float64, shape (..., 2, 2)
+        Of norm at most 1.
+
+    Notes
+    -----
+    With c = e^(−ζωh) cos θ and s = e^(−ζωh) ωh sin θ/θ, θ = ωh √(1 − ζ²), it is
+    ((c + ζs, s), (−s, c − ζs)). Above ζ = 1 the exponentials of cosh and sinh are joined with the
+    first one, since √(ζ² − 1) − ζ = −1/(ζ + √(ζ² − 1)): no exponent is positive, nothing overflows.
+    """
+    root = np.sqrt(abs((1 - damping) * (1 + damping)))
+    turns = angles * root
+    if damping < 1:
+        decay = np.exp(-damping * angles)
+        c, s = decay * np.cos(turns), decay * angles * np.sinc(turns / np.pi)
+    else:
+        decay, less = np.exp(-angles / (damping + root)), -np.expm1(-2 * turns)
+        share = np.divide(less, 2 * turns, out=np.ones_like(turns), where=turns > 0)
+        c, s = decay * (1 - less / 2), decay * angles * share
+    rows = np.stack([c + damping * s, s, -s, c - damping * s], axis=-1)
+    matrices: Floats = rows.reshape(*angles.shape, 2, 2)
+    return matrices
+
+
+class _Run(NamedTuple):
+    """The states after each frame, what part of a fade is over, and the state after the last."""
+
+    states: Complexes
+    fading: Floats
+    end: Complexes
+
+
+def _run(
+    jumps: Complexes, step: Floats, until_next: Indices, start: tuple[complex, complex] = (0j, 0j)
+) -> _Run:
+    """Run through frames with jumps (n,) of q̇/ω, that many frames before the next one each."""
+    (a, b), (c, d) = step.tolist()
+    o, v = start
+    over, states, fading = -1, [], []
+    for jump, calm in zip(jumps.tolist(), until_next.tolist(), strict=True):
+        v -= jump
+        if over < 0 and calm >= FADE and 0 < hypot(abs(o), abs(v)) < GONE:
+            over = 0
+        states.append((o, v))
+        fading.append(over / FADE)
+        o, v = a * o + b * v, c * o + d * v
+        if over >= 0:
+            over += 1
+        if over == FADE:
+            o, v, over = 0j, 0j, -1
+    return _Run(np.array(states), np.array(fading), np.array([o, v]))
+
+
+def _round(jumps: Complexes, step: Floats) -> _Run:
+    """Run once round a loop, periodically."""
+    until_next = _until_next(jumps, again=True)
+
+    def rolled(first: int, until_next: Indices, start: tuple[complex, complex] = (0j, 0j)) -> _Run:
+        run = _run(np.roll(jumps, -first), step, np.roll(until_next, -first), start)
+        return _Run(np.roll(run.states, first, axis=0), np.roll(run.fading, first), run.end)
+
+    # No fade goes on at a jump.
+    first, never = int(np.argmax(jumps != 0)), np.zeros_like(until_next)
+    left = np.eye(2) - np.linalg.matrix_power(step, len(jumps))
+    _require(
+        np.linalg.norm(left, -2) > CLOSED,
+        "This spring has too little damping to come round in a loop; give it more.",
+    )
+    start = tuple(np.linalg.solve(left, rolled(first, never).end).tolist())
+    plain = rolled(first, never, start)
+    fades = np.roll(rolled(first, until_next, start).fading >= 0, -first)
+    if not fades.any():
+        return plain
+    # From rest at the first jump after a fade, if a round leads there to rest again.
+    faded = (first + int(fades.argmax())) % len(jumps)
+    run = rolled((faded + int(until_next[faded])) % len(jumps), until_next)
+    return plain if run.end.any() else run
+
+
+def _jumps(places: Complexes, *, loop: bool) -> Complexes:
+    """Return by how much the velocity changes at each frame, in pixels a frame; for a round."""
+    velocities = np.diff(places)
+    if not loop:
+        return np.diff(velocities, prepend=0, append=0)
+    if not len(velocities):
+        return np.zeros(1, dtype=np.complex128)
+    return velocities - np.roll(velocities, 1)
+
+
+def _until_next(jumps: Complexes, *, again: bool = False) -> Indices:
+    """Return how many frames there are from each one to the next one with a jump, more if none."""
+    count = len(jumps)
+    frames = np.flatnonzero(jumps)
+    frames = np.append(frames, frames + count if again else [])
+    never = np.array([2 * count + FADE])
+    following = np.concatenate([frames, never]).astype(np.intp)
+    here = np.arange(count)
+    return following[np.searchsorted(following, here, side="right")] - here
+
+
+def _require(holds: bool | np.bool_, message: str) -> None:  # noqa: FBT001 - reads as a sentence
+    if not holds:
+        raise EngineError(message)
