@@ -22,7 +22,7 @@ from app.document import (
     clip_of,
 )
 from app.editor.timeline_view import Timing
-from app.editor.work import Afterwards, Derived, Promise, Pull
+from app.editor.work import Afterwards, Carry, Derived, Promise, Pull, Take
 from app.motion import (
     Box,
     CorrectedFrames,
@@ -185,6 +185,7 @@ class Project:
     chosen_of: Mapping[int, frozenset[int]] = field(default_factory=dict)
     # The row of a track that is chosen: by the ids of its figure and of a handle.
     track_row: tuple[int, int] | None = None
+    take: Take | None = None  # a drag that is recorded, until that is kept or given up
     camera: View | None = None  # None fits the picture into the viewport
     awaits_extent: bool = False  # whether the camera fits the motion once that is measured
     flip: Flip | None = None
@@ -274,6 +275,11 @@ class Project:
     def pulls(self) -> list[Pull]:
         """The poses that are on their way, in the order in which they were begun."""
         return [promise for promise in self.pending if isinstance(promise, Pull)]
+
+    @property
+    def carries(self) -> list[Carry]:
+        """The handles that hands want elsewhere by their tracks, which have no such keys yet."""
+        return [promise for promise in self.pending if isinstance(promise, Carry)]
 
     @property
     def pull(self) -> Pull | None:

@@ -7,6 +7,7 @@ Imports: `app.document`.
 
 from app.motion.corrected_frames import (
     CorrectedFrames as CorrectedFrames,
+    FoundCorrections as FoundCorrections,
     corrected_clip as corrected_clip,
 )
 from app.motion.extent import (
@@ -16,7 +17,11 @@ from app.motion.extent import (
     measure_extent as measure_extent,
     motion_box as motion_box,
 )
-from app.motion.inbetweens import Animation as Animation, PoseSampler as PoseSampler
+from app.motion.inbetweens import (
+    Animation as Animation,
+    Ground as Ground,
+    PoseSampler as PoseSampler,
+)
 from app.motion.interval_store import IntervalPart as IntervalPart, IntervalStore as IntervalStore
 from app.motion.intervals import (
     AnyInbetweens as AnyInbetweens,

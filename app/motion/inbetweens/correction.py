@@ -1,7 +1,7 @@
 """What is added to a frame of the closed-form motion."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -40,6 +40,22 @@ class Correction:
     def nbytes(self) -> int:
         """Memory of the coefficients."""
         return 0 if self.phi is None or self.psi is None else self.phi.nbytes + self.psi.nbytes
+
+    def beyond(self, other: "Correction | None") -> "Correction | None":
+        """Return what it adds to a part of it that comes before; None where that is nothing."""
+        if self is other or self.phi is None or self.psi is None:
+            return None
+        if other is None or other.phi is None or other.psi is None:
+            return replace(self, motion=HERE)
+        return replace(self, motion=HERE, phi=self.phi - other.phi, psi=self.psi - other.psi)
+
+    def after(self, other: "Correction | None") -> "Correction":
+        """Return what adds another correction first; this one moves nothing rigidly."""
+        if other is None or other.phi is None or other.psi is None:
+            return self if other is None else replace(self, motion=other.motion)
+        phi = other.phi if self.phi is None else self.phi + other.phi
+        psi = other.psi if self.psi is None else self.psi + other.psi
+        return replace(self, motion=other.motion, phi=phi, psi=psi)
 
     def on(
         self, positions: Complexes, coordinates: Complexes | npt.NDArray[np.complex64]

@@ -6,6 +6,9 @@ key and another window onto the same figure find what was made before.
 
 import threading
 from collections.abc import Callable, Iterable
+from copy import copy
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,8 +24,28 @@ from engine.deform.relative import Base, Corrected, Corrector, Pins, best_rigid
 from engine.geometry import RigidMotion
 
 LEFT_OVER = 0.02  # pixels that handles may lack after the rigid motion without being solved for
-BESIDE = 0.03  # of the diagonal: handles nearer to an anchor are held by it
 KEPT = 2**26  # bytes of corrections of one outline that are kept
+
+
+class Ground(NamedTuple):
+    """What tracks are relative to at a frame.
+
+    Parameters
+    ----------
+    places, turns : complex128, shape (h,)
+        Where the handles are without them, and by what factor the shape is turned there.
+    still : Correction or None
+        By which they are still.
+    """
+
+    places: Complexes
+    turns: Complexes
+    still: Correction | None
+
+
+def without_tracks(clip: Clip) -> Clip:
+    """Return a clip without tracks."""
+    return replace(clip, figure=replace(clip.figure, tracks=()))
 
 
 def is_corrected(clip: Clip) -> bool:
@@ -45,13 +68,17 @@ class Corrections:
         Of the figure's domain, at any points; what it knows of the outline is used, and kept there.
     carried : callable, optional
         Where the figure hangs, at a frame; by itself without.
+
+    Attributes
+    ----------
+    clip : Clip
     """
 
     def __init__(
         self, clip: Clip, variant: Variant, sampler: PoseSampler, carried: Carried | None = None
     ) -> None:
         figure = clip.figure
-        self._clip, self._variant = clip, variant
+        self.clip, self._variant, self._carried = clip, variant, carried
         self._known = sampler.known.corrections
         self._lock = threading.RLock()
         self._handles = slice(0, len(figure.handles))
@@ -89,6 +116,22 @@ class Corrections:
                 return still
             return self._gone(frame, moved, lack, still or Correction(), wanted)
 
+    def with_tracks(self, clip: Clip) -> "Corrections":
+        """Return the corrections of a clip that differs in its tracks alone."""
+        changed = copy(self)
+        changed.clip = clip
+        changed._own = OwnClocks(clip, changed._still_places, self._carried)  # noqa: SLF001 - its own
+        return changed
+
+    def ground_at(self, frame: float) -> Ground:
+        """Return what tracks are relative to at a frame."""
+        with self._lock:
+            base = self._base(frame)
+            still = self._still(frame, base, self._lack(frame, base))
+            moved = self._with(base, still)
+            places, fz = moved.positions[self._handles], moved.fz[self._handles]
+            return Ground(places, fz / np.abs(fz), still)
+
     def still_at(self, frame: float) -> Correction | None:
         """Return the same without tracks and springs."""
         with self._lock:
@@ -100,9 +143,7 @@ class Corrections:
         with self._lock:
             base = self._base(frame)
             lack = self._lack(frame, base)
-            if lack is None or not lack.offsets.any():
-                return None
-            return Correction(motion=self._rigid(base, lack))
+            return None if lack is None else Correction(motion=self._rigid(base, lack))
 
     def base_at(self, frame: float) -> Base:
         """Return the closed-form motion of the handles, then of the anchor of what hangs."""
@@ -155,7 +196,7 @@ class Corrections:
         pins = self._pins(places, lack.weights, np.full(len(wanted), np.nan), 1.0)
 
         def solve() -> Correction:
-            found = self._corrector.correct(moved, pins, self._clip.figure.bounds)
+            found = self._corrector.correct(moved, pins, self.clip.figure.bounds)
             phi, psi = self._anchored(found)
             return Correction(
                 motion=motion,
@@ -177,11 +218,11 @@ class Corrections:
         pins = self._pins(places, firmness, wanted.turns, wanted.reach)
 
         def solve() -> Correction:
-            found = self._corrector.correct(base, pins, self._clip.figure.bounds)
+            found = self._corrector.correct(base, pins, self.clip.figure.bounds)
             phi, psi = self._anchored(found)
             misses = {
                 handle.id: float(miss)
-                for handle, miss in zip(self._clip.figure.handles, found.misses, strict=False)
+                for handle, miss in zip(self.clip.figure.handles, found.misses, strict=False)
                 if handle.id in wanted.tracked
             }
             return Correction(
@@ -197,14 +238,8 @@ class Corrections:
         return self._remembered(key, solve)
 
     def _pins(self, places: Complexes, firmness: Floats, turns: Floats, reach: float) -> Pins:
-        """Return what is wanted of the points; what hangs is held by its anchor.
-
-        A handle next to the anchor hardly goes anywhere: held as firmly, it would tear at it.
-        """
+        """Return what is wanted of the points; what hangs is held by its anchor."""
         more = len(places) - len(firmness)
-        if more:
-            away = np.abs(self._points[:-1] - self._points[-1]) / self._corrector.boundary.size
-            firmness = firmness * -np.expm1(-((away / BESIDE) ** 2))
         return Pins(
             places,
             np.concatenate([firmness, np.ones(more)]),
@@ -227,12 +262,12 @@ class Corrections:
         phi = corrected.phi
         if self._is_hung:
             phi = phi.copy()
-            phi[: len(self._clip.figure.domain.cage)] -= corrected.change.positions[-1]
+            phi[: len(self.clip.figure.domain.cage)] -= corrected.change.positions[-1]
         return phi, corrected.psi
 
     def _whose(self, frame: float) -> tuple[object, ...]:
         """Return what the motion of a frame follows from; the poses stay alive with it."""
-        clip, moment = self._clip, time_of(self._clip, frame)
+        clip, moment = self.clip, time_of(self.clip, frame)
         resting, bounds = resting_pose(clip, moment), clip.figure.bounds
         if resting is not None:
             return resting, self._points.tobytes(), bounds

@@ -131,7 +131,7 @@ class Stillness:
     def lack(self, frame: float, places: Complexes) -> Lack | None:
         """Return what the handles, which the base has at these places (h,), lack at a frame.
 
-        At keys that is nothing, with the weights of both sides. None where nothing is ever asked.
+        None where nothing is asked.
         """
         moment = time_of(self._clip, frame)
         if not self._spans or not (
@@ -141,9 +141,7 @@ class Stillness:
         span = self._spans[moment.interval]
         share = self._share(span, frame)
         if moment.weight in (0.0, 1.0) or not 0.0 < share < 1.0:
-            side = int(moment.weight == 1.0)
-            there = self._still[moment.interval] | (self._weights[moment.interval, side] > 0)
-            return Lack(np.zeros_like(places), there.astype(np.float64))
+            return None
         return self._lack(moment, span.frames, share, places)
 
     def _lack(self, moment: Moment, frames: int, share: float, places: Complexes) -> Lack:
