@@ -10,8 +10,8 @@ from app.motion.inbetweens import (
     Corrections,
     Ground,
     PoseSampler,
+    have_one_ground,
     is_corrected,
-    without_tracks,
 )
 from app.motion.joints import Joints
 
@@ -57,7 +57,7 @@ class CorrectedFrames:
 
     def _take_over(self, earlier: "CorrectedFrames") -> None:
         """Take what an earlier clip's frames have as what stands in for these."""
-        if self._is_on_ground_of(earlier.clip):
+        if have_one_ground(self.clip, earlier.clip):
             self._grounds, self._latest = earlier._grounds, earlier._latest  # noqa: SLF001 - its own
             if earlier._corrections is not None:  # noqa: SLF001
                 self._corrections = earlier._corrections.with_tracks(self.clip)  # noqa: SLF001
@@ -70,9 +70,6 @@ class CorrectedFrames:
         # A key is still by itself: of a frame that has become one, only what tracks add stays.
         for frame in self.clip.figure.key_frames - earlier.clip.figure.key_frames:
             self._rough[frame] = self._added.get(frame)
-
-    def _is_on_ground_of(self, clip: Clip) -> bool:
-        return self.clip == clip or without_tracks(self.clip) == without_tracks(clip)
 
     def at(self, clip: Clip, frame: int) -> Correction | None:
         """Return the best that is known of a frame of a clip; of another one there is nothing."""
@@ -165,11 +162,12 @@ class CorrectedFrames:
         It is the newest where it is of the frame that a person watches.
         """
         clip = found.corrections.clip
-        if not self._is_on_ground_of(clip):
+        if not have_one_ground(self.clip, clip):
             return
         if self._corrections is None:
             self._corrections = found.corrections.with_tracks(self.clip)
-        self._grounds.update(found.grounds)
+        for frame, ground in found.grounds.items():
+            self._grounds.setdefault(frame, ground)
         for frame, rigid in found.rough.items():
             added = self._added.get(frame)
             self._rough[frame] = rigid if added is None else added.after(rigid)

@@ -10,8 +10,8 @@ from app.motion.inbetweens.correction import Correction as Correction
 from app.motion.inbetweens.corrections import (
     Corrections as Corrections,
     Ground as Ground,
+    have_one_ground as have_one_ground,
     is_corrected as is_corrected,
-    without_tracks as without_tracks,
 )
 from app.motion.inbetweens.own_clocks import Carried as Carried
 from app.motion.inbetweens.pairs import Pair as Pair, pair_of as pair_of

@@ -7,7 +7,6 @@ key and another window onto the same figure find what was made before.
 import threading
 from collections.abc import Callable, Iterable
 from copy import copy
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -43,9 +42,19 @@ class Ground(NamedTuple):
     still: Correction | None
 
 
-def without_tracks(clip: Clip) -> Clip:
-    """Return a clip without tracks."""
-    return replace(clip, figure=replace(clip.figure, tracks=()))
+def have_one_ground(clip: Clip, other: Clip) -> bool:
+    """Tell whether two clips of a figure differ in its tracks alone, if at all."""
+    return _ground_source(clip) == _ground_source(other)
+
+
+def _ground_source(clip: Clip) -> tuple[object, ...]:
+    """Return all that the motion follows from without tracks."""
+    figure = clip.figure
+    return (
+        *(figure.id, figure.domain, figure.handles, figure.keys, figure.anchor, figure.attachment),
+        *(figure.stillness, figure.springs, figure.variant, figure.bounds),
+        *(clip.frames, clip.loop, clip.fps, clip.baseline),
+    )
 
 
 def is_corrected(clip: Clip) -> bool:

@@ -12,6 +12,8 @@ from app.document.settings import FrameRange
 from app.document.timing import Track, TrackKey
 from app.editor.actions import playback, tracking
 from app.editor.actions.timing import tracks
+from app.ui.bars.status import limit_of_pose
+from app.ui.viewport.marks import unreached
 
 END = 1  # the handle near the right end
 NEAR = 0.3  # pixels that a tracked handle may miss
@@ -61,7 +63,7 @@ def keyed(window, bent):
 
 
 def test_a_drag_keys_the_handle_of_a_chosen_row_alone(window, keyed):
-    before, poses = keyed.document, keyed.figure.keys
+    before, poses, known = keyed.document, keyed.figure.keys, keyed.puppet.corrected.ground(0)
     start, way = place_of(keyed), 20 + 30j
     drag(window, start, start + way)
     (track,) = keyed.figure.tracks
@@ -72,6 +74,7 @@ def test_a_drag_keys_the_handle_of_a_chosen_row_alone(window, keyed):
     assert abs(turn - 1) > 0.05
     assert abs(place_of(keyed) - (start + way)) < PIXEL
     assert keyed.figure.keys == poses, "the pose stays"
+    assert keyed.puppet.corrected.ground(0) is known, "and what is known of it"
     assert keyed.puppet.shown.is_current
     keyed.history.undo()
     assert keyed.document is before, "one drag is one step"
@@ -125,6 +128,8 @@ def test_what_is_out_of_reach_is_wished_all_the_same(window, keyed):
     assert_allclose(wishes[END], goal, atol=PIXEL)
     assert abs(place_of(keyed) - goal) > 20
     assert shown.correction.is_held_back
+    assert limit_of_pose(window.session).startswith("Stretch limit reached – handle 2 is ")
+    assert unreached(keyed, shown)[END] == wishes[END], "a dashed line leads there"
 
 
 def offset_by(window, project, offset, frames=(6, 12, 18)):

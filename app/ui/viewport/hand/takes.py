@@ -9,7 +9,7 @@ from app.ui.viewport.paths import keys_on_path
 from app.ui.viewport.screen import Screen
 
 KEY_GRIP = 0.5  # em: radius within which a key on a path is grabbed
-SLIDER, PADDING = 9.0, 0.6  # em
+SLIDER, PADDING = 11.0, 0.6  # em
 
 
 def lay_track_keys(session: Session, look: Look, screen: Screen) -> tuple[int | None, bool]:
@@ -56,9 +56,9 @@ def draw_take(look: Look, project: Project, corner: ImVec2) -> list[Action]:
         imgui.same_line()
         imgui.set_next_item_width(SLIDER * em)
         changed, percent = imgui.slider_int(
-            "##smoothing", round(100 * take.smoothing), 0, 100, "%d%%"
+            "##smoothing", round(100 * take.smoothing), 0, 100, "Smoothing %d%%"
         )
-        tip("Smoothing: how far the keys may be beside what was recorded, and how few they are")
+        tip("How far the motion may be beside what was recorded: the more, the fewer keys")
         if changed:
             actions.append(do(tracking.smooth, min(max(percent, 0), 100) / 100))
         imgui.same_line()
