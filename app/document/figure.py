@@ -200,6 +200,17 @@ class Figure:
         """Return the spring by which the handle with this id follows, if it does."""
         return next((spring for spring in self.springs if spring.handle == identity), None)
 
+    @property
+    def followers(self) -> frozenset[int]:
+        """The ids of the handles that follow by springs, which poses are not held by.
+
+        A track of a handle comes first, and so does the joint where it sits.
+        """
+        joint = None if self.attachment is None else self.anchor
+        held = {handle.id for handle in self.handles if handle.position == joint}
+        held |= {i for track in self.tracks if track.enabled for i in track.handles}
+        return frozenset(each.handle for each in self.springs if each.enabled) - held
+
     def is_locked(self, identity: int) -> bool:
         """Tell whether there is a handle with this id that is locked."""
         return any(handle.locked for handle in self.handles if handle.id == identity)
@@ -210,6 +221,10 @@ class Figure:
             if key.frame == frame:
                 return key
         raise LissomError(f"There is no key at frame {frame}.")
+
+    def nearest_key(self, frame: int) -> Keyframe:
+        """Return the key that is nearest to a frame, of two the earlier one."""
+        return min(self.keys, key=lambda key: abs(key.frame - frame))
 
     def map_of(self, pose: Pose) -> HarmonicMap:
         """Return the map of a pose."""

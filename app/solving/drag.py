@@ -1,17 +1,17 @@
 """Poses from handles: drags that go on step by step, and poses to begin them with."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
 
-from app.document import Clip, Figure, Pose, Target, resting_pose, time_of
+from app.document import Clip, Figure, Handle, Pose, Target, resting_pose, time_of
 from app.motion import Animation, PoseSampler
 from engine.arrays import Booleans, Complexes
 from engine.deform import Deformer, Hand, Handles, State, Wish
 from engine.errors import EngineError
-from engine.maps import Boundary, Bounds, HarmonicMap, certify
+from engine.maps import Boundary, Bounds, Certificate, HarmonicMap, certify
 
 # A pose that the present bounds do not allow is the start of a drag back into them: its own
 # distortion is allowed, and this much more of what is left.
@@ -26,30 +26,43 @@ class Rig:
 
     Parameters
     ----------
+    handles : tuple of Handle
+        Those of the figure by which poses are held, in their order. What follows by a spring goes
+        where the body carries it, unless it is pulled at itself.
     deformer : Deformer
-        For all of the figure's handles, in their order, and for its anchor where it hangs by that:
-        a joint holds like a pin.
+        For these, and for the figure's anchor where it hangs by that: a joint holds like a pin.
     """
 
     figure: Figure
+    handles: tuple[Handle, ...]
     deformer: Deformer
 
     @classmethod
-    def of(cls, figure: Figure, earlier: "Rig | None" = None) -> Self:
-        """Return the rig of a figure; what did not change is taken from an earlier one."""
+    def of(
+        cls,
+        figure: Figure,
+        earlier: "Rig | None" = None,
+        pulled: Collection[int] = (),
+    ) -> Self:
+        """Return the rig of a figure; what did not change is taken from an earlier one.
+
+        `pulled` are the ids of handles that are pulled at even where they follow.
+        """
         domain, pins = figure.domain, _pins(figure)
+        carried = figure.followers.difference(pulled)
+        held = tuple(handle for handle in figure.handles if handle.id not in carried)
         if earlier is not None and earlier.figure.domain is domain:
             boundary = earlier.deformer.boundary
         else:
             boundary, earlier = Boundary.sample(domain.outline, domain.cage, domain.holes), None
-        if earlier and earlier.figure.handles == figure.handles and earlier.pins == pins:
+        if earlier and earlier.handles == held and earlier.pins == pins:
             handles = earlier.deformer.handles
         else:
-            places = [*(handle.position for handle in figure.handles), *pins]
-            pulls = [*(handle.pull for handle in figure.handles), *(PIN for _ in pins)]
+            places = [*(handle.position for handle in held), *pins]
+            pulls = [*(handle.pull for handle in held), *(PIN for _ in pins)]
             handles = Handles.place(boundary, np.array(places, dtype=np.complex128), pulls)
         deformer = Deformer(boundary=boundary, handles=handles, bounds=figure.bounds)
-        return cls(figure=figure, deformer=deformer)
+        return cls(figure=figure, handles=held, deformer=deformer)
 
     @property
     def pins(self) -> tuple[complex, ...]:
@@ -61,9 +74,10 @@ class Rig:
     ) -> Wish:
         """Return where handles are wanted, as the deformer takes it.
 
-        Hands are told by the ids of the handles that they pull; those that are gone are left out.
+        Hands are told by the ids of the handles that they pull; those that are gone, or hold no
+        pose, are left out.
         """
-        index = {handle.id: i for i, handle in enumerate(self.figure.handles)}
+        index = {handle.id: i for i, handle in enumerate(self.handles)}
         pulling = [
             Hand([index[i] for i in sorted(hand.handles) if i in index], hand.pull)
             for hand in hands
@@ -75,6 +89,19 @@ class Rig:
             [np.nan if target.rotation is None else target.rotation for target in wanted],
             pulling,
         )
+
+    def pose(
+        self, shape: HarmonicMap, targets: Mapping[int, Target], certificate: Certificate
+    ) -> Pose:
+        """Return a map as a pose with these wishes; handles that do not hold it are where it is."""
+        held = {handle.id for handle in self.handles}
+        carried = [handle for handle in self.figure.handles if handle.id not in held]
+        places = shape(np.array([handle.position for handle in carried], dtype=np.complex128))
+        here = {
+            handle.id: replace(targets[handle.id], position=complex(place), rotation=None)
+            for handle, place in zip(carried, places, strict=True)
+        }
+        return Pose.of(shape, {**targets, **here}, certificate)
 
     def beginning_at(self, shape: HarmonicMap) -> State:
         """Return the solver's state at a map; where that folds, at rest, which leads everywhere."""
@@ -138,16 +165,27 @@ class Drag:
         return self.state.status.is_final
 
     def towards(
-        self, targets: Mapping[int, Target], steps: int, hands: Sequence[Hand] = ()
+        self,
+        targets: Mapping[int, Target],
+        steps: int,
+        hands: Sequence[Hand] = (),
+        pulled: Collection[int] = (),
     ) -> "Drag":
-        """Return the drag after some steps towards the targets, or fewer if it comes to rest."""
-        wish = self.rig.wish(targets, self.pins, hands)
+        """Return the drag after some steps towards the targets, or fewer if it comes to rest.
+
+        `pulled` are the ids of handles that are pulled at even where they follow.
+        """
+        rig = Rig.of(self.rig.figure, self.rig, pulled)
+        deformer = self.deformer
+        if rig.deformer.handles is not deformer.handles:
+            deformer = replace(deformer, handles=rig.deformer.handles)
+        wish = rig.wish(targets, self.pins, hands)
         state = self.state
         for _ in range(steps):
-            state = self.deformer.step(state, wish)
+            state = deformer.step(state, wish)
             if state.status.is_final:
                 break
-        return replace(self, state=state)
+        return replace(self, rig=rig, deformer=deformer, state=state)
 
     def let_go(self, targets: Mapping[int, Target], hands: Sequence[Hand]) -> Mapping[int, Target]:
         """Return the targets of the handles that hands have pulled, once these let go here."""
@@ -156,13 +194,13 @@ class Drag:
         pulled = {identity for hand in hands for identity in hand.handles}
         return {
             handle.id: replace(targets[handle.id], position=complex(place))
-            for handle, place in zip(self.rig.figure.handles, left, strict=False)
+            for handle, place in zip(self.rig.handles, left, strict=False)
             if handle.id in pulled
         }
 
     def pose(self, targets: Mapping[int, Target]) -> Pose:
         """Return where the drag is, as a pose with these wishes."""
-        return Pose.of(self.state.map, targets, self.state.certificate)
+        return self.rig.pose(self.state.map, targets, self.state.certificate)
 
 
 def pins_of(figure: Figure, pose: Pose) -> tuple[Target, ...]:

@@ -85,7 +85,7 @@ def _flip(rig: Rig, pose: Pose, axis: float) -> Pose:
     state, _ = deformer.settle(state, rig.wish(targets, pins), at_most=MOST_STEPS)
     # Steps that walk into the bounds are proven for wider ones.
     proven = certify(state.map, deformer.boundary, deformer.bounds)
-    return Pose.of(state.map, targets, proven)
+    return rig.pose(state.map, targets, proven)
 
 
 def _flipped_map(rig: Rig, pose: Pose, axis: float) -> HarmonicMap:

@@ -170,7 +170,7 @@ def _solved(renewal: Renewal, rig: Rig, index: int) -> Pose:
         certificate = certify(state.map, boundary, bounds)
     if into is None and not certificate.certified:
         return replace(pose, certificate=certify(first, boundary, bounds))
-    return replace(pose.with_map(state.map), certificate=certificate)
+    return rig.pose(state.map, pose.targets, certificate)
 
 
 def carried(target: Target, shape: HarmonicMap, place: complex, to: complex) -> Target:

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.document import Figure, Pose
+from app.document import Figure, Pose, Target, Track, TrackKey
 from app.solving.renewal import Renewal, carried
 from engine.arrays import Complexes
 from engine.domain import Domain
@@ -39,6 +39,7 @@ def begin_replacing(before: Figure, made: Figure, canvas: tuple[int, int]) -> Re
         is_stale=False,
         domain=domain,
         handles=handles,
+        tracks=tuple(_replanted(before, track, places) for track in before.tracks),
         anchor=None if before.anchor is None else places[before.anchor],
         unknown={
             name: value
@@ -72,6 +73,20 @@ def _places(before: Figure, domain: Domain) -> Mapping[complex, complex]:
     points = np.array(old, dtype=np.complex128)
     pairs = zip(points.tolist(), domain.nearest(points).tolist(), strict=True)
     return dict(pairs)
+
+
+def _replanted(before: Figure, track: Track, places: Mapping[complex, complex]) -> Track:
+    """Return a track whose places in the picture are moved as its handle is."""
+    place = before.handle(track.handles[0]).position
+    if not track.planted or places[place] == place:
+        return track
+
+    def moved(key: TrackKey) -> TrackKey:
+        shape = before.map_of(before.nearest_key(key.frame).pose)
+        wished = carried(Target(position=key.place), shape, place, places[place])
+        return replace(key, place=wished.position)
+
+    return replace(track, keys=tuple(map(moved, track.keys)))
 
 
 def _at_rest(before: Figure, pose: Pose, domain: Domain, places: Mapping[complex, complex]) -> Pose:

@@ -3,13 +3,29 @@
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from itertools import pairwise
 from math import inf
 from pathlib import Path
 from typing import Any
 
-from app.document import HOLD, LAST_FRAME, LINEAR, NATURAL, VARIANTS, Easing, Passing, Variant
+from app.document import (
+    LINEAR,
+    NATURAL,
+    VARIANTS,
+    Easing,
+    Passing,
+    Spring,
+    Track,
+    Variant,
+)
 from app.errors import LissomError
+from app.solving.script_clocks import parse_springs, parse_tracks, require_rounds
+from app.solving.script_fields import (
+    fields_in,
+    frame_of,
+    passage_of,
+    require_handle,
+    require_order,
+)
 from app.storage import (
     JsonObject,
     as_flag,
@@ -26,10 +42,10 @@ from engine.maps import Bounds
 
 SCHEMA = 1
 LARGEST = 32 * 1024 * 1024  # bytes
-SCENE_FIELDS = ("schema", "fps", "loop", "variant", "bounds")
-OWN_FIELDS = ("anchor", "handles", "keys")
-FIGURE_FIELDS = ("layer", "variant", "bounds", *OWN_FIELDS, "attach", "visible")
-HANDLE_FIELDS = ("at", "front", "extent")
+SCENE_FIELDS = ("schema", "fps", "loop", "variant", "bounds", "still")
+OWN_FIELDS = ("anchor", "handles", "keys", "tracks", "springs")
+FIGURE_FIELDS = ("layer", "variant", "bounds", "still", *OWN_FIELDS, "attach", "visible")
+HANDLE_FIELDS = ("at", "front", "extent", "still")
 JOINT_FIELDS = ("to", "at", "turn")
 KEY_FIELDS = ("frame", "targets", "pull", "ease", "passing", "front")
 BOUND_FIELDS = ("k", "sigma_a", "sigma_b")
@@ -49,11 +65,12 @@ class PoseKey:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ScriptHandle:
-    """One handle: where it is in the picture, and what is painted in front around it."""
+    """One handle: where it is in the picture, and what it does there."""
 
     at: complex
     front: float = 0.0
     extent: float | None = None
+    still: bool = True  # where two keys have it at one place
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -70,6 +87,7 @@ class FigureScript:
     """The animation of one figure, in pixels of the canvas with y up.
 
     The defaults are those of the file format. `layer` is None where the script has but one figure.
+    Tracks and springs tell handles by their places among `handles`.
     """
 
     layer: str | None = None
@@ -78,8 +96,16 @@ class FigureScript:
     variant: Variant = Variant.METRIC
     bounds: Bounds = NATURAL.bounds
     anchor: complex | None = None
+    still: bool = True
+    tracks: tuple[Track, ...] = ()
+    springs: tuple[Spring, ...] = ()
     attach: ScriptJoint | None = None
     visible: tuple[tuple[int, bool], ...] = ()
+
+    @property
+    def last(self) -> int:
+        """The frame of the last key, those of tracks among them."""
+        return max([self.keys[-1].frame, *(track.keys[-1].frame for track in self.tracks)])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -89,6 +115,11 @@ class PoseScript:
     figures: tuple[FigureScript, ...]
     fps: float
     loop: bool
+
+    @property
+    def last(self) -> int:
+        """The last frame of the animation."""
+        return max(figure.last for figure in self.figures)
 
 
 def load_pose_script(path: Path) -> PoseScript:
@@ -126,7 +157,7 @@ def parse_pose_script(content: object) -> PoseScript:
     """
     read = as_object(content, "the script")
     own = ("figures",) if "figures" in read else OWN_FIELDS
-    script = _object(content, "the script", (*SCENE_FIELDS, *own))
+    script = fields_in(content, "the script", (*SCENE_FIELDS, *own))
     schema = script.get("schema")
     if schema != SCHEMA or isinstance(schema, bool):
         raise LissomError(f"schema must be {SCHEMA}, not {json.dumps(schema)}")
@@ -134,7 +165,7 @@ def parse_pose_script(content: object) -> PoseScript:
     figures = [] if "figures" in script else [_figure(script, "", usual)]
     for index, entry in enumerate(as_list(script.get("figures", []), "figures")):
         where = f"figures[{index}]."
-        fields = _object(entry, where[:-1], FIGURE_FIELDS)
+        fields = fields_in(entry, where[:-1], FIGURE_FIELDS)
         figures.append(_figure(fields, where, usual))
     layers = [figure.layer for figure in figures]
     for layer in layers:
@@ -142,11 +173,15 @@ def parse_pose_script(content: object) -> PoseScript:
             raise LissomError(f"two figures are of the layer {layer!r}")
     if not figures:
         raise LissomError("figures must be a list of at least one figure")
-    return PoseScript(
+    parsed = PoseScript(
         figures=tuple(figures),
         fps=as_number(script.get("fps", 24.0), "fps"),
         loop=as_flag(script.get("loop", False), "loop"),
     )
+    for index, figure in enumerate(figures if parsed.loop else ()):
+        where = "" if figure.layer is None else f"figures[{index}]."
+        require_rounds(figure.tracks, figure.springs, parsed.last, where)
+    return parsed
 
 
 def _figure(script: JsonObject, where: str, usual: Mapping[str, Any]) -> FigureScript:
@@ -162,38 +197,35 @@ def _figure(script: JsonObject, where: str, usual: Mapping[str, Any]) -> FigureS
     if not isinstance(keys, list) or not keys:
         raise LissomError(f"{where}keys must be a list of at least one key")
     parsed = tuple(_key(key, f"{where}keys[{index}]", handles) for index, key in enumerate(keys))
-    _require_order([key.frame for key in parsed], f"{where}keys are")
+    require_order([key.frame for key in parsed], f"{where}keys are")
     if script.get("anchor") is not None:
         own["anchor"] = as_point(script["anchor"], f"{where}anchor")
     if script.get("attach") is not None:
         own["attach"] = _joint(script["attach"], f"{where}attach")
     visible = as_list(script.get("visible", []), f"{where}visible")
     switches = [_switch(switch, f"{where}visible[{index}]") for index, switch in enumerate(visible)]
-    _require_order([frame for frame, _ in switches], f"{where}visible is")
+    require_order([frame for frame, _ in switches], f"{where}visible is")
     own["visible"] = tuple(switches)
+    own["tracks"] = parse_tracks(script.get("tracks", []), f"{where}tracks", tuple(handles))
+    own["springs"] = parse_springs(script.get("springs", []), f"{where}springs", tuple(handles))
     return FigureScript(handles=handles, keys=parsed, **own)
-
-
-def _require_order(frames: list[int], what: str) -> None:
-    for before, after in pairwise(frames):
-        if after <= before:
-            raise LissomError(f"{what} out of order: frame {after} after {before}")
 
 
 def _handle(content: object, where: str) -> ScriptHandle:
     if isinstance(content, list):
         return ScriptHandle(at=as_point(content, where))
-    handle = _object(content, where, HANDLE_FIELDS)
+    handle = fields_in(content, where, HANDLE_FIELDS)
     extent = handle.get("extent")
     return ScriptHandle(
         at=as_point(handle["at"], f"{where}.at"),
         front=as_number(handle.get("front", 0.0), f"{where}.front"),
         extent=None if extent is None else as_number(extent, f"{where}.extent"),
+        still=as_flag(handle.get("still", True), f"{where}.still"),
     )
 
 
 def _joint(content: object, where: str) -> ScriptJoint:
-    joint = _object(content, where, JOINT_FIELDS)
+    joint = fields_in(content, where, JOINT_FIELDS)
     return ScriptJoint(
         to=as_text(joint["to"], f"{where}.to"),
         at=as_point(joint["at"], f"{where}.at"),
@@ -219,19 +251,16 @@ def _options(script: Mapping[str, Any], where: str) -> dict[str, Any]:
             )
         options["variant"] = Variant(script["variant"])
     if "bounds" in script:
-        bounds = _object(script["bounds"], f"{where}bounds", BOUND_FIELDS)
+        bounds = fields_in(script["bounds"], f"{where}bounds", BOUND_FIELDS)
         given = {name: as_number(value, f"{where}bounds.{name}") for name, value in bounds.items()}
         options["bounds"] = replace(NATURAL.bounds, **given)
+    if "still" in script:
+        options["still"] = as_flag(script["still"], f"{where}still")
     return options
 
 
 def _key(content: object, where: str, handles: Mapping[str, ScriptHandle]) -> PoseKey:
-    key = _object(content, where, KEY_FIELDS)
-    frame = key.get("frame")
-    if not isinstance(frame, int) or isinstance(frame, bool) or not 0 <= frame <= LAST_FRAME:
-        raise LissomError(
-            f"{where}.frame must be a whole number from 0 to {LAST_FRAME}, not {json.dumps(frame)}"
-        )
+    key = fields_in(content, where, KEY_FIELDS)
     targets = {
         name: as_point(place, f"{where}.targets.{name}")
         for name, place in as_object(key.get("targets", {}), f"{where}.targets").items()
@@ -241,42 +270,16 @@ def _key(content: object, where: str, handles: Mapping[str, ScriptHandle]) -> Po
         for name, front in as_object(key.get("front", {}), f"{where}.front").items()
     }
     for name in (*targets, *fronts):
-        if name not in handles:
-            raise LissomError(
-                f"{where} names the handle {name!r}, but the handles are {', '.join(handles)}"
-            )
+        require_handle(name, handles, where)
     pull = as_number(key["pull"], f"{where}.pull") if "pull" in key else inf
     if not pull > 0:
         raise LissomError(f"{where}.pull must be positive, not {pull:g}")
-    ease, passing = _passage(key, where)
+    ease, passing = passage_of(key, where)
     return PoseKey(
-        frame=frame, targets=targets, pull=pull, ease=ease, passing=passing, fronts=fronts
+        frame=frame_of(key, where),
+        targets=targets,
+        pull=pull,
+        ease=ease,
+        passing=passing,
+        fronts=fronts,
     )
-
-
-def _passage(key: JsonObject, where: str) -> tuple[Easing, Passing]:
-    """Return how time runs after a key, and how the motion passes it.
-
-    By default it passes through, or with an easing of its own in a corner.
-    """
-    ease = Easing.parse(key["ease"]) if "ease" in key else LINEAR
-    default = Passing.CORNER if "ease" in key else Passing.THROUGH
-    word = key.get("passing", default)
-    if word not in list(Passing):
-        raise LissomError(
-            f"{where}.passing must be one of {', '.join(Passing)}, not {json.dumps(word)}"
-        )
-    if word != Passing.HOLD:
-        return ease, Passing(word)
-    if "ease" in key and ease != HOLD:
-        raise LissomError(f"{where} holds its pose, so that it has nothing to ease; leave out ease")
-    return HOLD, default
-
-
-def _object(content: object, where: str, fields: tuple[str, ...]) -> JsonObject:
-    """Return an object that has none but these fields."""
-    read = as_object(content, where)
-    for name in read:
-        if name not in fields:
-            raise LissomError(f"{where} has an unknown field {name!r}; it may have {fields}")
-    return read

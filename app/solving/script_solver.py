@@ -61,8 +61,9 @@ def pose_document(
         its shape.
     """
     named = _by_figure(document, script)
-    last = max(part.keys[-1].frame for part in script.figures)
-    document = replace(document, frames=FrameRange(0, last), fps=script.fps, loop=script.loop)
+    document = replace(
+        document, frames=FrameRange(0, script.last), fps=script.fps, loop=script.loop
+    )
     for identity, part in named.items():
         with _whose(part):
             document = _prepared(document, identity, part)
@@ -113,10 +114,12 @@ def _layer(names: Mapping[str, Figure], layer: str) -> Figure:
 
 def _prepared(document: Document, identity: int, part: FigureScript) -> Document:
     """Return the document with a figure's handles, settings and joint."""
+    first = document.figure(identity).next_handle
     for name, handle in part.handles.items():
         added = document.figure(identity).next_handle
         document = handle_commands.add_handle(identity, handle.at, name=name)(document)
         document = layer_commands.set_front(identity, added, handle.front, handle.extent)(document)
+        document = handle_commands.free_handles(identity, {added}, free=not handle.still)(document)
     switches = tuple(Switch(frame, visible) for frame, visible in part.visible)
     document = document.with_figure(
         replace(
@@ -125,6 +128,12 @@ def _prepared(document: Document, identity: int, part: FigureScript) -> Document
             bounds=part.bounds,
             anchor=part.anchor,
             switches=switches,
+            stillness=part.still,
+            tracks=tuple(
+                replace(track, handles=tuple(first + number for number in track.handles))
+                for track in part.tracks
+            ),
+            springs=tuple(replace(spring, handle=first + spring.handle) for spring in part.springs),
         )
     )
     if part.attach is None:
@@ -156,7 +165,7 @@ def _posed(
     for key in part.keys:
         progress(f"solving {whose}the key at frame {key.frame}")
         pose, told = _solve(rig, pose, key)
-        if loop and key is part.keys[-1] and keys and pose.targets == keys[0].pose.targets:
+        if loop and key is part.keys[-1] and keys and _wishes_alike(rig, pose, keys[0].pose):
             # The same moment again, to the last digit.
             pose, told = keys[0].pose, []
         notices += [f"{whose}{notice}" for notice in told]
@@ -169,20 +178,33 @@ def _posed(
     return replace(figure, keys=tuple(keys)), notices
 
 
+def _wishes_alike(rig: Rig, pose: Pose, other: Pose) -> bool:
+    """Tell whether two poses are wanted alike where they are held."""
+    return all(pose.targets[held.id] == other.targets[held.id] for held in rig.handles)
+
+
 def _solve(rig: Rig, start: Pose, key: PoseKey) -> tuple[Pose, list[str]]:
     """Drag the handles from a pose to the targets of a key."""
     figure = rig.figure
     identities = {handle.name: handle.id for handle in figure.handles}
     named = {identities[name]: Target(position=place) for name, place in key.targets.items()}
+    carried = figure.followers & named.keys()
+    notices = [
+        f"frame {key.frame}: {figure.handle(identity).name!r} follows by its spring, and goes "
+        "where the body carries it, whatever its target"
+        for identity in sorted(carried)
+    ]
+    for identity in carried:
+        del named[identity]
     targets = {**start.targets, **named}
     if all(start.targets[i].position == target.position for i, target in targets.items()):
-        return start, []
+        return start, notices
     hands = tuple(Hand((identity,), key.pull) for identity in named)
     drag = _at_rest(Drag.begin(rig, start), targets, hands)
     shortfall = find_shortfall(figure, drag.pose(targets))
     left = {**targets, **drag.let_go(targets, hands)}
     pose = (drag if left == targets else _at_rest(drag, left)).pose(left)
-    notices = [
+    notices += [
         f"frame {key.frame}: {figure.handle(identity).name!r} is {lag:.1f} px short of "
         f"its target, {shortfall.reason}"
         for identity, lag in shortfall.lags.items()

@@ -26,12 +26,36 @@ much.
 A key with "pull": 10 pulls the handles that it names with no more force than that, as the hand does
 in the window: what is beyond their reach moves nothing else, and is wanted where it came to.
 
+A handle that two neighbouring keys have at one place stays there in between, as a foot does on the
+ground. With "still": false in {"at": [300, 40], "still": false} it moves as the shape takes it; the
+same at the top, or in a figure, says so of all handles. A handle has a clock of its own with
+
+   "tracks": [{"handle": "nose", "with": "pose", "delay": 4, "reach": 0.3,
+               "keys": [{"frame": 0, "offset": [0, 0]}, {"frame": 9, "offset": [12, 5]},
+                        {"frame": 24, "offset": [0, 0]}]},
+              {"handle": "hoof", "with": "picture", "keys": [{"frame": 6, "at": [310, 40]}]}],
+   "springs": [{"handle": "ear", "preset": "ear", "lag": 1, "strength": 0.5},
+               {"handle": "tail", "frequency": 1.6, "damping": 0.18}]
+
+A track acts from its first key to its last one, both included, and changes nothing elsewhere. Its
+offset is by how much the handle is beside its place in the motion of the poses, in axes that turn
+with the shape there; with "picture", at is its place on the canvas. Several handles move together
+as "handles": ["hoof", "heel"]: keys are of the first one. A key may turn the shape at the handle by
+so many degrees, counter-clockwise ("turn": 20), and has ease and passing as those above. Left out,
+with is "pose", delay 0 frames (in a loop it comes round), and reach 1: from 0 to 1, how far around
+the handle the body gives.
+
+A spring lets a handle follow the motion late and swing: frequency in Hz; damping, 1 where it comes
+back without swinging over; lag 0 frames, and strength 1. The presets are tail, ear, hair, cloth and
+jelly. Keys do not hold what follows: in poses it goes where the body carries it.
+
 A handle may say what is painted in front around it, from -1 (behind) to 1, and how far around, in
 pixels: {"at": [120, 880], "front": 0.5, "extent": 60}; a key with "front": {"nose": 1} says it from
 there on.
 
 DRAWING may have layers (OpenRaster .ora, or .psd where psd-tools is installed). Coordinates are
-pixels of the canvas then, and a script of several figures has, instead of anchor, handles and keys:
+pixels of the canvas then, and a script of several figures has, instead of anchor, handles, keys,
+tracks and springs:
 
    "figures": [{"layer": "body", "handles": {}, "keys": [{"frame": 0}]},
                {"layer": "arm", "handles": {"hand": [310, 240]},
@@ -39,9 +63,9 @@ pixels of the canvas then, and a script of several figures has, instead of ancho
                 "attach": {"to": "body", "at": [200, 260], "turn": true},
                 "visible": [[0, true], [40, false]]}]
 
-Each may have a variant, bounds and an anchor of its own. What is attached hangs by its anchor, or
-where none is given by that point, and is posed as if its parent were at rest. Layers that no entry
-names stand still.
+Each may have a variant, bounds, an anchor, tracks and springs of its own. What is attached hangs by
+its anchor, or where none is given by that point, and is posed as if its parent were at rest. Layers
+that no entry names stand still.
 
 examples:
   lissom pose giraffe.png nod.json --out nod.lissom

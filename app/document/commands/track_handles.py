@@ -74,8 +74,8 @@ def _replanted(figure: Figure, track: Track, old: complex, new: complex) -> Trac
         return track
 
     def moved(key: TrackKey) -> TrackKey:
-        nearest = min(figure.keys, key=lambda each: abs(each.frame - key.frame))
-        before, after = figure.map_of(nearest.pose)(np.array([old, new])).tolist()
+        shape = figure.map_of(figure.nearest_key(key.frame).pose)
+        before, after = shape(np.array([old, new])).tolist()
         return replace(key, place=key.place + after - before)
 
     return replace(track, keys=tuple(map(moved, track.keys)))

@@ -105,7 +105,11 @@ def falls_short(figure: Figure, lag: float) -> bool:
 
 @remembered
 def find_shortfall(figure: Figure, pose: Pose) -> Shortfall:
-    """Return which handles of a figure fall short in a pose, and why."""
-    lags = {i: lag for i, lag in figure.lags(pose).items() if falls_short(figure, lag)}
+    """Return which handles of a figure fall short in a pose, and why; none that follow does."""
+    lags = {
+        identity: lag
+        for identity, lag in figure.lags(pose).items()
+        if identity not in figure.followers and falls_short(figure, lag)
+    }
     at_limits = any(use.is_all for use in Extremes.of(pose).uses(figure.bounds))
     return Shortfall(lags=lags, at_limits=at_limits)

@@ -9,6 +9,7 @@ from app.document.checks import NOTHING, Unknown, require, require_distinct, req
 from app.document.timing.easing import HOLD, LINEAR, Easing
 from app.document.timing.passing import Passing, require_passing
 
+MOST_TURN = 20 * math.tau  # either way
 LONGEST_DELAY = 999_999  # frames: an animation is no longer
 
 
@@ -28,7 +29,11 @@ class TrackKey:
 
     def __post_init__(self) -> None:
         require_place(self.place, "A track's key")
-        require(math.isfinite(self.turn), f"A track's turn must be finite, not {self.turn}.")
+        require(
+            abs(self.turn) <= MOST_TURN,
+            f"A track turns by at most {MOST_TURN / math.tau:g} whole turns, not by "
+            f"{self.turn / math.tau:g}.",
+        )
         require_passing(self.passing)
         object.__setattr__(self, "passing", Passing(self.passing))
 

@@ -14,6 +14,7 @@ from app.editor.work.pull import (
     Pull as Pull,
     Start as Start,
     WishFrom as WishFrom,
+    pulled_by as pulled_by,
     targets_of as targets_of,
     wherever as wherever,
 )

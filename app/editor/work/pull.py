@@ -91,6 +91,8 @@ class Pull(Promise):
         Whether the pose that it begins with is at rest: merely moved, it stays as it is.
     targets : mapping of int to Target, optional
         What all of that comes to; None as long as there is no start.
+    pulled : frozenset of int
+        The ids of the handles of which something is wished.
     position : int
         Of the history when something was wished last.
     is_held : bool
@@ -127,6 +129,7 @@ class Pull(Promise):
     ways: dict[object, complex] = field(default_factory=dict)
     rests: bool = True
     targets: Mapping[int, Target] | None = None
+    pulled: frozenset[int] = frozenset()
     position: int = 0
     is_held: bool = True
     drag: Drag | None = None
@@ -203,6 +206,7 @@ class Pull(Promise):
         self.steps = 0
         if self.start is not None:
             self.targets = targets_of(self.start, self.wishes.values())
+            self.pulled = pulled_by(self.start, self.wishes.values())
 
     @property
     def figure(self) -> int:
@@ -304,3 +308,8 @@ def targets_of(start: Start, wishes: Iterable[WishFrom]) -> Mapping[int, Target]
             # What a later version wrote about a target stays.
             targets[identity] = replace(wished, unknown=targets[identity].unknown)
     return targets
+
+
+def pulled_by(start: Start, wishes: Iterable[WishFrom]) -> frozenset[int]:
+    """Return the ids of the handles of which some wishes say anything."""
+    return frozenset(identity for wish in wishes for identity in wish(start, start.targets))

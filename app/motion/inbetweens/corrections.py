@@ -23,6 +23,7 @@ from engine.deform.relative import Base, Corrected, Corrector, Pins, best_rigid
 from engine.geometry import RigidMotion
 
 LEFT_OVER = 0.02  # pixels that handles may lack after the rigid motion without being solved for
+BESIDE = 0.03  # of the diagonal: handles nearer to an anchor are held by it
 KEPT = 2**26  # bytes of corrections of one outline that are kept
 
 
@@ -152,7 +153,9 @@ class Corrections:
         with self._lock:
             base = self._base(frame)
             lack = self._lack(frame, base)
-            return None if lack is None else Correction(motion=self._rigid(base, lack))
+            if lack is None or not lack.offsets.any():
+                return None
+            return Correction(motion=self._rigid(base, lack))
 
     def base_at(self, frame: float) -> Base:
         """Return the closed-form motion of the handles, then of the anchor of what hangs."""
@@ -247,8 +250,14 @@ class Corrections:
         return self._remembered(key, solve)
 
     def _pins(self, places: Complexes, firmness: Floats, turns: Floats, reach: float) -> Pins:
-        """Return what is wanted of the points; what hangs is held by its anchor."""
+        """Return what is wanted of the points; what hangs is held by its anchor.
+
+        A handle next to the anchor hardly goes anywhere: held as firmly, it would tear at it.
+        """
         more = len(places) - len(firmness)
+        if more:
+            away = np.abs(self._points[:-1] - self._points[-1]) / self._corrector.boundary.size
+            firmness = firmness * -np.expm1(-((away / BESIDE) ** 2))
         return Pins(
             places,
             np.concatenate([firmness, np.ones(more)]),

@@ -7,8 +7,10 @@ import numpy as np
 
 from app.document import Clip, Track, TrackPlace, track_at
 from engine.arrays import Complexes, Floats
-from engine.geometry import HERE, RigidMotion
+from engine.geometry import HERE, RigidMotion, box_diagonal
+from engine.geometry.kinematics import Swing, swing
 
+FARTHEST_SWING = 0.3  # of the figure's diagonal
 TURNED = 50.0  # pixels that count as much as a turn by one radian
 # Where a figure is that hangs on others, at a frame.
 Carried = Callable[[float], RigidMotion]
@@ -44,17 +46,22 @@ class OwnClocks:
     ) -> None:
         figure = clip.figure
         self._clip, self._carried = clip, carried
+        self._places = places
+        self._springs = [spring for spring in figure.springs if spring.enabled]
+        self._swings: dict[int, Swing] | None = None
         self._index = {handle.id: number for number, handle in enumerate(figure.handles)}
         self._tracks = [track for track in figure.tracks if track.enabled]
         # These are held as firmly wherever others go their own ways: nothing gives when they begin.
         own = [identity for track in self._tracks for identity in track.handles]
-        own += [spring.handle for spring in figure.springs if spring.enabled]
+        own += [spring.handle for spring in self._springs]
         self._firmness = np.zeros(len(figure.handles))
         self._firmness[[self._index[identity] for identity in own]] = 1.0
 
     def acts(self, frame: float) -> bool:
         """Tell whether anything may be wanted at a frame."""
-        return any(track_at(track, self._clip, frame) for track in self._tracks)
+        return bool(self._springs) or any(
+            track_at(track, self._clip, frame) is not None for track in self._tracks
+        )
 
     def wanted(self, frame: float, places: Complexes, fz: Complexes) -> Wanted | None:
         """Return where handles are wanted at a frame; None where they are there.
@@ -67,6 +74,12 @@ class OwnClocks:
         """
         wanted, turns = places.copy(), np.full(len(places), np.nan)
         reaches, sizes, tracked = [], [], set()
+        for identity, swung in self.swings.items():
+            offset = complex(swung.at(frame - self._clip.frames.first))
+            offset *= self._hung(frame).factor.conjugate()
+            wanted[self._index[identity]] += offset
+            reaches.append(1.0)
+            sizes.append(abs(offset))
         for track in self._tracks:
             at = track_at(track, self._clip, frame)
             if at is None:
@@ -85,10 +98,40 @@ class OwnClocks:
         reach = float(np.average(reaches, weights=sizes)) if np.any(sizes) else 1.0
         return Wanted(wanted, self._firmness, turns, reach, frozenset(tracked))
 
+    @property
+    def swings(self) -> dict[int, Swing]:
+        """The swings of handles, by their ids; in the axes of the scene."""
+        if self._swings is None:
+            self._swings = self._swung()
+        return self._swings
+
+    def _swung(self) -> dict[int, Swing]:
+        if not self._springs:
+            return {}
+        clip = self._clip
+        frames = range(clip.frames.first, clip.frames.last + 1)
+        places = np.array([self._hung(frame).on(self._places(frame)) for frame in frames])
+        return {
+            spring.handle: swing(
+                places[:, self._index[spring.handle]],
+                clip.fps,
+                frequency=spring.frequency,
+                damping=spring.damping,
+                lag=spring.lag,
+                strength=spring.strength,
+                limit=FARTHEST_SWING * box_diagonal(clip.figure.domain.outline),
+                loop=clip.loop and len(frames) > 1,
+            )
+            for spring in self._springs
+        }
+
+    def _hung(self, frame: float) -> RigidMotion:
+        return self._carried(frame) if self._carried else HERE
+
     def _offset(
         self, track: Track, at: TrackPlace, frame: float, place: complex, fz: complex
     ) -> complex:
         """Return by how much a track moves its handles."""
         if not track.planted:
             return at.place * fz / abs(fz)
-        return (self._carried(frame) if self._carried else HERE).back(at.place) - place
+        return self._hung(frame).back(at.place) - place

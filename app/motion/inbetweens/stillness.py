@@ -131,7 +131,7 @@ class Stillness:
     def lack(self, frame: float, places: Complexes) -> Lack | None:
         """Return what the handles, which the base has at these places (h,), lack at a frame.
 
-        None where nothing is asked.
+        At keys that is nothing, with the weights of both sides. None where nothing is ever asked.
         """
         moment = time_of(self._clip, frame)
         if not self._spans or not (
@@ -141,7 +141,9 @@ class Stillness:
         span = self._spans[moment.interval]
         share = self._share(span, frame)
         if moment.weight in (0.0, 1.0) or not 0.0 < share < 1.0:
-            return None
+            side = int(moment.weight == 1.0)
+            there = self._still[moment.interval] | (self._weights[moment.interval, side] > 0)
+            return Lack(np.zeros_like(places), there.astype(np.float64))
         return self._lack(moment, span.frames, share, places)
 
     def _lack(self, moment: Moment, frames: int, share: float, places: Complexes) -> Lack:

@@ -11,8 +11,8 @@ from app.storage import LARGEST_GHOST_STEP, MOST_GHOSTS
 from app.ui.methods import VARIANTS
 from app.ui.shortcuts import BINDINGS, bound_button
 from app.ui.style import Look, icon_button, ink, tip
+from app.ui.timeline.bands import in_seconds
 from app.ui.timeline.menus import time_menu
-from app.ui.timeline.track import in_seconds
 
 # Names and what they mean.
 GAP, TIGHT, WIDE = 0.35, 0.1, 1.1  # em between what belongs together closely, and less so

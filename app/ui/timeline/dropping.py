@@ -6,27 +6,27 @@ from app.document import LAST_FRAME
 from app.editor import Action, do
 from app.editor.poses import library
 from app.ui.style import POSE_PAYLOAD, ink
-from app.ui.timeline.track import Track, tag
+from app.ui.timeline.bands import Bands, tag
 
 
-def draw_dropped(track: Track) -> list[Action]:
+def draw_dropped(bands: Bands) -> list[Action]:
     """Show where a pose that is dragged here would make a key; make it where it is let go."""
     payload = imgui.get_drag_drop_payload_py_id()
-    kept = track.project.figure.library
+    kept = bands.project.figure.library
     if payload is None or payload.type != POSE_PAYLOAD or payload.data_id >= len(kept):
         return []
     if imgui.is_key_pressed(imgui.Key.escape):
         imgui.internal.clear_drag_drop()
         return []
     mouse = imgui.get_mouse_pos()
-    frame = round(track.pointed)
-    is_over = track.left <= mouse.x <= track.right and track.top <= mouse.y <= track.bottom
+    frame = round(bands.pointed)
+    is_over = bands.left <= mouse.x <= bands.right and bands.top <= mouse.y <= bands.bottom
     if not is_over or not 0 <= frame <= LAST_FRAME:
         return []
-    draw_list, accent = imgui.get_window_draw_list(), ink(track.look.palette.accent)
-    x = track.x(frame)
-    draw_list.add_line(ImVec2(x, track.track_top), ImVec2(x, track.track_bottom), accent, 2.0)
-    tag(track, x, f"{frame}")
+    draw_list, accent = imgui.get_window_draw_list(), ink(bands.look.palette.accent)
+    x = bands.x(frame)
+    draw_list.add_line(ImVec2(x, bands.track_top), ImVec2(x, bands.track_bottom), accent, 2.0)
+    tag(bands, x, f"{frame}")
     if imgui.is_mouse_released(imgui.MouseButton_.left):
         return [do(library.apply_at, kept[payload.data_id].name, frame)]
     return []

@@ -8,9 +8,9 @@ from imgui_bundle import ImVec2, imgui
 from app.document import HOLD, LINEAR, Keyframe, Transit, closes, transits
 from app.editor import Action
 from app.ui.style import SMALL, in_hand, ink, is_pressed, sized, tip
+from app.ui.timeline.bands import ROUNDING, Bands
 from app.ui.timeline.easing_curve import draw_curve, easing_popup, fill_curve
 from app.ui.timeline.keys import begin_box, is_plain_click
-from app.ui.timeline.track import ROUNDING, Track
 
 LEAST = 0.6  # em: narrower bars are not drawn
 INSET = 0.35  # em: between the curve and the bar's edge
@@ -38,21 +38,21 @@ class _Bar:
         return NAMES.get(easing.name, easing.name)
 
 
-def draw_intervals(track: Track) -> list[Action]:
+def draw_intervals(bands: Bands) -> list[Action]:
     """Draw all bars; a click on one opens its easing."""
     actions: list[Action] = []
-    track.push_clip()
-    _draw_still(track)
-    for bar in _bars(track):
-        left, right = track.x(bar.low), track.x(bar.high)
-        if right - left >= LEAST * track.look.em and track.shows(left, right):
-            actions += _interval(track, bar, left, right)
+    bands.push_clip()
+    _draw_still(bands)
+    for bar in _bars(bands):
+        left, right = bands.x(bar.low), bands.x(bar.high)
+        if right - left >= LEAST * bands.look.em and bands.shows(left, right):
+            actions += _interval(bands, bar, left, right)
     imgui.pop_clip_rect()
     return actions
 
 
-def _bars(track: Track) -> list[_Bar]:
-    clip = track.project.clip
+def _bars(bands: Bands) -> list[_Bar]:
+    clip = bands.project.clip
     keys, ways = clip.keys, transits(clip)
     bars = [
         _Bar(
@@ -87,46 +87,46 @@ def _bars(track: Track) -> list[_Bar]:
     return bars
 
 
-def _draw_still(track: Track) -> None:
+def _draw_still(bands: Bands) -> None:
     """Draw a line where a pose stands still: before the first key and after the last one."""
-    clip = track.project.clip
+    clip = bands.project.clip
     ends = [(clip.frames.first, clip.frames.last)]
     if not closes(clip):
         first, last = clip.keys[0].frame, clip.keys[-1].frame
         ends = [(clip.frames.first, first), (last, clip.frames.last)]
-        colour = ink(track.look.palette.dim, 0.35)
+        colour = ink(bands.look.palette.dim, 0.35)
         for low, high in ends:
             imgui.get_window_draw_list().add_line(
-                ImVec2(track.x(low), track.middle), ImVec2(track.x(high), track.middle), colour, 1.5
+                ImVec2(bands.x(low), bands.middle), ImVec2(bands.x(high), bands.middle), colour, 1.5
             )
 
 
-def _interval(track: Track, bar: _Bar, left: float, right: float) -> list[Action]:
+def _interval(bands: Bands, bar: _Bar, left: float, right: float) -> list[Action]:
     actions: list[Action] = []
-    low, high = ImVec2(left + 1, track.bar_top), ImVec2(right - 1, track.bar_bottom)
-    clicked = track.button(bar.name, low, high, right=True)
+    low, high = ImVec2(left + 1, bands.bar_top), ImVec2(right - 1, bands.bar_bottom)
+    clicked = bands.button(bar.name, low, high, right=True)
     popup = f"easing {bar.key.frame}"
     if is_pressed():
-        actions += begin_box(track)
+        actions += begin_box(bands)
     if clicked and is_plain_click():
         imgui.open_popup(popup)
     if imgui.is_item_clicked(imgui.MouseButton_.right):
         imgui.open_popup("menu of track")
     is_open = imgui.is_popup_open(popup)
-    hot = is_open or (in_hand() and track.project.timing.gesture is None)
-    if track.project.timing.gesture is None and not is_open:
+    hot = is_open or (in_hand() and bands.project.timing.gesture is None)
+    if bands.project.timing.gesture is None and not is_open:
         tip(f"{bar.told.capitalize()}: click to change how time runs here")
-    _draw_bar(track, bar, low, high, hot=hot)
-    _label(track, bar.told, bar.key.turns, low, high)
+    _draw_bar(bands, bar, low, high, hot=hot)
+    _label(bands, bar.told, bar.key.turns, low, high)
     if not bar.name.endswith("again"):
-        actions += easing_popup(popup, track.look, track.project, bar.key)
+        actions += easing_popup(popup, bands.look, bands.project, bar.key)
     return actions
 
 
-def _draw_bar(track: Track, bar: _Bar, low: ImVec2, high: ImVec2, *, hot: bool) -> None:
-    palette, draw_list, em = track.look.palette, imgui.get_window_draw_list(), track.look.em
+def _draw_bar(bands: Bands, bar: _Bar, low: ImVec2, high: ImVec2, *, hot: bool) -> None:
+    palette, draw_list, em = bands.look.palette, imgui.get_window_draw_list(), bands.look.em
     rounding = ROUNDING / 2 * em
-    chosen = bar.key.frame in track.project.chosen
+    chosen = bar.key.frame in bands.project.chosen
     colour = palette.accent if hot or chosen else palette.dim
     if bar.key.easing == HOLD:
         draw_list.add_rect_filled(low, high, ink(palette.raised, 0.35), rounding)
@@ -136,8 +136,8 @@ def _draw_bar(track: Track, bar: _Bar, low: ImVec2, high: ImVec2, *, hot: bool) 
             low, high, ink(palette.hovered if hot else palette.raised), rounding
         )
     inset = INSET * em
-    corner = ImVec2(track.x(bar.begin), low.y + inset)
-    size = ImVec2(track.x(bar.end) - corner.x, high.y - low.y - 2 * inset)
+    corner = ImVec2(bands.x(bar.begin), low.y + inset)
+    size = ImVec2(bands.x(bar.end) - corner.x, high.y - low.y - 2 * inset)
     draw_list.push_clip_rect(low, high, intersect_with_current_clip_rect=True)
     if bar.key.easing != HOLD:
         fill_curve(bar.key.easing, corner, size, inset, ink(colour, 0.30 if hot else 0.16))
@@ -145,13 +145,13 @@ def _draw_bar(track: Track, bar: _Bar, low: ImVec2, high: ImVec2, *, hot: bool) 
     draw_list.pop_clip_rect()
 
 
-def _label(track: Track, name: str, turns: int, low: ImVec2, high: ImVec2) -> None:
+def _label(bands: Bands, name: str, turns: int, low: ImVec2, high: ImVec2) -> None:
     """Name the easing in the upper left corner, where its curve is not yet."""
-    em = track.look.em
+    em = bands.look.em
     text = f"{name}, {turns:+d} turns" if abs(turns) > 1 else f"{name}, {turns:+d} turn"
     text = text if turns else name
-    left = max(low.x, track.left) + 0.6 * em
+    left = max(low.x, bands.left) + 0.6 * em
     with sized(SMALL):
-        if left + 2.2 * imgui.calc_text_size(text).x + em < min(high.x, track.right):
-            place, colour = (left, low.y + 0.25 * em), ink(track.look.palette.dim)
+        if left + 2.2 * imgui.calc_text_size(text).x + em < min(high.x, bands.right):
+            place, colour = (left, low.y + 0.25 * em), ink(bands.look.palette.dim)
             imgui.get_window_draw_list().add_text(place, colour, text)

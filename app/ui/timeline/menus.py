@@ -8,8 +8,8 @@ from app.editor.actions import keys, playback
 from app.editor.poses import copying
 from app.ui.shortcuts import BINDINGS, bound_item
 from app.ui.style import Look, shortened, tip
+from app.ui.timeline.bands import Bands
 from app.ui.timeline.easing_curve import LABELS
-from app.ui.timeline.track import Track
 
 PASSINGS = {
     Passing.THROUGH: ("Through", "The motion goes on smoothly, between two other keys"),
@@ -21,12 +21,12 @@ NAME = 9.0  # em: width of a layer's name at most
 FACTORS = ((0.5, "Half as long"), (2.0, "Twice as long"))
 
 
-def key_menu(track: Track, figure: int, key: Keyframe) -> list[Action]:
+def key_menu(bands: Bands, figure: int, key: Keyframe) -> list[Action]:
     """Draw the menu of a key of a figure, if it is open."""
     actions: list[Action] = []
     if not imgui.begin_popup(f"menu of key {key.frame}"):
         return actions
-    project = track.project
+    project = bands.project
     taken = project.keys_with(figure, key.frame)
     count = sum(map(len, taken.values()))
     many = f" {count} keys" if count > 1 else ""
@@ -35,7 +35,7 @@ def key_menu(track: Track, figure: int, key: Keyframe) -> list[Action]:
         actions.append(delete.action)
     if imgui.menu_item_simple(f"Copy{many}###Copy", BINDINGS["copy"].keys_in_words):
         actions.append(do(copying.copy_keys))
-    actions += _paste_items(track.session, key.frame)
+    actions += _paste_items(bands.session, key.frame)
     imgui.separator()
     if imgui.menu_item_simple("Go to this key", "Click"):
         actions.append(do(playback.scrub, key.frame))
@@ -52,7 +52,7 @@ def key_menu(track: Track, figure: int, key: Keyframe) -> list[Action]:
                 actions.append(do(keys.set_easing, taken, preset))
         imgui.end_menu()
     imgui.separator()
-    actions += _time_items(track.session, track.look, project)
+    actions += _time_items(bands.session, bands.look, project)
     imgui.end_popup()
     return actions
 
@@ -63,20 +63,20 @@ def _paste_items(session: Session, frame: int) -> list[Action]:
     return [do(playback.scrub, frame), *pasted] if pasted else []
 
 
-def track_menu(track: Track) -> list[Action]:
+def track_menu(bands: Bands) -> list[Action]:
     """Draw the menu of a place between the keys, if it is open."""
     actions: list[Action] = []
     if not imgui.begin_popup("menu of track"):
         return actions
     opened = imgui.get_mouse_pos_on_opening_current_popup()
-    frame = track.project.document.frames.clamp(round(track.frame(opened.x)))
+    frame = bands.project.document.frames.clamp(round(bands.frame(opened.x)))
     if imgui.menu_item_simple(f"Insert key at frame {frame}###Insert key"):
         actions.append(do(keys.insert_at, frame))
-    actions += _paste_items(track.session, frame)
+    actions += _paste_items(bands.session, frame)
     if imgui.menu_item_simple(f"Add marker at frame {frame}###Add marker"):
         actions.append(do(keys.add_marker, frame))
     imgui.separator()
-    actions += _time_items(track.session, track.look, track.project)
+    actions += _time_items(bands.session, bands.look, bands.project)
     imgui.end_popup()
     return actions
 

@@ -8,50 +8,50 @@ from app.document import Figure, Switch, is_visible, layer_commands
 from app.editor import Action, SwitchDrag, do, layering
 from app.editor.actions import editing, timeline_pointing
 from app.ui.style import CHOSEN, SMALL, begin_tip, in_hand, ink, is_pressed, shortened, sized
-from app.ui.timeline.track import THIN, FigureRow, Track, tag
+from app.ui.timeline.bands import THIN, Bands, FigureRow, tag
 
 HATCH = 0.55  # em between the lines over a time in which a figure is hidden
 EYE = 0.62  # em: half the width of the mark where a figure is shown or hidden
 BESIDE = 0.35  # em that it makes way for a key at the same frame
 
 
-def draw_rows(track: Track, frame: int) -> list[Action]:
+def draw_rows(bands: Bands, frame: int) -> list[Action]:
     """Draw what lies behind the keys of all figures; take clicks on names and on eyes."""
     actions: list[Action] = []
-    if track.has_names:
-        actions += _draw_names(track, frame)
-    track.push_clip()
-    for row in track.rows:
-        if track.has_names:
-            _draw_ground(track, row)
+    if bands.has_names:
+        actions += _draw_names(bands, frame)
+    bands.push_clip()
+    for row in bands.rows:
+        if bands.has_names:
+            _draw_ground(bands, row)
         for begin, end in _hidden(row.figure):
-            _hatch(track, row, begin, end)
-    for row in track.rows:
+            _hatch(bands, row, begin, end)
+    for row in bands.rows:
         imgui.push_id(f"row {row.figure.id}")
         for switch in row.figure.switches:
-            actions += _draw_switch(track, row, switch)
+            actions += _draw_switch(bands, row, switch)
         imgui.pop_id()
     imgui.pop_clip_rect()
     return actions
 
 
-def _draw_ground(track: Track, row: FigureRow) -> None:
+def _draw_ground(bands: Bands, row: FigureRow) -> None:
     """Part a row from the next one; that of the active figure is brighter."""
-    palette, draw_list = track.look.palette, imgui.get_window_draw_list()
-    low, high = ImVec2(track.left, row.top), ImVec2(track.right, row.bottom)
+    palette, draw_list = bands.look.palette, imgui.get_window_draw_list()
+    low, high = ImVec2(bands.left, row.top), ImVec2(bands.right, row.bottom)
     if row.is_active:
         draw_list.add_rect_filled(low, high, ink(palette.accent, 0.08))
     draw_list.add_line(ImVec2(low.x, high.y), high, ink(palette.line))
 
 
-def _draw_names(track: Track, frame: int) -> list[Action]:
+def _draw_names(bands: Bands, frame: int) -> list[Action]:
     actions: list[Action] = []
-    palette, draw_list, em = track.look.palette, imgui.get_window_draw_list(), track.look.em
-    low, high = ImVec2(track.corner.x, track.track_top), ImVec2(track.left, track.track_bottom)
+    palette, draw_list, em = bands.look.palette, imgui.get_window_draw_list(), bands.look.em
+    low, high = ImVec2(bands.corner.x, bands.track_top), ImVec2(bands.left, bands.track_bottom)
     imgui.push_clip_rect(low, high, intersect_with_current_clip_rect=True)
-    for row in track.rows:
+    for row in bands.rows:
         box = ImVec2(low.x, row.top), ImVec2(high.x - 0.3 * em, row.bottom)
-        if track.button(f"name {row.figure.id}", *box):
+        if bands.button(f"name {row.figure.id}", *box):
             actions.append(do(layering.choose, row.figure.id))
         if row.is_active or in_hand():
             colour = ink(palette.accent, CHOSEN) if row.is_active else ink(palette.hovered)
@@ -63,23 +63,23 @@ def _draw_names(track: Track, frame: int) -> list[Action]:
             top = row.middle - imgui.get_text_line_height() / 2
             draw_list.add_text(ImVec2(low.x + 0.4 * em, top), colour, icon)
             draw_list.add_text(ImVec2(low.x + 1.8 * em, top), colour, text)
-    _draw_scrolled(track)
+    _draw_scrolled(bands)
     imgui.pop_clip_rect()
     return actions
 
 
-def _draw_scrolled(track: Track) -> None:
+def _draw_scrolled(bands: Bands) -> None:
     """Draw beside the names which of the rows are seen, if not all are."""
-    if not track.overflow:
+    if not bands.overflow:
         return
-    height = track.track_bottom - track.track_top
-    per_pixel = height / (height + track.overflow)
-    top = track.track_top + per_pixel * (track.track_top - track.rows[0].top)
-    width = 0.18 * track.look.em
+    height = bands.track_bottom - bands.track_top
+    per_pixel = height / (height + bands.overflow)
+    top = bands.track_top + per_pixel * (bands.track_top - bands.rows[0].top)
+    width = 0.18 * bands.look.em
     imgui.get_window_draw_list().add_rect_filled(
-        ImVec2(track.left - width, top),
-        ImVec2(track.left, top + per_pixel * height),
-        ink(track.look.palette.dim, 0.8),
+        ImVec2(bands.left - width, top),
+        ImVec2(bands.left, top + per_pixel * height),
+        ink(bands.look.palette.dim, 0.8),
         width / 2,
     )
 
@@ -100,19 +100,19 @@ def _hidden(figure: Figure) -> list[tuple[int | None, int | None]]:
     return stretches
 
 
-def _hatch(track: Track, row: FigureRow, begin: int | None, end: int | None) -> None:
-    palette, draw_list = track.look.palette, imgui.get_window_draw_list()
-    frames = track.project.document.frames
-    left = max(track.x(frames.first if begin is None else begin), track.left)
-    right = min(track.x(frames.last if end is None else end), track.right)
+def _hatch(bands: Bands, row: FigureRow, begin: int | None, end: int | None) -> None:
+    palette, draw_list = bands.look.palette, imgui.get_window_draw_list()
+    frames = bands.project.document.frames
+    left = max(bands.x(frames.first if begin is None else begin), bands.left)
+    right = min(bands.x(frames.last if end is None else end), bands.right)
     if right <= left:
         return
     low, high = ImVec2(left, row.top + 1), ImVec2(right, row.bottom - 1)
-    height, gap = high.y - low.y, HATCH * track.look.em
+    height, gap = high.y - low.y, HATCH * bands.look.em
     draw_list.add_rect_filled(low, high, ink(palette.desk, 0.7))
     imgui.push_clip_rect(low, high, intersect_with_current_clip_rect=True)
     # The lines stay where they are in time while the timeline is scrolled.
-    first = track.x(0)
+    first = bands.x(0)
     x = first + ((left - height - first) // gap) * gap
     while x < right:
         draw_list.add_line(ImVec2(x, high.y), ImVec2(x + height, low.y), ink(palette.dim, 0.35))
@@ -120,48 +120,48 @@ def _hatch(track: Track, row: FigureRow, begin: int | None, end: int | None) -> 
     imgui.pop_clip_rect()
 
 
-def _draw_switch(track: Track, row: FigureRow, switch: Switch) -> list[Action]:
+def _draw_switch(bands: Bands, row: FigureRow, switch: Switch) -> list[Action]:
     """Draw an eye where a figure comes to be seen, or a struck one where it is hidden."""
-    frame, half = switch.frame, EYE * track.look.em
-    x = track.x(frame)
-    if not track.shows(x - half, x + half):
+    frame, half = switch.frame, EYE * bands.look.em
+    x = bands.x(frame)
+    if not bands.shows(x - half, x + half):
         return []
-    left = _left_of_eye(track, row, frame)
-    drag = track.project.timing.gesture
+    left = _left_of_eye(bands, row, frame)
+    drag = bands.project.timing.gesture
     if not isinstance(drag, SwitchDrag) or (drag.figure, drag.at) != (row.figure.id, frame):
         drag = None
     # By where it was before it was dragged, so that its button stays the same one.
     origin = frame if drag is None else drag.switch
     box = left - ImVec2(0, half), left + ImVec2(2 * half, half)
-    track.button(f"switch {origin}", *box, right=True)
-    _draw_eye(track, row, switch, left, is_hot=in_hand() or drag is not None)
+    bands.button(f"switch {origin}", *box, right=True)
+    _draw_eye(bands, row, switch, left, is_hot=in_hand() or drag is not None)
     if origin != frame:
-        tag(track, x, f"{frame}  ({frame - origin:+d})")
-    return _point(track, row, switch) + _menu(row, frame)
+        tag(bands, x, f"{frame}  ({frame - origin:+d})")
+    return _point(bands, row, switch) + _menu(row, frame)
 
 
-def _left_of_eye(track: Track, row: FigureRow, frame: int) -> ImVec2:
+def _left_of_eye(bands: Bands, row: FigureRow, frame: int) -> ImVec2:
     """Return where an eye begins: below the keys of the active figure, and beside the others'."""
-    em, x = track.look.em, track.x(frame)
+    em, x = bands.look.em, bands.x(frame)
     if row.is_active and row.bottom - row.top > 2 * THIN * em:
         return ImVec2(x, row.bottom - (0.1 + THIN / 2) * em)
     is_at_key = frame in row.figure.key_frames
     return ImVec2(x + (BESIDE * em if is_at_key else 0.0), row.middle)
 
 
-def _draw_eye(track: Track, row: FigureRow, switch: Switch, left: ImVec2, *, is_hot: bool) -> None:
-    draw_list, x = imgui.get_window_draw_list(), track.x(switch.frame)
-    colour = ink(track.look.palette.text if is_hot else track.look.palette.anchor)
+def _draw_eye(bands: Bands, row: FigureRow, switch: Switch, left: ImVec2, *, is_hot: bool) -> None:
+    draw_list, x = imgui.get_window_draw_list(), bands.x(switch.frame)
+    colour = ink(bands.look.palette.text if is_hot else bands.look.palette.anchor)
     draw_list.add_line(ImVec2(x, row.top + 2), ImVec2(x, row.bottom - 2), colour, 1.5)
     icon = icons.ICON_FA_EYE if switch.visible else icons.ICON_FA_EYE_SLASH
     with sized(SMALL * SMALL):
         top = left.y - imgui.get_text_line_height() / 2
-        draw_list.add_text(ImVec2(left.x + 0.15 * track.look.em, top), colour, icon)
+        draw_list.add_text(ImVec2(left.x + 0.15 * bands.look.em, top), colour, icon)
 
 
-def _point(track: Track, row: FigureRow, switch: Switch) -> list[Action]:
+def _point(bands: Bands, row: FigureRow, switch: Switch) -> list[Action]:
     """Take what the pointer does to an eye, the last item, and tell what can be done with it."""
-    frame, document = switch.frame, track.project.document
+    frame, document = switch.frame, bands.project.document
     if in_hand():
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
     if imgui.is_item_clicked(imgui.MouseButton_.right):
@@ -171,12 +171,12 @@ def _point(track: Track, row: FigureRow, switch: Switch) -> list[Action]:
             figure=row.figure.id,
             switch=frame,
             at=frame,
-            start=track.pointed,
+            start=bands.pointed,
             before=document,
             after=document,
         )
-        return [do(timeline_pointing.begin, drag, track.strip)]
-    if track.project.timing.gesture is None and begin_tip():
+        return [do(timeline_pointing.begin, drag, bands.strip)]
+    if bands.project.timing.gesture is None and begin_tip():
         imgui.text_unformatted(f"{'Shown' if switch.visible else 'Hidden'} from frame {frame} on")
         imgui.text_disabled("Click to go there, drag to move it, right click to take it away")
         imgui.end_tooltip()

@@ -19,15 +19,19 @@ from app.editor.actions import editing, playback, timeline_pointing
 from app.editor.tools import pointing
 from app.ui.shortcuts import CTRL, with_key
 from app.ui.style import Look
+from app.ui.timeline.bands import THIN, Bands, in_seconds, was_dragged
 from app.ui.timeline.bar import draw_bar
 from app.ui.timeline.dropping import draw_dropped
-from app.ui.timeline.edges import draw_edges
 from app.ui.timeline.intervals import draw_intervals
 from app.ui.timeline.keys import draw_box, draw_ground, draw_keys
-from app.ui.timeline.markers import draw_markers
 from app.ui.timeline.rows import draw_rows
-from app.ui.timeline.ruler import draw_overview, draw_playhead, draw_ruler
-from app.ui.timeline.track import THIN, Track, in_seconds, was_dragged
+from app.ui.timeline.ruler import (
+    draw_edges,
+    draw_markers,
+    draw_overview,
+    draw_playhead,
+    draw_ruler,
+)
 
 ZOOM_STEP = 1.2  # a notch of the wheel
 SCROLL_STEP = 4.0  # em
@@ -40,61 +44,61 @@ def draw(session: Session, look: Look, project: Project) -> list[Action]:
     """Draw the timeline of the open project."""
     actions = draw_bar(session, look, project)
     imgui.begin_child("track", imgui.get_content_region_avail(), 0, FLAGS)
-    track = Track(session, look, project)
-    if track.is_usable:
-        actions += _draw_track(track, playback.current_frame(session, project))
+    bands = Bands(session, look, project)
+    if bands.is_usable:
+        actions += _draw_track(bands, playback.current_frame(session, project))
     imgui.end_child()
     return actions
 
 
-def _draw_track(track: Track, frame: int) -> list[Action]:
-    actions = draw_ruler(track, frame)
-    actions += draw_ground(track)
-    actions += draw_rows(track, frame)
-    actions += _navigate(track)
-    actions += draw_intervals(track)
-    actions += draw_edges(track)
-    actions += draw_markers(track)
-    actions += draw_playhead(track, frame)
-    actions += draw_keys(track)
-    draw_box(track)
-    actions += draw_overview(track, frame)
-    actions += _go_on(track)
-    actions += draw_dropped(track)
-    actions += _follow(track, frame) + _follow_active(track)
-    if imgui.is_window_hovered() or track.project.timing.gesture is not None:
-        actions.append(do(pointing.explain, _hint(track)))
-    imgui.set_cursor_screen_pos(track.corner)
+def _draw_track(bands: Bands, frame: int) -> list[Action]:
+    actions = draw_ruler(bands, frame)
+    actions += draw_ground(bands)
+    actions += draw_rows(bands, frame)
+    actions += _navigate(bands)
+    actions += draw_intervals(bands)
+    actions += draw_edges(bands)
+    actions += draw_markers(bands)
+    actions += draw_playhead(bands, frame)
+    actions += draw_keys(bands)
+    draw_box(bands)
+    actions += draw_overview(bands, frame)
+    actions += _go_on(bands)
+    actions += draw_dropped(bands)
+    actions += _follow(bands, frame) + _follow_active(bands)
+    if imgui.is_window_hovered() or bands.project.timing.gesture is not None:
+        actions.append(do(pointing.explain, _hint(bands)))
+    imgui.set_cursor_screen_pos(bands.corner)
     imgui.dummy(ImVec2(0, 0))
     return actions
 
 
-def _navigate(track: Track) -> list[Action]:
+def _navigate(bands: Bands) -> list[Action]:
     """Scroll by the wheel or the middle button; zoom at the pointer with Ctrl."""
     io = imgui.get_io()
     if not imgui.is_window_hovered(imgui.HoveredFlags_.allow_when_blocked_by_active_item):
         return []
-    em, frames = track.look.em, track.project.document.frames
-    strip = track.strip
-    wheels_rows = imgui.get_mouse_pos().x < track.left and not io.key_ctrl
+    em, frames = bands.look.em, bands.project.document.frames
+    strip = bands.strip
+    wheels_rows = imgui.get_mouse_pos().x < bands.left and not io.key_ctrl
     if wheels_rows and io.mouse_wheel:
-        to = track.project.timing.scrolled - THIN * io.mouse_wheel
-        return [do(timeline_pointing.scroll_rows, min(max(to, 0.0), track.overflow / em))]
+        to = bands.project.timing.scrolled - THIN * io.mouse_wheel
+        return [do(timeline_pointing.scroll_rows, min(max(to, 0.0), bands.overflow / em))]
     if io.key_ctrl and io.mouse_wheel:
-        place = (imgui.get_mouse_pos().x - track.left) / em
+        place = (imgui.get_mouse_pos().x - bands.left) / em
         strip = strip.zoomed(ZOOM_STEP**io.mouse_wheel, place)
     elif io.mouse_wheel or io.mouse_wheel_h:
         strip = strip.panned(-SCROLL_STEP * (io.mouse_wheel + io.mouse_wheel_h))
     if imgui.is_mouse_down(imgui.MouseButton_.middle) and io.mouse_delta.x:
         strip = strip.panned(-io.mouse_delta.x / em)
-    if strip is track.strip:
+    if strip is bands.strip:
         return []
-    return [do(timeline_pointing.look_at, strip.kept_near(frames, track.width))]
+    return [do(timeline_pointing.look_at, strip.kept_near(frames, bands.width))]
 
 
-def _go_on(track: Track) -> list[Action]:
+def _go_on(bands: Bands) -> list[Action]:
     """Follow the pointer in what it began; end it where the button is let go."""
-    timeline = track.project.timing
+    timeline = bands.project.timing
     gesture = timeline.gesture
     if gesture is None:
         return []
@@ -102,10 +106,10 @@ def _go_on(track: Track) -> list[Action]:
         return [do(timeline_pointing.cancel)]
     # A press that does not go on is a click; only the playhead is there at once.
     goes_on = isinstance(gesture, Scrub) or was_dragged()
-    row = track.pointed_row.figure.id
-    moves = [do(timeline_pointing.move, track.pointed, row)] if goes_on else []
+    row = bands.pointed_row.figure.id
+    moves = [do(timeline_pointing.move, bands.pointed, row)] if goes_on else []
     if imgui.is_mouse_down(imgui.MouseButton_.left):
-        return [*moves, *_pull(track)] if goes_on else []
+        return [*moves, *_pull(bands)] if goes_on else []
     if not was_dragged():
         moves += _click(gesture)
     return [*moves, do(timeline_pointing.end)]
@@ -127,64 +131,64 @@ def _click(gesture: TimeGesture) -> list[Action]:
             return []
 
 
-def _pull(track: Track) -> list[Action]:
+def _pull(bands: Bands) -> list[Action]:
     """Scroll where the pointer goes beyond the edges."""
     x = imgui.get_mouse_pos().x
-    beyond = min(x - track.left, 0.0) + max(x - track.right, 0.0)
+    beyond = min(x - bands.left, 0.0) + max(x - bands.right, 0.0)
     if not beyond:
         return []
-    strip = track.strip.panned(PULL * beyond / track.look.em)
-    if isinstance(track.project.timing.gesture, KeyDrag | EdgeDrag | MarkerDrag | SwitchDrag):
-        return [do(timeline_pointing.look_at, strip)] if strip.frame(track.width / 2) > 0 else []
+    strip = bands.strip.panned(PULL * beyond / bands.look.em)
+    if isinstance(bands.project.timing.gesture, KeyDrag | EdgeDrag | MarkerDrag | SwitchDrag):
+        return [do(timeline_pointing.look_at, strip)] if strip.frame(bands.width / 2) > 0 else []
     return [
-        do(timeline_pointing.look_at, strip.kept_near(track.project.document.frames, track.width))
+        do(timeline_pointing.look_at, strip.kept_near(bands.project.document.frames, bands.width))
     ]
 
 
-def _follow(track: Track, frame: int) -> list[Action]:
+def _follow(bands: Bands, frame: int) -> list[Action]:
     """Keep the playhead on the screen where it moves by itself."""
-    timeline = track.project.timing
+    timeline = bands.project.timing
     if frame == timeline.seen:
         return []
-    strip = track.strip
+    strip = bands.strip
     if timeline.gesture is None and timeline.strip is not None:
-        is_playing = track.project.playhead.since is not None
-        strip = strip.showing(frame, track.width, turns=is_playing)
-    return [do(timeline_pointing.follow, frame, strip if strip is not track.strip else None)]
+        is_playing = bands.project.playhead.since is not None
+        strip = strip.showing(frame, bands.width, turns=is_playing)
+    return [do(timeline_pointing.follow, frame, strip if strip is not bands.strip else None)]
 
 
-def _follow_active(track: Track) -> list[Action]:
+def _follow_active(bands: Bands) -> list[Action]:
     """Scroll the rows to that of a figure that has become the active one."""
-    timing, row, em = track.project.timing, track.row, track.look.em
+    timing, row, em = bands.project.timing, bands.row, bands.look.em
     if timing.seen_row == row.figure.id:
         return []
-    above, below = track.track_top - row.top, row.bottom - track.track_bottom
-    scrolled = min(timing.scrolled, track.overflow / em)
+    above, below = bands.track_top - row.top, row.bottom - bands.track_bottom
+    scrolled = min(timing.scrolled, bands.overflow / em)
     return [do(timeline_pointing.scroll_rows, scrolled + (max(below, 0.0) - max(above, 0.0)) / em)]
 
 
-def _hint(track: Track) -> str:
-    gesture = track.project.timing.gesture
+def _hint(bands: Bands) -> str:
+    gesture = bands.project.timing.gesture
     if isinstance(gesture, KeyDrag):
         what = "Copied" if gesture.copies else "Moved"
-        seconds = in_seconds(gesture.by, track.project.document.fps)
+        seconds = in_seconds(gesture.by, bands.project.document.fps)
         return f"{what} by {gesture.by:+d} frames, {seconds}: Esc takes it back"
     if gesture is not None:
         return (
             "Esc takes it back" if isinstance(gesture, EdgeDrag | MarkerDrag | SwitchDrag) else ""
         )
-    return _hint_of_place(track)
+    return _hint_of_place(bands)
 
 
-def _hint_of_place(track: Track) -> str:
+def _hint_of_place(bands: Bands) -> str:
     x, y = imgui.get_mouse_pos()
-    if x < track.left:
+    if x < bands.left:
         return "Click a layer to see its handles and keys, wheel to see more layers"
-    if y < track.ruler_top:
+    if y < bands.ruler_top:
         return "Drag the ends of the preview range, double-click to play all frames"
-    if track.marks_top <= y < track.track_top:
+    if bands.marks_top <= y < bands.track_top:
         return "Click a marker to go there, drag it to move it, double-click to name it"
-    if y < track.track_top:
+    if y < bands.track_top:
         return f"Drag to move the playhead, wheel to scroll, {with_key(CTRL, 'wheel')} to zoom"
     return (
         f"Drag keys to move them, {with_key(CTRL, 'drag')} to copy, click between keys for easing"

@@ -82,8 +82,3 @@ class Pins(NamedTuple):
         """λ L² of each point."""
         stiffness: Floats = SOFT ** (1.0 - self.firmness) * FIRM**self.firmness
         return stiffness
-
-    def asks_nothing(self, base: Base) -> bool:
-        """Tell whether the points are wanted where they are, to the last digit."""
-        free = bool(np.isnan(self.turns).all())
-        return free and np.array_equal(self.places, base.positions)

@@ -24,8 +24,12 @@ from engine.deform.relative.energy import RelativeEnergy, Rows
 from engine.maps import Boundary, Limits
 
 MOST_STEPS = 60
-# Weight of the barrier at rest and at most; it grows after short steps.
-LEAST_WEIGHT, MOST_WEIGHT = 1e-5, 1e-2
+# Weight of the barrier at rest. After a short step it grows, to a part of what is left of the value
+# at least, and after a long one it falls: pins that are wanted far beyond a wall pull at it with a
+# force that the least weight stands against only next to it.
+LEAST_WEIGHT = 1e-3
+SHORT, LONG = 0.1, 0.5
+GROWTH, OF_VALUE, FALL = 2.0, 1e-3, 0.1
 # Walls are inside the bounds by this part of the way to the identity: between two samples a map is
 # beyond what it is at them by less. A base beyond that keeps a part of what it has left.
 MARGIN = 1e-2
@@ -34,7 +38,8 @@ LEFT = 1e-4
 ENOUGH = 1e-4
 SHORTEST = 1e-7
 SUFFICIENT = 1e-4
-TO_THE_WALL = 0.9
+TO_THE_WALL = 0.95
+HALVINGS = 10
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -115,32 +120,32 @@ class Corrector:
         walls = _walls(base, limits)
         energy = RelativeEnergy(rows=self.rows, base=base, pins=pins)
         unknowns = np.zeros(len(energy.fixed))
-        weight, at, steps = LEAST_WEIGHT, base, 0
+        weight, at, steps, duals = LEAST_WEIGHT, base, 0, None
         while steps < MOST_STEPS:
-            barrier = Barrier(walls=walls, weight=weight)
-            load = energy.dead_load(barrier)
+            barrier = Barrier(walls=walls, weight=weight, duals=duals)
+            load = energy.load(barrier)
             value = energy.value(at, unknowns, barrier, load)
             gradient, hessian, removed = energy.model(at, unknowns, barrier, load)
             factor = factor_of(hessian - removed, SHIFT)
             step = -solved(factor_shifted(hessian) if factor is None else factor, gradient)
             change, slope = self.rows.change(step), float(gradient @ step)
-            length = 1.0
+            length = _longest(barrier, at, change)
             while length > SHORTEST:
-                if _stays(barrier, at, change, length):
-                    tried = at.plus(change.times(length))
-                    there = energy.value(tried, unknowns + length * step, barrier, load)
-                    if there <= value + SUFFICIENT * length * slope + 1e-13 * abs(value):
-                        break
-                length *= 0.6
+                tried = at.plus(change.times(length))
+                there = energy.value(tried, unknowns + length * step, barrier, load)
+                if there <= value + SUFFICIENT * length * slope + 1e-13 * abs(value):
+                    break
+                length *= 0.5
             else:
                 break
+            duals = _next_duals(barrier, at, change)
             at, unknowns, steps = tried, unknowns + length * step, steps + 1
             if length * self._size(change) < ENOUGH and weight == LEAST_WEIGHT:
                 break
-            if length < 0.3:
-                weight = min(4.0 * weight, MOST_WEIGHT)
-            elif length > 0.7:
-                weight = max(weight / 2.0, LEAST_WEIGHT)
+            if length < SHORT:
+                weight = max(GROWTH * weight, OF_VALUE * there)
+            elif length > LONG:
+                weight = max(FALL * weight, LEAST_WEIGHT)
         return self._corrected(unknowns, pins, at, walls, steps)
 
     def _size(self, change: Base) -> float:
@@ -164,11 +169,26 @@ class Corrector:
         )
 
 
-def _stays(barrier: Barrier, at: Base, change: Base, length: float) -> bool:
-    """Tell whether the walls are farther than a step, and not only beyond it."""
-    far = length / TO_THE_WALL
-    a, b = np.abs(at.f + far * change.f), np.abs(at.g + far * change.g)
-    return bool(np.all(barrier.slacks(a, b) > 0))
+def _next_duals(barrier: Barrier, at: Base, change: Base) -> Floats:
+    """Return the dual variables (3, m) of the barrier after a whole step."""
+    a, b = np.abs(at.f), np.abs(at.g)
+    return barrier.next_duals(a, b, np.abs(at.f + change.f) - a, np.abs(at.g + change.g) - b)
+
+
+def _longest(barrier: Barrier, at: Base, change: Base) -> float:
+    """Return how much of a step leads at most so far towards the walls as is allowed."""
+
+    def stays(length: float) -> bool:
+        a, b = np.abs(at.f + length * change.f), np.abs(at.g + length * change.g)
+        return bool(np.all(barrier.slacks(a, b) > 0))
+
+    if stays(1.0 / TO_THE_WALL):
+        return 1.0
+    inside, outside = 0.0, 1.0 / TO_THE_WALL
+    for _ in range(HALVINGS):
+        middle = (inside + outside) / 2
+        inside, outside = (middle, outside) if stays(middle) else (inside, middle)
+    return TO_THE_WALL * inside
 
 
 def _walls(base: Base, limits: Limits) -> Walls:

@@ -7,8 +7,8 @@ g = f ∘ base⁻¹ has
 
 and Re(p dP + q dQ) = Re((p α + conj(q β)) dF + (conj(p β) + q α) dG): rows of the derivatives by P
 and Q become rows by φ and ψ, and the projection of the Hessian is that of the energy in P and Q.
-The identity is the minimum of the energy; so that it is that of all together, the barrier's own
-gradient at the base is taken off as a dead load.
+The identity is the minimum of the energy; so that it is that of all together, the slope of the
+barrier at the base is taken off, as a function of |F| and |G|² that turns with the map.
 """
 
 from dataclasses import dataclass, field
@@ -40,6 +40,8 @@ FELT = 0.02
 TINY = 1e-300
 LOOSE = 1e4  # stiffness of constants on the cages of holes, which change no map
 
+# By |F| and by |G|² / 2, each (m,).
+Load = tuple[Floats, Floats]
 # Rows by φ and ψ (k,), and of which of some samples.
 Block = tuple[Complexes, Complexes, Indices]
 
@@ -160,22 +162,20 @@ class RelativeEnergy:
             self.alpha * at.g + self.beta * at.f.conj(),
         )
 
-    def dead_load(self, barrier: Barrier) -> tuple[Complexes, Complexes]:
-        """Return the gradient of the barrier by F and G at the base, per weight."""
-        f, g = self.base.f, self.base.g
-        radial = barrier.derivatives(np.abs(f), np.abs(g))
-        return radial.a * f.conj() / np.abs(f), radial.b_per_b * g.conj()
+    def load(self, barrier: Barrier) -> Load:
+        """Return the slope of the barrier at the base, by |F| and by |G|² / 2, per weight."""
+        radial = barrier.derivatives(np.abs(self.base.f), np.abs(self.base.g))
+        return radial.a, radial.b_per_b
 
-    def value(
-        self, at: Base, unknowns: Floats, barrier: Barrier, load: tuple[Complexes, Complexes]
-    ) -> float:
+    def value(self, at: Base, unknowns: Floats, barrier: Barrier, load: Load) -> float:
         """Return what is minimised; ∞ beyond the walls."""
         a, b = np.abs(at.f), np.abs(at.g)
         if not np.all(barrier.slacks(a, b) > 0):
             return np.inf
         p, q = self.relative(at)
         density = symmetric_dirichlet(np.abs(p), np.abs(q)) + barrier.value(a, b)
-        density -= (load[0] * (at.f - self.base.f) + load[1] * (at.g - self.base.g)).real
+        density -= load[0] * (a - np.abs(self.base.f))
+        density -= load[1] * (b**2 - np.abs(self.base.g) ** 2) / 2
         value = self.rows.boundary.weights @ density
         value += self.stiffness @ np.abs(at.positions - self.pins.places) ** 2
         if self.held:
@@ -185,7 +185,7 @@ class RelativeEnergy:
         return float(value)
 
     def model(
-        self, at: Base, unknowns: Floats, barrier: Barrier, load: tuple[Complexes, Complexes]
+        self, at: Base, unknowns: Floats, barrier: Barrier, load: Load
     ) -> tuple[Floats, Floats, Floats]:
         """Return the gradient (u,), the projected Hessian (u, u), and what the projection removed.
 
@@ -195,13 +195,13 @@ class RelativeEnergy:
         a, b = np.abs(at.f), np.abs(at.g)
         p, q = self.relative(at)
         energy = symmetric_dirichlet_derivatives(np.abs(p), np.abs(q))
-        bar = barrier.derivatives(a, b)
+        bar = _unloaded(barrier.derivatives(a, b), a, load)
         by_p = weights * energy.a * p.conj() / np.abs(p)
         by_q = weights * energy.b_per_b * q.conj()
         by_f = by_p * self.alpha + (by_q * self.beta).conj()
         by_g = (by_p * self.beta).conj() + by_q * self.alpha
-        by_f += weights * (bar.a * at.f.conj() / a - load[0])
-        by_g += weights * (bar.b_per_b * at.g.conj() - load[1])
+        by_f += weights * bar.a * at.f.conj() / a
+        by_g += weights * bar.b_per_b * at.g.conj()
         pull = 2.0 * self.stiffness * (at.positions - self.pins.places)
         by_phi = by_f @ boundary.basis_derivatives + pull.conj() @ self.rows.coordinates
         by_psi = by_g @ boundary.basis_derivatives + pull @ self.rows.coordinates
@@ -267,9 +267,30 @@ class RelativeEnergy:
         """Add the squares of rows by φ and ψ to a Hessian, in the rows' own precision."""
         if not blocks:
             return
-        by_phi = np.concatenate([x[:, None] * rows[which] for x, _, which in blocks])
-        by_psi = np.concatenate([y[:, None] * rows[which] for _, y, which in blocks])
-        _add_squared(hessian, by_unknowns(self.rows.boundary, by_phi, by_psi))
+        count, r = len(self.rows.boundary.holes), rows.shape[1]
+        # At once where they belong: as many copies would take as long as their product.
+        every = np.empty((sum(len(block[2]) for block in blocks), 2 * r - 1 - count), rows.dtype)
+        at = 0
+        for x, y, which in blocks:
+            into, own = every[at : at + len(which)], rows[which]
+            np.multiply(x[:, None], own, out=into[:, :r])
+            np.multiply(y[:, None], own[:, 1 : r - count], out=into[:, r:])
+            if count:
+                into[:, r - count : r] += (y[:, None] * own[:, r - count :]).conj()
+            at += len(which)
+        _add_squared(hessian, every.view(every.real.dtype))
+
+
+def _unloaded(radial: Radial, a: Floats, load: Load) -> Radial:
+    """Return the derivatives of a barrier less a load, for a = |F|."""
+    by_a, by_b = load
+    return radial._replace(
+        a=radial.a - by_a,
+        b_per_b=radial.b_per_b - by_b,
+        bb=np.maximum(radial.bb - by_b, 0.0),
+        around_a=radial.around_a - by_a / a,
+        around_b=np.maximum(radial.around_b - by_b, 0.0),
+    )
 
 
 def _roots(

@@ -5,7 +5,7 @@ import numpy as np
 from engine.arrays import Complexes, Floats
 from engine.geometry import HERE, RigidMotion
 
-TOWARDS_REST = 1e-3  # how strongly all points together pull towards no motion
+TOWARDS_REST = 1e-6  # how strongly all points together pull towards no motion
 
 
 def best_rigid(

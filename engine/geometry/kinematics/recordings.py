@@ -16,6 +16,7 @@ EARLY = 0.1  # frames that the first key may be before the recording, and the la
 TIE = 1e-6
 # Keys that are so many apart hardly know of each other.
 APART = 8
+SLACK = 1.05  # by what factor more may be missed where the tolerance cannot be kept
 REACH = 3  # intervals on either side of a key that is dropped in which much changes
 
 
@@ -32,7 +33,8 @@ def fit_keys(
     places : array_like of complex, shape (n,)
         Pixels. Between two that are more than a frame apart the way counts as straight.
     tolerance : float
-        Pixels, 0 or more, that a recorded place may be beside the motion.
+        Pixels, 0 or more, that a recorded place may be beside the motion; 0 for a key in each
+        frame, unless fewer miss nothing.
 
     Returns
     -------
@@ -76,7 +78,9 @@ def fit_keys(
         nearest = np.array([first if first == last else middle], dtype=np.intp)
         return nearest, _along(nearest, when, where)
     recording = _Recording(when, where, first, last, tolerance)
-    keys = recording.thin(recording.split(np.array([first, last], dtype=np.intp)))
+    keys = recording.split(np.array([first, last], dtype=np.intp))
+    if tolerance:
+        keys = recording.thin(keys)
     return keys, recording.fitted(keys)[0]
 
 
@@ -148,25 +152,36 @@ class _Recording:
 
     def thin(self, keys: Indices) -> Indices:
         """Drop keys that need not be there, the one first without which it misses least."""
-        while len(keys) > 2:
-            allowed = np.maximum(self.fitted(keys)[1], self.tolerance)
+        needed: list[int] = []  # frames of keys without which too much is missed far from them
+        missed = self.fitted(keys)[1]
+        allowed = np.where(missed > self.tolerance, SLACK * missed, self.tolerance)
+        while True:
             excesses = self._excesses(keys, allowed)
-            dropped: list[int] = []
-            for key in np.argsort(excesses, kind="stable").tolist():
-                is_free = all(abs(key - other) >= APART for other in dropped)
-                if excesses[key] <= 0 and is_free:
-                    dropped.append(key)
-            while dropped:
-                rest = np.delete(keys, dropped)
-                is_beyond = self.fitted(rest)[1] > allowed
-                if not is_beyond.any():
-                    break
-                at = self.times[np.argmax(is_beyond)]
-                dropped.remove(min(dropped, key=lambda key: abs(float(keys[key]) - at)))
-            if not dropped:
+            excesses[np.isin(keys, needed)] = np.inf
+            dropped = self._far_apart(excesses)
+            if not len(dropped):
                 return keys
-            keys = rest
-        return keys
+            while len(dropped):
+                rest = np.delete(keys, dropped)
+                beyond = self.times[self.fitted(rest)[1] > allowed]
+                if not len(beyond):
+                    keys = rest
+                    break
+                if len(dropped) == 1:
+                    needed.append(int(keys[dropped[0]]))
+                # Those that are nearest to where too much is missed stay, or one of them.
+                near = np.unique(np.abs(keys[dropped][:, None] - beyond).argmin(axis=0))
+                dropped = np.delete(dropped, near if len(near) < len(dropped) else near[:1])
+
+    @staticmethod
+    def _far_apart(excesses: Floats) -> Indices:
+        """Return keys that may go, the least needed ones first, and none near another."""
+        dropped, is_near = [], excesses > 0
+        for key in np.argsort(excesses, kind="stable").tolist():
+            if not is_near[key]:
+                dropped.append(key)
+                is_near[max(key - APART + 1, 0) : key + APART] = True
+        return np.array(dropped, dtype=np.intp)
 
     def _excesses(self, keys: Indices, allowed: Floats) -> Floats:
         """Return by how much too much is missed around each key without it; ends cannot go."""
@@ -232,8 +247,8 @@ def _rows(keys: Indices, stops: Booleans, times: Floats) -> tuple[Indices, Float
     rest = 1 - share
     rows = np.zeros((4, len(times)))
     rows[1], rows[2] = (1 + 2 * share) * rest**2, (3 - 2 * share) * share**2
-    rows[:3] += length * share * rest**2 * slopes[:, interval]
-    rows[1:] -= length * share**2 * rest * slopes[:, interval + 1]
+    rows[:3] += (length * share * rest**2) * slopes.take(interval, axis=1)
+    rows[1:] -= (length * share**2 * rest) * slopes.take(interval + 1, axis=1)
     return interval, rows
 
 

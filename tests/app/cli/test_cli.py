@@ -11,7 +11,8 @@ from documents import disc_document
 from app.cli import commands, options, usage
 from app.cli.commands import window
 from app.cli.main import COMMANDS, main
-from app.document import FRAMINGS, VARIANTS, Meshing
+from app.cli.usage import pose
+from app.document import FRAMINGS, SPRINGS, VARIANTS, Meshing
 from app.editor.actions import saving
 from app.editor.work.jobs import Job
 from app.storage import Origin
@@ -122,6 +123,8 @@ def test_the_words_to_choose_from_are_those_that_the_program_knows():
     assert defaults.detail == options.DEFAULT_DETAIL
     assert defaults.triangles == options.DEFAULT_TRIANGLES
     assert CutOut().tolerance == options.DEFAULT_TOLERANCE
+    told = pose.EPILOG.replace("\n", " ")
+    assert f"The presets are {', '.join(list(SPRINGS)[:-1])} and {list(SPRINGS)[-1]}." in told
 
 
 def test_every_command_says_what_it_understands_and_does_it():

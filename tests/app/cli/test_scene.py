@@ -160,6 +160,15 @@ def test_export_draws_the_scene_or_one_figure_of_it(project):
         ),
         ({"visible": [[4, 1]]}, "figures[0].visible[0]"),
         ({"visible": True}, "figures[0].visible"),
+        (
+            {"tracks": [{"handle": "thumb", "keys": [{"frame": 0, "offset": [1, 2]}]}]},
+            "figures[0].tracks[0].handle names the handle 'thumb', but the handles are hand",
+        ),
+        (
+            {"springs": [{"handle": "thumb", "preset": "ear"}]},
+            "figures[0].springs[0].handle names the handle 'thumb'",
+        ),
+        ({"still": "no"}, "figures[0].still must be true or false"),
     ],
 )
 def test_what_a_drawing_does_not_have_is_told(folder, change, words, capsys):
@@ -167,8 +176,9 @@ def test_what_a_drawing_does_not_have_is_told(folder, change, words, capsys):
     path = folder / "bad.json"
     path.write_text(json.dumps(script))
     arguments = [str(folder / "man.ora"), str(path), "--out", str(folder / "bad.lissom")]
-    with pytest.raises(SystemExit):
+    with pytest.raises(SystemExit) as refused:
         main(["pose", *arguments, "--triangles", "4000"])
+    assert refused.value.code == 2
     assert words in capsys.readouterr().err
     assert not (folder / "bad.lissom").exists()
 

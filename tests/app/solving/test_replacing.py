@@ -11,6 +11,7 @@ from app.document import handle_commands, key_commands
 from app.document.keyframe import Target
 from app.document.model import Document
 from app.document.settings import Meshing
+from app.document.timing import Spring, Track, TrackKey
 from app.solving.drag import Drag, Rig
 from app.solving.renewal import go_on
 from app.solving.replacing import begin_replacing
@@ -52,6 +53,29 @@ def replaced(document, made):
     after = renewal.command(document)
     assert after.canvas == document.canvas
     return after.figures[0]
+
+
+def test_tracks_and_springs_stay_and_planted_places_go_with_their_handles(raised):
+    at = (TrackKey(frame=1, place=52 + 49j), TrackKey(frame=9, place=140 + 70j, turn=0.5))
+    planted = Track(handles=(1,), planted=True, keys=at, delay=2)
+    beside = Track(handles=(0,), keys=at)
+    springs = (Spring(handle=1, frequency=3.0, damping=0.2),)
+    before = replace(raised.figures[0], tracks=(planted, beside), springs=springs)
+    document = raised.with_figure(before)
+    figure = replaced(document, figure_of(blob(120, 40, (10, 20, 30))))
+    assert (figure.tracks, figure.springs) == (before.tracks, springs)
+    # On a smaller shape the handle comes nearer to the middle, and is wanted as far from there.
+    figure = replaced(document, figure_of(blob(62, 20)))
+    by = figure.handle(1).position - before.handle(1).position
+    assert abs(by) > 10
+    one, other = (
+        new.place - old.place for new, old in zip(figure.track_of(1).keys, at, strict=True)
+    )
+    (fz,), _ = before.map_of(before.key(10).pose).derivatives(np.array([before.handle(1).position]))
+    assert abs(one - by) < 1e-9
+    assert abs(other - by * fz / abs(fz)) < 1e-9
+    assert replace(figure.track_of(1), keys=at) == planted
+    assert figure.track_of(0) == beside
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from animations import still_document
 
-from app.document.timing import PRESETS
+from app.document.timing import HOLD, LINEAR, PRESETS, Passing, Spring, Track, TrackKey
 from app.errors import LissomError
 from app.solving import pose_document
 from app.solving.script import ScriptHandle, ScriptJoint, load_pose_script, parse_pose_script
@@ -28,9 +28,9 @@ WHOLE = {
 }
 
 
-def changed(path, value):
-    """Return the whole script with the entry at `path` replaced, or removed for None."""
-    script = copy.deepcopy(WHOLE)
+def changed(path, value, script=WHOLE):
+    """Return a script with the entry at `path` replaced, or removed for None."""
+    script = copy.deepcopy(script)
     *way, last = path
     place = script
     for step in way:
@@ -110,6 +110,152 @@ def test_what_is_left_out_has_its_documented_default():
 def test_whatever_a_script_cannot_say_is_refused(path, value, message):
     with pytest.raises(ValueError if "bound on" in message else LissomError, match=message):
         parse_pose_script(changed(path, value))
+
+
+CLOCKED = {
+    "schema": 1,
+    "loop": True,
+    "handles": {"nose": [1, 2], "hoof": {"at": [3, 4], "still": False}, "tail": [5, 6]},
+    "keys": [{"frame": 0}, {"frame": 24}],
+    "tracks": [
+        {
+            "handle": "tail",
+            "with": "pose",
+            "keys": [
+                {"frame": 0, "offset": [0, 0]},
+                {"frame": 9, "offset": [7, -8.5], "ease": "in", "turn": 90},
+                {"frame": 12, "offset": [1, 1], "passing": "hold"},
+                {"frame": 30, "offset": [0, 0], "passing": "stop"},
+            ],
+            "delay": 4,
+            "reach": 0.3,
+        },
+        {"handles": ["hoof", "nose"], "with": "picture", "keys": [{"frame": 3, "at": [9, 0]}]},
+    ],
+    "springs": [
+        {"handle": "nose", "preset": "ear"},
+        {"handle": "tail", "preset": "tail", "damping": 0.5, "lag": 1.5},
+        {"handle": "hoof", "frequency": 3, "damping": 0.25, "lag": 1, "strength": 0.5},
+    ],
+}
+
+
+def test_tracks_and_springs_are_read():
+    script = parse_pose_script(CLOCKED)
+    (figure,) = script.figures
+    tail, hoof = figure.tracks
+    assert tail == Track(
+        handles=(2,),
+        keys=(
+            TrackKey(frame=0, place=0),
+            TrackKey(
+                frame=9,
+                place=7 - 8.5j,
+                turn=np.pi / 2,
+                easing=PRESETS["in"],
+                passing=Passing.CORNER,
+            ),
+            TrackKey(frame=12, place=1 + 1j, easing=HOLD),
+            TrackKey(frame=30, place=0, easing=LINEAR, passing=Passing.STOP),
+        ),
+        delay=4,
+        reach=0.3,
+        turns=True,
+    )
+    assert hoof == Track(handles=(1, 0), planted=True, keys=(TrackKey(frame=3, place=9),))
+    assert figure.springs == (
+        Spring(handle=0, frequency=3.0, damping=0.25),
+        Spring(handle=2, frequency=1.6, damping=0.5, lag=1.5),
+        Spring(handle=1, frequency=3.0, damping=0.25, lag=1.0, strength=0.5),
+    )
+    # Keys of tracks make an animation as long as those of poses do.
+    assert script.last == 30
+
+
+def test_handles_stay_where_keys_have_them_unless_a_script_says_otherwise():
+    (figure,) = parse_pose_script(CLOCKED).figures
+    assert figure.still
+    assert [handle.still for handle in figure.handles.values()] == [True, False, True]
+    (figure,) = parse_pose_script({**CLOCKED, "still": False}).figures
+    assert not figure.still
+    body, arm = parse_pose_script({**SCENE, "figures": [BODY, {**ARM, "still": False}]}).figures
+    assert (body.still, arm.still) == (True, False)
+    loose = {**SCENE, "still": False, "figures": [BODY, {**ARM, "still": True}]}
+    body, arm = parse_pose_script(loose).figures
+    assert (body.still, arm.still) == (False, True)
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "message"),
+    [
+        (["still"], 0, "still must be true or false"),
+        (["handles", "hoof", "still"], "no", "handle 'hoof'.still must be true or false"),
+        (["tracks"], {}, "tracks must be a list"),
+        (["tracks", 0], [], r"tracks\[0\] must be an object"),
+        (["tracks", 0, "handle"], "tial", r"tracks\[0\].handle names the handle 'tial', but the"),
+        (["tracks", 0, "handle"], 2, r"tracks\[0\].handle must be a text"),
+        (["tracks", 0, "handle"], None, r"tracks\[0\] must have either a handle or handles"),
+        (["tracks", 0, "handles"], ["hoof"], r"tracks\[0\] must have either a handle or handles"),
+        (["tracks", 1, "handles"], [], r"tracks\[1\]: A track is of at least one handle"),
+        (["tracks", 1, "handles"], ["hoof", "ear"], r"handles\[1\] names the handle 'ear'"),
+        (["tracks", 1, "handles"], ["hoof", "hoof"], r"tracks\[1\].handles names 'hoof' twice"),
+        (["tracks", 1, "handles"], ["tail"], r"tracks\[0\] and tracks\[1\] are both .* 'tail'"),
+        (["tracks", 0, "with"], "body", r'tracks\[0\].with must be pose or picture, not "body"'),
+        (["tracks", 0, "with"], ["pose"], "must be pose or picture"),
+        (["tracks", 0, "keys"], None, "lacks the field 'keys'"),
+        (["tracks", 0, "keys"], [], r"tracks\[0\]: A track has at least one key"),
+        (
+            ["tracks", 0, "keys", 1, "frame"],
+            0,
+            r"tracks\[0\].keys are out of order: frame 0 after 0",
+        ),
+        (["tracks", 0, "keys", 1, "frame"], 99, "out of order: frame 12 after 99"),
+        (["tracks", 0, "keys", 1, "frame"], 1.5, r"keys\[1\].frame must be a whole number"),
+        (["tracks", 0, "keys", 1, "frame"], -1, "whole number from 0"),
+        (["tracks", 0, "keys", 3, "frame"], 10**9, "whole number from 0"),
+        (["tracks", 0, "keys", 1, "offset"], None, "lacks the field 'offset'"),
+        (["tracks", 0, "keys", 1, "offset"], [1], r"keys\[1\].offset must be a point"),
+        (["tracks", 0, "keys", 1, "offset"], [float("nan"), 0], "must be finite"),
+        (["tracks", 0, "keys", 1, "offset"], [1e9, 0], r"keys\[1\]: A track's key must be within"),
+        (["tracks", 0, "keys", 1, "at"], [1, 2], "has 'at', but its track is with the pose"),
+        (["tracks", 1, "keys", 0, "offset"], [1, 2], "'offset', but its track is with the picture"),
+        (["tracks", 0, "keys", 1, "turn"], float("inf"), r"keys\[1\].turn must be finite"),
+        (["tracks", 0, "keys", 1, "turn"], 7201, "by at most 20 whole turns, not by 20.0028"),
+        (["tracks", 0, "keys", 1, "turn"], True, r"keys\[1\].turn must be a number"),
+        (["tracks", 0, "keys", 1, "ease"], "bouncy", "no easing 'bouncy'"),
+        (["tracks", 0, "keys", 1, "passing"], "over", "passing must be one of through"),
+        (["tracks", 0, "keys", 1, "passing"], "hold", "nothing to ease"),
+        (["tracks", 0, "keys", 1, "pull"], 3, "unknown field 'pull'"),
+        (["tracks", 0, "delay"], -1, r"tracks\[0\]: The delay of a track is from 0"),
+        (["tracks", 0, "delay"], 2.5, r"tracks\[0\].delay must be a whole number"),
+        (["tracks", 0, "delay"], 31, r"tracks\[0\].delay is 31 frames, longer than the loop"),
+        (["tracks", 0, "reach"], 2, r"tracks\[0\]: The reach of a track is between 0 and 1"),
+        (["tracks", 0, "reach"], float("nan"), "reach must be finite"),
+        (["tracks", 0, "color"], 2, "unknown field 'color'"),
+        (["springs", 0, "handle"], "ear", r"springs\[0\].handle names the handle 'ear'"),
+        (["springs", 0, "handle"], "tail", r"springs\[0\] and springs\[1\] are both .* 'tail'"),
+        (["springs", 0, "handle"], None, "lacks the field 'handle'"),
+        (["springs", 0, "preset"], "leg", "preset must be one of tail, ear, .* not 'leg'"),
+        (["springs", 0, "preset"], None, "needs a preset, one of tail, ear"),
+        (["springs", 2, "damping"], None, "needs a preset, .* or a frequency and a damping"),
+        (["springs", 2, "damping"], 0, r"springs\[2\].damping must be above 0 in a loop"),
+        (["springs", 2, "damping"], -0.1, r"springs\[2\]: The damping of a spring is from 0"),
+        (["springs", 2, "frequency"], 0, "frequency of a spring is above 0"),
+        (["springs", 2, "frequency"], float("nan"), "frequency must be finite"),
+        (["springs", 2, "lag"], -1, "lag of a spring is from 0"),
+        (["springs", 2, "strength"], "much", "strength must be a number"),
+        (["springs", 2, "mass"], 1, "unknown field 'mass'"),
+    ],
+)
+def test_whatever_tracks_and_springs_cannot_be_is_refused(path, value, message):
+    with pytest.raises(LissomError, match=message):
+        parse_pose_script(changed(path, value, CLOCKED))
+
+
+def test_what_only_a_loop_cannot_have_is_fine_without():
+    for path, value in ((["tracks", 0, "delay"], 31), (["springs", 2, "damping"], 0)):
+        once = changed(path, value, CLOCKED)
+        assert parse_pose_script({**once, "loop": False})
 
 
 ARM = {
@@ -211,3 +357,26 @@ def test_a_key_on_request_pulls_with_bounded_force():
     assert wanted.real < 450
     assert pulled.lags(pulled.keys[1].pose)[0] < 1
     assert pulled.keys[2].pose.targets[0].position == wanted
+
+
+def test_a_script_gives_its_figure_tracks_springs_and_stillness():
+    picture = np.zeros((80, 240, 4), np.uint8)
+    picture[20:60, 20:220] = 255
+    handles = {"end": [210, 40], "start": {"at": [30, 40], "still": False}}
+    script = {
+        **CLOCKED,
+        "handles": handles,
+        "tracks": [{"handle": "start", "keys": [{"frame": 40, "offset": [3, 4]}]}],
+        "springs": [{"handle": "end", "preset": "tail"}],
+    }
+    document, _ = pose_document(still_document(picture), parse_pose_script(script), lambda _: None)
+    figure = document.figures[0]
+    end, start = figure.handles
+    assert (document.frames.last, document.loop) == (40, True)
+    assert figure.stillness
+    assert (end.free, start.free) == (False, True)
+    assert figure.track_of(start.id).keys == (TrackKey(frame=40, place=3 + 4j),)
+    assert figure.spring_of(end.id).frequency == 1.6
+    loose = parse_pose_script({**script, "still": False})
+    document, _ = pose_document(still_document(picture), loose, lambda _: None)
+    assert not document.figures[0].stillness

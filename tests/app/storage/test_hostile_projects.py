@@ -11,7 +11,7 @@ import zipfile
 
 import numpy as np
 import pytest
-from documents import differences, full_document
+from documents import clocked_document, differences
 
 from app.errors import LissomError
 from app.storage.project.archive import MIMETYPE
@@ -40,7 +40,7 @@ ODD = (
 @pytest.fixture(scope="module")
 def members(tmp_path_factory):
     path = tmp_path_factory.mktemp("project") / "full.lissom"
-    save_project(path, full_document())
+    save_project(path, clocked_document())
     with zipfile.ZipFile(path) as archive:
         return {name: archive.read(name) for name in archive.namelist()}
 

@@ -267,6 +267,7 @@ def test_unknown_fields_of_tracks_and_springs_are_kept(tmp_path):
         (["tracks", 0, "keys", 1, "place"], [1e9, 0], "A track's key must be within"),
         (["tracks", 0, "keys", 1, "turn"], "left", "turn must be a number"),
         (["tracks", 0, "keys", 1, "turn"], 10**400, "turn must be finite"),
+        (["tracks", 0, "keys", 1, "turn"], -130, "turns by at most 20 whole turns, not by -20.69"),
         (["tracks", 0, "keys", 1, "easing"], "bounce", "no easing 'bounce'"),
         (["tracks", 0, "keys", 1, "passing"], "hold", "to hold is an easing"),
         (["tracks", 0, "delay"], -1, "delay of a track is from 0"),

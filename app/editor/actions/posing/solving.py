@@ -10,7 +10,7 @@ from app.editor.actions.posing.adopting import adopt
 from app.editor.failures import ask_worker, report
 from app.editor.project import Project
 from app.editor.session import Session
-from app.editor.work import MOST_STEPS, Kind, Pull, Start, WishFrom, targets_of
+from app.editor.work import MOST_STEPS, Kind, Pull, Start, WishFrom, pulled_by, targets_of
 from app.motion import PoseSampler
 from app.solving import Drag, Rig, pose_at
 from engine.deform import Hand
@@ -55,7 +55,9 @@ def go_on(session: Session, project: Project) -> None:
     )
     aim = pull.targets if pull.targets is not None else tuple(pull.wishes.values())
     hands = tuple(pull.hands.values())
-    work = partial(_take_steps, pull.drag, begin, aim, hands, _pace(pull), session.clock)
+    work = partial(
+        _take_steps, pull.drag or begin, aim, hands, pull.pulled, _pace(pull), session.clock
+    )
     ask_worker(session, POSING, work, partial(_note, session, project, pull), failed)
 
 
@@ -106,29 +108,29 @@ class _Steps(NamedTuple):
 
 
 def _take_steps(
-    drag: Drag | None,
-    begin: Callable[[], tuple[Drag, Pose]],
+    drag: Drag | Callable[[], tuple[Drag, Pose]],
     aim: Mapping[int, Target] | Sequence[WishFrom],
     hands: tuple[Hand, ...],
+    pulled: frozenset[int],
     pace: _Pace,
     clock: Callable[[], float],
 ) -> _Steps:
     """Go on with a drag, or begin it; on the worker thread."""
     begun, start = clock(), None
-    if drag is None:
-        drag, pose = begin()
+    if not isinstance(drag, Drag):
+        drag, pose = drag()
         start = Start.of(drag.rig.figure, pose)
     if isinstance(aim, Mapping):
         targets = aim
     elif start is not None:
-        targets = targets_of(start, aim)
+        targets, pulled = targets_of(start, aim), pulled_by(start, aim)
     else:
         raise ValueError("a drag that goes on has targets")
     taken = 0
     while taken < pace.most and (
         taken == 0 or not (drag.is_over or clock() - begun >= pace.seconds)
     ):
-        drag = drag.towards(targets, 1, hands)
+        drag = drag.towards(targets, 1, hands, pulled)
         taken += 1
     return _Steps(drag, targets, hands, taken, clock() - begun, start)
 

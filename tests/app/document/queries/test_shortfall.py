@@ -10,6 +10,7 @@ from numpy.testing import assert_allclose
 from app.document.commands.handle_commands import add_handle
 from app.document.keyframe import Target
 from app.document.queries.shortfall import LAG, Extremes, find_shortfall
+from app.document.timing import Spring
 from engine.maps import Bounds
 
 
@@ -43,6 +44,14 @@ def test_only_limits_that_are_reached_hold_a_handle_back(share, at_limits):
     short = find_shortfall(*figure_and_pose(lag=30, share=share))
     assert short.at_limits == at_limits
     assert ("limits" in short.reason) == at_limits
+
+
+def test_what_follows_by_a_spring_never_falls_short():
+    figure, pose = figure_and_pose(lag=30, share=0.5)
+    spring = Spring(handle=0, frequency=2.0, damping=0.3)
+    assert find_shortfall(replace(figure, springs=(spring,)), pose).lags == {}
+    still = replace(spring, enabled=False)
+    assert find_shortfall(replace(figure, springs=(still,)), pose).lags.keys() == {0}
 
 
 def test_shares_count_from_no_distortion_to_the_limit():

@@ -59,7 +59,7 @@ def test_a_keys_own_place_and_turn_are_given_to_the_bit(frames, data, delay, loo
         TrackKey(
             frame=frame,
             place=complex(data.draw(numbers), data.draw(numbers)),
-            turn=data.draw(numbers),
+            turn=0.1 * data.draw(numbers),
             easing=data.draw(easings),
             passing=data.draw(st.sampled_from(["through", "corner", "stop"])),
         )

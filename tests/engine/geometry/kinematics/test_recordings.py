@@ -135,6 +135,14 @@ def test_a_long_recording_is_fitted_as_well_as_a_short_one():
     assert abs(len(first) - np.count_nonzero(frames <= 24 * 20)) <= 8
 
 
+def test_a_tremor_beyond_the_tolerance_costs_no_key_in_each_frame():
+    times, places = recorded(20, noise=1.2)
+    frames, values = fit_keys(times, places, 2.0)
+    closest = fit_keys(times, places, 0.0)
+    assert missed(frames, values, times, places) < 1.05 * missed(*closest, times, places)
+    assert len(frames) < len(closest[0]) / 2
+
+
 def test_a_spike_costs_keys_around_it_only():
     times, places = recorded(6)
     usual = len(fit_keys(times, places, 3.0)[0])

@@ -32,7 +32,7 @@ class FigureRow:
         return (self.top + self.bottom) / 2
 
 
-class Track:
+class Bands:
     """The bands of the timeline, and the way between frames and pixels."""
 
     def __init__(self, session: Session, look: Look, project: Project) -> None:
@@ -139,11 +139,11 @@ class Track:
         return imgui.invisible_button(name, size, flags)
 
 
-def tag(track: Track, x: float, text: str) -> None:
+def tag(bands: Bands, x: float, text: str) -> None:
     """Write something short below the ruler, over what is dragged."""
-    width = tag_size(track.look, text).x
-    left = min(max(x - width / 2, track.left), track.right - width)
-    write_tag(track.look, ImVec2(left, track.track_top + 0.15 * track.look.em), text)
+    width = tag_size(bands.look, text).x
+    left = min(max(x - width / 2, bands.left), bands.right - width)
+    write_tag(bands.look, ImVec2(left, bands.track_top + 0.15 * bands.look.em), text)
 
 
 def was_dragged() -> bool:

@@ -9,38 +9,38 @@ from app.editor import Action, MarkerDrag, TimeGesture, do
 from app.editor.actions import keys, playback, timeline_pointing
 from app.ui.shortcuts import bound_item
 from app.ui.style import SMALL, begin_tip, in_hand, ink, is_pressed, name_popup, shortened, sized
-from app.ui.timeline.track import Track, in_seconds, tag
+from app.ui.timeline.bands import Bands, in_seconds, tag
 
 HALF, GRIP = 0.42, 0.6  # em: half the width of a flag, and of where the pointer takes it
 LEAST_NAME = 3.0  # em: with less room names are left out
 
 
-def draw_markers(track: Track) -> list[Action]:
+def draw_markers(bands: Bands) -> list[Action]:
     """Draw the markers, and take what the pointer does to them."""
-    markers, em = track.project.document.markers, track.look.em
+    markers, em = bands.project.document.markers, bands.look.em
     if not markers:
         return []
     actions: list[Action] = []
-    gesture = track.project.timing.gesture
-    low, high = ImVec2(track.left, track.marks_top), ImVec2(track.right, track.track_bottom)
+    gesture = bands.project.timing.gesture
+    low, high = ImVec2(bands.left, bands.marks_top), ImVec2(bands.right, bands.track_bottom)
     draw_list = imgui.get_window_draw_list()
     draw_list.push_clip_rect(low, high, intersect_with_current_clip_rect=True)
-    rooms = [track.x(after.frame) - track.x(marker.frame) for marker, after in pairwise(markers)]
-    for marker, room in zip(markers, [*rooms, track.size.x], strict=True):
-        x = track.x(marker.frame)
+    rooms = [bands.x(after.frame) - bands.x(marker.frame) for marker, after in pairwise(markers)]
+    for marker, room in zip(markers, [*rooms, bands.size.x], strict=True):
+        x = bands.x(marker.frame)
         text = shortened(marker.name, room - 1.4 * em) if room > LEAST_NAME * em else ""
         width = imgui.calc_text_size(text).x if text else 0.0
-        if not track.shows(x - GRIP * em, x + GRIP * em + width):
+        if not bands.shows(x - GRIP * em, x + GRIP * em + width):
             continue
         name = f"marker {_origin(gesture, marker.frame)}"
         end = x + max(GRIP * em, HALF * em + width)
-        track.button(
-            name, ImVec2(x - GRIP * em, track.marks_top), ImVec2(end, track.track_top), right=True
+        bands.button(
+            name, ImVec2(x - GRIP * em, bands.marks_top), ImVec2(end, bands.track_top), right=True
         )
-        _draw(track, marker, x, text)
-        actions += _point(track, marker)
-        actions += _menu(track, marker)
-        entered = name_popup(track.look, f"name of marker {marker.frame}", marker.name)
+        _draw(bands, marker, x, text)
+        actions += _point(bands, marker)
+        actions += _menu(bands, marker)
+        entered = name_popup(bands.look, f"name of marker {marker.frame}", marker.name)
         if entered is not None:
             actions.append(do(keys.rename_marker, marker.frame, entered))
     draw_list.pop_clip_rect()
@@ -52,11 +52,11 @@ def _origin(gesture: TimeGesture | None, frame: int) -> int:
     return gesture.marker if isinstance(gesture, MarkerDrag) and gesture.at == frame else frame
 
 
-def _draw(track: Track, marker: Marker, x: float, text: str) -> None:
-    palette, draw_list, em = track.look.palette, imgui.get_window_draw_list(), track.look.em
+def _draw(bands: Bands, marker: Marker, x: float, text: str) -> None:
+    palette, draw_list, em = bands.look.palette, imgui.get_window_draw_list(), bands.look.em
     hot = in_hand()
     colour = palette.accent if hot else palette.anchor
-    top, bottom = track.marks_top + 0.15 * em, track.track_top - 0.1 * em
+    top, bottom = bands.marks_top + 0.15 * em, bands.track_top - 0.1 * em
     waist = top + 0.55 * (bottom - top)
     half = HALF * em
     for point in (
@@ -68,19 +68,19 @@ def _draw(track: Track, marker: Marker, x: float, text: str) -> None:
     ):
         draw_list.path_line_to(point)
     draw_list.path_fill_convex(ink(colour))
-    begin, end = ImVec2(x, track.track_top), ImVec2(x, track.track_bottom)
+    begin, end = ImVec2(x, bands.track_top), ImVec2(x, bands.track_bottom)
     draw_list.add_line(begin, end, ink(colour, 0.8 if hot else 0.35), 1.0)
-    if text and not track.is_cramped:
+    if text and not bands.is_cramped:
         with sized(SMALL):
             place = ImVec2(x + half + 0.3 * em, (top + bottom - imgui.get_text_line_height()) / 2)
             draw_list.add_text(place, ink(palette.text if hot else palette.dim), text)
-    gesture = track.project.timing.gesture
+    gesture = bands.project.timing.gesture
     if isinstance(gesture, MarkerDrag) and gesture.at == marker.frame != gesture.marker:
-        tag(track, x, f"{marker.frame}")
+        tag(bands, x, f"{marker.frame}")
 
 
-def _point(track: Track, marker: Marker) -> list[Action]:
-    document = track.project.document
+def _point(bands: Bands, marker: Marker) -> list[Action]:
+    document = bands.project.document
     if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton_.left):
         imgui.open_popup(f"name of marker {marker.frame}")
         return [do(timeline_pointing.end)]
@@ -88,14 +88,14 @@ def _point(track: Track, marker: Marker) -> list[Action]:
         drag = MarkerDrag(
             marker=marker.frame,
             at=marker.frame,
-            start=track.pointed,
+            start=bands.pointed,
             before=document,
             after=document,
         )
-        return [do(timeline_pointing.begin, drag, track.strip)]
+        return [do(timeline_pointing.begin, drag, bands.strip)]
     if imgui.is_item_clicked(imgui.MouseButton_.right):
         imgui.open_popup(f"menu of marker {marker.frame}")
-    if track.project.timing.gesture is None and begin_tip():
+    if bands.project.timing.gesture is None and begin_tip():
         imgui.text_unformatted(marker.name)
         imgui.same_line()
         imgui.text_disabled(f"{marker.frame}, {in_seconds(marker.frame, document.fps)}")
@@ -104,7 +104,7 @@ def _point(track: Track, marker: Marker) -> list[Action]:
     return []
 
 
-def _menu(track: Track, marker: Marker) -> list[Action]:
+def _menu(bands: Bands, marker: Marker) -> list[Action]:
     """Draw the menu of a marker, if it is open."""
     asks = False
     actions: list[Action] = []
@@ -116,7 +116,7 @@ def _menu(track: Track, marker: Marker) -> list[Action]:
             actions.append(do(keys.delete_marker, marker.frame))
         imgui.separator()
         for name in ("previous marker", "next marker"):
-            actions += bound_item(track.session, name)
+            actions += bound_item(bands.session, name)
         imgui.end_popup()
     if asks:
         imgui.open_popup(f"name of marker {marker.frame}")

@@ -1,0 +1,173 @@
+"""Tracks and springs of a pose script: clocks of single handles."""
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from math import radians
+from typing import Any, TypeVar
+
+from app.document import SPRINGS, Spring, Track, TrackKey
+from app.errors import LissomError
+from app.solving.script_fields import (
+    fields_in,
+    frame_of,
+    passage_of,
+    require_handle,
+    require_order,
+)
+from app.storage import JsonObject, as_list, as_number, as_point, as_text, as_whole
+
+TRACK_FIELDS = ("handle", "handles", "with", "keys", "delay", "reach")
+TRACK_KEY_FIELDS = ("frame", "offset", "at", "turn", "ease", "passing")
+SPRING_FIELDS = ("handle", "preset", "frequency", "damping", "lag", "strength")
+# What the places of a track's keys are called, by what it goes with.
+PLACES = {"pose": "offset", "picture": "at"}
+
+Made = TypeVar("Made")
+
+
+def parse_tracks(content: object, where: str, handles: Sequence[str]) -> tuple[Track, ...]:
+    """Return the tracks of a figure; their handles are told by their places among the names."""
+    numbers = {name: number for number, name in enumerate(handles)}
+    tracks = tuple(
+        _track(each, f"{where}[{index}]", numbers)
+        for index, each in enumerate(as_list(content, where))
+    )
+    _require_one_each([track.handles for track in tracks], where, handles)
+    return tracks
+
+
+def parse_springs(content: object, where: str, handles: Sequence[str]) -> tuple[Spring, ...]:
+    """Return the springs of a figure, likewise."""
+    numbers = {name: number for number, name in enumerate(handles)}
+    springs = tuple(
+        _spring(each, f"{where}[{index}]", numbers)
+        for index, each in enumerate(as_list(content, where))
+    )
+    _require_one_each([(spring.handle,) for spring in springs], where, handles)
+    return springs
+
+
+def require_rounds(
+    tracks: Sequence[Track], springs: Sequence[Spring], period: int, where: str
+) -> None:
+    """Refuse what does not come round in a loop of so many frames."""
+    for index, track in enumerate(tracks):
+        if track.delay > period:
+            raise LissomError(
+                f"{where}tracks[{index}].delay is {track.delay} frames, longer than the loop, "
+                f"which has {period}"
+            )
+    for index, spring in enumerate(springs):
+        if not spring.damping:
+            raise LissomError(
+                f"{where}springs[{index}].damping must be above 0 in a loop: without damping it "
+                "never comes round"
+            )
+
+
+def _track(content: object, where: str, handles: Mapping[str, int]) -> Track:
+    track = fields_in(content, where, TRACK_FIELDS)
+    if ("handle" in track) == ("handles" in track):
+        raise LissomError(f"{where} must have either a handle or handles, which move together")
+    goes_with = track.get("with", "pose")
+    if goes_with not in list(PLACES):
+        raise LissomError(f"{where}.with must be pose or picture, not {json.dumps(goes_with)}")
+    keys = as_list(track["keys"], f"{where}.keys")
+    parsed = tuple(
+        _track_key(key, f"{where}.keys[{index}]", PLACES[goes_with])
+        for index, key in enumerate(keys)
+    )
+    require_order([key.frame for key in parsed], f"{where}.keys are")
+    return _made(
+        Track,
+        where,
+        handles=_numbers(track, where, handles),
+        planted=goes_with == "picture",
+        keys=parsed,
+        delay=as_whole(track.get("delay", 0), f"{where}.delay"),
+        reach=as_number(track.get("reach", 1.0), f"{where}.reach"),
+        turns=any("turn" in key for key in keys),
+    )
+
+
+def _track_key(content: object, where: str, place: str) -> TrackKey:
+    key = fields_in(content, where, TRACK_KEY_FIELDS)
+    (other,) = {*PLACES.values()} - {place}
+    if other in key:
+        raise LissomError(
+            f"{where} has {other!r}, but its track is with the "
+            f"{'pose' if place == 'offset' else 'picture'}, whose keys have {place!r}"
+        )
+    easing, passing = passage_of(key, where)
+    return _made(
+        TrackKey,
+        where,
+        frame=frame_of(key, where),
+        place=as_point(key[place], f"{where}.{place}"),
+        turn=radians(as_number(key.get("turn", 0.0), f"{where}.turn")),
+        easing=easing,
+        passing=passing,
+    )
+
+
+def _spring(content: object, where: str, handles: Mapping[str, int]) -> Spring:
+    spring = fields_in(content, where, SPRING_FIELDS)
+    given = {
+        name: as_number(spring[name], f"{where}.{name}")
+        for name in ("frequency", "damping", "lag", "strength")
+        if name in spring
+    }
+    if "preset" in spring:
+        preset = as_text(spring["preset"], f"{where}.preset")
+        if preset not in SPRINGS:
+            raise LissomError(f"{where}.preset must be one of {', '.join(SPRINGS)}, not {preset!r}")
+        given = dict(zip(("frequency", "damping"), SPRINGS[preset], strict=True)) | given
+    elif not {"frequency", "damping"} <= given.keys():
+        raise LissomError(
+            f"{where} needs a preset, one of {', '.join(SPRINGS)}, or a frequency and a damping"
+        )
+    return _made(
+        Spring, where, handle=_number(spring["handle"], f"{where}.handle", handles), **given
+    )
+
+
+def _numbers(track: JsonObject, where: str, handles: Mapping[str, int]) -> tuple[int, ...]:
+    """Return the handles of a track."""
+    if "handle" in track:
+        return (_number(track["handle"], f"{where}.handle", handles),)
+    names = as_list(track["handles"], f"{where}.handles")
+    for index, name in enumerate(names):
+        if name in names[:index]:
+            raise LissomError(f"{where}.handles names {name!r} twice")
+    return tuple(
+        _number(name, f"{where}.handles[{index}]", handles) for index, name in enumerate(names)
+    )
+
+
+def _number(name: object, where: str, handles: Mapping[str, int]) -> int:
+    read = as_text(name, where)
+    require_handle(read, handles, where)
+    return handles[read]
+
+
+def _made(kind: Callable[..., Made], where: str, **fields: Any) -> Made:
+    """Return a value of these fields; what it refuses is told with the place in the script."""
+    try:
+        return kind(**fields)
+    except LissomError as error:
+        raise LissomError(f"{where}: {error}") from error
+
+
+def _require_one_each(
+    groups: Sequence[tuple[int, ...]], where: str, handles: Sequence[str]
+) -> None:
+    """Refuse a handle that two tracks have, or two springs."""
+    seen: dict[int, int] = {}
+    for index, group in enumerate(groups):
+        for number in group:
+            if number in seen:
+                raise LissomError(
+                    f"{where}[{seen[number]}] and {where}[{index}] are both of the handle "
+                    f"{handles[number]!r}"
+                )
+            seen[number] = index

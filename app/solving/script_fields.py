@@ -1,0 +1,62 @@
+"""What keys of poses and of tracks have alike in a pose script."""
+
+import json
+from collections.abc import Collection, Sequence
+from itertools import pairwise
+
+from app.document import HOLD, LAST_FRAME, LINEAR, Easing, Passing
+from app.errors import LissomError
+from app.storage import JsonObject, as_object
+
+
+def fields_in(content: object, where: str, fields: tuple[str, ...]) -> JsonObject:
+    """Return an object that has none but these fields."""
+    read = as_object(content, where)
+    for name in read:
+        if name not in fields:
+            raise LissomError(f"{where} has an unknown field {name!r}; it may have {fields}")
+    return read
+
+
+def frame_of(key: JsonObject, where: str) -> int:
+    """Return the frame of a key."""
+    frame = key.get("frame")
+    if not isinstance(frame, int) or isinstance(frame, bool) or not 0 <= frame <= LAST_FRAME:
+        raise LissomError(
+            f"{where}.frame must be a whole number from 0 to {LAST_FRAME}, not {json.dumps(frame)}"
+        )
+    return frame
+
+
+def passage_of(key: JsonObject, where: str) -> tuple[Easing, Passing]:
+    """Return how time runs after a key, and how the motion passes it.
+
+    By default it passes through, or with an easing of its own in a corner.
+    """
+    ease = Easing.parse(key["ease"]) if "ease" in key else LINEAR
+    default = Passing.CORNER if "ease" in key else Passing.THROUGH
+    word = key.get("passing", default)
+    if word not in list(Passing):
+        raise LissomError(
+            f"{where}.passing must be one of {', '.join(Passing)}, not {json.dumps(word)}"
+        )
+    if word != Passing.HOLD:
+        return ease, Passing(word)
+    if "ease" in key and ease != HOLD:
+        raise LissomError(f"{where} holds its pose, so that it has nothing to ease; leave out ease")
+    return HOLD, default
+
+
+def require_order(frames: Sequence[int], what: str) -> None:
+    """Refuse frames of which one does not come after the one before."""
+    for before, after in pairwise(frames):
+        if after <= before:
+            raise LissomError(f"{what} out of order: frame {after} after {before}")
+
+
+def require_handle(name: str, handles: Collection[str], where: str) -> None:
+    """Refuse the name of a handle that the script does not have."""
+    if name not in handles:
+        raise LissomError(
+            f"{where} names the handle {name!r}, but the handles are {', '.join(handles) or 'none'}"
+        )

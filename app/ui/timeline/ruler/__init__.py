@@ -1,0 +1,14 @@
+"""The ruler and what stands at it: frames, the playhead, markers, the preview range, the end.
+
+In: the bands of the timeline.
+Out: actions on time.
+Imports: `app.ui.style`, `app.ui.shortcuts`, `app.ui.timeline.bands`.
+"""
+
+from app.ui.timeline.ruler.edges import draw_edges as draw_edges
+from app.ui.timeline.ruler.markers import draw_markers as draw_markers
+from app.ui.timeline.ruler.ruler import (
+    draw_overview as draw_overview,
+    draw_playhead as draw_playhead,
+    draw_ruler as draw_ruler,
+)

@@ -1,0 +1,192 @@
+"""Handles that stay between keys that have them at one place, and what moves around them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+from still_poses import DRAWN, MOVES, animate, posed, with_figure
+
+from app.document import (
+    HOLD,
+    Attachment,
+    Passing,
+    Spring,
+    clip_of,
+)
+from app.motion import Animation, Joints
+from app.motion.inbetweens.stillness import still_handles
+
+
+def drift(document):
+    """Return how far still handles are at most from the way between the places that they reach."""
+    animation, worst = animate(document), 0.0
+    clip, still = clip_of(document, 0), still_handles(clip_of(document, 0))
+    keys = clip.keys
+    for number, which in enumerate(still):
+        one, other = keys[number], keys[(number + 1) % len(keys)]
+        ends = [animation.positions(key.frame)[: len(which)] for key in (one, other)]
+        for step in range(1, 20):
+            share = step / 20
+            places = animation.positions(one.frame + share * DRAWN)[: len(which)]
+            goal = ends[0] + share**2 * (3 - 2 * share) * (ends[1] - ends[0])
+            worst = max(worst, np.abs(places - goal)[which].max(initial=0.0))
+    return worst
+
+
+def velocities(animation, frame):
+    """Return the velocity of all points right before a frame and right after it."""
+    e, found = 1e-3, []
+    for sign in (-1, 1):
+        p = [animation.positions(frame + sign * s * e) for s in (1e-3, 1, 2)]
+        found.append(sign * (-3 * p[0] + 4 * p[1] - p[2]) / (2 * e))
+    return found
+
+
+@pytest.mark.parametrize("loop", [False, True])
+def test_handles_stay_where_two_keys_have_them(loop):
+    document = posed(loop=loop)
+    assert drift(document) < 0.05
+    still = still_handles(clip_of(document, 0))
+    assert still.shape == (4 if loop else 3, 4)
+    assert_array_equal(still[0], [True, True, True, False])
+
+
+def test_without_stillness_they_wander_and_the_motion_is_the_closed_form():
+    document = with_figure(posed(), stillness=False)
+    animation = animate(document)
+    assert animation.corrections is None
+    figure = document.figures[0]
+    base = animate(posed()).base
+    for frame in (3.0, 14.5, 29.0):
+        assert_array_equal(animation.positions(frame), base.frame(frame).positions)
+    wandering = [base.frame(float(t)).positions[:3] for t in range(DRAWN + 1)]
+    assert np.abs(np.diff(wandering, axis=0)).max() > 0.02
+    assert len(figure.handles) == 4
+
+
+@pytest.mark.parametrize("loop", [False, True])
+def test_keys_are_what_they_were_and_are_passed_as_smoothly(loop):
+    document = posed(loop=loop)
+    animation = animate(document)
+    for number, key in enumerate(document.figures[0].keys):
+        places = animation.positions(float(key.frame))
+        assert_array_equal(places, animation.base.frame(float(key.frame)).positions)
+        near = animation.positions(key.frame + 1e-6)
+        assert np.abs(near - places).max() < 1e-4
+        if not loop and number in (0, len(MOVES) - 1):
+            continue
+        before, after = velocities(animation, key.frame)
+        assert np.abs(before - after).max() < 0.02
+
+
+def test_nothing_jolts():
+    animation = animate(posed())
+    times = np.arange(0, 30.01, 0.5)
+    corrected = np.array([animation.positions(t) for t in times])
+    base = np.array([animation.base.frame(t).positions for t in times])
+    jolts = [np.abs(np.diff(places, 2, axis=0)).max() for places in (corrected, base)]
+    assert jolts[0] <= 2 * jolts[1]
+
+
+def test_frames_are_the_same_in_any_order():
+    frames = [3.0, 27.0, 14.0, 8.25, 21.0]
+    one, other = animate(posed()), animate(posed())
+    found = {frame: one.positions(frame) for frame in frames}
+    for frame in reversed(frames):
+        assert_array_equal(other.positions(frame), found[frame])
+
+
+def test_the_bounds_are_kept_between_samples_too():
+    document = posed()
+    figure = document.figures[0]
+    boundary = animate(document).sampler.sites.boundary
+    ends = boundary.points[boundary.following]
+    dense = np.concatenate([boundary.points * (1 - s) + ends * s for s in np.linspace(0, 0.9, 10)])
+    animation = animate(document, dense)
+    for frame in range(31):
+        moved = animation.frame(float(frame))
+        a, b = np.abs(moved.fz), np.abs(moved.fzbar)
+        assert (b / a).max() <= figure.bounds.k
+        assert (a + b).max() <= figure.bounds.sigma_a
+        assert (a - b).min() >= figure.bounds.sigma_b
+
+
+def test_a_handle_that_is_free_or_follows_is_not_still():
+    document = posed()
+    figure = document.figures[0]
+    left, middle = figure.handles[:2]
+    free = replace(left, free=True)
+    changed = with_figure(
+        document,
+        handles=(free, *figure.handles[1:]),
+        springs=(Spring(handle=middle.id, frequency=2, damping=0.3),),
+    )
+    assert_array_equal(still_handles(clip_of(changed, 0))[0], [False, False, True, False])
+    # One alone is held by a rigid motion, without anything to solve.
+    alone = with_figure(
+        document,
+        handles=(left, *(replace(each, free=True) for each in figure.handles[1:])),
+    )
+    corrections = animate(alone).corrections
+    correction = corrections.at(4.0)
+    assert correction.phi is None
+    assert drift(alone) < 1e-3
+
+
+def test_a_handle_that_is_locked_goes_evenly_between_the_places_that_it_reaches():
+    document = posed()
+    figure = document.figures[0]
+    *others, top = figure.handles
+    locked = with_figure(document, handles=(*others, replace(top, locked=True)))
+    assert still_handles(clip_of(locked, 0)).all(axis=0).tolist() == [True, True, False, True]
+    assert drift(locked) < 0.05
+
+
+@pytest.mark.parametrize("change", [{"easing": HOLD}, {"turns": 1}])
+def test_a_hold_and_a_whole_turn_are_left_as_they_are(change):
+    document = posed()
+    first, *rest = document.figures[0].keys
+    changed = with_figure(document, keys=(replace(first, **change), *rest))
+    assert not still_handles(clip_of(changed, 0))[0].any()
+    animation = animate(changed)
+    for frame in (2.0, 7.0):
+        correction = animation.corrections.at(frame)
+        lacking = 0 if correction is None else abs(correction.motion.shift)
+        assert lacking < 20
+    assert np.isfinite(animation.positions(5.0)).all()
+
+
+@pytest.mark.parametrize("passing", [Passing.STOP, Passing.CORNER])
+def test_keys_that_are_not_passed_through_keep_their_handles_too(passing):
+    document = posed()
+    keys = tuple(replace(key, passing=passing) for key in document.figures[0].keys)
+    assert drift(with_figure(document, keys=keys)) < 0.05
+
+
+def test_a_hung_figure_keeps_its_joint_and_turns_about_it_alone():
+    document = posed()
+    figure = document.figures[0]
+    child = replace(
+        figure,
+        id=1,
+        name="child",
+        anchor=30 + 40j,
+        attachment=Attachment(to=0, at=90 + 45j),
+    )
+    scene = replace(document, figures=(figure, child))
+    joints = Joints(scene)
+    handles = np.array([handle.position for handle in child.handles])
+    points = np.append(handles, child.anchor)
+    animation = Animation(clip_of(scene, 1), points=points)
+    for frame in (0.0, 4.0, 13.5, 26.0):
+        own = animation.positions(frame)
+        assert own[-1] == pytest.approx(animation.base.frame(frame).positions[-1], abs=1e-7)
+        hung = joints.placement(1, frame).on(own)[-1]
+        parent = Animation(clip_of(scene, 0), points=np.array([90 + 45j])).positions(frame)[0]
+        assert hung == pytest.approx(parent, abs=1e-6)
+    # In its parent's frame its handles stay.
+    ends = [animation.positions(frame)[:3] for frame in (0.0, 10.0)]
+    assert_allclose(ends[0], ends[1], atol=0.6)
+    for frame in (2.0, 5.0, 8.0):
+        assert np.abs(animation.positions(frame)[:3] - ends[0]).max() < 0.6

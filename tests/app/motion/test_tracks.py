@@ -1,0 +1,210 @@
+"""Tracks and springs: handles that go their own ways over the motion of their figure."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+from still_poses import PLACES, animate, posed, with_figure
+
+from app.document import RUBBERY, Attachment, Spring, Track, TrackKey, clip_of, track_at
+from app.motion import Animation, Joints
+from app.motion.corrected_frames import CorrectedFrames
+from app.reports import Verdict, certify_clip
+
+IDS = {name: number for number, name in enumerate(PLACES)}
+WAVE = ((5, 0), (10, 8 + 4j), (15, -6j), (20, 4j), (25, 0))
+
+
+def track(name="right", keys=WAVE, **settings):
+    own = tuple(TrackKey(frame=frame, place=complex(place)) for frame, place in keys)
+    return Track(handles=(IDS[name],), keys=own, **settings)
+
+
+def tracked(*tracks, loop=False, **changes):
+    return with_figure(posed(loop=loop), tracks=tracks, **changes)
+
+
+def test_tracked_handles_go_beside_the_pose_as_their_keys_say():
+    wave = track()
+    document = tracked(wave)
+    animation, clip = animate(document), clip_of(document, 0)
+    for frame in (5.0, 7.3, 10.0, 12.5, 19.0, 25.0):
+        still, moved = animation.still_frame(frame), animation.frame(frame)
+        offset = track_at(wave, clip, frame).place
+        turn = still.fz[IDS["right"]] / abs(still.fz[IDS["right"]])
+        assert abs(moved.positions[2] - still.positions[2] - offset * turn) < 0.1
+        # Those that stay do so beside it.
+        assert np.abs(moved.positions[:2] - still.positions[:2]).max() < 0.1
+
+
+def test_outside_its_keys_a_track_changes_nothing_to_the_bit():
+    one, other = animate(tracked(track())), animate(posed())
+    for frame in (0.0, 3.0, 4.999, 25.001, 29.0):
+        assert_array_equal(one.positions(frame), other.positions(frame))
+    # And where it wants what is there.
+    assert_array_equal(one.positions(5.0), other.positions(5.0))
+    near = one.positions(5.001) - other.positions(5.001)
+    assert np.abs(near).max() < 0.01
+    off = animate(tracked(replace(track(), enabled=False)))
+    assert_array_equal(off.positions(12.0), other.positions(12.0))
+
+
+def test_a_planted_handle_stays_in_the_picture():
+    place = PLACES["right"] + 3 - 2j
+    planted = track(keys=((4, place), (26, place)), planted=True)
+    animation = animate(tracked(planted, stillness=False))
+    for frame in (4.0, 11.0, 18.5, 26.0):
+        assert abs(animation.positions(frame)[2] - place) < 0.1
+
+
+def test_a_planted_handle_of_a_hung_figure_stays_in_the_scene():
+    document = posed()
+    place = PLACES["top"] + 2j
+    child = replace(
+        document.figures[0],
+        id=1,
+        name="child",
+        anchor=60 + 45j,
+        attachment=Attachment(to=0, at=60 + 45j),
+        bounds=RUBBERY.bounds,
+        tracks=(track("top", ((0, place), (30, place)), planted=True),),
+    )
+    scene = replace(document, figures=(with_figure(document, stillness=False).figures[0], child))
+    joints = Joints(scene)
+    handles = np.array([handle.position for handle in child.handles])
+    hung = Animation(clip_of(scene, 1), points=np.append(handles, child.anchor))
+    hung.carried = lambda frame: joints.carried(1, frame)
+    for frame in (0.0, 6.0, 15.0, 22.5):
+        placed = joints.placement(1, frame).on(hung.positions(frame))
+        assert abs(placed[IDS["top"]] - place) < 0.1
+        at = Animation(clip_of(scene, 0), points=np.array([60 + 45j])).positions(frame)[0]
+        assert placed[-1] == pytest.approx(at, abs=1e-6)
+
+
+def test_a_group_moves_together_and_a_handle_turns_where_that_is_asked():
+    both = replace(track(), handles=(IDS["right"], IDS["top"]))
+    animation = animate(tracked(both, stillness=False))
+    moved = animation.positions(10.0) - animation.still_frame(10.0).positions
+    assert abs(moved[IDS["top"]] - moved[IDS["right"]]) < 0.05
+    keys = tuple(replace(key, place=0j, turn=0.3) for key in track().keys)
+    turning = replace(track(keys=WAVE), keys=keys, turns=True)
+    animation = animate(tracked(turning))
+    turned = animation.frame(12.0).fz[2] / animation.still_frame(12.0).fz[2]
+    assert np.angle(turned) == pytest.approx(0.3, abs=0.02)
+
+
+def test_a_second_track_begins_without_a_jump():
+    first, second = track(), track("top", ((14, 0), (18, 5), (22, 0)))
+    one, both = animate(tracked(first)), animate(tracked(first, second))
+    assert np.abs(both.positions(13.999) - both.positions(14.001)).max() < 0.02
+    assert_allclose(both.positions(16.0)[2], one.positions(16.0)[2], atol=0.1)
+
+
+def test_tracks_come_round_in_a_loop_with_their_delay():
+    late = track(keys=((0, 0), (20, 8j), (40, 0)), delay=15)
+    document = tracked(late, loop=True)
+    animation = animate(document)
+    first, last = animation.positions(0.0), animation.positions(40.0)
+    assert_array_equal(first, last)
+    assert np.abs(animation.positions(39.999) - animation.positions(0.001)).max() < 0.02
+
+
+def test_out_of_reach_a_handle_keeps_the_bounds_and_says_by_how_much_it_misses():
+    document = tracked(track(keys=((5, 0), (15, 300 + 200j), (25, 0))))
+    report = certify_clip(clip_of(document, 0))
+    assert report.verdict is Verdict.MEASURED
+    assert report.corrected.excess.k == report.corrected.excess.sigma_a == 0
+    (short,) = report.corrected.short
+    assert short.handle == "right"
+    assert 5 < short.first < 15 < short.last < 25
+    assert short.lag > 50
+
+
+def test_a_smaller_reach_moves_less_of_the_drawing():
+    moved = []
+    for reach in (1.0, 0.2):
+        animation = animate(tracked(track(reach=reach), stillness=False))
+        moved.append(np.abs(animation.positions(10.0) - animation.still_frame(10.0).positions))
+    assert moved[1].mean() < moved[0].mean()
+    assert abs(moved[1][2] - moved[0][2]) < 0.1
+
+
+def springy(*, loop=False, **settings):
+    spring = Spring(handle=IDS["top"], **({"frequency": 3.0, "damping": 0.2} | settings))
+    return with_figure(posed(loop=loop), springs=(spring,))
+
+
+def test_a_spring_swings_about_its_place_and_comes_round_in_a_loop():
+    document = springy(loop=True)
+    animation = animate(document)
+    swung = [
+        animation.positions(t)[IDS["top"]] - animation.still_frame(t).positions[IDS["top"]]
+        for t in np.arange(0, 40, 2.5)
+    ]
+    assert np.abs(swung).max() > 0.5
+    assert_allclose(animation.positions(0.0), animation.positions(40.0), rtol=0, atol=1e-10)
+    before, after = animation.positions(40 - 1e-4), animation.positions(1e-4)
+    assert np.abs(before - after).max() < 0.01
+
+
+def test_without_strength_and_under_a_track_a_spring_moves_nothing():
+    still = animate(springy(strength=0.0))
+    assert_array_equal(still.positions(13.0), still.still_frame(13.0).positions)
+    spring = springy().figures[0].springs
+    wave = track("top", ((0, 0), (10, 6j), (30, 0)))
+    alone, both = (animate(tracked(wave, springs=each)) for each in ((), spring))
+    # What follows is not still, so that the motion under the track is another one.
+    offset = {
+        each: each.positions(12.0)[3] - each.still_frame(12.0).positions[3]
+        for each in (alone, both)
+    }
+    sizes = [abs(each) for each in offset.values()]
+    assert sizes[0] == pytest.approx(sizes[1], abs=0.1)
+
+
+def test_a_hung_spring_feels_what_it_hangs_on():
+    document = posed()
+    spring = Spring(handle=IDS["top"], frequency=2.0, damping=0.2)
+    child = replace(
+        document.figures[0],
+        id=1,
+        name="child",
+        keys=document.figures[0].keys[:1],
+        anchor=30 + 40j,
+        attachment=Attachment(to=0, at=90 + 45j),
+        springs=(spring,),
+    )
+    scene = replace(document, figures=(document.figures[0], child))
+    points = np.array([handle.position for handle in child.handles])
+    alone = Animation(clip_of(scene, 1), points=points)
+    assert_array_equal(alone.positions(12.0), alone.still_frame(12.0).positions)
+    joints = Joints(scene)
+    hung = Animation(
+        clip_of(scene, 1), points=points, carried=lambda frame: joints.carried(1, frame)
+    )
+    swung = hung.positions(12.0) - hung.still_frame(12.0).positions
+    assert abs(swung[IDS["top"]]) > 0.1
+
+
+def test_the_frames_of_a_window_are_those_of_an_export():
+    document = tracked(track())
+    clip = clip_of(document, 0)
+    animation, frames = animate(document), CorrectedFrames(clip)
+    siblings = {0: animation.sampler}
+    assert not frames.is_exact(clip, 12)
+    frames.take(frames.missing(document, 12, siblings)())
+    rough = frames.at(clip, 12)
+    assert rough.phi is None
+    assert not frames.is_exact(clip, 12)
+    while (work := frames.missing(document, 12, siblings)) is not None:
+        frames.take(work())
+    assert frames.is_whole
+    exact = animation.corrections.at(12.0)
+    assert_array_equal(frames.at(clip, 12).phi, exact.phi)
+    # Until the frames of a changed clip are there, those of before stand in.
+    changed = with_figure(document, tracks=(track(keys=((5, 0), (12, 4j), (20, 0))),))
+    later = CorrectedFrames(clip_of(changed, 0), frames)
+    assert later.at(clip_of(changed, 0), 12) is frames.at(clip, 12)
+    assert not later.is_exact(clip_of(changed, 0), 12)
+    assert later.at(clip, 12) is None

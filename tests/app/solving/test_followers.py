@@ -1,0 +1,200 @@
+"""Handles that follow by springs: poses are not held by them, unless they are pulled at."""
+
+from dataclasses import replace
+from types import MappingProxyType
+
+import numpy as np
+import pytest
+from animations import still_document
+from numpy.testing import assert_allclose
+from sessions import session_of, settle
+
+from app.document import Attachment, Spring, Target, Track, TrackKey
+from app.document.commands import handle_commands, layer_commands, track_commands
+from app.editor.actions import posing
+from app.solving import flip_poses, pose_document
+from app.solving.drag import Drag, Rig
+from app.solving.renewal import Renewal, go_on
+from app.solving.script import parse_pose_script
+from engine.deform import Hand
+from engine.maps import Bounds
+
+NAMES = {"end": 210, "middle": 120, "start": 30}
+END, MIDDLE, START = range(3)
+SPRING = Spring(handle=MIDDLE, frequency=2.0, damping=0.3)
+# The end is led so far aside that the middle, were it held, would stay far behind.
+ASIDE = MappingProxyType({END: 210 + 90j, START: 30 + 40j})
+
+
+@pytest.fixture(scope="module")
+def bar():
+    """A bar with three handles, the middle one of which follows."""
+    picture = np.zeros((120, 240, 4), np.uint8)
+    picture[60:100, 20:220] = 255
+    document = still_document(picture)
+    for name, x in NAMES.items():
+        document = handle_commands.add_handle(0, complex(x, 40), name=name)(document)
+    return track_commands.put_spring(0, SPRING)(document)
+
+
+def dragged(figure, targets=MappingProxyType({}), pulled=()):
+    """Return the pose to which a drag of the drawing leads."""
+    pose = figure.keys[0].pose
+    wanted = {i: Target(position=ASIDE.get(i, h.position)) for i, h in enumerate(figure.handles)}
+    wanted |= targets
+    drag = Drag.begin(Rig.of(figure), pose).towards(wanted, 600, (), pulled)
+    assert drag.is_over
+    return drag.pose(wanted)
+
+
+def places(figure, pose):
+    at = np.array([handle.position for handle in figure.handles])
+    return figure.map_of(pose)(at)
+
+
+def without_middle(document):
+    """Return the figure that has no handle in its middle at all."""
+    return handle_commands.remove_handles(0, {MIDDLE})(document).figures[0]
+
+
+def test_what_follows_goes_where_the_body_carries_it(bar):
+    figure = bar.figures[0]
+    pose = dragged(figure)
+    place = places(figure, pose)[MIDDLE]
+    assert abs(place - figure.handle(MIDDLE).position) > 20
+    assert_allclose(pose.targets[MIDDLE].position, place, rtol=0, atol=1e-9)
+    # It is the very pose that there is without the handle.
+    free = without_middle(bar)
+    targets = {i: Target(position=place) for i, place in ASIDE.items()}
+    alone = Drag.begin(Rig.of(free), free.keys[0].pose).towards(targets, 600).pose(targets)
+    assert np.array_equal(pose.phi, alone.phi)
+    assert pose.targets[END] == targets[END]
+
+
+def test_what_has_a_track_of_its_own_or_a_spring_that_is_off_is_held(bar):
+    tracked = track_commands.put_track(
+        0, Track(handles=(MIDDLE,), keys=(TrackKey(frame=0, place=0j),))
+    )(bar)
+    off = track_commands.put_spring(0, replace(SPRING, enabled=False))(bar)
+    for document in (tracked, off):
+        figure = document.figures[0]
+        assert figure.followers == frozenset()
+        pose = dragged(figure)
+        assert abs(places(figure, pose)[MIDDLE] - figure.handle(MIDDLE).position) < 2
+        assert pose.targets[MIDDLE].position == figure.handle(MIDDLE).position
+    switched_off = track_commands.enable_track(0, MIDDLE, enabled=False)(tracked)
+    assert switched_off.figures[0].followers == {MIDDLE}
+
+
+def test_a_person_who_pulls_at_it_does_pull(bar):
+    figure, to = bar.figures[0], 120 + 58j
+    pulled = {MIDDLE}
+    pose = dragged(figure, {MIDDLE: Target(position=to)}, pulled)
+    assert abs(places(figure, pose)[MIDDLE] - to) < 1
+    assert pose.targets[MIDDLE].position == to
+    # It stays as the hand left it, and is let go by the next pull elsewhere.
+    hand = Hand(frozenset(pulled))
+    drag = Drag.begin(Rig.of(figure), pose).towards(pose.targets, 600, (), pulled)
+    assert drag.let_go(pose.targets, (hand,)).keys() == pulled
+    after = drag.towards(pose.targets, 600)
+    assert abs(places(figure, after.pose(pose.targets))[MIDDLE] - to) > 5
+    assert drag.rig.deformer.handles is not after.rig.deformer.handles
+
+
+def test_what_sits_on_a_joint_is_held_by_it(bar):
+    document = layer_commands.duplicate_figure(0)(bar)
+    (body, _) = document.figures
+    at = body.handle(MIDDLE).position
+    hung = layer_commands.attach(0, at, Attachment(to=1, at=at))(document).figures[0]
+    assert (body.followers, hung.followers) == ({MIDDLE}, frozenset())
+    assert Rig.of(hung).pins == ()
+    elsewhere = layer_commands.attach(0, at + 20, Attachment(to=1, at=at))(document).figures[0]
+    assert elsewhere.followers == {MIDDLE}
+
+
+def test_all_handles_may_follow(bar):
+    figure = bar.figures[0]
+    springs = tuple(replace(SPRING, handle=handle.id) for handle in figure.handles)
+    figure = replace(figure, springs=springs)
+    assert np.array_equal(dragged(figure).phi, figure.keys[0].pose.phi)
+
+
+def test_poses_that_are_solved_again_are_not_held_by_it_either(bar):
+    figure = bar.figures[0]
+    pose = dragged(figure)
+    # Where it was wanted when it did not follow yet does not count.
+    stale = replace(pose, targets={**pose.targets, MIDDLE: Target(position=120 + 40j)})
+    posed = figure.with_poses([stale])
+    renewal = Renewal(before=posed, bounds=Bounds(k=0.45, sigma_a=1.9, sigma_b=0.55))
+    while not renewal.is_over:
+        renewal = go_on(renewal, np.zeros((1, 1, 4), np.uint8))
+    (again,) = renewal.poses
+    (flipped,) = flip_poses(Rig.of(posed), [stale], 120.0)
+    for solved in (again, flipped):
+        place = places(figure, solved)[MIDDLE]
+        assert_allclose(solved.targets[MIDDLE].position, place, rtol=0, atol=1e-9)
+        assert abs(place - 120 - 40j) > 20
+
+
+SCRIPT = {
+    "schema": 1,
+    "loop": True,
+    "handles": {name: [x, 40] for name, x in NAMES.items()},
+    "keys": [
+        {"frame": 0, "targets": {"end": [210, 40]}},
+        {"frame": 8, "targets": {"end": [210, 90], "middle": [120, 40]}},
+        {"frame": 16, "targets": {"end": [210, 40]}},
+    ],
+    "springs": [{"handle": "middle", "preset": "tail"}],
+}
+
+
+def test_keys_of_a_script_do_not_hold_what_follows_and_say_so():
+    picture = np.zeros((120, 240, 4), np.uint8)
+    picture[60:100, 20:220] = 255
+    document, notices = pose_document(
+        still_document(picture), parse_pose_script(SCRIPT), lambda _: None
+    )
+    (figure,) = document.figures
+    first, second, last = figure.keys
+    for key in figure.keys:
+        assert_allclose(
+            key.pose.targets[MIDDLE].position, places(figure, key.pose)[MIDDLE], rtol=0, atol=1e-9
+        )
+    assert abs(second.pose.targets[MIDDLE].position - 120 - 40j) > 10
+    (notice,) = notices
+    assert notice.startswith("frame 8: 'middle' follows by its spring, and goes where the body")
+    # Where it is carried to on the way back does not keep a loop from closing.
+    assert last.pose is first.pose
+
+
+def test_dragging_the_body_carries_what_follows_and_dragging_it_bends_the_body(bar, tmp_path):
+    session = session_of(bar, tmp_path, np.zeros((120, 240, 4), np.uint8))
+    project = session.project
+
+    def drag(identity, way):
+        place = complex(project.puppet.shown.handle_places[identity])
+        hand = Hand(frozenset({identity}))
+        posing.pull(session, {identity: Target(position=place + way)}, hand=hand)
+        posing.let_go(session)
+        settle(session)
+        return places(project.figure, project.figure.keys[0].pose)
+
+    carried = drag(END, 40j)
+    assert abs(carried[MIDDLE] - 120 - 40j) > 5
+    pose = project.figure.keys[0].pose
+    assert_allclose(pose.targets[MIDDLE].position, carried[MIDDLE], rtol=0, atol=1e-9)
+    # At once once more, before the first drag has come to rest.
+    posing.pull(session, {END: Target(position=210 + 60j)})
+    posing.let_go(session)
+    assert project.pulls
+    again = drag(END, 20j)
+    assert abs(again[MIDDLE] - carried[MIDDLE]) > 1
+    bent = drag(MIDDLE, 12j)
+    assert abs(bent[MIDDLE] - again[MIDDLE] - 12j) < 3
+    # So do the arrow keys.
+    project.selected = frozenset({MIDDLE})
+    posing.nudge(session, 5j)
+    settle(session)
+    nudged = places(project.figure, project.figure.keys[0].pose)
+    assert abs(nudged[MIDDLE] - bent[MIDDLE] - 5j) < 2
