@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from app.document import Clip, Document, clip_of
 from app.motion.inbetweens import (
-    Correction,
+    FrameCorrection,
     Corrections,
     Ground,
     PoseSampler,
@@ -19,7 +19,7 @@ BATCH = 2  # frames that are solved before a worker looks for more urgent work
 GROUNDS = 6  # the same of frames of which only the ground is wanted
 MOST_ROUGH = 2_000  # frames of which the rigid motion is worked out ahead
 
-Found = Mapping[int, Correction | None]
+Found = Mapping[int, FrameCorrection | None]
 
 
 class FoundCorrections(NamedTuple):
@@ -46,12 +46,12 @@ class CorrectedFrames:
         self.clip = clip
         self._is_asked = is_corrected(clip)
         self._corrections: Corrections | None = None
-        self._exact: dict[int, Correction | None] = {}
-        self._rough: dict[int, Correction | None] = {}
+        self._exact: dict[int, FrameCorrection | None] = {}
+        self._rough: dict[int, FrameCorrection | None] = {}
         self._grounds: dict[int, Ground] = {}
         # What tracks added to the frames of an earlier clip, and to the one that was watched last.
-        self._added: dict[int, Correction] = {}
-        self._latest: Correction | None = None
+        self._added: dict[int, FrameCorrection] = {}
+        self._latest: FrameCorrection | None = None
         if earlier is not None:
             self._take_over(earlier)
 
@@ -71,13 +71,13 @@ class CorrectedFrames:
         for frame in self.clip.figure.key_frames - earlier.clip.figure.key_frames:
             self._rough[frame] = self._added.get(frame)
 
-    def at(self, clip: Clip, frame: int) -> Correction | None:
+    def at(self, clip: Clip, frame: int) -> FrameCorrection | None:
         """Return the best that is known of a frame of a clip; of another one there is nothing."""
         if clip != self.clip or not self._is_asked:
             return None
         return self._exact[frame] if frame in self._exact else self._rough.get(frame)
 
-    def own_at(self, frame: int) -> Correction | None:
+    def own_at(self, frame: int) -> FrameCorrection | None:
         """Return what tracks alone add to a frame, as far as that is known."""
         found, ground = self.at(self.clip, frame), self._grounds.get(frame)
         if found is None or ground is None:

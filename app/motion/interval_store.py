@@ -8,7 +8,7 @@ from itertools import chain
 from typing import Literal
 
 from app.document import Clip, Moment, Pose, intervals, resting_pose, time_of, transits
-from app.motion.inbetweens import Correction, Pair, PoseSampler, pair_of
+from app.motion.inbetweens import FrameCorrection, Pair, PoseSampler, pair_of
 from app.motion.intervals import (
     AnyInbetweens,
     Build,
@@ -83,7 +83,7 @@ class IntervalStore:
         clip: Clip,
         frame: float,
         instead: Pose | OneFrame | None = None,
-        correction: Correction | None = None,
+        correction: FrameCorrection | None = None,
     ) -> Vertices | None:
         """Return where the vertices are at a frame, or what is shown instead; None if not there.
 
@@ -92,7 +92,7 @@ class IntervalStore:
         clip : Clip
         frame : float
         instead : Pose or OneFrame, optional
-        correction : Correction, optional
+        correction : FrameCorrection, optional
             Of the frame.
         """
         vertices = self._uncorrected(clip, frame, instead)
@@ -130,7 +130,7 @@ class IntervalStore:
         return known.one if known.one and known.one.weight == moment.weight else None
 
     def positions(
-        self, clip: Clip, frame: float, correction: Correction | None = None
+        self, clip: Clip, frame: float, correction: FrameCorrection | None = None
     ) -> Complexes | None:
         """Return the same, worked out."""
         vertices = self.vertices(clip, frame, correction=correction)

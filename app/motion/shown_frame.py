@@ -7,7 +7,7 @@ import numpy as np
 
 from app.document import Clip, Document, Pose, resting_pose, time_of
 from app.motion.corrected_frames import CorrectedFrames
-from app.motion.inbetweens import Correction
+from app.motion.inbetweens import FrameCorrection
 from app.motion.interval_store import IntervalStore
 from app.motion.intervals import OneFrame
 from app.motion.joints import Hinge, Joints, along
@@ -31,7 +31,7 @@ class Shown:
     # What is shown instead until the in-between is there: one of its two keys, or another of their
     # in-betweens; or what was drawn of another domain.
     stand_in: Pose | OneFrame | Domain | None = None
-    correction: Correction | None = None  # what is added to the motion from key to key
+    correction: FrameCorrection | None = None  # what is added to the motion from key to key
     is_rough: bool = False  # whether that only stands in for the frame's own
     # Where the figure is in the scene; all else is where it is by itself.
     placement: RigidMotion = HERE

@@ -6,7 +6,7 @@ Imports: `app.document`, `app.errors`.
 """
 
 from app.motion.inbetweens.animation import Animation as Animation
-from app.motion.inbetweens.correction import Correction as Correction
+from app.motion.inbetweens.correction import FrameCorrection as FrameCorrection
 from app.motion.inbetweens.corrections import (
     Corrections as Corrections,
     Ground as Ground,

@@ -2,7 +2,7 @@
 
 from app.document import Clip, Variant
 from app.motion.inbetweens.base_motion import BaseMotion
-from app.motion.inbetweens.correction import Correction
+from app.motion.inbetweens.correction import FrameCorrection
 from app.motion.inbetweens.corrections import Corrections, is_corrected
 from app.motion.inbetweens.own_clocks import Carried
 from app.motion.inbetweens.pose_sampler import PoseSampler
@@ -76,7 +76,7 @@ class Animation:
         corrections = self.corrections
         return self._corrected(frame, corrections.still_at(frame) if corrections else None)
 
-    def _corrected(self, frame: float, correction: Correction | None) -> Frame:
+    def _corrected(self, frame: float, correction: FrameCorrection | None) -> Frame:
         base = self.base.frame(frame)
         if correction is None:
             return base

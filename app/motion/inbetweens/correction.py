@@ -13,7 +13,7 @@ from engine.maps import Span
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Correction:
+class FrameCorrection:
     """A rigid motion after the base motion, and a map of the figure's span.
 
     Parameters
@@ -41,7 +41,7 @@ class Correction:
         """Memory of the coefficients."""
         return 0 if self.phi is None or self.psi is None else self.phi.nbytes + self.psi.nbytes
 
-    def beyond(self, other: "Correction | None") -> "Correction | None":
+    def beyond(self, other: "FrameCorrection | None") -> "FrameCorrection | None":
         """Return what it adds to a part of it that comes before; None where that is nothing."""
         if self is other or self.phi is None or self.psi is None:
             return None
@@ -49,7 +49,7 @@ class Correction:
             return replace(self, motion=HERE)
         return replace(self, motion=HERE, phi=self.phi - other.phi, psi=self.psi - other.psi)
 
-    def after(self, other: "Correction | None") -> "Correction":
+    def after(self, other: "FrameCorrection | None") -> "FrameCorrection":
         """Return what adds another correction first; this one moves nothing rigidly."""
         if other is None or other.phi is None or other.psi is None:
             return self if other is None else replace(self, motion=other.motion)

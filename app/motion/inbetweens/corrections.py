@@ -13,7 +13,7 @@ import numpy as np
 
 from app.document import Clip, Variant, resting_pose, time_of, transits
 from app.motion.inbetweens.base_motion import BaseMotion
-from app.motion.inbetweens.correction import Correction
+from app.motion.inbetweens.correction import FrameCorrection
 from app.motion.inbetweens.own_clocks import Carried, OwnClocks, Wanted
 from app.motion.inbetweens.pairs import pair_of
 from app.motion.inbetweens.pose_sampler import PoseSampler
@@ -34,13 +34,13 @@ class Ground(NamedTuple):
     ----------
     places, turns : complex128, shape (h,)
         Where the handles are without them, and by what factor the shape is turned there.
-    still : Correction or None
+    still : FrameCorrection or None
         By which they are still.
     """
 
     places: Complexes
     turns: Complexes
-    still: Correction | None
+    still: FrameCorrection | None
 
 
 def have_one_ground(clip: Clip, other: Clip) -> bool:
@@ -110,7 +110,7 @@ class Corrections:
         self._stillness = Stillness(self._motion, self._handles)
         self._own = OwnClocks(clip, self._still_places, carried)
 
-    def at(self, frame: float) -> Correction | None:
+    def at(self, frame: float) -> FrameCorrection | None:
         """Return what is added to the base motion at a frame; None where that is nothing."""
         with self._lock:
             base = self._base(frame)
@@ -124,7 +124,7 @@ class Corrections:
             )
             if wanted is None:
                 return still
-            return self._gone(frame, moved, lack, still or Correction(), wanted)
+            return self._gone(frame, moved, lack, still or FrameCorrection(), wanted)
 
     def with_tracks(self, clip: Clip) -> "Corrections":
         """Return the corrections of a clip that differs in its tracks alone."""
@@ -142,20 +142,20 @@ class Corrections:
             places, fz = moved.positions[self._handles], moved.fz[self._handles]
             return Ground(places, fz / np.abs(fz), still)
 
-    def still_at(self, frame: float) -> Correction | None:
+    def still_at(self, frame: float) -> FrameCorrection | None:
         """Return the same without tracks and springs."""
         with self._lock:
             base = self._base(frame)
             return self._still(frame, base, self._lack(frame, base))
 
-    def rigid_at(self, frame: float) -> Correction | None:
+    def rigid_at(self, frame: float) -> FrameCorrection | None:
         """Return the rigid motion of a frame, which takes next to no time."""
         with self._lock:
             base = self._base(frame)
             lack = self._lack(frame, base)
             if lack is None or not lack.offsets.any():
                 return None
-            return Correction(motion=self._rigid(base, lack))
+            return FrameCorrection(motion=self._rigid(base, lack))
 
     def base_at(self, frame: float) -> Base:
         """Return the closed-form motion of the handles, then of the anchor of what hangs."""
@@ -177,7 +177,7 @@ class Corrections:
             fz=found.fz[:count],
         )
 
-    def _with(self, base: Base, correction: Correction | None) -> Base:
+    def _with(self, base: Base, correction: FrameCorrection | None) -> Base:
         """Return a base corrected."""
         if correction is None:
             return base
@@ -194,7 +194,7 @@ class Corrections:
         places = base.positions[self._handles]
         return best_rigid(places, lack.offsets, lack.weights, pivot)
 
-    def _still(self, frame: float, base: Base, lack: Lack | None) -> Correction | None:
+    def _still(self, frame: float, base: Base, lack: Lack | None) -> FrameCorrection | None:
         """Return the correction by which handles stay."""
         if lack is None or not lack.offsets.any():
             return None
@@ -204,13 +204,13 @@ class Corrections:
         wanted = base.positions[self._handles] + lack.offsets
         places[self._handles] += lack.weights * (wanted - places[self._handles])
         if np.abs(places - moved.positions).max() < LEFT_OVER:
-            return Correction(motion=motion)
+            return FrameCorrection(motion=motion)
         pins = self._pins(places, lack.weights, np.full(len(wanted), np.nan), 1.0)
 
-        def solve() -> Correction:
+        def solve() -> FrameCorrection:
             found = self._corrector.correct(moved, pins, self.clip.figure.bounds)
             phi, psi = self._anchored(found)
-            return Correction(
+            return FrameCorrection(
                 motion=motion,
                 phi=phi,
                 psi=psi,
@@ -221,15 +221,15 @@ class Corrections:
         return self._remembered((*self._whose(frame), *_content(lack)), solve)
 
     def _gone(
-        self, frame: float, base: Base, lack: Lack | None, still: Correction, wanted: Wanted
-    ) -> Correction:
+        self, frame: float, base: Base, lack: Lack | None, still: FrameCorrection, wanted: Wanted
+    ) -> FrameCorrection:
         """Return the correction by which handles also go their own ways."""
         firmness = wanted.firmness if lack is None else np.maximum(wanted.firmness, lack.weights)
         places = base.positions.copy()
         places[self._handles] = wanted.places
         pins = self._pins(places, firmness, wanted.turns, wanted.reach)
 
-        def solve() -> Correction:
+        def solve() -> FrameCorrection:
             found = self._corrector.correct(base, pins, self.clip.figure.bounds)
             phi, psi = self._anchored(found)
             misses = {
@@ -237,7 +237,7 @@ class Corrections:
                 for handle, miss in zip(self.clip.figure.handles, found.misses, strict=False)
                 if handle.id in wanted.tracked
             }
-            return Correction(
+            return FrameCorrection(
                 motion=still.motion,
                 phi=phi if still.phi is None else phi + still.phi,
                 psi=psi if still.psi is None else psi + still.psi,
@@ -265,7 +265,9 @@ class Corrections:
             reach,
         )
 
-    def _remembered(self, key: tuple[object, ...], solve: Callable[[], Correction]) -> Correction:
+    def _remembered(
+        self, key: tuple[object, ...], solve: Callable[[], FrameCorrection]
+    ) -> FrameCorrection:
         """Return the correction that is known by a key, solved where it is not."""
         known = self._known.pop(key, None)
         if known is None:

@@ -7,7 +7,7 @@ import numpy as np
 
 from app.document import Pose, Transit, Variant
 from app.errors import tell
-from app.motion.inbetweens.correction import Correction
+from app.motion.inbetweens.correction import FrameCorrection
 from engine.arrays import Complexes
 from engine.dirichlet import Extension, HilbertTransform
 from engine.domain import Domain
@@ -46,7 +46,7 @@ class OutlineKnowledge:
         # Of its own, so that others wait for the transform alone.
         self._lock = threading.RLock()
         self._transform: HilbertTransform | None = None
-        self.corrections: dict[object, Correction] = {}
+        self.corrections: dict[object, FrameCorrection] = {}
 
     @property
     def transform(self) -> HilbertTransform:

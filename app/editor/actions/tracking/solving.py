@@ -12,7 +12,7 @@ from app.motion import CorrectedFrames, FoundCorrections
 
 COMPLAINT = "The handles cannot be held still, or on their tracks"
 CORRECTING = Kind("Corrections", COMPLAINT)
-FOLLOWING = Kind("Correction", COMPLAINT, "hand")
+FOLLOWING = Kind("FrameCorrection", COMPLAINT, "hand")
 # What the tracks of handles that a hand may carry are relative to.
 GROUNDING = Kind("Places on tracks", COMPLAINT, "hand")
 
