@@ -30,7 +30,7 @@ VERBS = (
 
 # Calls that say what a thing is, and compute nothing.
 # That BLAS keeps to one thread is said once for all that the engine does.
-DECLARATIONS = {"TypeVar", "field", "get_args", "threadpool_limits"}
+DECLARATIONS = {"RigidMotion", "TypeVar", "field", "get_args", "threadpool_limits"}
 
 
 def module_files() -> dict[str, Path]:

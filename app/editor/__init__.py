@@ -40,10 +40,17 @@ from app.editor.timeline_view import (
     EdgeDrag as EdgeDrag,
     KeyBox as KeyBox,
     KeyDrag as KeyDrag,
+    KeyRow as KeyRow,
+    KeysOf as KeysOf,
     MarkerDrag as MarkerDrag,
     Scrub as Scrub,
     Strip as Strip,
     SwitchDrag as SwitchDrag,
     TimeGesture as TimeGesture,
+    TrackRow as TrackRow,
+    figure_of as figure_of,
+    frames_in as frames_in,
+    row_of as row_of,
+    seen_at as seen_at,
 )
 from app.editor.work import Jobs as Jobs, Kind as Kind

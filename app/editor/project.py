@@ -1,6 +1,6 @@
 """The project that is open: its document, what the window has of it, and what is under way."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from math import inf
 from pathlib import Path
@@ -17,11 +17,12 @@ from app.document import (
     PictureFile,
     Playhead,
     Pose,
+    Track,
     UnkeyedPose,
     Variant,
     clip_of,
 )
-from app.editor.timeline_view import Timing
+from app.editor.timeline_view import KeyRow, KeysOf, Timing, TrackRow, row_of
 from app.editor.work import Afterwards, Carry, Derived, Promise, Pull, Take
 from app.motion import (
     Box,
@@ -181,10 +182,9 @@ class Project:
     moved_at: float = -inf  # the clock's seconds when the playhead was last seen to move
     timing: Timing = field(default_factory=Timing)
     selected: frozenset[int] = frozenset()  # ids of handles
-    # The frames of the chosen keys of figures, by their ids; figures without any are not in it.
-    chosen_of: Mapping[int, frozenset[int]] = field(default_factory=dict)
-    # The row of a track that is chosen: by the ids of its figure and of a handle.
-    track_row: tuple[int, int] | None = None
+    # The chosen keys; rows without any are not in it.
+    chosen_of: KeysOf = field(default_factory=dict)
+    track_row: TrackRow | None = None  # that of a track which is chosen
     take: Take | None = None  # a drag that is recorded, until that is kept or given up
     camera: View | None = None  # None fits the picture into the viewport
     awaits_extent: bool = False  # whether the camera fits the motion once that is measured
@@ -208,9 +208,18 @@ class Project:
         """The figure that is posed, as it is now."""
         return self.document.figure(self.active)
 
+    def track_in(self, row: KeyRow) -> Track | None:
+        """Return the track of a row; None where it is of poses, or not there any more."""
+        if not isinstance(row, TrackRow) or row.figure not in self.puppets:
+            return None
+        return self.document.figure(row.figure).track_of(row.handle)
+
     @property
     def chosen(self) -> frozenset[int]:
-        """The frames of the chosen keys of the active figure; setting them lets all others go."""
+        """The frames of the chosen keys of the active figure's poses.
+
+        Setting them lets all others go.
+        """
         return self.chosen_of.get(self.active, frozenset())
 
     @chosen.setter
@@ -223,17 +232,24 @@ class Project:
 
         None where its whole pose's row is. Setting it chooses a row.
         """
-        figure, handle = self.track_row or (-1, -1)
-        is_there = figure == self.active and self.figure.track_of(handle) is not None
-        return handle if is_there else None
+        row = self.track_row
+        if row is None or row.figure != self.active or self.figure.track_of(row.handle) is None:
+            return None
+        return row.handle
 
     @chosen_track.setter
     def chosen_track(self, handle: int | None) -> None:
-        self.track_row = None if handle is None else (self.active, handle)
+        self.track_row = None if handle is None else TrackRow(self.active, handle)
+
+    @property
+    def row(self) -> KeyRow:
+        """The row that is chosen: of the poses of the figure that is posed, or of a track of it."""
+        handle = self.chosen_track
+        return row_of(self.figure, None if handle is None else self.figure.track_of(handle))
 
     @property
     def count_chosen(self) -> int:
-        """How many keys are chosen, of all figures."""
+        """How many keys are chosen, in all rows."""
         return sum(map(len, self.chosen_of.values()))
 
     @property
@@ -241,11 +257,11 @@ class Project:
         """The files that it was read from."""
         return (*self.drawings, *([] if self.path is None else [self.path]))
 
-    def keys_with(self, figure: int, frame: int) -> Mapping[int, frozenset[int]]:
-        """Return the chosen keys of all figures, if a key is one of them, or else that key."""
-        if frame in self.chosen_of.get(figure, ()):
+    def keys_with(self, row: KeyRow, frame: int) -> KeysOf:
+        """Return the chosen keys of all rows, if a key is one of them, or else that key."""
+        if frame in self.chosen_of.get(row, ()):
             return self.chosen_of
-        return {figure: frozenset({frame})}
+        return {row: frozenset({frame})}
 
     @property
     def clip(self) -> Clip:

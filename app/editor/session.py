@@ -7,10 +7,11 @@ from itertools import count
 from pathlib import Path
 from typing import Concatenate, Literal, ParamSpec, Protocol
 
-from app.document import Baseline, Document, Figure, Keyframe, Meshing, Variant
+from app.document import Baseline, Document, Figure, Keyframe, Meshing, Track, TrackKey, Variant
 from app.editor.action import Action
 from app.editor.dialogs import Dialog, FileDialog
 from app.editor.project import Project
+from app.editor.timeline_view import TrackRow
 from app.editor.work import Jobs
 from app.errors import shown_name
 from app.export import ExportPlan, Poses
@@ -126,6 +127,15 @@ class CopiedKeys:
     keys: tuple[Keyframe, ...]
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class CopiedTrack:
+    """Keys of a track to be pasted, from its row, and the track as it was then."""
+
+    row: TrackRow
+    track: Track
+    keys: tuple[TrackKey, ...]
+
+
 @dataclass(frozen=True, slots=True)
 class Hint:
     """What can be done with the pointer: how, which key is held for it, and to what end."""
@@ -212,6 +222,7 @@ class Session:
     # Whether the timeline has the pointer, or else the focus: what is chosen there is meant.
     in_timeline: bool = False
     copied: tuple[CopiedKeys, ...] = ()  # of each figure whose keys were copied together
+    copied_tracks: tuple[CopiedTrack, ...] = ()  # of each track, likewise
     space_used: bool = False  # Space was held to move the view
     hovered: int | None = None  # the handle under the pointer
     hint: str = ""  # about what is under the pointer

@@ -2,15 +2,80 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Literal, Self
+from typing import Literal, NamedTuple, Self
 
-from app.document import Document, Figure, FrameRange, Pose, find_shortfall
+from app.document import (
+    Document,
+    Figure,
+    FrameRange,
+    Keyframe,
+    Pose,
+    Track,
+    TrackKey,
+    find_shortfall,
+)
 from app.editor.work import Derived
 
 SMALLEST, LARGEST = 0.002, 4.0  # em that a frame takes
 MARGIN = 1.4  # em left and right of frames that are fitted
 ROOM = 0.04  # of the width, right of the last frame: there keys can be dragged on
 Edge = Literal["preview start", "preview range", "preview end", "animation end"]
+
+
+class TrackRow(NamedTuple):
+    """The row of a track: the ids of its figure, and of the first of its handles."""
+
+    figure: int
+    handle: int
+
+
+# The row of the poses of a figure, by its id, or that of a track.
+KeyRow = int | TrackRow
+# The frames of some keys, by their rows.
+KeysOf = Mapping[KeyRow, frozenset[int]]
+
+
+def figure_of(row: KeyRow) -> int:
+    """Return the id of the figure whose keys are in a row."""
+    return row.figure if isinstance(row, TrackRow) else row
+
+
+def row_of(figure: Figure, track: Track | None) -> KeyRow:
+    """Return the row of a track of a figure, or that of its poses."""
+    return figure.id if track is None else TrackRow(figure.id, track.handles[0])
+
+
+def keys_in(document: Document, row: KeyRow) -> tuple[Keyframe, ...] | tuple[TrackKey, ...]:
+    """Return the keys of a row; none where it is not there any more."""
+    figure = next((each for each in document.figures if each.id == figure_of(row)), None)
+    if figure is None or not isinstance(row, TrackRow):
+        return () if figure is None else figure.keys
+    track = figure.track_of(row.handle)
+    return () if track is None or track.handles[0] != row.handle else track.keys
+
+
+def frames_in(document: Document, row: KeyRow) -> frozenset[int]:
+    """Return the frames that have a key in a row, of a track without its delay."""
+    return frozenset(key.frame for key in keys_in(document, row))
+
+
+def seen_at(document: Document, track: Track | None, frame: int) -> int:
+    """Return the frame at which a key is seen: a track's is late by its delay.
+
+    In a loop it comes round.
+    """
+    seen = frame + (0 if track is None else track.delay)
+    first, last = document.frames.first, document.frames.last
+    return seen - (last - first) if document.loop and seen > last else seen
+
+
+def own_frame(document: Document, track: Track, seen: int) -> int | None:
+    """Return the frame of the key of a track that is seen at a frame; None where none can be."""
+    first, last = document.frames.first, document.frames.last
+    own = seen - track.delay
+    if own < first and document.loop:
+        own += last - first
+    return None if own < first else own
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,8 +146,9 @@ class TimeDrag:
 class KeyDrag(TimeDrag):
     """The pointer moves keys, or copies of them."""
 
-    keys: Mapping[int, frozenset[int]]  # their frames in `before`, by the ids of their figures
-    pressed: int  # the frame of the one under the pointer, which is of the active figure
+    keys: KeysOf  # as they are in `before`
+    row: KeyRow  # of the one under the pointer, which is of the active figure
+    pressed: int  # its frame
     copies: bool
     by: int = 0  # how far they are, in frames
 
@@ -116,8 +182,8 @@ class KeyBox:
     """The pointer spans a stretch of time and rows to choose the keys there."""
 
     start: float  # the pointer's frame at the press
-    row: int  # the id of the figure whose row the pointer was on
-    keeps: Mapping[int, frozenset[int]]  # the keys that are chosen besides
+    row: KeyRow  # that the pointer was on
+    keeps: KeysOf  # the keys that are chosen besides
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -160,4 +226,5 @@ class Timing:
     scrolled: float = 0.0
     # The figure that was active last, so that the rows follow it only when another one is.
     seen_row: int | None = None
+    unfolded: frozenset[int] = frozenset()  # the figures whose tracks have rows
     shortfalls: Derived[Figure, Shortfalls] = field(default_factory=lambda: Derived({}))

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 from app.document import Clip, Document, clip_of
 from app.motion.inbetweens import (
-    FrameCorrection,
     Corrections,
+    FrameCorrection,
     Ground,
     PoseSampler,
     have_one_ground,
@@ -83,6 +83,10 @@ class CorrectedFrames:
         if found is None or ground is None:
             return self._added.get(frame)
         return found.beyond(ground.still)
+
+    def corrects(self, clip: Clip) -> bool:
+        """Tell whether frames of a clip may be corrected."""
+        return clip == self.clip and self._is_asked
 
     def is_exact(self, clip: Clip, frame: int) -> bool:
         """Tell whether that is what the frame has."""

@@ -15,6 +15,7 @@ from app.reports.corrected_frames import CorrectedReport as CorrectedReport, Sho
 from app.reports.curve_picture import draw_curves as draw_curves
 from app.reports.curves import (
     TIMES as TIMES,
+    CorrectedAt as CorrectedAt,
     Curves as Curves,
     broken_lines as broken_lines,
     measure_curves as measure_curves,

@@ -3,14 +3,17 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from app.document import Clip, Extremes, intervals, transits
-from app.motion import AnyInbetweens
+from app.motion import AnyInbetweens, CorrectedFrames
 from app.storage import write_atomically
-from engine.arrays import Floats
-from engine.maps import distortion
+from engine.arrays import Complexes, Floats
+from engine.baselines import MeshFrame
+from engine.interpolation import Frame
+from engine.maps import Span, distortion
 
 POINTS = 100
 TIMES = 24  # in each interval
@@ -38,7 +41,32 @@ class Curves:
         return Extremes(*(float(np.interp(frame, self.frames, row)) for row in self.extremes.T))
 
 
-def measure_curves(clip: Clip, inbetweens: Sequence[AnyInbetweens]) -> Curves:
+class CorrectedAt(NamedTuple):
+    """What is added to the frames at some points, where handles stay or go their own ways.
+
+    Parameters
+    ----------
+    frames : CorrectedFrames
+        Whole.
+    points : complex128, shape (m,)
+        Those at which the in-betweens are.
+    """
+
+    frames: CorrectedFrames
+    points: Complexes
+
+    def of(self, clip: Clip, frame: int, blended: Frame | MeshFrame) -> Frame | MeshFrame:
+        """Return an in-between as it is shown at a whole frame."""
+        correction = self.frames.at(clip, frame)
+        if correction is None or isinstance(blended, MeshFrame):
+            return blended
+        domain = clip.figure.domain
+        return correction.of(blended, Span(cage=domain.cage, holes=domain.holes), self.points)
+
+
+def measure_curves(
+    clip: Clip, inbetweens: Sequence[AnyInbetweens], corrected: CorrectedAt | None = None
+) -> Curves:
     """Measure a clip.
 
     Parameters
@@ -47,6 +75,8 @@ def measure_curves(clip: Clip, inbetweens: Sequence[AnyInbetweens]) -> Curves:
         With at least two keys.
     inbetweens : sequence of AnyInbetweens
         Those of its intervals, at the points that are measured.
+    corrected : CorrectedAt, optional
+        Whole frames alone are measured with it: it is known of them.
     """
     keys = clip.keys
     period = clip.period
@@ -56,9 +86,15 @@ def measure_curves(clip: Clip, inbetweens: Sequence[AnyInbetweens]) -> Curves:
         start = keys[first].frame
         end = keys[last].frame if last > first else keys[last].frame + period
         for share in np.linspace(0.0, 1.0, TIMES):
+            if corrected is not None:
+                share = round(share * (end - start)) / (end - start)  # noqa: PLW2901
             t = transit.weight(keys[first].easing(float(share)))
             blended = between.frame(t)
             frames.append(start + share * (end - start))
+            if corrected is not None:
+                shown = round(frames[-1])
+                shown -= period if shown > clip.frames.last else 0
+                blended = corrected.of(clip, shown, blended)
             ks.append(distortion.k(blended.fz, blended.fzbar))
             taus.append(distortion.tau(blended.fz, blended.fzbar))
             extremes.append(Extremes.measured(blended.fz, blended.fzbar))

@@ -22,6 +22,7 @@ PARTS = {
     "interpolate": "in-betweens, worked out directly",
     "streaming": "in-betweens as series in time",
     "methods": "in-betweens by every method of the paper's Figure 9",
+    "clocks": "frames in which handles stay, wag on tracks and swing on springs",
     "export": "frames and files",
     "window": "the window: its start, its frames, how soon it follows a hand",
     "scenes": "drawings on many layers",

@@ -9,6 +9,7 @@ from app.document.keyframe import Pose
 from app.editor.actions import playback
 from app.editor.project import Project
 from app.editor.session import Session
+from app.editor.timeline_view import frames_in
 from engine.domain.build import Domain
 from engine.domain.validity import require_domain
 from engine.maps.boundary import Boundary
@@ -28,9 +29,9 @@ def check_invariants(session: Session) -> None:
     document, figure = project.document, project.figure
     assert set(project.puppets) == {each.id for each in document.figures}
     assert project.selected <= {handle.id for handle in figure.handles}
-    for identity, frames in project.chosen_of.items():
+    for row, frames in project.chosen_of.items():
         assert frames
-        assert frames <= document.figure(identity).key_frames
+        assert frames <= frames_in(document, row)
     assert playback.current_frame(session, project) in document.frames
     for each in document.figures:
         frames = [key.frame for key in each.keys]

@@ -43,7 +43,7 @@ with the shape there; with "picture", at is its place on the canvas. Several han
 as "handles": ["hoof", "heel"]: keys are of the first one. A key may turn the shape at the handle by
 so many degrees, counter-clockwise ("turn": 20), and has ease and passing as those above. Left out,
 with is "pose", delay 0 frames (in a loop it comes round), and reach 1: from 0 to 1, how far around
-the handle the body gives.
+the handle the body gives. The last key, of poses or of a track, is where the animation ends.
 
 A spring lets a handle follow the motion late and swing: frequency in Hz; damping, 1 where it comes
 back without swinging over; lag 0 frames, and strength 1. The presets are tail, ear, hair, cloth and

@@ -32,7 +32,7 @@ class Timed(Protocol):
 Key = TypeVar("Key", bound=Timed)
 
 
-class Step(NamedTuple):
+class Leg(NamedTuple):
     """From one key to another, by their indices, and in how many frames."""
 
     first: int
@@ -77,27 +77,27 @@ class Passages(Generic[Key]):
             stops[1] if left.passing is Passing.STOP else 1.0,
         )
 
-    def arriving(self, index: int) -> Step | None:
-        """Return the step that leads to a key."""
+    def arriving(self, index: int) -> Leg | None:
+        """Return the leg that leads to a key."""
         last = len(self.keys) - 1
         if index > 0:
-            return Step(index - 1, index, self.keys[index].frame - self.keys[index - 1].frame)
+            return Leg(index - 1, index, self.keys[index].frame - self.keys[index - 1].frame)
         if self.gap is None:
             return None
-        return Step(last, 0, self.gap) if self.gap else self.arriving(last)
+        return Leg(last, 0, self.gap) if self.gap else self.arriving(last)
 
-    def leaving(self, index: int) -> Step | None:
-        """Return the step that leads on from a key."""
+    def leaving(self, index: int) -> Leg | None:
+        """Return the leg that leads on from a key."""
         last = len(self.keys) - 1
         if index < last:
-            return Step(index, index + 1, self.keys[index + 1].frame - self.keys[index].frame)
+            return Leg(index, index + 1, self.keys[index + 1].frame - self.keys[index].frame)
         if self.gap is None:
             return None
-        return Step(last, 0, self.gap) if self.gap else self.leaving(0)
+        return Leg(last, 0, self.gap) if self.gap else self.leaving(0)
 
-    def _moving(self, step: Step | None) -> Step | None:
-        """Return a step, unless there is no motion in it."""
-        return None if step is None or self.keys[step.first].easing == HOLD else step
+    def _moving(self, leg: Leg | None) -> Leg | None:
+        """Return a leg, unless there is no motion in it."""
+        return None if leg is None or self.keys[leg.first].easing == HOLD else leg
 
 
 def _rest(pace: float) -> float:

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from itertools import count
-from typing import Concatenate, ParamSpec
+from typing import Concatenate, NamedTuple, ParamSpec
 
 from app.document import (
     Command,
@@ -17,13 +17,34 @@ from app.document import (
     key_commands,
     layer_commands,
     pairs_by_name,
+    track_commands,
 )
 from app.editor.actions import playback, posing
 from app.editor.project import Project, Puppet
 from app.editor.session import Session, with_project
+from app.editor.timeline_view import KeyRow, KeysOf, TrackRow, frames_in
 from app.storage import decode_picture
 
 Arguments = ParamSpec("Arguments")
+
+
+class KeyVerb(NamedTuple):
+    """What is done to keys, be they in a row of poses or of a track: the commands for both.
+
+    Where there is none for tracks, their keys stay as they are.
+    """
+
+    to_poses: Callable[..., Command]
+    to_tracks: Callable[..., Command] | None = None
+
+    def at(self, row: KeyRow, frames: frozenset[int], *args: object) -> Command | None:
+        """Return the command for the keys of a row at some frames."""
+        if not isinstance(row, TrackRow):
+            return self.to_poses(row, frames, *args)
+        return None if self.to_tracks is None else self.to_tracks(*row, frames, *args)
+
+
+DELETE = KeyVerb(key_commands.delete_keys, track_commands.delete_track_keys)
 
 
 @with_project
@@ -130,8 +151,8 @@ def select(_: Session, project: Project, handles: frozenset[int]) -> None:
 def select_all(session: Session, project: Project) -> None:
     """Select every handle or, in the timeline, the keys of all layers that are posed."""
     if session.in_timeline:
-        posed = [figure for figure in project.document.figures if not figure.still]
-        choose_keys_of(session, {figure.id: figure.key_frames for figure in posed})
+        posed = [figure.id for figure in project.document.figures if not figure.still]
+        choose_keys_of(session, {row: frames_in(project.document, row) for row in posed})
     else:
         select(session, frozenset(handle.id for handle in project.figure.handles))
 
@@ -194,17 +215,16 @@ def choose_keys(session: Session, project: Project, frames: frozenset[int]) -> N
 
 
 @with_project
-def choose_keys_of(_: Session, project: Project, chosen_of: Mapping[int, frozenset[int]]) -> None:
-    """Select keys of several figures, as far as they are there, and no handles."""
+def choose_keys_of(_: Session, project: Project, chosen_of: KeysOf) -> None:
+    """Select keys of several rows, as far as they are there, and no handles."""
     project.selected, project.chosen_of = frozenset(), chosen_of
     _forget_what_is_gone(project)
 
 
-def change_keys(
-    change: Callable[[int, frozenset[int]], Command], chosen_of: Mapping[int, frozenset[int]]
-) -> Command:
-    """Return the command that changes keys of several figures together."""
-    commands = [change(figure, frames) for figure, frames in chosen_of.items()]
+def change_keys(verb: KeyVerb, chosen_of: KeysOf, *args: object) -> Command:
+    """Return the command that changes keys of several rows together."""
+    changes = (verb.at(row, frames, *args) for row, frames in chosen_of.items())
+    commands = [change for change in changes if change is not None]
 
     def all_of_them(document: Document) -> Document:
         for command in commands:
@@ -218,7 +238,7 @@ def change_keys(
 def delete(session: Session, project: Project) -> None:
     """Delete the selected keys, or the selected handles."""
     if project.chosen_of:
-        edit(session, change_keys(key_commands.delete_keys, project.chosen_of))
+        edit(session, change_keys(DELETE, project.chosen_of))
     elif project.selected:
         posing.remove_handles(session, project.selected)
 
@@ -255,12 +275,8 @@ def _forget_what_is_gone(project: Project) -> None:
     document = project.document
     follow_figures(project)
     project.selected &= {handle.id for handle in project.figure.handles}
-    known = {figure.id: figure.key_frames for figure in document.figures}
-    project.chosen_of = {
-        figure: frames & known[figure]
-        for figure, frames in project.chosen_of.items()
-        if figure in known and frames & known[figure]
-    }
+    chosen = {row: at & frames_in(document, row) for row, at in project.chosen_of.items()}
+    project.chosen_of = {row: frames for row, frames in chosen.items() if frames}
     if project.playhead.frame not in document.frames:
         frame = document.frames.clamp(project.playhead.frame)
         project.playhead = replace(project.playhead, frame=frame)

@@ -24,7 +24,7 @@ from app.motion import (
     show,
     trace_paths,
 )
-from app.reports import measure_curves
+from app.reports import CorrectedAt, measure_curves
 from app.storage import cut_picture, shrink
 
 STILL = 0.15  # seconds after which the playhead is taken to stay where it is
@@ -309,10 +309,13 @@ def _measure(session: Session, project: Project) -> Iterator[Job]:
     twin, wanted = project.puppet.twin, [(project.clip, project.curves)]
     if twin is not None:
         wanted.append((twin.clip(project.document), project.twin_curves))
+    store, corrected = project.puppet.store, project.puppet.corrected
     for clip, curves in wanted:
-        inbetweens = project.puppet.store.prepared(clip)
-        if inbetweens:
-            measure = partial(measure_curves, clip, inbetweens)
+        inbetweens = store.prepared(clip)
+        own = corrected if corrected is not None and corrected.corrects(clip) else None
+        if inbetweens and (own is None or own.is_whole):
+            at = None if own is None else CorrectedAt(own, store.mesh.domain.mesh.vertices)
+            measure = partial(measure_curves, clip, inbetweens, at)
             yield from _derive(session, MEASURING, curves, clip, measure)
 
 

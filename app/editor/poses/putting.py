@@ -8,6 +8,7 @@ from app.document import Figure, Keyframe, Pose, key_commands
 from app.editor.actions import playback, posing
 from app.editor.project import Project
 from app.editor.session import Session
+from app.editor.timeline_view import KeyRow
 from app.editor.work import Kind
 from app.solving import Rig
 from engine.maps import Bounds, certify
@@ -41,7 +42,7 @@ def put(
     """
     gesture = gesture or object()
     by = frame - min(key.frame for keys in keys_of.values() for key in keys)
-    chosen_of: dict[int, frozenset[int]] = {}
+    chosen_of: dict[KeyRow, frozenset[int]] = {}
     is_pose = sum(map(len, keys_of.values())) == 1
     for figure, keys in keys_of.items():
         moved = [replace(key, frame=key.frame + by) for key in keys]

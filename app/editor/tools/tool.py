@@ -1,7 +1,6 @@
 """What a tool is: it takes a press, and then has the pointer until the button is let go."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Self
 
@@ -10,6 +9,7 @@ import numpy as np
 from app.editor.actions import editing
 from app.editor.project import Project
 from app.editor.session import Hint, Mark, Session
+from app.editor.timeline_view import KeysOf
 
 CLICK = 3.0  # pixels of the screen that a click may wander
 
@@ -38,7 +38,7 @@ class Selection:
     """What was selected when a gesture began."""
 
     handles: frozenset[int]
-    keys: Mapping[int, frozenset[int]]
+    keys: KeysOf
 
 
 @dataclass(slots=True, kw_only=True, eq=False)

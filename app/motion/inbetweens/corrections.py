@@ -45,17 +45,16 @@ class Ground(NamedTuple):
 
 def have_one_ground(clip: Clip, other: Clip) -> bool:
     """Tell whether two clips of a figure differ in its tracks alone, if at all."""
-    return _ground_source(clip) == _ground_source(other)
 
+    def source(of: Clip) -> tuple[object, ...]:
+        figure = of.figure
+        return (
+            *(figure.id, figure.domain, figure.handles, figure.keys, figure.anchor),
+            *(figure.attachment, figure.stillness, figure.springs, figure.variant, figure.bounds),
+            *(of.frames, of.loop, of.fps, of.baseline),
+        )
 
-def _ground_source(clip: Clip) -> tuple[object, ...]:
-    """Return all that the motion follows from without tracks."""
-    figure = clip.figure
-    return (
-        *(figure.id, figure.domain, figure.handles, figure.keys, figure.anchor, figure.attachment),
-        *(figure.stillness, figure.springs, figure.variant, figure.bounds),
-        *(clip.frames, clip.loop, clip.fps, clip.baseline),
-    )
+    return source(clip) == source(other)
 
 
 def is_corrected(clip: Clip) -> bool:
@@ -88,7 +87,7 @@ class Corrections:
         self, clip: Clip, variant: Variant, sampler: PoseSampler, carried: Carried | None = None
     ) -> None:
         figure = clip.figure
-        self.clip, self._variant, self._carried = clip, variant, carried
+        self.clip, self._variant = clip, variant
         self._known = sampler.known.corrections
         self._lock = threading.RLock()
         self._handles = slice(0, len(figure.handles))
@@ -130,7 +129,7 @@ class Corrections:
         """Return the corrections of a clip that differs in its tracks alone."""
         changed = copy(self)
         changed.clip = clip
-        changed._own = OwnClocks(clip, changed._still_places, self._carried)  # noqa: SLF001 - its own
+        changed._own = self._own.with_tracks(clip)  # noqa: SLF001 - its own
         return changed
 
     def ground_at(self, frame: float) -> Ground:

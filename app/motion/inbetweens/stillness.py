@@ -28,7 +28,7 @@ SAME = 0.5  # pixels between two targets that are at one place
 RARELY = 1e-12  # a weight below it is none
 
 
-class Span(NamedTuple):
+class KeySpan(NamedTuple):
     """From one key to the next: their indices, and in how many frames."""
 
     first: int
@@ -52,13 +52,13 @@ class Lack(NamedTuple):
     weights: Floats
 
 
-def spans_of(clip: Clip) -> list[Span]:
+def spans_of(clip: Clip) -> list[KeySpan]:
     """Return the spans of a clip's intervals, in their order."""
     keys, found = clip.keys, []
     for first, last in intervals(clip):
         start, end = keys[first].frame, keys[last].frame
         frames = end - start if last > first else end + clip.period - start
-        found.append(Span(first, last, start, frames))
+        found.append(KeySpan(first, last, start, frames))
     return found
 
 
@@ -156,7 +156,7 @@ class Stillness:
         offsets = np.where(still, goal - places, moving)
         return Lack(offsets, np.where(weights > RARELY, weights, 0.0))
 
-    def _share(self, span: Span, frame: float) -> float:
+    def _share(self, span: KeySpan, frame: float) -> float:
         """Return which share of a span's frames is over at a frame."""
         since = frame - span.start
         if self._clip.loop and self._clip.period and not 0 <= since <= span.frames:

@@ -18,6 +18,7 @@ from app.document import (
 from app.editor import Action, Project, Session, do, layering
 from app.editor.actions import editing, posing
 from app.ui.panels import depth
+from app.ui.panels.clocks import draw_spring, draw_stillness, draw_track
 from app.ui.shortcuts import BINDINGS, CTRL, bound_button, bound_text_button, with_key
 from app.ui.style import (
     FILL,
@@ -37,6 +38,7 @@ from app.ui.style import (
     text_button,
     tip,
 )
+from app.ui.viewport import staying
 
 MOST_ROWS = 5.5
 WEIGHTS = Scale(left=0.01, right=100.0, logarithmic=True)
@@ -63,6 +65,7 @@ def draw(session: Session, look: Look, project: Project) -> list[Action]:
         heading(look, f"{len(chosen)} handles")
         small(look, "Dragging one of them moves them all; arrows nudge them.")
         actions += _firmness(session, look, chosen)
+        actions += bound_text_button(session, "key handle", FILL)
     else:
         small(look, "Select a handle to see its settings.")
     if len(chosen) != 1 and session.tints_depth:
@@ -147,6 +150,9 @@ def _details(session: Session, look: Look, project: Project, handle: Handle) -> 
     if placed is not None:
         actions.append(do(editing.edit_figure, handle_commands.move_handle, handle.id, placed))
     actions += _wish(look, project, handle)
+    actions += draw_stillness(look, project, handle)
+    actions += draw_track(session, look, project, handle)
+    actions += draw_spring(look, project, handle)
     return actions + depth.draw(session, look, project, handle)
 
 
@@ -197,7 +203,8 @@ def _wish(look: Look, project: Project, handle: Handle) -> list[Action]:
     shortfall = _shortfall(project)
     lag = shortfall.lags.get(handle.id)
     if lag is None:
-        small(look, "" if is_wanted else "Between keys it goes with the shape.")
+        goes = "stays until the next key" if handle.id in staying(shown) else "goes with the shape"
+        small(look, "" if is_wanted else f"Between keys it {goes}.")
     else:
         is_coming = project.pull is not None and not project.pull.is_at_rest
         why = "on its way" if is_coming else shortfall.reason

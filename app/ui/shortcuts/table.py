@@ -18,6 +18,7 @@ from app.editor.actions import (
     saving,
     timeline_pointing,
     tracking,
+    tracks,
     viewing,
 )
 from app.editor.poses import copying, flipping, library
@@ -160,7 +161,7 @@ MENUS: dict[str, dict[str, Binding]] = {
             detail=_redo_label,
         ),
         "copy": Binding("Copy", do(copying.copy), "Ctrl+C", parted=True, detail=_copied),
-        "paste": Binding("Paste", do(copying.paste), "Ctrl+V", possible=copying.copied_for),
+        "paste": Binding("Paste", do(copying.paste), "Ctrl+V", possible=copying.can_paste),
         "paste flipped": Binding(
             "Paste flipped",
             do(flipping.paste),
@@ -254,6 +255,15 @@ MENUS: dict[str, dict[str, Binding]] = {
             hint="Locked handles hold their places and are not dragged",
             possible=_selected,
             active=_all_locked,
+        ),
+        "key handle": Binding(
+            "Key this handle only",
+            do(tracks.key_selected),
+            "Shift+I",
+            icon=icons.ICON_FA_KEY,
+            hint="Give it a key of its own here, on a track beside the keys of whole poses",
+            possible=_selected,
+            parted=True,
         ),
         "group": Binding(
             "Group",

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 from imgui_bundle import ImVec2, imgui
 
-from app.document import Figure
-from app.editor import Project, Session, Strip
+from app.document import Figure, Track
+from app.editor import KeyRow, Project, Session, Strip, row_of, seen_at
 from app.ui.style import Look, tag_size, write_tag
 
 PREVIEW, RULER, OVERVIEW = 0.7, 1.55, 0.75  # em: heights of the bands above and below the track
@@ -32,6 +32,22 @@ class FigureRow:
         return (self.top + self.bottom) / 2
 
 
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class TrackLane:
+    """Where the keys of a figure's track are: between two heights, in pixels of the window."""
+
+    figure: Figure
+    track: Track
+    top: float
+    bottom: float
+    is_chosen: bool
+
+    @property
+    def middle(self) -> float:
+        """Half-way between them."""
+        return (self.top + self.bottom) / 2
+
+
 class Bands:
     """The bands of the timeline, and the way between frames and pixels."""
 
@@ -42,7 +58,7 @@ class Bands:
         self.corner = imgui.get_cursor_screen_pos()
         room = imgui.get_content_region_avail()
         figures = project.document.figures
-        self.has_names = len(figures) > 1
+        self.has_names = len(figures) > 1 or any(figure.tracks for figure in figures)
         names = min(NAMES * look.em, NAMES_SHARE * room.x) if self.has_names else 0.0
         self.size = ImVec2(room.x - names, room.y)
         self.left, self.top = self.corner.x + names, self.corner.y
@@ -54,7 +70,9 @@ class Bands:
         self.track_top = self.marks_top + bool(project.document.markers) * marks * look.em
         is_whole = self.is_cramped or project.timing.strip is None
         self.track_bottom = self.bottom - (0 if is_whole else OVERVIEW * look.em)
-        self.rows, self.overflow = self._lay_rows(figures)
+        self.rows: list[FigureRow] = []
+        self.track_rows: list[TrackLane] = []
+        self.overflow = self._lay_rows(figures)
         self.row = next(row for row in self.rows if row.is_active)
         self.middle = self.row.middle
         share = CRAMPED_SHARE if self.is_cramped else BAR_SHARE
@@ -64,29 +82,49 @@ class Bands:
         fitting = Strip.fitting(project.document.frames, self.width)
         self.strip = timing.gesture_strip or timing.strip or fitting
 
-    def _lay_rows(self, figures: tuple[Figure, ...]) -> tuple[list[FigureRow], float]:
-        """Return a row for each figure, the one in front on top, and for how much there is no room.
+    def _lay_rows(self, figures: tuple[Figure, ...]) -> float:
+        """Lay a row for each figure, the one in front on top, and below it those of its tracks.
 
-        The active one's takes what the others leave.
+        The active one's takes what the others leave. Returns for how much there is no room.
         """
         thin, room = THIN * self.look.em, self.track_bottom - self.track_top
-        others = (len(figures) - 1) * thin
+        shown = {figure.id: self._shown_tracks(figure) for figure in figures}
+        others = (len(figures) - 1 + sum(map(len, shown.values()))) * thin
         tall = max(min(TALL * self.look.em, room), room - others)
         overflow = max(others + tall - room, 0.0)
         top = self.track_top - min(self.project.timing.scrolled * self.look.em, overflow)
-        rows = []
+        chosen = self.project.row
         for figure in reversed(figures):
             is_active = figure.id == self.project.active
             bottom = top + (tall if is_active else thin)
-            rows.append(FigureRow(figure=figure, top=top, bottom=bottom, is_active=is_active))
+            self.rows.append(FigureRow(figure=figure, top=top, bottom=bottom, is_active=is_active))
             top = bottom
-        return rows, overflow
+            for track in shown[figure.id]:
+                is_chosen = row_of(figure, track) == chosen
+                row = TrackLane(
+                    figure=figure, track=track, top=top, bottom=top + thin, is_chosen=is_chosen
+                )
+                self.track_rows.append(row)
+                top += thin
+        return overflow
+
+    def _shown_tracks(self, figure: Figure) -> tuple[Track, ...]:
+        """Return the tracks of a figure that have rows."""
+        return figure.tracks if figure.id in self.project.timing.unfolded else ()
 
     @property
-    def pointed_row(self) -> FigureRow:
+    def pointed_row(self) -> FigureRow | TrackLane:
         """The row under the pointer, or the nearest one that is seen."""
         y = min(max(imgui.get_mouse_pos().y, self.track_top), self.track_bottom - 1)
-        return next((row for row in self.rows if y < row.bottom), self.rows[-1])
+        both: list[FigureRow | TrackLane] = [*self.rows, *self.track_rows]
+        rows = sorted(both, key=lambda row: row.bottom)
+        return next((row for row in rows if y < row.bottom), rows[-1])
+
+    @property
+    def pointed_keys(self) -> KeyRow:
+        """What tells the row under the pointer."""
+        row = self.pointed_row
+        return row_of(row.figure, row.track if isinstance(row, TrackLane) else None)
 
     def push_clip(self) -> None:
         """Let nothing be drawn and pointed at beyond the track, until the clip is popped."""
@@ -115,6 +153,10 @@ class Bands:
     def frame(self, x: float) -> float:
         """Return the frame at a place of the window."""
         return self.strip.frame((x - self.left) / self.look.em)
+
+    def x_of(self, track: Track | None, frame: int) -> float:
+        """Return where a key is drawn: a track's is later by its delay."""
+        return self.x(seen_at(self.project.document, track, frame))
 
     @property
     def pointed(self) -> float:

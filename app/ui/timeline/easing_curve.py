@@ -1,11 +1,9 @@
 """Easing curves: how they look, and how they are changed."""
 
-from collections.abc import Mapping
-
 from imgui_bundle import ImVec2, imgui
 
 from app.document import MOST_TURNS, PRESETS, Easing, Keyframe
-from app.editor import Action, Project, do
+from app.editor import Action, KeysOf, Project, do
 from app.editor.actions import keys
 from app.ui.style import SMALL, Look, bold, in_hand, ink, label, sized, small, tip
 
@@ -177,7 +175,7 @@ def _numbers(look: Look, easing: Easing) -> Easing | None:
     return _curve([_unit(value) for value in values], easing.curve) if changed else None
 
 
-def _turns(look: Look, key: Keyframe, taken: Mapping[int, frozenset[int]]) -> list[Action]:
+def _turns(look: Look, key: Keyframe, taken: KeysOf) -> list[Action]:
     label(look, "Whole turns")
     changed, turns = imgui.input_int("##turns", key.turns, 1, 1)
     tip("Full turns on the way to the next key, counter-clockwise; negative ones go clockwise")

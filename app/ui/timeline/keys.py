@@ -1,17 +1,37 @@
 """Keys of all figures, marked by how they are passed, and the box that chooses them."""
 
-from collections.abc import Mapping
 from itertools import pairwise
 
 from imgui_bundle import ImVec2, ImVec4, icons_fontawesome_6 as icons, imgui
 
-from app.document import LAST_FRAME, Figure, Keyframe, Passing
-from app.editor import Action, KeyBox, KeyDrag, Project, TimeGesture, do, layering
-from app.editor.actions import editing, keys, timeline_pointing
+from app.document import LAST_FRAME, Keyframe, Passing
+from app.editor import (
+    Action,
+    KeyBox,
+    KeyDrag,
+    KeyRow,
+    KeysOf,
+    Project,
+    TimeGesture,
+    TrackRow,
+    do,
+    figure_of,
+    layering,
+)
+from app.editor.actions import editing, timeline_pointing, tracks
 from app.ui.shortcuts import CTRL, with_key
-from app.ui.style import begin_tip, in_hand, ink, is_pressed
-from app.ui.timeline.bands import ROUNDING, Bands, FigureRow, in_seconds, tag, was_dragged
-from app.ui.timeline.menus import PASSINGS, key_menu, track_menu
+from app.ui.style import begin_tip, in_hand, ink, is_pressed, tip
+from app.ui.timeline.bands import (
+    ROUNDING,
+    Bands,
+    FigureRow,
+    TrackLane,
+    in_seconds,
+    tag,
+    was_dragged,
+)
+from app.ui.timeline.menus import PASSINGS, insert_at, key_menu, track_menu
+from app.ui.timeline.misses import told
 
 REACH, SMALLEST = 0.55, 0.26  # em: half a key's diagonal, with room and among many
 SMALLER = 0.7  # keys of figures that are not the active one, as a part of what theirs would be
@@ -40,21 +60,27 @@ def _press_ground(bands: Bands, low: ImVec2, high: ImVec2) -> list[Action]:
     if is_pressed():
         actions += begin_box(bands)
     if clicked and is_plain_click():
-        actions += choose_row(bands, {})
+        actions += choose_row(bands.pointed_keys, {})
     twice = imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton_.left)
+    row, lane = bands.pointed_keys, bands.pointed_row
+    if isinstance(lane, TrackLane) and bands.project.timing.gesture is None:
+        miss = told(bands.project, lane.figure, lane.track, round(bands.pointed))
+        if miss:
+            tip(miss)
     if twice and round(bands.pointed) in bands.project.document.frames:
-        actions.append(do(keys.insert_at, round(bands.pointed)))
+        actions.append(insert_at(row, round(bands.pointed)))
     if imgui.is_item_clicked(imgui.MouseButton_.right):
-        if not bands.pointed_row.is_active:
-            actions += choose_row(bands, {})
+        if row != bands.project.row:
+            actions += choose_row(row, {})
         imgui.open_popup("menu of track")
     return actions + track_menu(bands)
 
 
-def choose_row(bands: Bands, chosen_of: Mapping[int, frozenset[int]]) -> list[Action]:
-    """Let the figure of the row under the pointer be the active one, and choose keys."""
+def choose_row(row: KeyRow, chosen_of: KeysOf) -> list[Action]:
+    """Let the figure of a row be the active one, choose the row, and choose keys."""
     return [
-        do(layering.choose, bands.pointed_row.figure.id),
+        do(layering.choose, figure_of(row)),
+        do(tracks.choose, row.handle if isinstance(row, TrackRow) else None),
         do(editing.choose_keys_of, chosen_of),
     ]
 
@@ -62,7 +88,7 @@ def choose_row(bands: Bands, chosen_of: Mapping[int, frozenset[int]]) -> list[Ac
 def begin_box(bands: Bands) -> list[Action]:
     """Begin to choose keys by a box; with Shift besides those that are chosen."""
     keeps = bands.project.chosen_of if imgui.get_io().key_shift else {}
-    box = KeyBox(start=bands.pointed, row=bands.pointed_row.figure.id, keeps=keeps)
+    box = KeyBox(start=bands.pointed, row=bands.pointed_keys, keeps=keeps)
     return [do(timeline_pointing.begin, box, bands.strip)]
 
 
@@ -112,18 +138,11 @@ def _draw_row(bands: Bands, row: FigureRow) -> list[Action]:
         if not bands.shows(x - grip, x + grip):
             continue
         box = ImVec2(x - grip, row.middle - grip), ImVec2(x + grip, row.middle + grip)
-        origin = _origin(gesture, row.figure, key.frame)
+        origin = origin_of(gesture, identity, key.frame)
         bands.button(f"key {origin}", *box, right=True)
-        is_dragged = row.is_active and _is_dragged(gesture, key.frame)
-        _draw_key(bands, row, key, 1.15 * radius if in_hand() or is_dragged else radius)
-        if is_pressed():
-            actions += _press(bands, identity, key.frame)
-        if imgui.is_item_clicked(imgui.MouseButton_.right):
-            if key.frame not in bands.project.chosen_of.get(identity, ()):
-                actions += choose_row(bands, {identity: frozenset({key.frame})})
-            elif not row.is_active:
-                actions += choose_row(bands, bands.project.chosen_of)
-            imgui.open_popup(f"menu of key {key.frame}")
+        is_large = in_hand() or is_dragged(gesture, identity, key.frame)
+        _draw_key(bands, row, key, 1.15 * radius if is_large else radius)
+        actions += take_key(bands, identity, key.frame)
         if gesture is None:
             _tell(bands, row, key)
         actions += key_menu(bands, identity, key)
@@ -138,39 +157,53 @@ def _radius(bands: Bands, row: FigureRow) -> float:
     return part * min(max(0.48 * gap * bands.strip.scale, SMALLEST), REACH) * bands.look.em
 
 
-def _is_dragged(gesture: TimeGesture | None, frame: int) -> bool:
-    """Tell whether a key of the active figure is the one that is dragged."""
-    return isinstance(gesture, KeyDrag) and frame == gesture.pressed + gesture.by
+def is_dragged(gesture: TimeGesture | None, row: KeyRow, frame: int) -> bool:
+    """Tell whether a key of a row is the one that is dragged."""
+    return (
+        isinstance(gesture, KeyDrag)
+        and row == gesture.row
+        and frame == gesture.pressed + gesture.by
+    )
 
 
-def _origin(gesture: TimeGesture | None, figure: Figure, frame: int) -> int:
+def origin_of(gesture: TimeGesture | None, row: KeyRow, frame: int) -> int:
     """Return at which frame a key was before the drag, so that its button stays the same one."""
     if isinstance(gesture, KeyDrag) and not gesture.copies:
         before = frame - gesture.by
-        return before if before in gesture.keys.get(figure.id, ()) else frame
+        return before if before in gesture.keys.get(row, ()) else frame
     return frame
 
 
-def _press(bands: Bands, figure: int, frame: int) -> list[Action]:
+def take_key(bands: Bands, row: KeyRow, frame: int) -> list[Action]:
+    """Take what the pointer does to the last item, the key of a row at a frame."""
+    actions = _press(bands, row, frame) if is_pressed() else []
+    if imgui.is_item_clicked(imgui.MouseButton_.right):
+        chosen_of = bands.project.chosen_of
+        if frame not in chosen_of.get(row, ()):
+            actions += choose_row(row, {row: frozenset({frame})})
+        elif row != bands.project.row:
+            actions += choose_row(row, chosen_of)
+        imgui.open_popup(f"menu of key {frame}")
+    return actions
+
+
+def _press(bands: Bands, row: KeyRow, frame: int) -> list[Action]:
     chosen_of, io = bands.project.chosen_of, imgui.get_io()
-    chosen = chosen_of.get(figure, frozenset())
+    chosen = chosen_of.get(row, frozenset())
     if io.key_shift:
-        return [do(editing.choose_keys_of, {**chosen_of, figure: chosen ^ {frame}})]
+        return [do(editing.choose_keys_of, {**chosen_of, row: chosen ^ {frame}})]
     if frame not in chosen:
-        chosen_of = {figure: frozenset({frame})}
+        chosen_of = {row: frozenset({frame})}
     drag = KeyDrag(
         keys=chosen_of,
+        row=row,
         pressed=frame,
         start=bands.pointed,
         copies=io.key_ctrl,
         before=bands.project.document,
         after=bands.project.document,
     )
-    return [
-        do(layering.choose, figure),
-        do(editing.choose_keys_of, chosen_of),
-        do(timeline_pointing.begin, drag, bands.strip),
-    ]
+    return [*choose_row(row, chosen_of), do(timeline_pointing.begin, drag, bands.strip)]
 
 
 def _draw_key(bands: Bands, row: FigureRow, key: Keyframe, radius: float) -> None:
@@ -181,19 +214,12 @@ def _draw_key(bands: Bands, row: FigureRow, key: Keyframe, radius: float) -> Non
     fill = palette.accent if chosen else warns or (palette.text if row.is_active else palette.dim)
     passing, centre = key.shown_passing, ImVec2(x, y)
     if chosen:
-        _mark(passing, centre, radius + 0.24 * em, ink(palette.accent, 0.35))
-    _mark(passing, centre, radius + 0.12 * em, ink(palette.desk))
-    _mark(passing, centre, radius, ink(fill))
-    gesture = bands.project.timing.gesture
-    if (
-        row.is_active
-        and isinstance(gesture, KeyDrag)
-        and gesture.by
-        and _is_dragged(gesture, key.frame)
-    ):
-        tag(bands, x, f"{key.frame}  ({gesture.by:+d})")
+        draw_mark(passing, centre, radius + 0.24 * em, ink(palette.accent, 0.35))
+    draw_mark(passing, centre, radius + 0.12 * em, ink(palette.desk))
+    draw_mark(passing, centre, radius, ink(fill))
+    tag_dragged(bands, row.figure.id, key.frame, x)
     if warns and chosen:
-        _mark(passing, centre, 0.45 * radius, ink(warns))
+        draw_mark(passing, centre, 0.45 * radius, ink(warns))
     if warns and row.is_active:
         draw_list.add_circle_filled(ImVec2(x, bands.bar_top - 0.1 * em), 0.2 * em, ink(warns))
 
@@ -206,7 +232,14 @@ def _warning(bands: Bands, row: FigureRow, key: Keyframe) -> ImVec4 | None:
     return palette.warning if row.is_active and lags(bands.project, key) else None
 
 
-def _mark(passing: Passing, centre: ImVec2, radius: float, colour: int) -> None:
+def tag_dragged(bands: Bands, row: KeyRow, frame: int, x: float) -> None:
+    """Write beside a key to which frame it is dragged, if it is."""
+    gesture = bands.project.timing.gesture
+    if isinstance(gesture, KeyDrag) and gesture.by and is_dragged(gesture, row, frame):
+        tag(bands, x, f"{frame}  ({gesture.by:+d})")
+
+
+def draw_mark(passing: Passing, centre: ImVec2, radius: float, colour: int) -> None:
     """Draw a key's mark: round where the motion goes on, pointed, pinched, or square for a hold."""
     draw_list, x, y = imgui.get_window_draw_list(), centre.x, centre.y
     across = radius / 2**0.5

@@ -2,9 +2,9 @@
 
 from imgui_bundle import imgui
 
-from app.document import PRESETS, Keyframe, Passing
-from app.editor import Action, Project, Session, do
-from app.editor.actions import keys, playback
+from app.document import PRESETS, Keyframe, Passing, TrackKey, track_commands
+from app.editor import Action, KeyRow, Project, Session, TrackRow, do, frames_in, seen_at
+from app.editor.actions import editing, keys, playback, tracks
 from app.editor.poses import copying
 from app.ui.shortcuts import BINDINGS, bound_item
 from app.ui.style import Look, shortened, tip
@@ -21,13 +21,13 @@ NAME = 9.0  # em: width of a layer's name at most
 FACTORS = ((0.5, "Half as long"), (2.0, "Twice as long"))
 
 
-def key_menu(bands: Bands, figure: int, key: Keyframe) -> list[Action]:
-    """Draw the menu of a key of a figure, if it is open."""
+def key_menu(bands: Bands, row: KeyRow, key: Keyframe | TrackKey) -> list[Action]:
+    """Draw the menu of a key of a row, if it is open."""
     actions: list[Action] = []
     if not imgui.begin_popup(f"menu of key {key.frame}"):
         return actions
     project = bands.project
-    taken = project.keys_with(figure, key.frame)
+    taken = project.keys_with(row, key.frame)
     count = sum(map(len, taken.values()))
     many = f" {count} keys" if count > 1 else ""
     delete = BINDINGS["delete"]
@@ -35,10 +35,11 @@ def key_menu(bands: Bands, figure: int, key: Keyframe) -> list[Action]:
         actions.append(delete.action)
     if imgui.menu_item_simple(f"Copy{many}###Copy", BINDINGS["copy"].keys_in_words):
         actions.append(do(copying.copy_keys))
-    actions += _paste_items(bands.session, key.frame)
+    seen = seen_at(project.document, project.track_in(row), key.frame)
+    actions += _paste_items(bands.session, seen)
     imgui.separator()
     if imgui.menu_item_simple("Go to this key", "Click"):
-        actions.append(do(playback.scrub, key.frame))
+        actions.append(do(playback.scrub, seen))
     if imgui.begin_menu("Passing"):
         for passing, (name, hint) in PASSINGS.items():
             chosen = key.shown_passing is passing
@@ -70,15 +71,32 @@ def track_menu(bands: Bands) -> list[Action]:
         return actions
     opened = imgui.get_mouse_pos_on_opening_current_popup()
     frame = bands.project.document.frames.clamp(round(bands.frame(opened.x)))
+    row = bands.project.row
     if imgui.menu_item_simple(f"Insert key at frame {frame}###Insert key"):
-        actions.append(do(keys.insert_at, frame))
+        actions.append(insert_at(row, frame))
+    track = bands.project.track_in(row)
+    if track is not None and not track.planted:
+        if imgui.menu_item_simple(f"Insert key in the pose at frame {frame}###Insert in pose"):
+            actions += [do(playback.scrub, frame), do(tracks.key_in_pose, track.handles[0])]
+        tip("Where the pose has the handle: the track begins and ends there without a jump")
     actions += _paste_items(bands.session, frame)
     if imgui.menu_item_simple(f"Add marker at frame {frame}###Add marker"):
         actions.append(do(keys.add_marker, frame))
     imgui.separator()
     actions += _time_items(bands.session, bands.look, bands.project)
+    if track is not None:
+        imgui.separator()
+        if imgui.menu_item_simple("Delete track"):
+            actions.append(do(editing.edit_figure, track_commands.remove_tracks, track.handles[:1]))
     imgui.end_popup()
     return actions
+
+
+def insert_at(row: KeyRow, frame: int) -> Action:
+    """Return what inserts a key into a row at a frame."""
+    if isinstance(row, TrackRow):
+        return do(tracks.insert_at, row.handle, frame)
+    return do(keys.insert_at, frame)
 
 
 def time_menu(session: Session, look: Look, project: Project) -> list[Action]:
@@ -92,7 +110,7 @@ def time_menu(session: Session, look: Look, project: Project) -> list[Action]:
 
 def _time_items(session: Session, look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
-    count, chosen = len(project.figure.keys), project.count_chosen
+    count, chosen = len(frames_in(project.document, project.row)), project.count_chosen
     several = f"{chosen} keys" if chosen > 1 else "all keys"
     # The time of a scene is scaled as a whole, but not reversed.
     is_scene = chosen < 2 and len(project.document.figures) > 1
@@ -118,7 +136,7 @@ def _time_items(session: Session, look: Look, project: Project) -> list[Action]:
             actions.append(do(keys.scale, percent / 100))
             imgui.close_current_popup()
         imgui.end_menu()
-    if imgui.menu_item_simple("Copy first pose to last key", enabled=count > 1):
+    if imgui.menu_item_simple("Copy first pose to last key", enabled=len(project.figure.keys) > 1):
         actions.append(do(keys.match_ends))
     imgui.separator()
     for name in ("preview start", "preview end", "preview none"):

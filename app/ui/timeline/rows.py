@@ -5,10 +5,12 @@ from itertools import pairwise
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.document import Figure, Switch, is_visible, layer_commands
-from app.editor import Action, SwitchDrag, do, layering
+from app.editor import Action, SwitchDrag, do
 from app.editor.actions import editing, timeline_pointing
 from app.ui.style import CHOSEN, SMALL, begin_tip, in_hand, ink, is_pressed, shortened, sized
 from app.ui.timeline.bands import THIN, Bands, FigureRow, tag
+from app.ui.timeline.keys import choose_row
+from app.ui.timeline.tracks import FOLD, draw_fold, draw_names, draw_ways
 
 HATCH = 0.55  # em between the lines over a time in which a figure is hidden
 EYE = 0.62  # em: half the width of the mark where a figure is shown or hidden
@@ -26,6 +28,7 @@ def draw_rows(bands: Bands, frame: int) -> list[Action]:
             _draw_ground(bands, row)
         for begin, end in _hidden(row.figure):
             _hatch(bands, row, begin, end)
+    draw_ways(bands)
     for row in bands.rows:
         imgui.push_id(f"row {row.figure.id}")
         for switch in row.figure.switches:
@@ -52,17 +55,20 @@ def _draw_names(bands: Bands, frame: int) -> list[Action]:
     for row in bands.rows:
         box = ImVec2(low.x, row.top), ImVec2(high.x - 0.3 * em, row.bottom)
         if bands.button(f"name {row.figure.id}", *box):
-            actions.append(do(layering.choose, row.figure.id))
+            actions += choose_row(row.figure.id, {})
         if row.is_active or in_hand():
             colour = ink(palette.accent, CHOSEN) if row.is_active else ink(palette.hovered)
             draw_list.add_rect_filled(*box, colour, 0.2 * em)
         icon = icons.ICON_FA_IMAGE if row.figure.still else icons.ICON_FA_PERSON
         colour = ink(palette.text if is_visible(row.figure, frame) else palette.dim)
         with sized(SMALL):
-            text = shortened(row.figure.name, box[1].x - low.x - 2.6 * em)
+            left = low.x + (FOLD * em if row.figure.tracks else 0.0)
+            text = shortened(row.figure.name, box[1].x - left - 2.6 * em)
             top = row.middle - imgui.get_text_line_height() / 2
-            draw_list.add_text(ImVec2(low.x + 0.4 * em, top), colour, icon)
-            draw_list.add_text(ImVec2(low.x + 1.8 * em, top), colour, text)
+            draw_list.add_text(ImVec2(left + 0.4 * em, top), colour, icon)
+            draw_list.add_text(ImVec2(left + 1.8 * em, top), colour, text)
+        actions += draw_fold(bands, row, low.x)
+    actions += draw_names(bands)
     _draw_scrolled(bands)
     imgui.pop_clip_rect()
     return actions

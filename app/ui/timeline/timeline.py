@@ -14,6 +14,7 @@ from app.editor import (
     TimeGesture,
     do,
     layering,
+    seen_at,
 )
 from app.editor.actions import editing, playback, timeline_pointing
 from app.editor.tools import pointing
@@ -32,6 +33,7 @@ from app.ui.timeline.ruler import (
     draw_playhead,
     draw_ruler,
 )
+from app.ui.timeline.tracks import draw_track_keys
 
 ZOOM_STEP = 1.2  # a notch of the wheel
 SCROLL_STEP = 4.0  # em
@@ -61,6 +63,7 @@ def _draw_track(bands: Bands, frame: int) -> list[Action]:
     actions += draw_markers(bands)
     actions += draw_playhead(bands, frame)
     actions += draw_keys(bands)
+    actions += draw_track_keys(bands)
     draw_box(bands)
     actions += draw_overview(bands, frame)
     actions += _go_on(bands)
@@ -106,23 +109,26 @@ def _go_on(bands: Bands) -> list[Action]:
         return [do(timeline_pointing.cancel)]
     # A press that does not go on is a click; only the playhead is there at once.
     goes_on = isinstance(gesture, Scrub) or was_dragged()
-    row = bands.pointed_row.figure.id
-    moves = [do(timeline_pointing.move, bands.pointed, row)] if goes_on else []
+    keys = bands.pointed_keys
+    moves = [do(timeline_pointing.move, bands.pointed, keys)] if goes_on else []
     if imgui.is_mouse_down(imgui.MouseButton_.left):
         return [*moves, *_pull(bands)] if goes_on else []
     if not was_dragged():
-        moves += _click(gesture)
+        moves += _click(bands, gesture)
     return [*moves, do(timeline_pointing.end)]
 
 
-def _click(gesture: TimeGesture) -> list[Action]:
+def _click(bands: Bands, gesture: TimeGesture) -> list[Action]:
     """Return what a press on something does that is let go where it was."""
     match gesture:
         case Scrub():
             return [do(editing.deselect_keys)]
-        case KeyDrag(pressed=frame, copies=False):
-            # The key alone, and its pose.
-            return [do(editing.choose_keys, frozenset({frame})), do(playback.scrub, frame)]
+        case KeyDrag(row=row, pressed=frame, copies=False):
+            # The key alone, and what it shows.
+            track = bands.project.track_in(row)
+            seen = bands.project.document.frames.clamp(seen_at(gesture.before, track, frame))
+            chosen = {row: frozenset({frame})}
+            return [do(editing.choose_keys_of, chosen), do(playback.scrub, seen)]
         case MarkerDrag(marker=frame):
             return [do(playback.scrub, frame)]
         case SwitchDrag(figure=figure, switch=frame):

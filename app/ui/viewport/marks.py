@@ -5,19 +5,20 @@ from functools import lru_cache
 import numpy as np
 from imgui_bundle import ImVec4
 
-from app.document import falls_short
+from app.document import Clip, falls_short, time_of, track_at
 from app.editor import Project, Session
 from app.editor.actions import tracking
-from app.motion import AttachedPoints, Box, PosableMesh, Shown
+from app.motion import AttachedPoints, Box, PosableMesh, Shown, still_handles
 from app.render import Colour, Disc, HandleMark, Line, mark_anchor, mark_handles
 from app.ui.style import Palette, density, interface_scale
 from app.ui.viewport.paths import mark_path
-from engine.arrays import Complexes
+from engine.arrays import Booleans, Complexes
 from engine.domain import Domain
 from engine.geometry import deepest_point
 
 FAINT = 3.0  # pixels: the radius of a handle of another layer
 STILL = 0.5  # pixels of the picture: a path that leads no farther is none
+GROUND, GROUND_BELOW = 17.0, 11.0  # pixels: length of the mark of a handle that stays, its depth
 DOT, KEY_DOT = 2.4, 4.4  # pixels: radius of a frame on a path, and of a key
 
 
@@ -57,6 +58,7 @@ def mark_all(
     handle_lines, discs = mark_handles(_handles(session, project, shown), scale=scale)
     anchor = find_anchor(project, shown)
     faint = _others(project, scale)
+    lines += _grounds(session, project, shown, scale)
     below = () if anchor is None else mark_anchor(_on(shown, anchor), scale=scale)
     return (*lines, *handle_lines), (*dots, *faint, *below, *discs)
 
@@ -113,6 +115,7 @@ def forget_places() -> None:
     """Forget what was found out about a project that was closed."""
     _deepest_point.cache_clear()
     _located.cache_clear()
+    _still.cache_clear()
 
 
 @lru_cache(maxsize=64)
@@ -123,6 +126,42 @@ def _deepest_point(domain: Domain) -> complex:
 @lru_cache(maxsize=4)
 def _located(mesh: PosableMesh, place: complex) -> AttachedPoints:
     return mesh.locate(np.array([place]), mesh.domain.mesh.vertices)
+
+
+@lru_cache(maxsize=4)
+def _still(clip: Clip) -> Booleans:
+    return still_handles(clip)
+
+
+def staying(shown: Shown) -> frozenset[int]:
+    """Return the ids of the handles that stay between the two keys around what is shown.
+
+    Those that their own tracks move there are none.
+    """
+    clip, still = shown.clip, _still(shown.clip)
+    interval = time_of(clip, shown.frame).interval
+    if interval >= len(still):
+        return frozenset()
+    tracks = (track for track in clip.figure.tracks if track_at(track, clip, shown.frame))
+    moved = {identity for track in tracks for identity in track.handles}
+    pairs = zip(clip.figure.handles, still[interval].tolist(), strict=True)
+    return frozenset(handle.id for handle, stays in pairs if stays and handle.id not in moved)
+
+
+def _grounds(session: Session, project: Project, shown: Shown, scale: float) -> list[Line]:
+    """Return a short line below each handle that stays, as if it stood on the ground there."""
+    per_pixel = scale / project.view(session.screen).scale
+    stays, lines = staying(shown), list[Line]()
+    for handle, place in zip(shown.clip.figure.handles, shown.handle_places.tolist(), strict=True):
+        if handle.id not in stays:
+            continue
+        middle = _on(shown, place) - GROUND_BELOW * per_pixel * 1j
+        ends = np.array([middle - GROUND / 2 * per_pixel, middle + GROUND / 2 * per_pixel])
+        lines += [
+            Line(points=ends, colour=(0.0, 0.0, 0.0, 0.5), width=4.5 * scale),
+            Line(points=ends, colour=(1.0, 1.0, 1.0, 1.0), width=2.5 * scale),
+        ]
+    return lines
 
 
 def _others(project: Project, scale: float) -> tuple[Disc, ...]:

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from app.document import Clip, Track
-from app.editor import Project
+from app.document import Track
+from app.editor import Project, seen_at
 from app.editor.actions import tracking
 from app.render import Colour, Disc, Line
 from engine.arrays import Complexes
@@ -20,8 +20,9 @@ def keys_on_path(project: Project) -> list[tuple[int, Complexes]]:
     track = _chosen(project)
     if track is None:
         return []
-    frames = {_seen_at(track, project.clip, key.frame) for key in track.keys}
-    return _places(project, track, sorted(frame for frame in frames if frame is not None))
+    document = project.document
+    frames = {seen_at(document, track, key.frame) for key in track.keys}
+    return _places(project, track, sorted(frame for frame in frames if frame in document.frames))
 
 
 def mark_path(
@@ -57,14 +58,6 @@ def mark_path(
 def _chosen(project: Project) -> Track | None:
     handle = project.chosen_track
     return None if handle is None else project.figure.track_of(handle)
-
-
-def _seen_at(track: Track, clip: Clip, own: int) -> int | None:
-    """Return the frame of the scene at which a key of a track is seen, later by its delay."""
-    frame = own + track.delay
-    if clip.loop and clip.period and frame > clip.frames.last:
-        frame -= clip.period
-    return frame if frame in clip.frames else None
 
 
 def _places(project: Project, track: Track, frames: list[int]) -> list[tuple[int, Complexes]]:

@@ -188,6 +188,7 @@ def _handle_menu(session: Session, screen: Screen, identity: int) -> list[Action
     if item("Delete", icons.ICON_FA_TRASH, with_key(ALT, "click")):
         actions.append(do(posing.remove_handles, chosen))
     actions += bound_item(session, "pin here") + bound_item(session, "lock")
+    actions += bound_item(session, "key handle")
     actions += _hold(handle, chosen) + _depth(session, screen, handle)
     imgui.separator()
     label = "Automatic anchor" if handle.position == figure.anchor else "Make it the anchor"

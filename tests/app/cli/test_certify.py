@@ -26,8 +26,14 @@ def certified(capsys, *words):
 
 def test_in_betweens_are_proven_between_frames_too(capsys):
     status, said = certified(capsys, "--json")
-    assert status == 0
-    for interval in json.loads(said)["intervals"]:
+    # Frames in which handles stay are measured, one by one.
+    assert status == 3
+    content = json.loads(said)
+    assert content["verdict"] == content["corrected"]["verdict"] == "measured"
+    assert content["corrected"]["excess"] == [0, 0, 0]
+    assert content["corrected"]["out_of_reach"] == []
+    for interval in content["intervals"]:
+        assert interval["verdict"] == "proven"
         proven = interval["proven"]
         assert proven["never_folds"]
         assert proven["unsettled_frames"] == []

@@ -317,11 +317,11 @@ def test_names_that_are_not_utf_8_are_written_and_told(project, tmp_path, capsys
 STUCK = """
 import sys, threading
 from app.cli.main import main
-from app.motion import inbetweens
+from app.motion.inbetweens import pose_sampler
 def prepare(*_, **__):
     print("stuck", flush=True)
     threading.Event().wait()
-inbetweens.prepare_inbetweens = prepare
+pose_sampler.prepare_inbetweens = prepare
 sys.exit(main(sys.argv[1:]))
 """
 

@@ -175,6 +175,17 @@ def test_a_base_beyond_its_bounds_gets_no_worse():
     assert (a - b).min() >= (a0 - b0).min() * (1 - 1e-4)
 
 
+def test_a_base_that_folds_stays_as_it_is():
+    corrector = star()
+    base = bent(corrector, 3.0)
+    assert np.any(np.abs(base.f) <= np.abs(base.g))
+    moves, firm = one_arm(0.2j)
+    found = corrector.correct(base, pins(base, moves, firm=firm), WIDE)
+    assert not found.phi.any()
+    assert not found.psi.any()
+    assert found.misses[2] == pytest.approx(0.2)
+
+
 def test_a_correction_turns_with_its_base():
     corrector = star()
     base = bent(corrector)

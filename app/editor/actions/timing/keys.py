@@ -1,6 +1,5 @@
 """What is done with keys as a whole, and the settings of time beside them."""
 
-from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from app.document import (
@@ -12,13 +11,18 @@ from app.document import (
     figure_commands,
     key_commands,
     scene_commands,
+    track_commands,
 )
 from app.editor.actions import editing, playback, posing
 from app.editor.project import Project
 from app.editor.session import Session, with_project
+from app.editor.timeline_view import KeysOf, frames_in, keys_in, own_frame
 
-# The frames of keys, by the ids of their figures.
-KeysOf = Mapping[int, frozenset[int]]
+EASE = editing.KeyVerb(key_commands.set_easing, track_commands.set_track_easing)
+PASS = editing.KeyVerb(key_commands.set_passing, track_commands.set_track_passing)
+REVERSE = editing.KeyVerb(key_commands.reverse_keys, track_commands.reverse_track_keys)
+SCALE = editing.KeyVerb(key_commands.scale_keys, track_commands.scale_track_keys)
+TURN = editing.KeyVerb(key_commands.set_turns)  # a track's keys turn by as much as they say
 
 
 @with_project
@@ -39,23 +43,17 @@ def insert_at(session: Session, frame: int) -> None:
 
 def set_easing(session: Session, keys: KeysOf, easing: Easing) -> None:
     """Set how time runs from keys on."""
-    _change(session, keys, lambda figure, at: key_commands.set_easing(figure, at, easing))
+    editing.edit(session, editing.change_keys(EASE, keys, easing))
 
 
 def set_passing(session: Session, keys: KeysOf, passing: Passing) -> None:
     """Set how the motion passes keys."""
-    _change(session, keys, lambda figure, at: key_commands.set_passing(figure, at, passing))
+    editing.edit(session, editing.change_keys(PASS, keys, passing))
 
 
 def set_turns(session: Session, keys: KeysOf, turns: int) -> None:
-    """Set how often the shape turns round after keys."""
-    _change(session, keys, lambda figure, at: key_commands.set_turns(figure, at, turns))
-
-
-def _change(
-    session: Session, keys: KeysOf, change: Callable[[int, frozenset[int]], Command]
-) -> None:
-    editing.edit(session, editing.change_keys(change, keys))
+    """Set how often the shape turns round after keys of poses."""
+    editing.edit(session, editing.change_keys(TURN, keys, turns))
 
 
 @with_project
@@ -63,8 +61,9 @@ def pass_otherwise(session: Session, project: Project) -> None:
     """Pass the chosen keys in the next way, or the key at the playhead or before it."""
     keys = _chosen_or_here(session, project)
     passings = list(Passing)
-    figure = project.active if project.active in keys else next(iter(keys))
-    first = project.document.figure(figure).key(min(keys[figure])).shown_passing
+    row = project.row if project.row in keys else next(iter(keys))
+    frame = min(keys[row])
+    first = next(k.shown_passing for k in keys_in(project.document, row) if k.frame == frame)
     set_passing(session, keys, passings[(passings.index(first) + 1) % len(passings)])
 
 
@@ -75,13 +74,16 @@ def ease(session: Session, project: Project, easing: Easing) -> None:
 
 
 def _chosen_or_here(session: Session, project: Project) -> KeysOf:
-    """Return the chosen keys, or that of the active figure at the playhead or before it."""
+    """Return the chosen keys, or that of the chosen row at the playhead or before it."""
     if project.chosen_of:
         return project.chosen_of
-    here = playback.current_frame(session, project)
-    before = [frame for frame in project.figure.key_frames if frame <= here]
-    frame = max(before, default=project.figure.keys[0].frame)
-    return {project.active: frozenset({frame})}
+    here, row = playback.current_frame(session, project), project.row
+    if (track := project.track_in(row)) is not None:
+        own = own_frame(project.document, track, here)
+        here = project.document.frames.first if own is None else own
+    frames = frames_in(project.document, row)
+    frame = max((each for each in frames if each <= here), default=min(frames))
+    return {row: frozenset({frame})}
 
 
 def ease_new_keys(session: Session, easing: Easing) -> None:
@@ -91,16 +93,11 @@ def ease_new_keys(session: Session, easing: Easing) -> None:
 
 @with_project
 def reverse(session: Session, project: Project) -> None:
-    """Let the chosen keys run backwards, or all of the figure's if fewer than two are chosen."""
+    """Let the chosen keys run backwards, or all of the row's if fewer than two are chosen."""
     keys = project.chosen_of
     if project.count_chosen < 2:
-        keys = {project.active: project.figure.key_frames}
-    span = _span(keys)
-    _rearrange(
-        session,
-        project,
-        editing.change_keys(lambda figure, at: key_commands.reverse_keys(figure, at, span), keys),
-    )
+        keys = {project.row: frames_in(project.document, project.row)}
+    _rearrange(session, project, editing.change_keys(REVERSE, keys, _span(keys)))
 
 
 @with_project
@@ -109,10 +106,7 @@ def scale(session: Session, project: Project, factor: float) -> None:
     command = scene_commands.scale_time(factor)
     if project.count_chosen >= 2:
         first, _ = _span(project.chosen_of)
-        command = editing.change_keys(
-            lambda figure, at: key_commands.scale_keys(figure, at, factor, first),
-            project.chosen_of,
-        )
+        command = editing.change_keys(SCALE, project.chosen_of, factor, first)
     _rearrange(session, project, command)
 
 
@@ -124,9 +118,9 @@ def _span(keys: KeysOf) -> tuple[int, int]:
 def _rearrange(session: Session, project: Project, command: Command) -> None:
     """Run a command that moves the chosen keys, and choose them where they are then."""
     chosen_of, everything = project.chosen_of, project.count_chosen < 2
-    others = {i: project.document.figure(i).key_frames - chosen_of[i] for i in chosen_of}
+    others = {row: frames_in(project.document, row) - chosen_of[row] for row in chosen_of}
     retime(session, command)
-    chosen = {i: project.document.figure(i).key_frames - others[i] for i in others}
+    chosen = {row: frames_in(project.document, row) - others[row] for row in others}
     editing.choose_keys_of(session, {} if everything else chosen)
 
 

@@ -1,6 +1,5 @@
 """Gestures of the pointer in the timeline, from press to release, and what it shows."""
 
-from collections.abc import Mapping
 from dataclasses import replace
 from itertools import count
 
@@ -12,6 +11,7 @@ from app.document import (
     key_commands,
     layer_commands,
     scene_commands,
+    track_commands,
 )
 from app.editor.actions import editing, playback
 from app.editor.actions.timing.keys import retime
@@ -21,13 +21,23 @@ from app.editor.timeline_view import (
     EdgeDrag,
     KeyBox,
     KeyDrag,
+    KeyRow,
+    KeysOf,
     MarkerDrag,
     Scrub,
     Strip,
     SwitchDrag,
     TimeDrag,
     TimeGesture,
+    figure_of,
+    frames_in,
+    keys_in,
+    row_of,
+    seen_at,
 )
+
+MOVE = editing.KeyVerb(key_commands.move_keys, track_commands.move_track_keys)
+COPY = editing.KeyVerb(key_commands.copy_keys, track_commands.copy_track_keys)
 
 
 @with_project
@@ -65,11 +75,11 @@ def begin(_: Session, project: Project, gesture: TimeGesture, strip: Strip) -> N
 
 
 @with_project
-def move(session: Session, project: Project, frame: float, row: int) -> None:
-    """Follow the pointer to another time, on the row of a figure."""
+def move(session: Session, project: Project, frame: float, row: KeyRow) -> None:
+    """Follow the pointer to another time, on a row."""
     match project.timing.gesture:
         case KeyBox() as box:
-            editing.choose_keys_of(session, _inside(project.document, box, frame, row))
+            editing.choose_keys_of(session, _inside(project, box, frame, row))
         case Scrub(offset=offset):
             playback.scrub(session, round(frame + offset))
         case TimeDrag() as drag:
@@ -98,37 +108,55 @@ def cancel(session: Session, project: Project) -> None:
     end(session)
 
 
-def _inside(
-    document: Document, box: KeyBox, frame: float, row: int
-) -> Mapping[int, frozenset[int]]:
+@with_project
+def unfold(_: Session, project: Project, figure: int) -> None:
+    """Let the tracks of a figure have rows, or fold them away."""
+    project.timing.unfolded ^= {figure}
+
+
+def rows_of(project: Project) -> list[KeyRow]:
+    """Return the rows of the timeline from top to bottom: the figure in front comes first."""
+    rows: list[KeyRow] = []
+    for figure in reversed(project.document.figures):
+        rows.append(figure.id)
+        if figure.id in project.timing.unfolded:
+            rows += [row_of(figure, track) for track in figure.tracks]
+    return rows
+
+
+def _inside(project: Project, box: KeyBox, frame: float, row: KeyRow) -> KeysOf:
     """Return the keys within a box that ends at a frame and a row, and those that it keeps."""
+    document = project.document
     low, high = sorted((box.start, frame))
-    order = [figure.id for figure in document.figures]
+    order = rows_of(project)
+    if box.row not in order or row not in order:
+        return box.keeps
     first, last = sorted(map(order.index, (box.row, row)))
     inside = dict(box.keeps)
-    for figure in document.figures[first : last + 1]:
+    for each in order[first : last + 1]:
+        figure = document.figure(figure_of(each))
         if figure.still:
             continue
-        frames = frozenset(key for key in figure.key_frames if low <= key <= high)
-        inside[figure.id] = inside.get(figure.id, frozenset()) | frames
+        track = project.track_in(each)
+        keys = [key.frame for key in keys_in(document, each)]
+        frames = frozenset(key for key in keys if low <= seen_at(document, track, key) <= high)
+        inside[each] = inside.get(each, frozenset()) | frames
     return inside
 
 
-def shift_of(
-    document: Document, keys: Mapping[int, frozenset[int]], wanted: int, *, copies: bool
-) -> int:
+def shift_of(document: Document, keys: KeysOf, wanted: int, *, copies: bool) -> int:
     """Return the number of frames next to `wanted` by which keys can be moved.
 
     Parameters
     ----------
-    keys : mapping of int to frozenset of int
-        Their frames, by the ids of their figures.
+    keys : mapping of KeyRow to frozenset of int
+        Their frames, by their rows.
     wanted : int
     copies : bool
         Whether they stay as well; then 0 stands for no copies.
     """
-    there = {figure: document.figure(figure).key_frames for figure in keys}
-    taken = there if copies else {figure: there[figure] - keys[figure] for figure in keys}
+    there = {row: frames_in(document, row) for row in keys}
+    taken = there if copies else {row: there[row] - keys[row] for row in keys}
     low, high = -min(map(min, keys.values())), LAST_FRAME - max(map(max, keys.values()))
     wanted = min(max(wanted, low), high)
     for distance in count():
@@ -137,7 +165,7 @@ def shift_of(
             if by == 0 or (
                 low <= by <= high
                 and not any(
-                    key + by in taken[figure] for figure, frames in keys.items() for key in frames
+                    key + by in taken[row] for row, frames in keys.items() for key in frames
                 )
             ):
                 return by
@@ -172,8 +200,7 @@ def _moved(drag: TimeDrag, frame: float) -> tuple[TimeDrag, Command] | None:
             return drag, _trim(drag, frame)
         case KeyDrag():
             by = shift_of(before, drag.keys, by, copies=drag.copies)
-            change = key_commands.copy_keys if drag.copies else key_commands.move_keys
-            command = editing.change_keys(lambda figure, at: change(figure, at, by), drag.keys)
+            command = editing.change_keys(COPY if drag.copies else MOVE, drag.keys, by)
             if not by:
                 command = Command(command.label, lambda document: document)
             return None if by == drag.by else (replace(drag, by=by), command)
@@ -197,7 +224,7 @@ def _trim(drag: EdgeDrag, pointed: float) -> Command:
     frame = frames.clamp(round(pointed))
     match drag.edge:
         case "animation end":
-            last_key = max(figure.keys[-1].frame for figure in document.figures)
+            last_key = max(figure.ends[1] for figure in document.figures)
             least = max(last_key, frames.first + 1)
             last = min(max(round(pointed), least), LAST_FRAME)
             return scene_commands.set_frames(FrameRange(frames.first, last))

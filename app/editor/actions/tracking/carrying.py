@@ -6,10 +6,10 @@ the newest place.
 
 from app.document import Track, track_at, track_commands
 from app.editor.actions import playback
-from app.editor.actions.timing import tracks
 from app.editor.actions.tracking.places import kept
 from app.editor.project import Project
 from app.editor.session import Session, with_project
+from app.editor.timeline_view import own_frame
 from app.editor.work import Carry
 
 
@@ -68,11 +68,10 @@ def put_key(
     """Give a handle's track a key at a frame of the scene; tell whether nothing is awaited."""
     figure, clip = project.figure, project.clip
     track = figure.track_of(handle)
-    own = frame if track is None else tracks.own_frame(track, clip, frame)
+    own = frame if track is None else own_frame(project.document, track, frame)
     if own is None:
-        session.tell(
-            f"Frame {frame} comes before the delay of {figure.handle(handle).name}'s track is over."
-        )
+        late = 0 if track is None else track.delay
+        session.tell(f"The track is {late} frames late: no key of it can be seen at frame {frame}.")
         return True
     value = kept(project, handle, frame, place)
     if value is None:

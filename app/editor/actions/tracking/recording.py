@@ -4,11 +4,11 @@ from dataclasses import replace
 
 from app.document import Track, TrackKey, track_at, track_commands
 from app.editor.actions import editing, playback, posing
-from app.editor.actions.timing import tracks
 from app.editor.actions.tracking.carrying import go_on, put_key
 from app.editor.actions.tracking.places import ground_at, index_of
 from app.editor.project import Project
 from app.editor.session import Session, with_project
+from app.editor.timeline_view import own_frame
 from app.editor.work import Sample, Take
 from app.motion import Ground, corrected_clip
 from engine.geometry.kinematics import fit_keys
@@ -82,6 +82,7 @@ def end_take(session: Session, project: Project) -> None:
     take.is_over = True
     project.playhead = replace(take.playhead, since=None, speed=take.speed)
     project.chosen_track = take.handle
+    project.timing.unfolded |= {take.figure}
 
 
 def keep(session: Session) -> None:
@@ -167,7 +168,7 @@ def _write(project: Project, take: Take) -> None:
     fitted = _fitted(project, take, values)
 
     def own(frame: int) -> int | None:
-        return tracks.own_frame(fresh, clip, _wrapped(project, frame))
+        return own_frame(project.document, fresh, _wrapped(project, frame))
 
     recorded = {own(frame) for frame in range(min(fitted), max(fitted) + 1)}
     keys = {} if before is None else {k.frame: k for k in before.keys if k.frame not in recorded}

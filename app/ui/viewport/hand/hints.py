@@ -9,6 +9,7 @@ from app.editor import Action, Hint, Project, Session
 from app.editor.tools import Spot, tools_of
 from app.ui.shortcuts import ALT, BINDINGS, CTRL, SHIFT, Binding, with_key
 from app.ui.style import Look, ink, tip
+from app.ui.viewport.marks import staying
 from app.ui.viewport.screen import Screen
 from engine.maps import HarmonicMap
 
@@ -35,6 +36,8 @@ def hint_at(session: Session, screen: Screen, spot: Spot) -> str:
     if session.cutting is not None or session.moves:
         return _sentence([*told, "Esc goes back"])
     if spot.handle is not None:
+        if spot.handle in staying(screen.shown):
+            told.append("the line below it tells that it stays until the next key")
         return f"{screen.shown.clip.figure.handle(spot.handle).name}: {', '.join(told)}"
     if not (spot.on_shape or spot.on_ring):
         told += ["wheel to zoom", "middle drag to move the view"]

@@ -1,0 +1,86 @@
+"""What a handle follows by: a spring that swings about its place in the motion."""
+
+from dataclasses import replace
+from typing import Any
+
+from imgui_bundle import icons_fontawesome_6 as icons, imgui
+
+from app.document import SPRINGS, Handle, Spring, track_commands
+from app.editor import Action, Project, do
+from app.editor.actions import editing
+from app.ui.style import (
+    Look,
+    Scale,
+    at_end,
+    heading,
+    icon_button,
+    label,
+    segments,
+    slider,
+    small,
+    tip,
+)
+
+FREQUENCIES = Scale(left=0.2, right=12.0, logarithmic=True)
+DAMPINGS = Scale(left=0.0, right=1.5)
+LAGS = Scale(left=0.0, right=12.0)
+STRENGTHS = Scale(left=0.0, right=2.0)
+LEAST_FREQUENCY = 0.01  # Hz
+# Each number of a spring: its field, its label, what it spans, how it is written, what it means.
+NUMBERS = (
+    ("frequency", "Frequency", FREQUENCIES, "%.2f", "How often it swings in a second, in Hz"),
+    ("damping", "Damping", DAMPINGS, "%.2f", "How soon it comes to rest: 0 never, 1 at once"),
+    ("lag", "Lag", LAGS, "%.1f", "By how many frames it notices later that its place moves"),
+    ("strength", "Strength", STRENGTHS, "%.2f", "How far it swings: 1 as a spring does"),
+)
+
+
+def draw_spring(look: Look, project: Project, handle: Handle) -> list[Action]:
+    """Draw how a handle follows, if it does, and what it swings like."""
+    spring, actions = project.figure.spring_of(handle.id), list[Action]()
+    heading(look, "Follows", framed=True)
+    if spring is not None:
+        at_end(1.15 * imgui.get_frame_height())
+        if icon_button(look, icons.ICON_FA_TRASH, "delete spring", "Let it follow no longer"):
+            command = track_commands.remove_springs
+            actions.append(do(editing.edit_figure, command, (handle.id,)))
+    label(look, "Like")
+    names = [(name, name.capitalize()) for name in SPRINGS]
+    taken = segments(look, "preset", names, "" if spring is None else _preset(spring))
+    tip("Let it come late and swing, like one of these")
+    if taken is not None:
+        frequency, damping = SPRINGS[taken]
+        usual = spring or Spring(handle=handle.id, frequency=frequency, damping=damping)
+        actions.append(_set(replace(usual, frequency=frequency, damping=damping)))
+    if spring is None:
+        small(look, "It follows the shape at once. Choose what it swings like.")
+        return actions
+    label(look, "Spring")
+    changed, enabled = imgui.checkbox("on##spring", spring.enabled)
+    tip("Whether it follows so; its numbers stay")
+    if changed:
+        actions.append(_set(replace(spring, enabled=enabled)))
+    for field, text, scale, written, hint in NUMBERS:
+        label(look, text)
+        entered = slider(look, field, getattr(spring, field), scale, text=written, hint=hint)
+        if entered is not None:
+            changed_field: dict[str, Any] = {field: _allowed(field, entered.value)}
+            actions.append(_set(replace(spring, **changed_field)))
+    return actions
+
+
+def _allowed(field: str, value: float) -> float:
+    """Return a value that a spring can have."""
+    least = LEAST_FREQUENCY if field == "frequency" else 0.0
+    most = {"frequency": 1000.0, "damping": 100.0, "lag": 10_000.0, "strength": 10.0}[field]
+    return min(max(round(value, 3), least), most)
+
+
+def _set(spring: Spring) -> Action:
+    return do(editing.edit_figure, track_commands.put_spring, spring)
+
+
+def _preset(spring: Spring) -> str:
+    """Return the name of the preset that a spring is, if any."""
+    own = spring.frequency, spring.damping
+    return next((name for name, numbers in SPRINGS.items() if numbers == own), "")

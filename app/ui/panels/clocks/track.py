@@ -1,0 +1,134 @@
+"""The track of a handle: keys of its own, beside those of whole poses."""
+
+from imgui_bundle import icons_fontawesome_6 as icons, imgui
+
+from app.document import Handle, Track, falls_short, pairs_by_name, track_commands
+from app.editor import Action, Project, Session, do
+from app.editor.actions import editing, playback, tracks
+from app.ui.shortcuts import bound_text_button
+from app.ui.style import (
+    FILL,
+    Look,
+    Scale,
+    at_end,
+    beside,
+    heading,
+    icon_button,
+    label,
+    segments,
+    slider,
+    small,
+    text_button,
+    tip,
+)
+
+REACHES = Scale(left=0.0, right=1.0)
+LONGEST = 48  # frames: the delay at the end of the slider, where nothing comes round
+KINDS = (("pose", "With the pose"), ("picture", "Planted"))
+
+
+def draw_track(session: Session, look: Look, project: Project, handle: Handle) -> list[Action]:
+    """Draw the track of a handle, and what makes it one."""
+    track = project.figure.track_of(handle.id)
+    if track is None:
+        heading(look, "Own track")
+        actions = bound_text_button(session, "key handle", FILL)
+        small(look, "It moves with the whole pose. Keyed alone, it gets keys of its own.")
+        return actions
+    heading(look, "Own track", framed=True)
+    at_end(1.15 * imgui.get_frame_height())
+    actions = []
+    hint = "Delete the track: the handle moves with the whole pose again"
+    if icon_button(look, icons.ICON_FA_TRASH, "delete track", hint):
+        command = track_commands.remove_tracks
+        actions.append(do(editing.edit_figure, command, (handle.id,)))
+    actions += bound_text_button(session, "key handle", FILL)
+    _together(look, project, track)
+    actions += _kind(look, project, handle, track) + _numbers(look, project, handle, track)
+    actions += _copies(project, handle)
+    _out_of_reach(session, look, project, handle)
+    return actions
+
+
+def _together(look: Look, project: Project, track: Track) -> None:
+    """Tell which handles a track moves, if they are several."""
+    if len(track.handles) > 1:
+        names = ", ".join(project.figure.handle(identity).name for identity in track.handles)
+        small(look, f"It moves {names} together.")
+
+
+def _kind(look: Look, project: Project, handle: Handle, track: Track) -> list[Action]:
+    """Draw whether a track acts, what its keys are places in, and whether they turn the shape."""
+    actions: list[Action] = []
+    label(look, "Keys are")
+    kind = segments(look, "kind", KINDS, "picture" if track.planted else "pose")
+    tip("Beside where the pose has it, or places in the picture, as of a foot on the ground")
+    if kind is not None:
+        actions.append(do(tracks.plant, handle.id, kind == "picture"))
+    label(look, "Track")
+    changed, enabled = imgui.checkbox("on##track", track.enabled)
+    tip("Whether the track acts; its keys stay")
+    if changed:
+        command = track_commands.enable_track(project.active, handle.id, enabled=enabled)
+        actions.append(do(editing.edit, command))
+    imgui.same_line()
+    changed, turns = imgui.checkbox("Keys turn it, too", track.turns)
+    tip("Let its keys turn the shape at the handle; else it turns as the shape likes")
+    if changed:
+        command = track_commands.set_turning(project.active, handle.id, turns=turns)
+        actions.append(do(editing.edit, command))
+    return actions
+
+
+def _numbers(look: Look, project: Project, handle: Handle, track: Track) -> list[Action]:
+    actions: list[Action] = []
+    frames = project.document.frames
+    longest = frames.last - frames.first if project.document.loop else LONGEST
+    label(look, "Delay")
+    hint = "By how many frames the track is late; in a loop it comes round"
+    scale = Scale(left=0.0, right=float(max(longest, 1)))
+    entered = slider(look, "delay", float(track.delay), scale, text="%.0f", hint=hint)
+    if entered is not None:
+        delay = round(scale.clamp(entered.value) if project.document.loop else entered.value)
+        actions.append(do(editing.edit_figure, track_commands.set_delay, handle.id, delay))
+    label(look, "Reach")
+    hint = "How far around the handle the body gives: 0 hardly, 1 as it likes"
+    entered = slider(look, "reach", track.reach, REACHES, hint=hint)
+    if entered is not None:
+        reach = round(REACHES.clamp(entered.value), 2)
+        actions.append(do(editing.edit_figure, track_commands.set_reach, handle.id, reach))
+    return actions
+
+
+def _copies(project: Project, handle: Handle) -> list[Action]:
+    """Draw what gives another handle the same track."""
+    actions: list[Action] = []
+    widths, figure = beside(2), project.figure
+    imgui.set_next_item_width(next(widths))
+    if imgui.begin_combo("##copy track", "Copy to…"):
+        for other in figure.handles:
+            if other.id == handle.id:
+                continue
+            mark = "" if figure.track_of(other.id) is None else "  (has one)"
+            if imgui.menu_item_simple(f"{other.name}{mark}###copy to {other.id}"):
+                command = track_commands.copy_track
+                actions.append(do(editing.edit_figure, command, handle.id, other.id))
+        imgui.end_combo()
+    tip("Give another handle the same track, in place of its own")
+    is_pair = handle.id in pairs_by_name(figure.handles)
+    hint = (
+        "Give its partner on the other side the mirrored track"
+        if is_pair
+        else "Mirror its track: no partner on the other side was found by name"
+    )
+    if text_button("Mirror track" if not is_pair else "Copy mirrored", next(widths), hint):
+        actions.append(do(editing.edit_figure, track_commands.mirror_track, handle.id))
+    return actions
+
+
+def _out_of_reach(session: Session, look: Look, project: Project, handle: Handle) -> None:
+    """Tell by how much the handle misses its track in the present frame, where it does."""
+    frame, corrected = playback.current_frame(session, project), project.puppet.corrected
+    miss = corrected.misses.get(frame, {}).get(handle.id, 0.0) if corrected else 0.0
+    if falls_short(project.figure, miss):
+        small(look, f"{miss:.0f} px short of its track here.", look.palette.danger)

@@ -1,0 +1,217 @@
+"""Rows of tracks: their names, when they act, their keys, and where they are out of reach."""
+
+from collections.abc import Collection
+from itertools import pairwise
+
+from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
+
+from app.document import Figure, Track, TrackKey, track_commands
+from app.editor import Action, KeyDrag, TrackRow, do, row_of
+from app.editor.actions import editing, timeline_pointing
+from app.ui.shortcuts import CTRL, with_key
+from app.ui.style import CHOSEN, SMALL, begin_tip, in_hand, ink, shortened, sized, tip
+from app.ui.timeline.bands import THIN, Bands, FigureRow, TrackLane, in_seconds
+from app.ui.timeline.keys import (
+    choose_row,
+    draw_mark,
+    is_dragged,
+    origin_of,
+    tag_dragged,
+    take_key,
+)
+from app.ui.timeline.menus import PASSINGS, key_menu
+from app.ui.timeline.misses import misses_of
+
+RADIUS, GRIP = 0.4, 0.55  # em: half a key's diagonal, and of the box that takes it
+WAY, LATE = 0.22, 0.1  # em: heights of the line where a track acts, and of that of its delay
+FOLD = 1.1  # em: width of the triangle that folds tracks away
+
+
+def name_of(figure: Figure, track: Track) -> str:
+    """Return what a track is called: by its handles."""
+    return ", ".join(figure.handle(identity).name for identity in track.handles)
+
+
+def draw_fold(bands: Bands, row: FigureRow, left: float) -> list[Action]:
+    """Draw the triangle by which the tracks of a figure are folded away, if it has any."""
+    figure, em = row.figure, bands.look.em
+    if not figure.tracks:
+        return []
+    half = THIN / 2 * em
+    low, high = ImVec2(left, row.middle - half), ImVec2(left + FOLD * em, row.middle + half)
+    clicked = bands.button(f"fold {figure.id}", low, high)
+    is_open = figure.id in bands.project.timing.unfolded
+    many = f"{len(figure.tracks)} tracks" if len(figure.tracks) > 1 else "its track"
+    tip(f"Fold {many} away" if is_open else f"Show {many}")
+    palette = bands.look.palette
+    icon = icons.ICON_FA_CARET_DOWN if is_open else icons.ICON_FA_CARET_RIGHT
+    top = row.middle - imgui.get_text_line_height() / 2
+    colour = ink(palette.text if in_hand() else palette.dim)
+    imgui.get_window_draw_list().add_text(ImVec2(left + 0.3 * em, top), colour, icon)
+    return [do(timeline_pointing.unfold, figure.id)] if clicked else []
+
+
+def draw_names(bands: Bands) -> list[Action]:
+    """Draw the names of tracks beside their rows, and what switches them on and off."""
+    actions: list[Action] = []
+    for lane in bands.track_rows:
+        imgui.push_id(f"track {lane.figure.id} {lane.track.handles[0]}")
+        actions += _draw_name(bands, lane)
+        imgui.pop_id()
+    return actions
+
+
+def _draw_name(bands: Bands, lane: TrackLane) -> list[Action]:
+    palette, draw_list, em = bands.look.palette, imgui.get_window_draw_list(), bands.look.em
+    figure, track, row = lane.figure, lane.track, row_of(lane.figure, lane.track)
+    low = ImVec2(bands.corner.x, lane.top)
+    high = ImVec2(bands.left - 0.3 * em, lane.bottom)
+    actions: list[Action] = []
+    if bands.button("name", low, high):
+        actions += choose_row(row, {})
+        actions.append(do(editing.select, frozenset(track.handles)))
+    if lane.is_chosen or in_hand():
+        colour = ink(palette.accent, CHOSEN) if lane.is_chosen else ink(palette.hovered)
+        draw_list.add_rect_filled(low, high, colour, 0.2 * em)
+    tip("Click to choose the track: drags of its handle and keys go there then")
+    switch = high.x - 2.0 * em
+    with sized(SMALL):
+        top = lane.middle - imgui.get_text_line_height() / 2
+        icon = icons.ICON_FA_THUMBTACK if track.planted else icons.ICON_FA_ROUTE
+        text = shortened(name_of(figure, track), switch - low.x - 3.4 * em)
+        colour = ink(palette.text if track.enabled else palette.dim)
+        draw_list.add_text(ImVec2(low.x + 1.4 * em, top), ink(palette.dim), icon)
+        draw_list.add_text(ImVec2(low.x + 2.9 * em, top), colour, text)
+    clicked = bands.button("switch", ImVec2(switch, lane.top), high)
+    tip("Switch the track off: its keys stay" if track.enabled else "Switch the track on")
+    icon = icons.ICON_FA_TOGGLE_ON if track.enabled else icons.ICON_FA_TOGGLE_OFF
+    colour = ink(palette.accent if track.enabled else palette.dim)
+    with sized(SMALL):
+        draw_list.add_text(ImVec2(switch + 0.3 * em, top), colour, icon)
+    if clicked:
+        command = track_commands.enable_track(
+            figure.id, track.handles[0], enabled=not track.enabled
+        )
+        actions.append(do(editing.edit, command))
+    return actions
+
+
+def draw_ways(bands: Bands) -> None:
+    """Draw the grounds of tracks' rows, when each one acts, and where it is out of reach."""
+    palette, draw_list, em = bands.look.palette, imgui.get_window_draw_list(), bands.look.em
+    for lane in bands.track_rows:
+        low, high = ImVec2(bands.left, lane.top), ImVec2(bands.right, lane.bottom)
+        draw_list.add_rect_filled(low, high, ink(palette.desk, 0.45))
+        if lane.is_chosen:
+            draw_list.add_rect_filled(low, high, ink(palette.accent, 0.16))
+        draw_list.add_line(ImVec2(low.x, high.y), high, ink(palette.line))
+        colour = ink(palette.text if lane.track.enabled else palette.dim, 0.35)
+        for first, last in _stretches(bands, lane.track):
+            half = WAY / 2 * em
+            draw_list.add_rect_filled(
+                ImVec2(bands.x(first), lane.middle - half),
+                ImVec2(bands.x(last), lane.middle + half),
+                colour,
+                half,
+            )
+        _draw_delay(bands, lane)
+        for first, last in _runs(misses_of(bands.project, lane.figure, lane.track)):
+            draw_list.add_rect_filled(
+                ImVec2(bands.x(first - 0.5), lane.top + 1),
+                ImVec2(bands.x(last + 0.5), lane.bottom - 1),
+                ink(palette.danger, 0.55),
+            )
+
+
+def _stretches(bands: Bands, track: Track) -> list[tuple[int, int]]:
+    """Return from where to where a track acts, in parts where a loop ends between them."""
+    document = bands.project.document
+    first, last = track.keys[0].frame + track.delay, track.keys[-1].frame + track.delay
+    frames = document.frames
+    period = frames.last - frames.first
+    if not document.loop or last <= frames.last:
+        return [(first, last)]
+    if first > frames.last:
+        return [(first - period, last - period)]
+    return [(first, frames.last), (frames.first, last - period)]
+
+
+def _draw_delay(bands: Bands, lane: TrackLane) -> None:
+    """Draw by how much a track is late, from where its first key would be without that."""
+    if not lane.track.delay:
+        return
+    em, first = bands.look.em, lane.track.keys[0].frame
+    begin, end = bands.x(first), bands.x(first + lane.track.delay)
+    y, colour = lane.bottom - 0.22 * em, ink(bands.look.palette.anchor, 0.9)
+    draw_list = imgui.get_window_draw_list()
+    draw_list.add_line(ImVec2(begin, y), ImVec2(end, y), colour, LATE * em)
+    draw_list.add_line(
+        ImVec2(begin, y - 0.15 * em), ImVec2(begin, y + 0.15 * em), colour, LATE * em
+    )
+
+
+def _runs(frames: Collection[int]) -> list[tuple[int, int]]:
+    """Return the first and last of frames that follow each other."""
+    ordered = sorted(frames)
+    cuts = [index for index, (one, other) in enumerate(pairwise(ordered), 1) if other - one > 1]
+    parts = pairwise([0, *cuts, len(ordered)]) if ordered else ()
+    return [(ordered[begin], ordered[end - 1]) for begin, end in parts]
+
+
+def draw_track_keys(bands: Bands) -> list[Action]:
+    """Draw the keys of tracks, and take what the pointer does to them."""
+    actions: list[Action] = []
+    bands.push_clip()
+    for lane in bands.track_rows:
+        imgui.push_id(f"track {lane.figure.id} {lane.track.handles[0]}")
+        for key in lane.track.keys:
+            actions += _key(bands, lane, key)
+        imgui.pop_id()
+    imgui.pop_clip_rect()
+    return actions
+
+
+def _key(bands: Bands, lane: TrackLane, key: TrackKey) -> list[Action]:
+    em, gesture = bands.look.em, bands.project.timing.gesture
+    row = TrackRow(lane.figure.id, lane.track.handles[0])
+    gap = min((b.frame - a.frame for a, b in pairwise(lane.track.keys)), default=99)
+    room = max(0.48 * gap * bands.strip.scale, 0.24)
+    x, grip, radius = bands.x_of(lane.track, key.frame), GRIP * em, min(room, RADIUS) * em
+    if not bands.shows(x - grip, x + grip):
+        return []
+    grip = min(grip, 1.4 * radius)
+    low, high = ImVec2(x - grip, lane.middle - grip), ImVec2(x + grip, lane.middle + grip)
+    bands.button(f"key {origin_of(gesture, row, key.frame)}", low, high, right=True)
+    is_large = in_hand() or is_dragged(gesture, row, key.frame)
+    _draw_key(bands, lane, key, ImVec2(x, lane.middle), (1.15 if is_large else 1.0) * radius)
+    actions = take_key(bands, row, key.frame)
+    tag_dragged(bands, row, key.frame, x)
+    if not isinstance(gesture, KeyDrag):
+        _tell(bands, lane, key)
+    return actions + key_menu(bands, row, key)
+
+
+def _draw_key(bands: Bands, lane: TrackLane, key: TrackKey, centre: ImVec2, radius: float) -> None:
+    palette, em, passing = bands.look.palette, bands.look.em, key.shown_passing
+    row = TrackRow(lane.figure.id, lane.track.handles[0])
+    is_chosen = key.frame in bands.project.chosen_of.get(row, ())
+    colour = palette.text if lane.track.enabled else palette.dim
+    if is_chosen:
+        draw_mark(passing, centre, radius + 0.2 * em, ink(palette.accent, 0.35))
+    draw_mark(passing, centre, radius + 0.1 * em, ink(palette.desk))
+    draw_mark(passing, centre, radius, ink(palette.accent if is_chosen else colour))
+
+
+def _tell(bands: Bands, lane: TrackLane, key: TrackKey) -> None:
+    """Explain a key in a tooltip."""
+    if not begin_tip():
+        return
+    document, track = bands.project.document, lane.track
+    imgui.text_unformatted(f"Key of {name_of(lane.figure, track)} at frame {key.frame}")
+    if track.delay:
+        imgui.same_line()
+        imgui.text_disabled(f"{track.delay} frames late, {in_seconds(track.delay, document.fps)}")
+    name, hint = PASSINGS[key.shown_passing]
+    imgui.text_unformatted(f"{name}: {hint[0].lower()}{hint[1:]}")
+    imgui.text_disabled(f"Drag to move, {with_key(CTRL, 'drag')} to copy, right click for more")
+    imgui.end_tooltip()

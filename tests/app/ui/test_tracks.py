@@ -1,0 +1,419 @@
+"""Tracks in the timeline and in the panel of handles, as a person makes and changes them."""
+
+import numpy as np
+import pytest
+from imgui_bundle import ImVec2
+
+from app.document import clip_of, track_at, track_commands
+from app.document.timing import PRESETS, Passing, Spring, Track, TrackKey
+from app.editor.actions import editing, keys, playback, timeline_pointing, tracks
+from app.editor.timeline_view import TrackRow, frames_in
+from app.motion import Animation
+from app.ui.style import PALETTES
+from app.ui.timeline.misses import misses_of, told
+from app.ui.viewport.marks import mark_all, staying
+
+LEFT, RIGHT = 0, 1  # ids of the bar's handles
+WAVE = ((0, 0), (8, 12 + 6j), (16, 0))
+FAR = 1500  # pixels: farther than the bar, held at its other end, can be stretched
+
+
+def with_track(window, project, keys=WAVE, handle=RIGHT, **settings):
+    """Give a handle a track, show its row, and choose it."""
+    own = tuple(TrackKey(frame=frame, place=complex(place)) for frame, place in keys)
+    track = Track(handles=(handle,), keys=own, **settings)
+    editing.edit(window.session, track_commands.put_track(project.active, track))
+    timeline_pointing.unfold(window.session, project.active)
+    tracks.choose(window.session, handle)
+    window.settle()
+    return project.figure.track_of(handle)
+
+
+def row(project, handle=RIGHT):
+    return TrackRow(project.active, handle)
+
+
+def frames_of(project, handle=RIGHT):
+    return tuple(sorted(frames_in(project.document, row(project, handle))))
+
+
+def place_of(project, handle, frame):
+    """Where a handle is at a frame, exactly."""
+    clip = clip_of(project.document, project.active)
+    point = np.array([project.figure.handle(handle).position])
+    return complex(Animation(clip, points=point).positions(frame)[0])
+
+
+class Rows:
+    """The robot's pointer among the rows of the timeline."""
+
+    def __init__(self, robot, project):
+        self.robot, self.project = robot, project
+        robot.set_ref("###Timeline")
+        first, last = project.figure.keys[0].frame, project.figure.keys[-1].frame
+        begin, end = (self.place(f"row {project.active}", f"key {f}") for f in (first, last))
+        self._step = (end.x - begin.x) / (last - first)
+        self._origin = begin.x - first * self._step
+        self.pose_y = begin.y
+
+    def name(self, place, item):
+        return f"**/{place}/{item}"
+
+    def place(self, place, item):
+        return self.robot.item_info(self.name(place, item)).rect_full.get_center()
+
+    def of(self, item, handle=RIGHT):
+        return self.name(f"track {self.project.active} {handle}", item)
+
+    def y(self, handle=RIGHT):
+        return self.robot.item_info(self.of("name", handle)).rect_full.get_center().y
+
+    def go_to(self, frame, y):
+        self.robot.mouse_move_to_pos(ImVec2(self._origin + frame * self._step, y))
+
+    def drag(self, item, *frames, key=None):
+        self.robot.mouse_move(self.of(item))
+        if key is not None:
+            self.robot.key_down(int(key))
+        self.robot.mouse_down(0)
+        for frame in frames:
+            self.go_to(frame, self.y())
+        self.robot.mouse_up(0)
+        if key is not None:
+            self.robot.key_up(int(key))
+
+
+@pytest.fixture
+def play(window, bent):
+    def play(what):
+        window.run(lambda robot: what(Rows(robot, bent)))
+        window.settle()
+        return bent.document
+
+    return play
+
+
+@pytest.fixture
+def press(window):
+    """A function that clicks on something in the tab of handles."""
+
+    def press(name):
+        window.show_tab("Handle")
+        window.run(lambda robot: (robot.set_ref("//Handle"), robot.item_click(f"**/{name}")))
+        window.settle()
+
+    return press
+
+
+def test_a_handle_is_keyed_alone_by_one_click(window, bent, press):
+    before, there = bent.document, place_of(bent, RIGHT, 12)
+    window.act(playback.seek, 12)
+    window.act(editing.select, frozenset({RIGHT}))
+    press("###key handle")
+    track = bent.figure.track_of(RIGHT)
+    assert [(key.frame, key.place) for key in track.keys] == [(12, 0)]
+    assert bent.chosen_track == RIGHT
+    assert bent.figure.keys == before.figures[0].keys
+    assert abs(place_of(bent, RIGHT, 12) - there) < 1e-6, "nothing moves"
+    # Once more at the same frame there is nothing to do, and at another one there is.
+    press("###key handle")
+    window.act(playback.seek, 18)
+    window.run(lambda robot: robot.key_press(int(window.Key.mod_shift) | int(window.Key.i)))
+    assert frames_of(bent) == (12, 18)
+    window.act(editing.undo)
+    window.act(editing.undo)
+    assert bent.document is before
+    assert bent.chosen_track is None
+    window.act(editing.redo)
+    assert bent.chosen_track == RIGHT
+
+
+def test_a_key_between_two_others_keeps_what_the_track_does(window, bent, play):
+    track = with_track(window, bent, delay=2)
+    wanted = track_at(track, bent.clip, 7).place
+
+    def double_click(rows):
+        rows.go_to(7, rows.y())
+        rows.robot.mouse_double_click(0)
+
+    play(double_click)
+    assert playback.current_frame(window.session, bent) == 7
+    assert frames_of(bent) == (0, 5, 8, 16)
+    (key,) = (key for key in bent.figure.track_of(RIGHT).keys if key.frame == 5)
+    assert key.place == wanted
+
+
+def test_handles_of_a_selection_are_keyed_together_and_others_on_their_own(window, bent):
+    window.act(playback.seek, 6)
+    window.act(editing.select, frozenset({LEFT, RIGHT}))
+    window.act(tracks.key_selected)
+    assert [track.handles for track in bent.figure.tracks] == [(LEFT, RIGHT)]
+    window.act(editing.undo)
+    with_track(window, bent)
+    before = bent.document
+    window.act(editing.select, frozenset({LEFT, RIGHT}))
+    window.act(tracks.key_selected)
+    assert frames_of(bent, LEFT) == (6,)
+    assert frames_of(bent, RIGHT) == (0, 6, 8, 16)
+    window.act(editing.undo)
+    assert bent.document is before, "that was one step"
+
+
+def test_rows_of_tracks_are_folded_away_until_somebody_asks(window, bent, play):
+    own = (TrackKey(frame=3, place=2j),)
+    editing.edit(
+        window.session, track_commands.put_track(bent.active, Track(handles=(RIGHT,), keys=own))
+    )
+    window.settle()
+    is_there = []
+
+    def look(rows):
+        is_there.append(rows.robot.item_exists(rows.of("key 3")))
+        rows.robot.item_click(f"**/fold {bent.active}")
+        is_there.append(rows.robot.item_exists(rows.of("key 3")))
+
+    play(look)
+    assert is_there == [False, True]
+    assert bent.timing.unfolded == {bent.active}
+
+
+def test_keys_of_a_track_are_moved_copied_and_deleted(window, bent, play):
+    with_track(window, bent, delay=3)
+    before = bent.document
+    play(lambda rows: rows.drag("key 8", 12, 13))
+    assert frames_of(bent) == (0, 10, 16)
+    assert bent.chosen_of == {row(bent): {10}}
+    assert bent.chosen_track == RIGHT
+    play(lambda rows: rows.drag("key 10", 15, 17, key=window.Key.mod_ctrl))
+    assert frames_of(bent) == (0, 10, 14, 16)
+    window.run(lambda robot: robot.key_press(int(window.Key.delete)))
+    assert frames_of(bent) == (0, 10, 16)
+    for _ in range(3):
+        window.act(editing.undo)
+    assert bent.document is before
+    # A click goes to where the key is seen.
+    play(lambda rows: rows.robot.item_click(rows.of("key 8")))
+    assert playback.current_frame(window.session, bent) == 11
+
+
+def test_a_drag_of_a_track_key_is_given_up_with_esc(window, bent, play):
+    with_track(window, bent)
+    before = bent.document
+
+    def give_up(rows):
+        rows.robot.mouse_move(rows.of("key 8"))
+        rows.robot.mouse_down(0)
+        rows.go_to(11, rows.y())
+        rows.go_to(12, rows.y())
+        rows.robot.key_press(int(window.Key.escape))
+        rows.robot.mouse_up(0)
+
+    play(give_up)
+    assert bent.document is before
+    assert bent.chosen_of == {row(bent): {8}}
+
+
+def test_a_track_that_goes_in_the_middle_of_a_drag_ends_it(window, bent, play):
+    with_track(window, bent)
+
+    def lose(rows):
+        rows.robot.mouse_move(rows.of("key 8"))
+        rows.robot.mouse_down(0)
+        y = rows.y()
+        rows.go_to(11, y)
+        editing.edit(window.session, track_commands.remove_tracks(bent.active, (RIGHT,)))
+        rows.go_to(13, y)
+        rows.go_to(14, y)
+        rows.robot.mouse_up(0)
+
+    play(lose)
+    assert not bent.figure.tracks
+    assert bent.chosen_track is None
+    assert not bent.chosen_of
+
+
+def test_a_box_takes_keys_of_poses_and_of_tracks_which_move_together(window, bent, play):
+    with_track(window, bent, delay=4)
+    before = bent.document
+
+    def box(rows):
+        rows.go_to(10, rows.pose_y)
+        rows.robot.mouse_down(0)
+        rows.go_to(20, rows.y() - 2)
+        rows.go_to(25, rows.y())
+        rows.robot.mouse_up(0)
+
+    play(box)
+    assert bent.chosen_of == {bent.active: {24}, row(bent): {8, 16}}
+    play(lambda rows: rows.drag("key 8", 14, 15))
+    assert frames_of(bent) == (0, 11, 19)
+    assert [key.frame for key in bent.figure.keys] == [0, 27]
+    window.act(editing.undo)
+    assert bent.document is before
+
+
+def test_keys_of_a_track_are_eased_and_passed_by_their_menu(window, bent, play):
+    with_track(window, bent)
+
+    def ease(rows):
+        rows.robot.item_click(rows.of("key 8"), 1)
+        rows.robot.set_ref("//$FOCUSED")
+        rows.robot.menu_click("Easing/In-out")
+
+    play(ease)
+    key = bent.figure.track_of(RIGHT).keys[1]
+    assert key.easing == PRESETS["in-out"]
+    window.act(keys.pass_otherwise)
+    assert bent.figure.track_of(RIGHT).keys[1].passing is Passing.CORNER
+    # Without a chosen key, that of the chosen row at the playhead or before it is meant.
+    window.act(editing.deselect_keys)
+    window.act(playback.seek, 20)
+    window.act(keys.ease, PRESETS["out"])
+    assert bent.figure.track_of(RIGHT).keys[2].easing == PRESETS["out"]
+    assert all(key.easing != PRESETS["out"] for key in bent.figure.keys)
+
+
+def test_a_key_in_the_pose_ends_a_track_without_a_jump(window, bent, play):
+    with_track(window, bent, keys=((4, 10j), (12, 6)))
+
+    def insert(rows):
+        rows.go_to(18, rows.y())
+        rows.robot.mouse_click(1)
+        rows.robot.set_ref("//$FOCUSED")
+        rows.robot.item_click("**/###Insert in pose")
+
+    play(insert)
+    key = bent.figure.track_of(RIGHT).keys[-1]
+    assert (key.frame, key.place) == (18, 0)
+
+
+def test_keys_of_a_track_are_copied_and_pasted(window, bent):
+    with_track(window, bent, delay=2)
+    before = bent.document
+    window.act(editing.choose_keys_of, {row(bent): frozenset({8, 16})})
+    window.run(lambda robot: robot.mouse_move("//###Timeline"))
+    copy, paste = (int(window.Key.mod_ctrl) | int(key) for key in (window.Key.c, window.Key.v))
+    window.session.in_timeline = True
+    window.run(lambda robot: robot.key_press(copy))
+    window.act(playback.seek, 30)
+    window.run(lambda robot: robot.key_press(paste))
+    window.settle()
+    assert frames_of(bent) == (0, 8, 16, 28, 36)
+    assert bent.chosen_of == {row(bent): {28, 36}}
+    window.act(editing.undo)
+    assert bent.document is before
+    # Where the track is gone, it comes again with them.
+    window.act(editing.edit, track_commands.remove_tracks(bent.active, (RIGHT,)))
+    window.run(lambda robot: robot.key_press(paste))
+    window.settle()
+    assert frames_of(bent) == (30, 38)
+
+
+def test_planting_moves_nothing_at_the_keys_and_leads_back(window, bent, press):
+    track = with_track(window, bent, delay=1)
+    window.act(editing.select, frozenset({RIGHT}))
+    before = [place_of(bent, RIGHT, key.frame + 1) for key in track.keys]
+    press("kind/###picture")
+    planted = bent.figure.track_of(RIGHT)
+    assert planted.planted
+    places = [key.place for key in planted.keys]
+    np.testing.assert_allclose(places, before, rtol=0, atol=0.1)
+    press("kind/###pose")
+    again = bent.figure.track_of(RIGHT)
+    assert not again.planted
+    wanted = [key.place for key in track.keys]
+    np.testing.assert_allclose([key.place for key in again.keys], wanted, rtol=0, atol=1e-6)
+    window.act(editing.undo)
+    window.act(editing.undo)
+    assert bent.figure.track_of(RIGHT) == track
+
+
+def test_a_new_key_of_a_planted_track_is_where_the_handle_is(window, bent):
+    with_track(window, bent, keys=((4, 300 + 100j), (8, 310 + 100j)), planted=True)
+    window.act(playback.seek, 16)
+    there = place_of(bent, RIGHT, 16)
+    window.act(tracks.key_here, (RIGHT,))
+    window.settle()
+    key = bent.figure.track_of(RIGHT).keys[-1]
+    assert key.frame == 16
+    assert abs(key.place - there) < 1e-6
+
+
+def test_the_panel_sets_what_a_track_has(window, bent, press):
+    with_track(window, bent)
+    window.act(editing.select, frozenset({RIGHT}))
+    press("on##track")
+    assert not bent.figure.track_of(RIGHT).enabled
+    press("Keys turn it, too")
+    assert bent.figure.track_of(RIGHT).turns
+
+    def enter(name, value):
+        window.run(
+            lambda robot: (
+                robot.set_ref("//Handle"),
+                robot.item_input_value(f"**/##{name}", value),
+            )
+        )
+        window.settle()
+
+    enter("delay", 5.0)
+    enter("reach", 0.4)
+    track = bent.figure.track_of(RIGHT)
+    assert (track.delay, track.reach) == (5, 0.4)
+    press("delete track")
+    assert bent.figure.track_of(RIGHT) is None
+
+
+def test_a_handle_follows_like_a_tail(window, bent, press):
+    before = bent.document
+    window.act(editing.select, frozenset({RIGHT}))
+    press("preset/###tail")
+    assert bent.figure.spring_of(RIGHT) == Spring(handle=RIGHT, frequency=1.6, damping=0.18)
+    press("preset/###jelly")
+    assert bent.figure.spring_of(RIGHT) == Spring(handle=RIGHT, frequency=4.5, damping=0.12)
+    press("on##spring")
+    assert not bent.figure.spring_of(RIGHT).enabled
+    press("delete spring")
+    assert bent.figure.spring_of(RIGHT) is None
+    for _ in range(4):
+        window.act(editing.undo)
+    assert bent.document is before
+
+
+def test_what_the_limits_hold_back_is_told_with_its_pixels(window, bent):
+    hold = Track(handles=(LEFT,), keys=tuple(TrackKey(frame=f, place=0j) for f in (4, 16)))
+    editing.edit(window.session, track_commands.put_track(bent.active, hold))
+    track = with_track(window, bent, keys=((4, 0), (10, FAR), (16, 0)))
+    misses = misses_of(bent, bent.figure, track)
+    assert 10 in misses
+    assert not {4, 16, 20} & misses.keys()
+    text = told(bent, bent.figure, track, 10)
+    assert f"{misses[10]:.0f} px" in text
+    assert "limits" in text
+    assert told(bent, bent.figure, track, 4) == ""
+    # Switched off, it misses nothing.
+    window.act(editing.edit, track_commands.enable_track(bent.active, RIGHT, enabled=False))
+    window.settle()
+    assert not misses_of(bent, bent.figure, bent.figure.track_of(RIGHT))
+
+
+def test_handles_that_stay_have_a_mark_and_can_be_freed(window, bent, press):
+    window.act(playback.seek, 12)
+    window.settle()
+    assert staying(bent.puppet.shown) == {LEFT}
+
+    def lines():
+        shown = bent.puppet.shown
+        return mark_all(window.session, bent, shown, PALETTES[window.session.preferences.theme])[0]
+
+    marked = lines()
+    window.act(editing.select, frozenset({LEFT}))
+    press("Free between keys")
+    assert bent.figure.handle(LEFT).free
+    assert not staying(bent.puppet.shown)
+    assert len(lines()) < len(marked)
+    press("Free between keys")
+    assert staying(bent.puppet.shown) == {LEFT}
+    # With a track of its own it goes where that leads.
+    with_track(window, bent, handle=LEFT)
+    assert not staying(bent.puppet.shown)

@@ -1,0 +1,73 @@
+"""Handles with clocks of their own: what a frame costs in which they stay, or go their own ways."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from app.document import Clip, Spring, Track, TrackKey, clip_of
+from app.motion import Animation
+from app.motion.inbetweens import FrameCorrection, is_corrected
+from app.storage import load_project, sample_images
+from tests.bench.table import Row, Table, measure
+
+# Samples, their layers, a handle that wags, and by how many pixels: within and at the bounds.
+WAGS = (
+    ("friend", "left arm", "hand", (40.0, 600.0)),
+    ("giraffe", "figure", "tail", (40.0, 400.0)),
+    ("dragon", "dragon", "tail tip", (40.0, 400.0)),
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Extent:
+    """How much is measured."""
+
+    wags: tuple[tuple[str, str, str, tuple[float, ...]], ...] = WAGS
+    frames: int = 48
+
+
+BRIEF = Extent(wags=(("friend", "left arm", "hand", (40.0,)),), frames=3)
+
+
+def tables(extent: Extent) -> Iterator[Table]:
+    """Measure frames of figures whose handles stay, wag and swing."""
+    for name, layer, handle, sizes in extent.wags:
+        document = load_project(sample_images() / f"{name}.lissom")
+        figure = next(each for each in document.figures if each.name == layer)
+        own = next(each.id for each in figure.handles if each.name == handle)
+        clip = clip_of(document, figure.id)
+        rows = [_row("handles that stay", clip, extent.frames)] if is_corrected(clip) else []
+        for size in sizes:
+            keys = tuple(
+                TrackKey(frame=8 * number, place=size * (0, 1j, 0, -1j)[number % 4])
+                for number in range(8)
+            )
+            track = Track(handles=(own,), keys=keys)
+            wagging = replace(clip, figure=replace(figure, tracks=(track,), stillness=False))
+            rows.append(_row(f"{handle!r} wags by {size:.0f} px", wagging, extent.frames))
+        spring = Spring(handle=own, frequency=1.6, damping=0.18)
+        swinging = replace(clip, figure=replace(figure, springs=(spring,), stillness=False))
+        rows.append(_row(f"{handle!r} swings on a spring", swinging, extent.frames))
+        count = sum(map(len, figure.domain.cages))
+        yield Table(title=f"A frame of {name}'s {layer}, {count} cage vertices", rows=tuple(rows))
+
+
+def _row(name: str, clip: Clip, frames: int) -> Row:
+    handles = np.array([handle.position for handle in clip.figure.handles])
+    animation = Animation(clip, points=handles)
+    corrections = animation.corrections
+    if corrections is None:
+        raise ValueError(f"nothing of {name} is corrected")
+    corrections.at(0.0)  # what is prepared once
+    found: list[FrameCorrection | None] = []
+
+    def play() -> None:
+        animation.sampler.known.corrections.clear()
+        found[:] = [corrections.at(clip.frames.first + 1.0 + number) for number in range(frames)]
+
+    seconds = measure(play, repeats=1) / frames
+    steps = [each.steps for each in found if each is not None and each.phi is not None]
+    miss = max((max(each.misses.values(), default=0.0) for each in found if each), default=0.0)
+    note = f"{np.mean(steps or [0]):.1f} steps, at most {max(steps, default=0)}"
+    return Row(name=name, seconds=seconds, note=f"{note}; misses by {miss:.2f} px at most")
