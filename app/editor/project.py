@@ -23,7 +23,7 @@ from app.document import (
     clip_of,
 )
 from app.editor.timeline_view import KeyRow, KeysOf, Timing, TrackRow, row_of
-from app.editor.work import Afterwards, Derived, Promise, Pull
+from app.editor.work import Afterwards, Carry, Derived, Promise, Pull, Take
 from app.motion import (
     Box,
     CorrectedFrames,
@@ -188,6 +188,7 @@ class Project:
     # The chosen keys; rows without any are not in it.
     chosen_of: KeysOf = field(default_factory=dict)
     track_row: TrackRow | None = None  # that of a track which is chosen
+    take: Take | None = None  # a drag that is recorded, until that is kept or given up
     camera: View | None = None  # None fits the picture into the viewport
     awaits_extent: bool = False  # whether the camera fits the motion once that is measured
     flip: Flip | None = None
@@ -303,6 +304,11 @@ class Project:
     def pulls(self) -> list[Pull]:
         """The poses that are on their way, in the order in which they were begun."""
         return [promise for promise in self.pending if isinstance(promise, Pull)]
+
+    @property
+    def carries(self) -> list[Carry]:
+        """The handles that hands want elsewhere by their tracks, which have no such keys yet."""
+        return [promise for promise in self.pending if isinstance(promise, Carry)]
 
     @property
     def pull(self) -> Pull | None:

@@ -215,6 +215,8 @@ class Session:
     pointer: ToolInHand | None = None
     cutting: CutTool | None = None  # what is in hand that cuts out; None poses
     moves: bool = False  # whether a drag, or an arrow, moves the whole figure
+    records: bool = False  # whether the next drag of a handle is recorded while it plays
+    recording_speed: float = 1.0  # times the animation's own
     snaps: bool = False  # whether what the pointer does goes in steps
     insists: bool = False  # whether what it pulls beyond its reach is wanted there all the same
     # Whether the timeline has the pointer, or else the focus: what is chosen there is meant.

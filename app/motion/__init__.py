@@ -7,6 +7,7 @@ Imports: `app.document`.
 
 from app.motion.corrected_frames import (
     CorrectedFrames as CorrectedFrames,
+    FoundCorrections as FoundCorrections,
     corrected_clip as corrected_clip,
 )
 from app.motion.extent import (
@@ -18,6 +19,7 @@ from app.motion.extent import (
 )
 from app.motion.inbetweens import (
     Animation as Animation,
+    Ground as Ground,
     PoseSampler as PoseSampler,
     still_handles as still_handles,
 )

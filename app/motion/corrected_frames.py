@@ -1,25 +1,34 @@
 """The corrections of a clip's frames in a window: what is there, and what a worker finds next."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import NamedTuple
 
 from app.document import Clip, Document, clip_of
-from app.motion.inbetweens import Corrections, FrameCorrection, PoseSampler, is_corrected
-from app.motion.joints import Joints
+from app.motion.inbetweens import (
+    Corrections,
+    FrameCorrection,
+    Ground,
+    PoseSampler,
+    have_one_ground,
+    is_corrected,
+)
+from app.motion.joints import hung_on
 
 BATCH = 2  # frames that are solved before a worker looks for more urgent work
+GROUNDS = 6  # the same of frames of which only the ground is wanted
 MOST_ROUGH = 2_000  # frames of which the rigid motion is worked out ahead
 
 Found = Mapping[int, FrameCorrection | None]
 
 
 class FoundCorrections(NamedTuple):
-    """What a worker has found: corrections by their frames, and by what."""
+    """What a worker has found: corrections and grounds by their frames, and by what."""
 
     corrections: Corrections
-    frames: Found
-    is_rough: bool
+    exact: Found
+    rough: Found
+    grounds: Mapping[int, Ground]
 
 
 class CorrectedFrames:
@@ -31,22 +40,57 @@ class CorrectedFrames:
     Attributes
     ----------
     clip : Clip
+    parents : tuple of Clip
+        Of what the figure hangs on, and that on, and so on.
     """
 
-    def __init__(self, clip: Clip, earlier: "CorrectedFrames | None" = None) -> None:
+    def __init__(
+        self,
+        clip: Clip,
+        earlier: "CorrectedFrames | None" = None,
+        parents: tuple[Clip, ...] = (),
+    ) -> None:
         self.clip = clip
+        self.parents = parents
         self._is_asked = is_corrected(clip)
         self._corrections: Corrections | None = None
         self._exact: dict[int, FrameCorrection | None] = {}
         self._rough: dict[int, FrameCorrection | None] = {}
-        if earlier is not None and self._is_asked:
-            self._rough = {**earlier._rough, **earlier._exact}  # noqa: SLF001 - its own
+        self._grounds: dict[int, Ground] = {}
+        # What tracks added to the frames of an earlier clip, and to the one that was watched last.
+        self._added: dict[int, FrameCorrection] = {}
+        self._latest: FrameCorrection | None = None
+        if earlier is not None:
+            self._take_over(earlier)
+
+    def _take_over(self, earlier: "CorrectedFrames") -> None:
+        """Take what an earlier clip's frames have as what stands in for these."""
+        if have_one_ground(self.clip, earlier.clip) and self.parents == earlier.parents:
+            self._grounds, self._latest = earlier._grounds, earlier._latest  # noqa: SLF001 - its own
+            if earlier._corrections is not None:  # noqa: SLF001
+                self._corrections = earlier._corrections.with_tracks(self.clip)  # noqa: SLF001
+        if not self._is_asked:
+            return
+        self._rough = {**earlier._rough, **earlier._exact}  # noqa: SLF001
+        if self.clip.figure.tracks:
+            added = {frame: earlier.own_at(frame) for frame in self._rough}
+            self._added = {frame: each for frame, each in added.items() if each is not None}
+        # A key is still by itself: of a frame that has become one, only what tracks add stays.
+        for frame in self.clip.figure.key_frames - earlier.clip.figure.key_frames:
+            self._rough[frame] = self._added.get(frame)
 
     def at(self, clip: Clip, frame: int) -> FrameCorrection | None:
         """Return the best that is known of a frame of a clip; of another one there is nothing."""
         if clip != self.clip or not self._is_asked:
             return None
         return self._exact[frame] if frame in self._exact else self._rough.get(frame)
+
+    def own_at(self, frame: int) -> FrameCorrection | None:
+        """Return what tracks alone add to a frame, as far as that is known."""
+        found, ground = self.at(self.clip, frame), self._grounds.get(frame)
+        if found is None or ground is None:
+            return self._added.get(frame)
+        return found.beyond(ground.still)
 
     def corrects(self, clip: Clip) -> bool:
         """Tell whether frames of a clip may be corrected."""
@@ -56,64 +100,134 @@ class CorrectedFrames:
         """Tell whether that is what the frame has."""
         return clip != self.clip or not self._is_asked or frame in self._exact
 
+    def ground(self, frame: int) -> Ground | None:
+        """Return what tracks are relative to at a frame, if that is known."""
+        return self._grounds.get(frame)
+
+    @property
+    def count_grounds(self) -> int:
+        """Of how many frames that is known."""
+        return len(self._grounds)
+
     @property
     def is_whole(self) -> bool:
         """Whether all frames of the clip are there."""
-        frames = self.clip.frames
-        return not self._is_asked or len(self._exact) > frames.last - frames.first
+        return not self._is_asked or len(self._exact) >= len(self._frames)
+
+    @property
+    def _frames(self) -> range:
+        return range(self.clip.frames.first, self.clip.frames.last + 1)
 
     @property
     def misses(self) -> Mapping[int, Mapping[int, float]]:
         """By how many pixels handles, by their ids, miss their tracks' wishes, by frames."""
         return {frame: each.misses for frame, each in self._exact.items() if each and each.misses}
 
+    def lead(self, frame: int) -> None:
+        """Let what was found last of tracks stand in at a frame until its own is there."""
+        ground = self._grounds.get(frame)
+        if ground is not None and self._latest is not None and frame not in self._exact:
+            self._rough[frame] = self._latest.after(ground.still)
+
     def missing(
         self, document: Document, frame: int, siblings: Mapping[int, PoseSampler]
     ) -> Callable[[], FoundCorrections] | None:
         """Return what finds the corrections that are wanted next, the nearest to a frame first."""
-        # The first in-betweens of the window find out about the outline what is needed here, too.
-        is_known = self.clip.figure.id in siblings or len(self.clip.keys) == 1
-        if self.is_whole or not is_known:
+        if self.is_whole or not self._is_known(siblings):
             return None
         if self._corrections is None:
             return partial(_begin, document, self.clip, siblings)
-        frames = range(self.clip.frames.first, self.clip.frames.last + 1)
-        lacking = [each for each in frames if each not in self._exact]
+        lacking = [each for each in self._frames if each not in self._exact]
         lacking.sort(key=lambda each: abs(each - frame))
-        return partial(_solve, self._corrections, lacking[:BATCH])
+        return partial(_find, self._corrections, lacking[:BATCH])
 
-    def take(self, found: FoundCorrections) -> None:
-        """Take in what a worker has found."""
-        self._corrections = found.corrections
-        (self._rough if found.is_rough else self._exact).update(found.frames)
+    def missing_here(
+        self, document: Document, frame: int, siblings: Mapping[int, PoseSampler]
+    ) -> Callable[[], FoundCorrections] | None:
+        """Return what finds the correction of one frame, whatever else is missing."""
+        if self.is_exact(self.clip, frame) or not self._is_known(siblings):
+            return None
+        begin = partial(_prepare, self._corrections, document, self.clip, siblings)
+        return lambda: _find(begin(), [frame])
+
+    def missing_ground(
+        self, document: Document, frame: int, siblings: Mapping[int, PoseSampler]
+    ) -> Callable[[], FoundCorrections] | None:
+        """Return what finds the grounds that are wanted next, the nearest to a frame first."""
+        lacking = [each for each in self._frames if each not in self._grounds]
+        if not lacking or not self._is_known(siblings):
+            return None
+        lacking.sort(key=lambda each: abs(each - frame))
+        begin = partial(_prepare, self._corrections, document, self.clip, siblings)
+        return lambda: _find(begin(), [], lacking[:GROUNDS])
+
+    def _is_known(self, siblings: Mapping[int, PoseSampler]) -> bool:
+        """Tell whether the window knows the outline.
+
+        Its first in-betweens find out about it what is needed here, too.
+        """
+        return self.clip.figure.id in siblings or len(self.clip.keys) == 1
+
+    def take(self, found: FoundCorrections, *, is_newest: bool = False) -> None:
+        """Take in what a worker has found; what is of an earlier clip stands in for this one's.
+
+        It is the newest where it is of the frame that a person watches.
+        """
+        clip = found.corrections.clip
+        if not have_one_ground(self.clip, clip) or found.corrections.parents != self.parents:
+            return
+        if self._corrections is None:
+            self._corrections = found.corrections.with_tracks(self.clip)
+        for frame, ground in found.grounds.items():
+            self._grounds.setdefault(frame, ground)
+        for frame, rigid in found.rough.items():
+            added = self._added.get(frame)
+            self._rough[frame] = rigid if added is None else added.after(rigid)
+        (self._exact if clip == self.clip else self._rough).update(found.exact)
+        for frame, each in found.exact.items() if is_newest else ():
+            self._latest = None if each is None else each.beyond(found.grounds[frame].still)
 
 
-def _begin(document: Document, clip: Clip, siblings: Mapping[int, PoseSampler]) -> FoundCorrections:
-    """Prepare a clip's corrections, and find the rigid motion of its frames."""
+def _prepare(
+    earlier: Corrections | None,
+    document: Document,
+    clip: Clip,
+    siblings: Mapping[int, PoseSampler],
+) -> Corrections:
+    """Return a clip's corrections, the earlier ones if there are any."""
+    if earlier is not None:
+        return earlier
     figure = clip.figure
     sibling = siblings.get(figure.id)
     if sibling is None or sibling.domain.cage is not figure.domain.cage:
         sibling = PoseSampler(figure.domain, anchor=figure.anchor, points=figure.domain.outline)
-    carried = None
-    if figure.attachment is not None:
-        carried = partial(Joints(document, siblings).carried, figure.id)
-    corrections = Corrections(clip, clip.figure.variant, sibling, carried)
+    hung = hung_on(document, figure.id, siblings)
+    return Corrections(clip, clip.figure.variant, sibling, hung)
+
+
+def _begin(document: Document, clip: Clip, siblings: Mapping[int, PoseSampler]) -> FoundCorrections:
+    """Prepare a clip's corrections, and find the rigid motion of its frames."""
+    corrections = _prepare(None, document, clip, siblings)
     frames = range(clip.frames.first, clip.frames.last + 1)[:MOST_ROUGH]
-    return FoundCorrections(
-        corrections, {frame: corrections.rigid_at(frame) for frame in frames}, is_rough=True
-    )
+    rough = {frame: corrections.rigid_at(frame) for frame in frames}
+    return FoundCorrections(corrections, {}, rough, {})
 
 
-def _solve(corrections: Corrections, frames: list[int]) -> FoundCorrections:
-    found = {frame: corrections.at(frame) for frame in frames}
-    return FoundCorrections(corrections, found, is_rough=False)
+def _find(
+    corrections: Corrections, frames: Sequence[int], grounds: Sequence[int] = ()
+) -> FoundCorrections:
+    """Find the corrections of some frames with their grounds, and the grounds of others."""
+    exact = {frame: corrections.at(frame) for frame in frames}
+    known = {frame: corrections.ground_at(frame) for frame in (*frames, *grounds)}
+    return FoundCorrections(corrections, exact, {}, known)
 
 
 def corrected_clip(
     document: Document, figure: int, earlier: CorrectedFrames | None
 ) -> CorrectedFrames:
     """Return the corrections of a figure's clip; the earlier ones where the motion is the same."""
-    clip = clip_of(document, figure)
-    if earlier is not None and earlier.clip == clip:
+    clip, *parents = (clip_of(document, each.id) for each in document.carriers(figure))
+    by = tuple(parents)
+    if earlier is not None and (earlier.clip, earlier.parents) == (clip, by):
         return earlier
-    return CorrectedFrames(clip, earlier)
+    return CorrectedFrames(clip, earlier, by)

@@ -99,11 +99,13 @@ def show(
     earlier : Shown, optional
         What was drawn before.
     corrected : CorrectedFrames, optional
-        Of the clip's frames; a pose that is shown instead is not corrected.
+        Of the clip's frames; a pose that is shown instead has what tracks add to the frame.
     """
     domain, moment = clip.figure.domain, time_of(clip, frame)
     correction, is_rough = None, False
-    if corrected is not None and pose is None:
+    if corrected is not None and pose is not None:
+        correction = corrected.own_at(frame)
+    elif corrected is not None:
         correction, is_rough = corrected.at(clip, frame), not corrected.is_exact(clip, frame)
     pose = pose or resting_pose(clip, moment)
     fitting = [store for store in stores if store.mesh.source is domain]

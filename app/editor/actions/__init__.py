@@ -14,6 +14,7 @@ from app.editor.actions import (
     posing as posing,
     rebuilding as rebuilding,
     saving as saving,
+    tracking as tracking,
     upkeep as upkeep,
     viewing as viewing,
 )

@@ -5,7 +5,7 @@ from functools import partial
 from typing import TypeVar
 
 from app.document import Clip, clip_of, resting_pose, time_of
-from app.editor.actions import playback, posing, rebuilding, viewing
+from app.editor.actions import playback, posing, rebuilding, tracking, viewing
 from app.editor.failures import report
 from app.editor.project import Project, Puppet
 from app.editor.session import Session, with_project
@@ -39,7 +39,6 @@ SKETCHING = Kind("In-betweens", UNMADE)
 COMPARING = Kind("Other in-betweens", "The in-betweens to compare with cannot be made")
 REFINING = Kind("Finer in-betweens", "The in-betweens cannot be made in full detail")
 STREAMING = Kind("Smooth playback", "Playback cannot be made smooth")
-CORRECTING = Kind("Corrections", "The handles cannot be held still, or on their tracks")
 CUTTING = Kind("Cutting out", "The picture cannot be cut out so")
 SHRINKING = Kind("Small pictures", "The picture of a layer cannot be made small", "hand")
 HANGING = Kind("Joints", "The joints cannot be followed between the keys")
@@ -56,6 +55,11 @@ def maintain(session: Session, project: Project) -> None:
     """Ask the worker for what is missing, and settle what is drawn; once a frame."""
     posing.give_in(session, project, rebuilding.loosen)
     posing.maintain(session, project)
+    tracking.maintain(session, project)
+    for identity, puppet in project.puppets.items():
+        puppet.corrected = corrected_clip(project.document, identity, puppet.corrected)
+    if project.take is not None and project.puppet.corrected is not None:
+        project.puppet.corrected.lead(playback.current_frame(session, project))
     project.extent.recall(extent_source(project.document))
     rebuilding.maintain(session)
     project.pair_up(session.split.method if session.split else None)
@@ -67,8 +71,6 @@ def maintain(session: Session, project: Project) -> None:
     if not shortfalls.follows(figure):
         # Little work: of the poses that were not measured before, and there is one at a time.
         shortfalls.set(figure, measure_shortfalls(figure, shortfalls))
-    for identity, puppet in project.puppets.items():
-        puppet.corrected = corrected_clip(project.document, identity, puppet.corrected)
     _show(session, project)
     if project.awaits_extent:
         _fit_motion(session, project)
@@ -104,6 +106,7 @@ def missing(session: Session, project: Project) -> Iterator[Job]:
     if (session.export_frame is not None or project.awaits_extent) and not project.is_posing:
         yield from _span(session, project)
     yield from _make_frames(session, project)
+    yield from tracking.missing_here(session, project)
     if _awaits_frame(session, project):
         # On few cores it would come much later beside others.
         return
@@ -113,7 +116,9 @@ def missing(session: Session, project: Project) -> Iterator[Job]:
             if job is not None:
                 yield job
                 return
-    yield from _correct(session, project)
+    if tracking.is_under_way(session, project):
+        return
+    yield from tracking.missing(session, project)
     if project.is_posing:
         # What follows takes longer than the hand stays where it is.
         return
@@ -153,21 +158,6 @@ def _awaits_frame(session: Session, project: Project) -> bool:
         and puppet.store.interval(clip, moment.interval) is None
         for moment, clip, puppet in moments
     )
-
-
-def _correct(session: Session, project: Project) -> Iterator[Job]:
-    """Yield what finds the corrections of some frames, those nearest to the playhead first."""
-    frame = playback.current_frame(session, project)
-    if CORRECTING in session.jobs.kinds:
-        return
-    for clip, puppet in _clips(project):
-        corrected = puppet.corrected
-        if corrected is None or puppet.store.has_failed(clip, "correction"):
-            continue
-        work = corrected.missing(project.document, frame, project.samplers)
-        if work is not None:
-            yield _interval_job(session, CORRECTING, puppet, clip, work=work, done=corrected.take)
-            return
 
 
 def _wanted(session: Session, project: Project) -> Iterator[tuple[Kind, Puppet, Clip]]:
@@ -236,7 +226,6 @@ def _part(kind: Kind) -> IntervalPart:
         GLIMPSING: "frame",
         REFINING: "fine",
         STREAMING: "series",
-        CORRECTING: "correction",
     }
     return parts.get(kind, "in-betweens")
 

@@ -1,11 +1,15 @@
-"""Posing by hand: handles are added where the shape is pressed, and pulled."""
+"""Posing by hand: handles are added where the shape is pressed, and pulled.
+
+A handle whose track's row is chosen is carried along that, or its drag is recorded; the rest of the
+tool is the same.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Self
 
 from app.document import Target
-from app.editor.actions import editing, posing
+from app.editor.actions import editing, playback, posing, tracking
 from app.editor.project import Project
 from app.editor.session import EntryMark, Hint, Mark, Session
 from app.editor.tools.entry import TypedWay
@@ -25,6 +29,11 @@ class Pulling(Tool):
     entry: TypedWay = field(default_factory=TypedWay)  # what is typed meanwhile
     place: complex | None = None  # where it is; None before it has moved
     moved: bool = False  # whether it has gone farther than a click may, or a way was typed
+    # The handle whose track takes the drag in place of the pose, and where that began.
+    tracked: int | None = None
+    origin: complex = 0j
+    records: bool = False  # whether the drag is recorded
+    stood: int | None = None  # the frame that the playhead has left for a key of the path
 
     @classmethod
     def hints(cls, session: Session, project: Project, spot: Spot) -> tuple[Hint, ...]:
@@ -32,8 +41,13 @@ class Pulling(Tool):
         if spot.handle is not None:
             if project.figure.is_locked(spot.handle):
                 return (Hint("click", "to select; it is locked"),)
-            return (Hint("drag", "to pose"),)
-        if spot.on_shape and session.overlays.handles and not spot.on_ring:
+            if session.records:
+                return (Hint("drag", "to record how it moves"),)
+            on_track = tracking.carried_track(project, spot.handle) is not None
+            return (Hint("drag", "to key it alone" if on_track else "to pose"),)
+        if spot.track_key is not None:
+            return (Hint("drag", f"to move the key at frame {spot.track_key}"),)
+        if spot.on_shape and session.overlays.handles and not (spot.on_ring or session.records):
             return (Hint("click", "to add a handle"),)
         return ()
 
@@ -43,21 +57,55 @@ class Pulling(Tool):
         if spot.ctrl or spot.shift or spot.on_ring:
             return None
         if spot.handle is not None:
-            if spot.alt:
-                return None
-            pulling = cls(
-                project=project, start=spot.place, taken=spot.handle, at_target=spot.at_target
-            )
-            if spot.handle not in project.selected:
-                editing.select(session, project.figure.together_with(spot.handle))
-            pulling.handles = _movable(project)
+            return None if spot.alt else cls._take(session, project, spot, spot.handle)
+        if spot.track_key is not None and project.chosen_track is not None:
+            pulling = cls(project=project, start=spot.place)
+            pulling._take_key(session, project.chosen_track, spot.track_key)
             return pulling
-        if not spot.on_shape or not session.overlays.handles:
+        if not spot.on_shape or not session.overlays.handles or session.records:
             return None
         pulling = cls(project=project, start=spot.place)
         posing.add_handle(session, spot.place, gesture=pulling)
         pulling.handles = project.selected
         return pulling
+
+    @classmethod
+    def _take(cls, session: Session, project: Project, spot: Spot, handle: int) -> Self:
+        pulling = cls(project=project, start=spot.place, taken=handle, at_target=spot.at_target)
+        if handle not in project.selected:
+            editing.select(session, project.figure.together_with(handle))
+        pulling.handles = _movable(project)
+        if handle in pulling.handles:
+            pulling._take_to_track(session, handle)
+        return pulling
+
+    def _take_to_track(self, session: Session, pressed: int) -> None:
+        """Let the handle's track take the drag, if it is for that or is recorded."""
+        project, shown = self.project, self.project.puppet.shown
+        track = tracking.carried_track(project, pressed)
+        if session.records:
+            track = project.figure.track_of(pressed)
+        elif track is None:
+            return
+        if shown is None:
+            return
+        self.tracked = pressed if track is None else track.handles[0]
+        identities = [handle.id for handle in shown.clip.figure.handles]
+        self.origin = complex(shown.handle_places[identities.index(self.tracked)])
+        if self.at_target:
+            self.origin = tracking.wishes(project, shown).get(self.tracked, self.origin)
+        if session.records:
+            self.records = True
+            tracking.begin_take(session, self.tracked, self.origin, gesture=self)
+
+    def _take_key(self, session: Session, handle: int, frame: int) -> None:
+        """Take hold of the key of a track that is seen at a frame; the playhead goes there."""
+        project, track = self.project, self.project.figure.track_of(handle)
+        place = None if track is None else tracking.wished(project, track, frame)
+        if track is not None and place is not None:
+            self.tracked, self.origin = track.handles[0], place
+            self.stood = playback.current_frame(session, project)
+            playback.scrub(session, frame)
 
     def move(self, session: Session, place: complex) -> None:
         """Pull the handles as far as the pointer goes; each keeps the turn that it wishes."""
@@ -77,6 +125,13 @@ class Pulling(Tool):
         return self.entry.way((self.start if self.place is None else self.place) - self.start)
 
     def _pull(self, session: Session) -> None:
+        if self.tracked is not None:
+            place = self.origin + self.way
+            if self.records:
+                tracking.perform(session, place)
+            elif self.moved:
+                tracking.carry(session, self.tracked, place, gesture=self)
+            return
         pulled = self.handles & {handle.id for handle in self.project.figure.handles}
         if not (self.moved and pulled):
             return
@@ -95,12 +150,29 @@ class Pulling(Tool):
 
         A click selects the one that it was on alone, or its group.
         """
-        if session.insists:
+        if self.records and self.moved:
+            tracking.end_take(session)
+        elif self.records:
+            tracking.give_up(session)
+        elif self.tracked is not None:
+            pass
+        elif session.insists:
             posing.insist(session)
         else:
             posing.let_go(session)
         if not self.moved and self.taken is not None:
             editing.select(session, self.project.figure.together_with(self.taken))
+
+    def cancel(self, session: Session) -> None:
+        """Take back what it did; the playhead goes back to where it was."""
+        if self.records:
+            tracking.give_up(session)
+        for carry in self.project.carries:
+            if carry.gesture is self:
+                self.project.pending.remove(carry)
+        if self.stood is not None:
+            playback.seek(session, self.stood)
+        super(Pulling, self).cancel(session)
 
     @property
     def marks(self) -> tuple[Mark, ...]:
@@ -114,11 +186,12 @@ class Pulling(Tool):
     @property
     def ways(self) -> tuple[Hint, ...]:
         """What can be done until it ends."""
-        return (
-            Hint("type", "a number of pixels"),
-            Hint("X or Y", "to keep to an axis"),
-            Hint("let go", "to keep the wish beyond its reach", "alt"),
-        )
+        if self.records:
+            return (Hint("let go", "to end the recording"),)
+        typed = (Hint("type", "a number of pixels"), Hint("X or Y", "to keep to an axis"))
+        if self.tracked is not None:
+            return typed
+        return (*typed, Hint("let go", "to keep the wish beyond its reach", "alt"))
 
 
 def _movable(project: Project) -> frozenset[int]:

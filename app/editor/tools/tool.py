@@ -21,6 +21,7 @@ class Spot:
     place: complex  # in the plane
     handle: int | None = None  # the one under it
     at_target: bool = False  # whether it is wanted there, and has not arrived
+    track_key: int | None = None  # the frame of the key under it, on the path of the chosen track
     on_axis: bool = False  # on the grip of the axis at which poses are flipped
     on_anchor: bool = False  # on the anchor of the figure that is posed
     on_ring: bool = False  # on the ring around the selected handle

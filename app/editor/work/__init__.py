@@ -5,6 +5,7 @@ Out: their results, on the main thread; promises of what will change the documen
 Imports: `app.document`, `app.solving`, `app.editor.action`.
 """
 
+from app.editor.work.carry import Carry as Carry, Sample as Sample, Take as Take
 from app.editor.work.derived import Derived as Derived
 from app.editor.work.jobs import Job as Job, Jobs as Jobs, Kind as Kind
 from app.editor.work.promise import Afterwards as Afterwards, Promise as Promise

@@ -9,6 +9,8 @@ from app.motion.inbetweens.animation import Animation as Animation
 from app.motion.inbetweens.correction import FrameCorrection as FrameCorrection
 from app.motion.inbetweens.corrections import (
     Corrections as Corrections,
+    Ground as Ground,
+    have_one_ground as have_one_ground,
     is_corrected as is_corrected,
 )
 from app.motion.inbetweens.own_clocks import Carried as Carried, Hung as Hung

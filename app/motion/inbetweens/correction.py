@@ -1,7 +1,7 @@
 """What is added to a frame of the closed-form motion."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -43,6 +43,22 @@ class FrameCorrection:
     def nbytes(self) -> int:
         """Memory of the coefficients."""
         return 0 if self.phi is None or self.psi is None else self.phi.nbytes + self.psi.nbytes
+
+    def beyond(self, other: "FrameCorrection | None") -> "FrameCorrection | None":
+        """Return what it adds to a part of it that comes before; None where that is nothing."""
+        if self is other or self.phi is None or self.psi is None:
+            return None
+        if other is None or other.phi is None or other.psi is None:
+            return replace(self, motion=HERE)
+        return replace(self, motion=HERE, phi=self.phi - other.phi, psi=self.psi - other.psi)
+
+    def after(self, other: "FrameCorrection | None") -> "FrameCorrection":
+        """Return what adds another correction first; this one moves nothing rigidly."""
+        if other is None or other.phi is None or other.psi is None:
+            return self if other is None else replace(self, motion=other.motion)
+        phi = other.phi if self.phi is None else self.phi + other.phi
+        psi = other.psi if self.psi is None else self.psi + other.psi
+        return replace(self, motion=other.motion, phi=phi, psi=psi)
 
     def on(
         self, positions: Complexes, coordinates: Complexes | npt.NDArray[np.complex64]

@@ -6,13 +6,15 @@ key and another window onto the same figure find what was made before.
 
 import threading
 from collections.abc import Callable, Iterable
+from copy import copy
+from typing import NamedTuple
 
 import numpy as np
 
 from app.document import Clip, Variant, resting_pose, time_of, transits
 from app.motion.inbetweens.base_motion import BaseMotion
 from app.motion.inbetweens.correction import FrameCorrection
-from app.motion.inbetweens.own_clocks import Carried, OwnClocks, Wanted
+from app.motion.inbetweens.own_clocks import Hung, OwnClocks, Wanted
 from app.motion.inbetweens.pairs import pair_of
 from app.motion.inbetweens.pose_sampler import PoseSampler
 from app.motion.inbetweens.stillness import Lack, Stillness, still_handles
@@ -23,6 +25,36 @@ from engine.geometry import RigidMotion
 LEFT_OVER = 0.02  # pixels that handles may lack after the rigid motion without being solved for
 BESIDE = 0.03  # of the diagonal: handles nearer to an anchor are held by it
 KEPT = 2**26  # bytes of corrections of one outline that are kept
+
+
+class Ground(NamedTuple):
+    """What tracks are relative to at a frame.
+
+    Parameters
+    ----------
+    places, turns : complex128, shape (h,)
+        Where the handles are without them, and by what factor the shape is turned there.
+    still : FrameCorrection or None
+        By which they are still.
+    """
+
+    places: Complexes
+    turns: Complexes
+    still: FrameCorrection | None
+
+
+def have_one_ground(clip: Clip, other: Clip) -> bool:
+    """Tell whether two clips of a figure differ in its tracks alone, if at all."""
+
+    def source(of: Clip) -> tuple[object, ...]:
+        figure = of.figure
+        return (
+            *(figure.id, figure.domain, figure.handles, figure.keys, figure.anchor),
+            *(figure.attachment, figure.stillness, figure.springs, figure.variant, figure.bounds),
+            *(of.frames, of.loop, of.fps, of.baseline),
+        )
+
+    return source(clip) == source(other)
 
 
 def is_corrected(clip: Clip) -> bool:
@@ -43,15 +75,21 @@ class Corrections:
     variant : Variant
     sampler : PoseSampler
         Of the figure's domain, at any points; what it knows of the outline is used, and kept there.
-    carried : callable, optional
-        Where the figure hangs, at a frame; by itself without.
+    hung : Hung, optional
+        Where the figure hangs; by itself without.
+
+    Attributes
+    ----------
+    clip : Clip
+    parents : tuple of Clip
+        Of what it hangs on, and that on, and so on.
     """
 
     def __init__(
-        self, clip: Clip, variant: Variant, sampler: PoseSampler, carried: Carried | None = None
+        self, clip: Clip, variant: Variant, sampler: PoseSampler, hung: Hung | None = None
     ) -> None:
         figure = clip.figure
-        self._clip, self._variant = clip, variant
+        self.clip, self._variant = clip, variant
         self._known = sampler.known.corrections
         self._lock = threading.RLock()
         self._handles = slice(0, len(figure.handles))
@@ -71,7 +109,8 @@ class Corrections:
         )
         self._motion = BaseMotion(clip, variant, own)
         self._stillness = Stillness(self._motion, self._handles)
-        self._own = OwnClocks(clip, self._still_places, carried)
+        self.parents: tuple[Clip, ...] = hung.by[1:] if hung else ()
+        self._own = OwnClocks(clip, self._still_places, hung and hung.carried)
 
     def at(self, frame: float) -> FrameCorrection | None:
         """Return what is added to the base motion at a frame; None where that is nothing."""
@@ -88,6 +127,22 @@ class Corrections:
             if wanted is None:
                 return still
             return self._gone(frame, moved, lack, still or FrameCorrection(), wanted)
+
+    def with_tracks(self, clip: Clip) -> "Corrections":
+        """Return the corrections of a clip that differs in its tracks alone."""
+        changed = copy(self)
+        changed.clip = clip
+        changed._own = self._own.with_tracks(clip)  # noqa: SLF001 - its own
+        return changed
+
+    def ground_at(self, frame: float) -> Ground:
+        """Return what tracks are relative to at a frame."""
+        with self._lock:
+            base = self._base(frame)
+            still = self._still(frame, base, self._lack(frame, base))
+            moved = self._with(base, still)
+            places, fz = moved.positions[self._handles], moved.fz[self._handles]
+            return Ground(places, fz / np.abs(fz), still)
 
     def still_at(self, frame: float) -> FrameCorrection | None:
         """Return the same without tracks and springs."""
@@ -155,7 +210,7 @@ class Corrections:
         pins = self._pins(places, lack.weights, np.full(len(wanted), np.nan), 1.0)
 
         def solve() -> FrameCorrection:
-            found = self._corrector.correct(moved, pins, self._clip.figure.bounds)
+            found = self._corrector.correct(moved, pins, self.clip.figure.bounds)
             phi, psi = self._anchored(found)
             return FrameCorrection(
                 motion=motion,
@@ -177,9 +232,9 @@ class Corrections:
         pins = self._pins(places, firmness, wanted.turns, wanted.reach)
 
         def solve() -> FrameCorrection:
-            found = self._corrector.correct(base, pins, self._clip.figure.bounds)
+            found = self._corrector.correct(base, pins, self.clip.figure.bounds)
             phi, psi = self._anchored(found)
-            handles = self._clip.figure.handles
+            handles = self.clip.figure.handles
             tracked = [i for i, handle in enumerate(handles) if handle.id in wanted.tracked]
             return FrameCorrection(
                 motion=still.motion,
@@ -227,12 +282,12 @@ class Corrections:
         phi = corrected.phi
         if self._is_hung:
             phi = phi.copy()
-            phi[: len(self._clip.figure.domain.cage)] -= corrected.change.positions[-1]
+            phi[: len(self.clip.figure.domain.cage)] -= corrected.change.positions[-1]
         return phi, corrected.psi
 
     def _whose(self, frame: float) -> tuple[object, ...]:
         """Return what the motion of a frame follows from; the poses stay alive with it."""
-        clip, moment = self._clip, time_of(self._clip, frame)
+        clip, moment = self.clip, time_of(self.clip, frame)
         resting, bounds = resting_pose(clip, moment), clip.figure.bounds
         if resting is not None:
             return resting, self._points.tobytes(), bounds

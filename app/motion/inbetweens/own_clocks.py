@@ -67,6 +67,12 @@ class OwnClocks:
         self._firmness = np.zeros(len(figure.handles))
         self._firmness[[self._index[identity] for identity in own]] = 1.0
 
+    def with_tracks(self, clip: Clip) -> "OwnClocks":
+        """Return those of a clip that differs in its tracks alone: the springs swing alike."""
+        changed = OwnClocks(clip, self._places, self._carried)
+        changed._swings = self._swings
+        return changed
+
     def acts(self, frame: float) -> bool:
         """Tell whether anything may be wanted at a frame."""
         return bool(self._springs) or any(

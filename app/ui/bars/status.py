@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from imgui_bundle import ImColor, ImVec2, imgui, imspinner
 
-from app.document import Extremes, find_shortfall, loosened
+from app.document import Extremes, falls_short, find_shortfall, loosened
 from app.editor import Action, Kind, Project, Session, do, promises
 from app.editor.actions import exporting, rebuilding, upkeep
 from app.errors import shown_name
@@ -87,18 +87,26 @@ def draw_status(session: Session, look: Look) -> list[Action]:
 
 
 def limit_of_pose(session: Session) -> str:
-    """Return which handle the limits hold back in the pose that is shown, and how far; else ""."""
+    """Return which handle the limits hold back in what is shown, and how far; else "".
+
+    It is wanted elsewhere by the pose, or by its track.
+    """
     project = session.project
     shown = project.puppet.shown if project else None
-    if project is None or shown is None or shown.pose is None:
+    if project is None or shown is None or project.playhead.since is not None:
         return ""
-    shortfall = find_shortfall(shown.clip.figure, shown.pose)
-    names = {handle.id: handle.name for handle in shown.clip.figure.handles}
-    if not (shortfall.at_limits and shortfall.lags):
+    figure, correction, lags = shown.clip.figure, shown.correction, dict[int, float]()
+    if shown.pose is not None:
+        shortfall = find_shortfall(figure, shown.pose)
+        lags |= shortfall.lags if shortfall.at_limits else {}
+    if correction is not None and correction.is_held_back:
+        own = correction.misses.items()
+        lags |= {handle: miss for handle, miss in own if falls_short(figure, miss)}
+    if not lags:
         return ""
-    farthest = max(shortfall.lags, key=shortfall.lags.__getitem__)
-    text = f"{names[farthest]} is {shortfall.lags[farthest]:.0f} px short"
-    others = len(shortfall.lags) - 1
+    farthest = max(lags, key=lags.__getitem__)
+    text = f"{figure.handle(farthest).name} is {lags[farthest]:.0f} px short"
+    others = len(lags) - 1
     return f"Stretch limit reached – {text}" + (f", {others} more too" if others else "")
 
 

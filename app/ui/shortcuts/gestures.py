@@ -15,7 +15,8 @@ class Gesture:
 
 GESTURES = (
     Gesture("Click the shape", "Add a handle"),
-    Gesture("Drag a handle", "Pose"),
+    Gesture("Drag a handle", "Pose, or key it alone where its track is chosen"),
+    Gesture("Drag a key on a track's path", "Move it in the picture"),
     Gesture(with_key(ALT, "let go of a handle"), "Want it there, however far"),
     Gesture("Drag the ring around a handle", "Turn the shape there"),
     Gesture(with_key(ALT, "drag a handle"), "Turn the shape there"),

@@ -17,6 +17,7 @@ from app.editor.actions import (
     posing,
     saving,
     timeline_pointing,
+    tracking,
     tracks,
     viewing,
 )
@@ -48,7 +49,14 @@ def _all(session: Session, _: Project) -> str:
 def _can_deselect(session: Session, project: Project) -> bool:
     """Tell whether something is selected, and nothing is under way that Esc ends first."""
     in_hand = session.pointer or session.cutting or session.moves or project.timing.gesture
-    return not in_hand and bool(project.selected or project.chosen_of)
+    return not (in_hand or _records(session, project)) and bool(
+        project.selected or project.chosen_of
+    )
+
+
+def _records(session: Session, project: Project) -> bool:
+    """Tell whether a drag is to be recorded, or was and is not kept yet."""
+    return session.pointer is None and (session.records or project.take is not None)
 
 
 def _selected(_: Session, project: Project) -> bool:
@@ -437,6 +445,18 @@ MENUS: dict[str, dict[str, Binding]] = {
             icon=icons.ICON_FA_KEY,
             hint="Posing makes and changes keys",
             active=lambda session: session.preferences.auto_key,
+        ),
+        "record": Binding(
+            "Record a drag",
+            do(tracking.take_up),
+            "R",
+            icon=icons.ICON_FA_CIRCLE,
+            hint="Record how the next handle is dragged, while the timeline plays",
+            possible=lambda session, _: session.cutting is None,
+            active=lambda session: session.records,
+        ),
+        "record nothing": Binding(
+            "Give the recording up", do(tracking.give_up), "Escape", possible=_records
         ),
         "preview start": Binding(
             "Start preview range here", do(keys.start_preview_here), "B", parted=True

@@ -6,7 +6,7 @@ from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.document import LAST_FRAME, figure_commands
 from app.editor import Action, Project, Session, do
-from app.editor.actions import editing, keys, playback, viewing
+from app.editor.actions import editing, keys, playback, tracking, viewing
 from app.storage import LARGEST_GHOST_STEP, MOST_GHOSTS
 from app.ui.methods import VARIANTS
 from app.ui.shortcuts import BINDINGS, bound_button
@@ -58,7 +58,25 @@ def _transport(session: Session, look: Look, project: Project) -> list[Action]:
         icon = icons.ICON_FA_PAUSE if name == "play" and is_playing else ""
         actions += bound_button(session, look, name, icon)
         imgui.same_line(0, TIGHT * look.em)
-    return actions + bound_button(session, look, "loop")
+    actions += bound_button(session, look, "loop")
+    imgui.same_line(0, TIGHT * look.em)
+    actions += bound_button(session, look, "record")
+    imgui.same_line(0, TIGHT * look.em)
+    return actions + _recording_speed(session, look)
+
+
+def _recording_speed(session: Session, look: Look) -> list[Action]:
+    actions: list[Action] = []
+    imgui.set_next_item_width(4.6 * look.em)
+    if imgui.begin_combo("##recording", f"{session.recording_speed:.0%}"):
+        actions += [
+            do(tracking.set_speed, speed)
+            for speed in tracking.RECORDING_SPEEDS
+            if imgui.selectable(f"{speed:.0%}", speed == session.recording_speed)[0]
+        ]
+        imgui.end_combo()
+    tip("How fast the timeline plays while a drag is recorded")
+    return actions
 
 
 def _key_buttons(session: Session, look: Look, project: Project) -> list[Action]:

@@ -7,9 +7,11 @@ from imgui_bundle import ImVec4
 
 from app.document import Clip, Track, falls_short, time_of, track_at
 from app.editor import Project, Session
+from app.editor.actions import tracking
 from app.motion import AttachedPoints, Box, PosableMesh, Shown, still_handles
 from app.render import Colour, Disc, HandleMark, Line, mark_anchor, mark_handles
 from app.ui.style import Palette, density, interface_scale
+from app.ui.viewport.paths import mark_path
 from engine.arrays import Booleans, Complexes
 from engine.domain import Domain
 from engine.geometry import deepest_point
@@ -44,9 +46,14 @@ def mark_all(
     if session.overlays.paths and project.playhead.since is None:
         path_lines, dots = _paths(project, shown, palette, scale)
         lines += path_lines
+    if project.playhead.since is None or project.take is not None:
+        colours = plain(palette.accent), plain(palette.text), plain(palette.desk, 0.8)
+        path_lines, path_dots = mark_path(project, *colours, scale)
+        lines, dots = [*lines, *path_lines], (*dots, *path_dots)
     if session.export_frame is not None:
         lines.append(_frame(session.export_frame, palette, scale))
-    if not session.overlays.handles or project.playhead.since is not None:
+    is_playing = project.playhead.since is not None and project.take is None
+    if not session.overlays.handles or is_playing:
         return tuple(lines), dots
     handle_lines, discs = mark_handles(_handles(session, project, shown), scale=scale)
     anchor = find_anchor(project, shown)
@@ -72,21 +79,21 @@ def _handles(session: Session, project: Project, shown: Shown) -> list[HandleMar
 
 
 def unreached(project: Project, shown: Shown) -> dict[int, complex]:
-    """Return where handles that have not arrived are wanted by a pose, by their ids.
+    """Return where handles that have not arrived are wanted, by their ids.
 
-    Those that go their own ways, by tracks or springs, are elsewhere for that.
+    A handle whose track acts is wanted by that, and not where the pose alone would have it.
     """
     figure, targets = shown.clip.figure, shown.pose.targets if shown.pose else {}
-    own = {handle for track in _acting(shown) for handle in track.handles} | figure.followers
     if project.pull and project.pull.asked is not None:
         targets = project.pull.asked
+    own = tracking.acting(project, shown.frame) | figure.followers
+    wanted = {i: target.position for i, target in targets.items() if i not in own}
+    wanted |= tracking.wishes(project, shown)
     places = zip(figure.handles, shown.handle_places.tolist(), strict=True)
-    wanted = ((handle.id, targets.get(handle.id), place) for handle, place in places)
     return {
-        identity: target.position
-        for identity, target, place in wanted
-        if target is not None and identity not in own
-        if falls_short(figure, abs(target.position - place))
+        handle.id: wanted[handle.id]
+        for handle, place in places
+        if handle.id in wanted and falls_short(figure, abs(wanted[handle.id] - place))
     }
 
 

@@ -12,9 +12,20 @@ from app.editor.tools import pointing
 from app.ui.shortcuts import ALT, CTRL, bound_item, with_key
 from app.ui.style import Look, density, in_hand, is_pressed
 from app.ui.viewport.cut_view import draw_brush
-from app.ui.viewport.gesture import draw_coming_strokes, draw_slits, go_on
-from app.ui.viewport.grips import draw_axis, draw_ring, find_ring, lay_axis
-from app.ui.viewport.hints import draw_badges, draw_mode, hint_at
+from app.ui.viewport.hand import (
+    draw_axis,
+    draw_badges,
+    draw_coming_strokes,
+    draw_mode,
+    draw_ring,
+    draw_slits,
+    draw_take,
+    find_ring,
+    go_on,
+    hint_at,
+    lay_axis,
+    lay_track_keys,
+)
 from app.ui.viewport.marks import unreached
 from app.ui.viewport.screen import GRIP, Screen
 from app.ui.viewport.split_view import SplitTextures, divide, draw_divider, draw_pictures
@@ -48,7 +59,9 @@ def draw(session: Session, look: Look, project: Project, pictures: SplitTextures
     # Before the canvas: what comes first gets the pointer. Were they laid over it, a press in the
     # frame in which the pointer arrives would be the canvas's, or nobody's.
     with imgui_ctx.push_clip_rect(corner, corner + parts.room, True):  # noqa: FBT003 - within its own
+        actions += draw_take(look, project, corner)
         handles = _lay_handles(session, look, screen)
+        track_key, is_key_pressed = lay_track_keys(session, look, screen)
         axis = lay_axis(session, look, screen)
     actions += draw_divider(session, look, parts, whole.x)
     imgui.set_cursor_screen_pos(corner)
@@ -56,14 +69,14 @@ def draw(session: Session, look: Look, project: Project, pictures: SplitTextures
     on_canvas, ring = imgui.is_item_hovered(), find_ring(session, screen)
     on_ring = on_canvas and handles.hovered is None and ring is not None and ring.is_pointed(look)
     spot = screen.spot(look, handles.hovered, on_ring=on_ring, on_axis=axis.is_hot)
-    spot = replace(spot, at_target=handles.at_target)
-    if handles.is_pressed or axis.is_pressed or _is_canvas_pressed():
+    spot = replace(spot, at_target=handles.at_target, track_key=track_key)
+    if handles.is_pressed or is_key_pressed or axis.is_pressed or _is_canvas_pressed():
         actions.append(do(pointing.press, spot))
     actions += _canvas_menu(session, is_pointed=on_canvas and handles.hovered is None)
     actions += _navigate(screen)
     actions += handles.actions
     actions += go_on(session, look, screen)
-    is_over = on_canvas or handles.hovered is not None or axis.is_hot
+    is_over = on_canvas or axis.is_hot or not handles.hovered is track_key is None
     if session.moves and is_over and session.cutting is None:
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_all)
     if handles.hovered != session.hovered:

@@ -192,6 +192,8 @@ def _begin(session: Session, project: Project, gesture: object) -> Pull:
 def _start(session: Session, project: Project, earlier: Pull | None) -> Start | None:
     """Return what a pull begins with; None where that is an in-between that is not there yet.
 
+    Where tracks or springs act, handles are shown elsewhere than in the pose: that is worked out.
+
     An earlier pull of the same pose, which is not at rest yet, says what was wished last.
     """
     pose, shown, figure = pose_here(session, project), project.puppet.shown, project.figure
@@ -203,6 +205,8 @@ def _start(session: Session, project: Project, earlier: Pull | None) -> Start | 
         return Start.of(figure, pose)
     frame = playback.current_frame(session, project)
     if shown is None or not shown.is_current or shown.frame != frame or shown.clip != project.clip:
+        return None
+    if figure.tracks or figure.springs:
         return None
     identities = [handle.id for handle in figure.handles]
     places = shown.handle_places.tolist()

@@ -63,6 +63,8 @@ def draw_badges(
         return _pill(look, "Unkeyed pose", top, BINDINGS["insert key"])
     if session.moves:
         return draw_mode(look, "Moving the whole figure", corner, room)
+    if session.records:
+        return draw_mode(look, "Recording the next drag of a handle", corner, room)
     step = first_step(project)
     if step is None:
         return []

@@ -41,7 +41,9 @@ def go_on(session: Session, look: Look, screen: Screen) -> list[Action]:
     # Only what is turned goes by steps; Ctrl let go after Ctrl+Z is not to pull once more.
     is_turning = any(isinstance(mark, SweepMark) for mark in gesture.marks)
     is_stepped = is_turning and io.key_ctrl != session.snaps
-    if io.mouse_delta.x or io.mouse_delta.y or is_stepped:
+    # What is recorded goes on in time while the pointer rests.
+    is_recorded = screen.project.take is not None and not screen.project.take.is_over
+    if io.mouse_delta.x or io.mouse_delta.y or is_stepped or is_recorded:
         move = pointing.move_in_steps if io.key_ctrl else pointing.move
         actions.append(do(move, pointer))
     characters = _typed()

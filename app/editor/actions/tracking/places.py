@@ -1,0 +1,77 @@
+"""What tracks' keys are on the figure that is posed: places, and back."""
+
+from app.document import Track, track_at
+from app.editor.project import Project
+from app.motion import Ground, Shown
+
+
+def ground_at(project: Project, frame: int) -> Ground | None:
+    """Return what tracks are relative to at a frame, if it is known yet."""
+    corrected = project.puppet.corrected
+    return None if corrected is None else corrected.ground(frame)
+
+
+def index_of(project: Project, handle: int) -> int:
+    """Return which of the figure's handles it is."""
+    return [each.id for each in project.figure.handles].index(handle)
+
+
+def wished(project: Project, track: Track, frame: int) -> complex | None:
+    """Return where a track wants its first handle at a frame, on the figure by itself.
+
+    None where it does not act, or where that is not known yet.
+    """
+    at, ground = track_at(track, project.clip, frame), ground_at(project, frame)
+    shown = project.puppet.shown
+    if at is None or shown is None:
+        return None
+    if track.planted:
+        return project.placements([frame], shown.placement)[0].back(at.place)
+    if ground is None:
+        return None
+    index = index_of(project, track.handles[0])
+    return complex(ground.places[index] + at.place * ground.turns[index])
+
+
+def kept(project: Project, handle: int, frame: int, place: complex) -> complex | None:
+    """Return what a key of a handle's track has there for a place of the figure by itself.
+
+    A handle without a track gets one with the pose. None where it is not known yet.
+    """
+    track, shown = project.figure.track_of(handle), project.puppet.shown
+    if track is not None and track.planted:
+        if shown is None:
+            return None
+        (placement,) = project.placements([frame], shown.placement)
+        return placement.factor * place + placement.shift
+    ground = ground_at(project, frame)
+    if ground is None:
+        return None
+    index = index_of(project, handle)
+    return complex((place - ground.places[index]) * ground.turns[index].conjugate())
+
+
+def acting(project: Project, frame: int) -> frozenset[int]:
+    """Return the handles whose tracks act at a frame."""
+    clip = project.clip
+    tracks = (track for track in clip.figure.tracks if track_at(track, clip, frame) is not None)
+    return frozenset(handle for track in tracks for handle in track.handles)
+
+
+def wishes(project: Project, shown: Shown) -> dict[int, complex]:
+    """Return where tracks want their handles in the frame that is shown, as far as it is known.
+
+    By their ids, on the figure by itself. A pose that no key holds yet has other places.
+    """
+    ground, wanted = ground_at(project, shown.frame), dict[int, complex]()
+    if ground is None or project.unkeyed is not None or project.pull is not None:
+        return wanted
+    for track in project.figure.tracks:
+        place = wished(project, track, shown.frame)
+        if place is None:
+            continue
+        first = ground.places[index_of(project, track.handles[0])]
+        for handle in track.handles:
+            # The others are moved by as much.
+            wanted[handle] = complex(place + ground.places[index_of(project, handle)] - first)
+    return wanted

@@ -1,0 +1,239 @@
+"""Drags that are recorded while the timeline plays, and fitted by as few keys as will do."""
+
+from dataclasses import replace
+
+from app.document import Track, TrackKey, track_at, track_commands
+from app.editor.actions import editing, playback, posing
+from app.editor.actions.tracking.carrying import go_on, put_key
+from app.editor.actions.tracking.places import ground_at, index_of
+from app.editor.project import Project
+from app.editor.session import Session, with_project
+from app.editor.timeline_view import own_frame
+from app.editor.work import Sample, Take
+from app.motion import Ground, corrected_clip
+from engine.geometry.kinematics import fit_keys
+
+RECORDING_SPEEDS = (1.0, 0.5, 0.25)
+# Pixels of the picture that a fitted motion may be beside what was recorded, at no smoothing and
+# at all of it.
+CLOSEST, SMOOTHEST = 0.5, 20.0
+SMOOTHING = 0.5  # at first
+
+
+@with_project
+def take_up(session: Session, project: Project) -> None:
+    """Let the next drag of a handle be recorded, or not any more; what was recorded is kept."""
+    keep(session)
+    if session.records:
+        session.records = False
+    elif not project.figure.handles:
+        session.tell("Click on the drawing to add a handle; then record how it is dragged.")
+    else:
+        playback.halt(session)
+        posing.let_go(session)
+        session.records, session.moves = True, False
+
+
+def set_speed(session: Session, speed: float) -> None:
+    """Set how fast the timeline plays while a drag is recorded."""
+    session.recording_speed = speed
+
+
+@with_project
+def begin_take(
+    session: Session, project: Project, handle: int, place: complex, *, gesture: object
+) -> None:
+    """Begin to record a drag of a handle, which is at a place of the figure by itself."""
+    session.records = False
+    track, document, standing = project.figure.track_of(handle), project.document, project.playhead
+    running = replace(standing, speed=session.recording_speed).play(document, session.clock())
+    frames, played = document.frames, document.played
+    # Over the seam of a loop it goes on, at most once round; that of a part of it is a jump.
+    goes_round = document.loop and played == frames
+    project.playhead = running
+    project.take = Take(
+        figure=project.active,
+        handle=handle if track is None else track.handles[0],
+        gesture=gesture,
+        before=track,
+        playhead=running,
+        last=running.frame + frames.last - frames.first if goes_round else played.last,
+        speed=standing.speed,
+        place=place,
+        smoothing=SMOOTHING,
+    )
+
+
+@with_project
+def perform(_: Session, project: Project, place: complex) -> None:
+    """Want the handle that is recorded at another place of the figure by itself."""
+    if project.take is not None:
+        project.take.place = place
+
+
+@with_project
+def end_take(session: Session, project: Project) -> None:
+    """End a recording where it is; the playhead goes back to where that began."""
+    take = project.take
+    if take is None or take.is_over:
+        return
+    if session.pointer is take.gesture:
+        session.pointer = None
+    take.is_over = True
+    project.playhead = replace(take.playhead, since=None, speed=take.speed)
+    project.chosen_track = take.handle
+    project.timing.unfolded |= {take.figure}
+
+
+def keep(session: Session) -> None:
+    """Keep what was recorded, as it is."""
+    end_take(session)
+    if session.project is not None:
+        session.project.take = None
+
+
+@with_project
+def give_up(session: Session, project: Project) -> None:
+    """Take back what was recorded, or record nothing."""
+    session.records, take = False, project.take
+    if take is not None:
+        end_take(session)
+        editing.take_back(session, take.gesture)
+        project.take = None
+
+
+def again(session: Session) -> None:
+    """Take back what was recorded, and let the next drag be recorded in its place."""
+    give_up(session)
+    session.records = True
+
+
+@with_project
+def smooth(_: Session, project: Project, smoothing: float) -> None:
+    """Smooth what was recorded, from 0 to 1."""
+    take = project.take
+    if take is not None and take.after is not None:
+        take.smoothing = smoothing
+        _write(project, take)
+
+
+def maintain(session: Session, project: Project) -> None:
+    """Go on with what hands do with tracks; once a frame."""
+    if not (project.carries or project.take):
+        return
+    project.puppet.corrected = corrected_clip(
+        project.document, project.active, project.puppet.corrected
+    )
+    go_on(session, project)
+    take = project.take
+    if take is None:
+        return
+    if take.figure != project.active or (
+        take.after is not None and take.after is not project.document
+    ):
+        # What was done since, even that it was taken back, is what the person goes on with.
+        keep(session)
+    elif not take.is_over:
+        _record(session, project, take)
+    elif take.after is None:
+        _write(project, take)
+
+
+def _record(session: Session, project: Project, take: Take) -> None:
+    """Take note of where the handle is dragged at this moment, and show that."""
+    since, now, shown = take.playhead.since, session.clock(), project.puppet.shown
+    if since is None or shown is None:
+        return
+    gone = (now - since) * project.document.fps * take.playhead.speed
+    time = min(take.playhead.frame + gone, float(take.last))
+    frame = playback.current_frame(session, project)
+    (placement,) = project.placements([frame], shown.placement)
+    sample = Sample(time, take.place, placement.factor * take.place + placement.shift)
+    if take.samples and take.samples[-1].time == time:
+        take.samples[-1] = sample
+    else:
+        take.samples.append(sample)
+    put_key(session, project, take.handle, frame, take.place, take.gesture)
+    if project.playhead is not take.playhead or time == take.last:
+        end_take(session)
+
+
+def _write(project: Project, take: Take) -> None:
+    """Let the track have what was recorded, once it is known what that is relative to."""
+    clip, before = project.clip, take.before
+    values = _values(project, take)
+    if values is None:
+        return
+    fresh = before or Track(handles=(take.handle,), keys=(TrackKey(frame=0, place=0),))
+    fitted = _fitted(project, take, values)
+
+    def own(frame: int) -> int | None:
+        return own_frame(project.document, fresh, _wrapped(project, frame))
+
+    recorded = {own(frame) for frame in range(min(fitted), max(fitted) + 1)}
+    keys = {} if before is None else {k.frame: k for k in before.keys if k.frame not in recorded}
+    # After a whole round of a loop, where it began counts and not where it ended.
+    for frame, place in reversed(fitted.items()):
+        at, number = track_at(fresh, clip, _wrapped(project, frame)), own(frame)
+        if number is not None:
+            turn = 0.0 if before is None or at is None else at.turn
+            keys[number] = TrackKey(frame=number, place=place, turn=turn)
+    seam, first = own(clip.frames.last), own(clip.frames.first)
+    if max(fitted) > clip.frames.last and seam in keys and first is not None:
+        keys[first] = replace(keys[seam], frame=first)
+    row = tuple(keys[frame] for frame in sorted(keys))
+    command = track_commands.put_track(take.figure, replace(fresh, keys=row))
+    project.history.do(replace(command, label="Record drag"), gesture=take.gesture)
+    take.after = project.document
+
+
+def _fitted(project: Project, take: Take, values: list[complex]) -> dict[int, complex]:
+    """Return the places of as few keys as will do, by frames, which go on over a loop's seam.
+
+    There is one at the seam: the last frame of a loop is its first one again.
+    """
+    tolerance = CLOSEST * (SMOOTHEST / CLOSEST) ** take.smoothing
+    times, seam = [sample.time for sample in take.samples], project.document.frames.last
+    reached = sum(time <= seam for time in times)
+    if reached == len(times):
+        frames, places = fit_keys(times, values, tolerance)
+        return dict(zip(frames.tolist(), places.tolist(), strict=True))
+    (one, other), (start, end) = times[reached - 1 : reached + 1], values[reached - 1 : reached + 1]
+    there = start + (seam - one) / (other - one) * (end - start)
+    found = dict[int, complex]()
+    for when, where in (
+        ([*times[:reached], float(seam)], [*values[:reached], there]),
+        ([float(seam), *times[reached:]], [there, *values[reached:]]),
+    ):
+        frames, places = fit_keys(when, where, tolerance)
+        found |= dict(zip(frames.tolist(), places.tolist(), strict=True))
+    return found
+
+
+def _values(project: Project, take: Take) -> list[complex] | None:
+    """Return what was recorded as the track's keys have it; None until all of it is known."""
+    if take.before is not None and take.before.planted:
+        return [sample.in_scene for sample in take.samples]
+    index, values = index_of(project, take.handle), []
+    for time, place, _ in take.samples:
+        frame = int(time)
+        ends = [ground_at(project, _wrapped(project, each)) for each in (frame, frame + 1)]
+        if ends[0] is None or ends[1] is None:
+            return None
+        values.append(_relative(ends[0], ends[1], time - frame, index, place))
+    return values
+
+
+def _relative(one: Ground, other: Ground, share: float, index: int, place: complex) -> complex:
+    """Return by how much a place is beside a handle's between two frames, as the shape turns."""
+    at = (1 - share) * one.places[index] + share * other.places[index]
+    turn = (1 - share) * one.turns[index] + share * other.turns[index]
+    return complex((place - at) * turn.conjugate() / abs(turn))
+
+
+def _wrapped(project: Project, frame: int) -> int:
+    """Return a frame that goes on over the seam of a loop where it is in the animation."""
+    frames = project.document.frames
+    if project.document.loop and frame > frames.last:
+        return frames.first + (frame - frames.first) % (frames.last - frames.first)
+    return frames.clamp(frame)

@@ -1,0 +1,91 @@
+"""The worker's way to corrected frames: the one that is watched first, then all others."""
+
+from collections.abc import Callable, Iterator
+
+from app.document import Clip, clip_of
+from app.editor.actions import playback
+from app.editor.failures import report
+from app.editor.project import Project, Puppet
+from app.editor.session import Session
+from app.editor.work import Job, Kind
+from app.motion import CorrectedFrames, FoundCorrections
+
+COMPLAINT = "The handles cannot be held still, or on their tracks"
+CORRECTING = Kind("Corrections", COMPLAINT)
+FOLLOWING = Kind("FrameCorrection", COMPLAINT, "hand")
+# What the tracks of handles that a hand may carry are relative to.
+GROUNDING = Kind("Places on tracks", COMPLAINT, "hand")
+
+Work = Callable[[], FoundCorrections]
+
+
+def is_under_way(session: Session, project: Project) -> bool:
+    """Tell whether a hand has a handle on its track: but for the frame that it sees all waits."""
+    is_recorded = project.take is not None and not project.take.is_over
+    return is_recorded or (session.pointer is not None and project.chosen_track is not None)
+
+
+def missing(session: Session, project: Project) -> Iterator[Job]:
+    """Yield what finds the corrections of some frames, those nearest to the playhead first."""
+    frame = playback.current_frame(session, project)
+    if CORRECTING not in session.jobs.kinds:
+        for clip, puppet, corrected in _corrected(project):
+            work = corrected.missing(project.document, frame, project.samplers)
+            if work is not None:
+                yield _job(session, CORRECTING, puppet, clip, work)
+                return
+
+
+def missing_here(session: Session, project: Project) -> Iterator[Job]:
+    """Yield what finds the correction of the frame that is watched, and what hands need."""
+    if not project.pulls:
+        yield from _follow(session, project)
+        yield from _ground(session, project)
+
+
+def _follow(session: Session, project: Project) -> Iterator[Job]:
+    is_playing = project.playhead.since is not None
+    if FOLLOWING in session.jobs.kinds or (is_playing and project.take is None):
+        # Of a frame that only plays it would come too late.
+        return
+    frame = playback.current_frame(session, project)
+    for clip, puppet, corrected in _corrected(project):
+        work = corrected.missing_here(project.document, frame, project.samplers)
+        if work is not None:
+            yield _job(session, FOLLOWING, puppet, clip, work)
+            return
+
+
+def _ground(session: Session, project: Project) -> Iterator[Job]:
+    wanted = session.records or project.chosen_track is not None or project.carries or project.take
+    if not wanted or GROUNDING in session.jobs.kinds:
+        return
+    frames = [carry.frame for carry in project.carries]
+    frame = frames[0] if frames else playback.current_frame(session, project)
+    for clip, puppet, corrected in _corrected(project):
+        if clip.figure.id == project.active:
+            work = corrected.missing_ground(project.document, frame, project.samplers)
+            if work is not None:
+                yield _job(session, GROUNDING, puppet, clip, work)
+
+
+def _corrected(project: Project) -> Iterator[tuple[Clip, Puppet, CorrectedFrames]]:
+    for figure, puppet in project.puppets.items():
+        clip = clip_of(project.document, figure)
+        if puppet.corrected is not None and not puppet.store.has_failed(clip, "correction"):
+            yield clip, puppet, puppet.corrected
+
+
+def _job(session: Session, kind: Kind, puppet: Puppet, clip: Clip, work: Work) -> Job:
+    """Return a job for some corrections; what fails is not tried again for the same keys."""
+
+    def done(found: FoundCorrections) -> None:
+        # The hand may have gone on since.
+        if puppet.corrected is not None:
+            puppet.corrected.take(found, is_newest=kind == FOLLOWING)
+
+    def failed(error: Exception) -> None:
+        puppet.store.fail("correction", clip)
+        report(session, kind.complaint, error)
+
+    return Job(kind=kind, work=work, done=done, failed=failed)

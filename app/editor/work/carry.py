@@ -1,0 +1,88 @@
+"""What a hand does with a track: a handle that it carries, and a drag that is recorded."""
+
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from app.document import Document, Playhead, Track
+from app.editor.work.promise import Promise
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class Carry(Promise):
+    """A handle at a frame, wanted elsewhere by its own track.
+
+    It is a promise until the track has the key, which it gets once it is known what that is
+    relative to.
+
+    Parameters
+    ----------
+    figure, handle : int
+        Ids; the handle is the first one of the track's.
+    frame : int
+        Of the scene.
+    gesture : object
+        What is one step of undo together.
+    place : complex
+        Where the handle is wanted, on the figure by itself.
+    """
+
+    label: str = "Keys of a handle"
+    figure: int
+    handle: int
+    frame: int
+    gesture: object
+    place: complex
+
+
+class Sample(NamedTuple):
+    """Where a handle was dragged: when, in frames, which go on where a loop comes round.
+
+    The place is of the figure by itself, and of the scene.
+    """
+
+    time: float
+    place: complex
+    in_scene: complex
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class Take:
+    """A drag of a handle that is recorded while the timeline plays.
+
+    Parameters
+    ----------
+    figure, handle : int
+        Ids; the handle is the first one of the track's.
+    gesture : object
+        What is one step of undo together.
+    before : Track, optional
+        The handle's track as it was.
+    playhead : Playhead
+        As it runs since the drag began.
+    last : int
+        The frame at which it is over at the latest; in a loop it counts on.
+    speed : float
+        Of the playhead before.
+    place : complex
+        Where the handle is wanted now, on the figure by itself.
+    smoothing : float
+        From 0 to 1.
+    samples : list of Sample
+    is_over : bool
+        Whether the hand has let go.
+    after : Document, optional
+        The document with the recorded track; None until it has that.
+    """
+
+    figure: int
+    handle: int
+    gesture: object
+    before: Track | None
+    playhead: Playhead
+    last: int
+    speed: float
+    place: complex
+    smoothing: float
+    samples: list[Sample] = field(default_factory=list)
+    is_over: bool = False
+    after: Document | None = None

@@ -1,0 +1,74 @@
+"""The path of the track whose row is chosen, with its keys, and the trail of a recorded drag."""
+
+import numpy as np
+
+from app.document import Track
+from app.editor import Project, seen_at
+from app.editor.actions import tracking
+from app.render import Colour, Disc, Line
+from engine.arrays import Complexes
+
+MOST = 500  # frames of which the path is drawn; of longer animations every second, third …
+DOT, KEY_DOT = 1.8, 4.4  # pixels: radius of a frame on a path, and of a key
+
+
+def keys_on_path(project: Project) -> list[tuple[int, Complexes]]:
+    """Return at which frames the keys of the chosen track are seen, and where in the scene, (1,).
+
+    Those whose places are not known yet are left out.
+    """
+    track = _chosen(project)
+    if track is None:
+        return []
+    document = project.document
+    frames = {seen_at(document, track, key.frame) for key in track.keys}
+    return _places(project, track, sorted(frame for frame in frames if frame in document.frames))
+
+
+def mark_path(
+    project: Project, accent: Colour, key: Colour, rim: Colour, scale: float
+) -> tuple[list[Line], tuple[Disc, ...]]:
+    """Return the path of the chosen track, and the trail of a drag that is recorded."""
+    lines, discs, track, take = list[Line](), list[Disc](), _chosen(project), project.take
+    if take is not None and len(take.samples) > 1:
+        trail = np.array([sample.in_scene for sample in take.samples])
+        lines.append(Line(points=trail, colour=(*key[:3], 0.35 * key[3]), width=3.0 * scale))
+    if track is None or (take is not None and take.after is None):
+        return lines, ()
+    first, last = project.clip.frames.first, project.clip.frames.last
+    frames = range(first, last + 1, 1 + (last - first) // MOST)
+    path = _places(project, track, list(frames))
+    if len(path) > 1:
+        points = np.concatenate([place for _, place in path])
+        lines.append(Line(points=points, colour=(*accent[:3], 0.7 * accent[3]), width=1.4 * scale))
+    for radius, fill, places in ((DOT, accent, path), (KEY_DOT, key, keys_on_path(project))):
+        discs += [
+            Disc(
+                centre=complex(place[0]),
+                radius=radius * scale,
+                fill=fill,
+                rim=rim,
+                rim_width=scale,
+            )
+            for _, place in places
+        ]
+    return lines, tuple(discs)
+
+
+def _chosen(project: Project) -> Track | None:
+    handle = project.chosen_track
+    return None if handle is None else project.figure.track_of(handle)
+
+
+def _places(project: Project, track: Track, frames: list[int]) -> list[tuple[int, Complexes]]:
+    """Return where in the scene a track wants its first handle, as far as that is known."""
+    shown = project.puppet.shown
+    if shown is None:
+        return []
+    wished = [tracking.wished(project, track, frame) for frame in frames]
+    placements = project.placements(frames, shown.placement)
+    return [
+        (frame, placement.on(np.array([place])))
+        for frame, place, placement in zip(frames, wished, placements, strict=True)
+        if place is not None
+    ]

@@ -1,0 +1,300 @@
+"""Handles that a hand carries along tracks, and drags that are recorded."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from bars import BENT
+from numpy.testing import assert_allclose
+
+from app.document.commands import scene_commands, track_commands
+from app.document.settings import FrameRange
+from app.document.timing import Track, TrackKey
+from app.editor.actions import playback, tracking
+from app.editor.actions.timing import tracks
+from app.ui.bars.status import limit_of_pose
+from app.ui.viewport.marks import unreached
+
+END = 1  # the handle near the right end
+NEAR = 0.3  # pixels that a tracked handle may miss
+PIXEL = 1.5  # as far as the pointer is beside where it is sent
+
+
+def place_of(project, handle=END):
+    """Return where a handle is shown."""
+    index = [each.id for each in project.figure.handles].index(handle)
+    return complex(project.puppet.shown.handle_places[index])
+
+
+def ground(project, frame, handle=END):
+    index = [each.id for each in project.figure.handles].index(handle)
+    found = project.puppet.corrected.ground(frame)
+    return complex(found.places[index]), complex(found.turns[index])
+
+
+def drag(window, start, end, *, then=lambda robot: robot.mouse_up(0)):
+    def act(robot):
+        robot.mouse_move_to_pos(window.point(start))
+        robot.mouse_down(0)
+        for share in (0.3, 0.6, 1.0):
+            robot.mouse_move_to_pos(window.point(start + share * (end - start)))
+        then(robot)
+
+    window.run(act)
+    window.settle()
+
+
+@pytest.fixture
+def bent(window, bent):
+    """The bent bar, with no frame after that of its second key: less is worked out."""
+    bent.history.do(scene_commands.set_frames(FrameRange(0, BENT)))
+    window.settle()
+    return bent
+
+
+@pytest.fixture
+def keyed(window, bent):
+    """The bent bar, with the handle at its end keyed alone at frame 12, and its row chosen."""
+    playback.scrub(window.session, BENT // 2)
+    window.settle()
+    tracks.key_here(window.session, (END,))
+    window.settle()
+    return bent
+
+
+def test_a_drag_keys_the_handle_of_a_chosen_row_alone(window, keyed):
+    before, poses, known = keyed.document, keyed.figure.keys, keyed.puppet.corrected.ground(0)
+    start, way = place_of(keyed), 20 + 30j
+    drag(window, start, start + way)
+    (track,) = keyed.figure.tracks
+    assert [key.frame for key in track.keys] == [12]
+    still, turn = ground(keyed, 12)
+    # The offset is in the frame that turns with the shape.
+    assert_allclose(track.keys[0].place, (start + way - still) * np.conj(turn), atol=PIXEL)
+    assert abs(turn - 1) > 0.05
+    assert abs(place_of(keyed) - (start + way)) < PIXEL
+    assert keyed.figure.keys == poses, "the pose stays"
+    assert keyed.puppet.corrected.ground(0) is known, "and what is known of it"
+    assert keyed.puppet.shown.is_current
+    keyed.history.undo()
+    assert keyed.document is before, "one drag is one step"
+
+
+def test_a_drag_at_another_frame_inserts_a_key(window, keyed):
+    playback.scrub(window.session, 18)
+    window.settle()
+    start = place_of(keyed)
+    drag(window, start, start - 25j)
+    (track,) = keyed.figure.tracks
+    assert [key.frame for key in track.keys] == [12, 18]
+    assert track.keys[0].place == 0
+    assert abs(place_of(keyed) - (start - 25j)) < PIXEL
+
+
+def test_the_shape_follows_while_the_hand_moves_and_escape_takes_it_back(window, keyed):
+    before, start = keyed.document, place_of(keyed)
+    seen = []
+
+    def then(robot):
+        while not keyed.puppet.shown.is_current:
+            window.session.jobs.settle()
+            robot.yield_()
+        seen.append(place_of(keyed))
+        robot.key_press(int(window.Key.escape))
+        robot.mouse_up(0)
+
+    drag(window, start, start + 40j, then=then)
+    assert abs(seen[0] - (start + 40j)) < PIXEL
+    assert keyed.document is before
+    assert abs(place_of(keyed) - start) < NEAR
+
+
+def test_a_planted_track_has_places_of_the_picture(window, keyed):
+    places = [place_of(keyed)]
+    keyed.history.do(track_commands.plant_track(keyed.active, END, places, planted=True))
+    window.settle()
+    start = place_of(keyed)
+    drag(window, start, start + 15 + 10j)
+    (track,) = keyed.figure.tracks
+    assert_allclose(track.keys[0].place, start + 15 + 10j, atol=PIXEL)
+
+
+def test_what_is_out_of_reach_is_wished_all_the_same(window, keyed):
+    start = place_of(keyed)
+    goal = start + 1.5 * keyed.document.canvas[0]
+    drag(window, start, goal)
+    shown = keyed.puppet.shown
+    wishes = tracking.wishes(keyed, shown)
+    assert_allclose(wishes[END], goal, atol=PIXEL)
+    assert abs(place_of(keyed) - goal) > 20
+    assert shown.correction.is_held_back
+    assert limit_of_pose(window.session).startswith("Stretch limit reached – handle 2 is ")
+    assert unreached(keyed, shown)[END] == wishes[END], "a dashed line leads there"
+
+
+def offset_by(window, project, offset, frames=(6, 12, 18)):
+    """Give the handle at the end a track with an offset, whose row is not chosen."""
+    keys = tuple(TrackKey(frame=frame, place=offset) for frame in frames)
+    track = Track(handles=(END,), keys=keys)
+    project.history.do(track_commands.put_track(project.active, track))
+    tracks.choose(window.session, None)
+    window.settle()
+
+
+@pytest.mark.parametrize("auto_key", [True, False])
+def test_a_pose_has_what_a_track_adds_on_it_and_not_in_it(window, bent, auto_key):
+    window.session.preferences = replace(window.session.preferences, auto_key=auto_key)
+    offset_by(window, bent, 30j)
+    playback.scrub(window.session, 12)
+    window.settle()
+    still, turn = ground(bent, 12)
+    shown_at, other = place_of(bent), place_of(bent, 0)
+    assert abs(shown_at - still - 30j * turn) < NEAR
+    seen = []
+
+    def then(robot):
+        for _ in range(8):
+            seen.append(place_of(bent))
+            robot.yield_()
+        robot.mouse_up(0)
+
+    drag(window, other, other + 12j, then=then)
+    assert max(abs(place - shown_at) for place in seen) < 4, "nothing pops"
+    pose = bent.unkeyed or bent.figure.key(12).pose
+    assert (bent.unkeyed is None) == auto_key
+    position = bent.figure.handle(END).position
+    own = complex(bent.figure.map_of(pose)(np.array([position]))[0])
+    assert abs(own - still) < 6, "the pose is where the body has the handle"
+    assert abs(place_of(bent) - shown_at) < 6
+
+
+def test_a_key_of_a_path_is_dragged_where_it_is_seen(window, keyed):
+    playback.scrub(window.session, 0)
+    window.settle()
+    still, turn = ground(keyed, 12)
+    before, way = keyed.document, 40j
+    drag(window, still, still + way)
+    (track,) = keyed.figure.tracks
+    assert [key.frame for key in track.keys] == [12]
+    assert_allclose(track.keys[0].place, way * np.conj(turn), atol=PIXEL)
+    assert playback.current_frame(window.session, keyed) == 12
+    keyed.history.undo()
+    assert keyed.document is before
+
+
+def record(window, project, ways, *, until=None):
+    """Press R, take the handle at the end, and drag it along."""
+    start = place_of(project)
+
+    def act(robot):
+        robot.key_press(int(window.Key.r))
+        robot.mouse_move_to_pos(window.point(start))
+        robot.mouse_down(0)
+        for way in ways:
+            robot.mouse_move_to_pos(window.point(start + way))
+        (until or (lambda robot: robot.mouse_up(0)))(robot)
+
+    window.run(act)
+    window.settle()
+    return start
+
+
+CIRCLE = 25 * (np.exp(2j * np.pi * np.arange(41) / 40) - 1)
+
+
+def test_a_drag_is_recorded_while_it_plays_and_fitted_by_few_keys(window, bent):
+    playback.scrub(window.session, 0)
+    window.settle()
+    before = bent.document
+    record(window, bent, CIRCLE)
+    take = bent.take
+    assert take is not None
+    assert take.is_over
+    assert bent.playhead.since is None
+    assert playback.current_frame(window.session, bent) == 0, "the playhead is where that began"
+    (track,) = bent.figure.tracks
+    frames = [key.frame for key in track.keys]
+    assert frames[0] == 0
+    assert frames[-1] == int(take.samples[-1].time + 1e-6) > 10
+    assert len(frames) < frames[-1] / 1.5
+    # The motion is near what the hand did.
+    for sample in take.samples:
+        if sample.time == int(sample.time):
+            wished = tracking.wished(bent, track, int(sample.time))
+            assert abs(wished - sample.place) < 4
+    few = len(frames)
+    tracking.smooth(window.session, 0.0)
+    many = len(bent.figure.tracks[0].keys)
+    tracking.smooth(window.session, 1.0)
+    fewest = len(bent.figure.tracks[0].keys)
+    assert many > few >= fewest
+    window.run(lambda robot: robot.item_click("**/Keep"))
+    assert bent.take is None
+    assert bent.chosen_track == END
+    bent.history.undo()
+    assert bent.document is before, "one take is one step"
+
+
+def test_a_take_is_done_again_or_given_up(window, bent):
+    playback.scrub(window.session, 0)
+    window.settle()
+    before = bent.document
+    record(window, bent, CIRCLE)
+    window.run(lambda robot: robot.item_click("**/Again"))
+    assert bent.document is before
+    assert window.session.records
+    window.run(lambda robot: robot.key_press(int(window.Key.escape)))
+    assert not window.session.records
+
+    def until(robot):
+        robot.key_press(int(window.Key.escape))
+        robot.mouse_up(0)
+
+    record(window, bent, CIRCLE, until=until)
+    assert bent.document is before
+    assert bent.take is None
+    assert bent.playhead.since is None
+    assert playback.current_frame(window.session, bent) == 0
+    record(window, bent, CIRCLE)
+    assert bent.figure.tracks
+    window.run(lambda robot: robot.key_press(int(window.Key.escape)))
+    assert bent.document is before
+
+
+def test_the_end_of_the_range_ends_a_recording_and_other_keys_stay(window, bent):
+    offset_by(window, bent, 10j, frames=(2, 20))
+    last = bent.document.frames.last
+    playback.scrub(window.session, last - 8)
+    window.settle()
+    taken = [key for key in bent.figure.tracks[0].keys if key.frame == 2]
+    record(window, bent, [*CIRCLE, *CIRCLE, *CIRCLE])
+    assert bent.take.is_over
+    (track,) = bent.figure.tracks
+    frames = [key.frame for key in track.keys]
+    assert track.keys[0] == taken[0]
+    assert frames[-1] == last
+    assert window.session.pointer is None
+    assert bent.playhead.speed == 1.0
+
+
+def test_in_a_loop_a_recording_goes_on_over_the_seam_at_most_once_round(window, bent):
+    bent.history.do(scene_commands.set_loop(loop=True))
+    playback.scrub(window.session, 16)
+    window.settle()
+    record(window, bent, [*CIRCLE, *CIRCLE, *CIRCLE])
+    take = bent.take
+    assert take.is_over
+    assert take.samples[-1].time == 16 + BENT
+    (track,) = bent.figure.tracks
+    frames = [key.frame for key in track.keys]
+    assert frames[0] == 0
+    assert frames[-1] == BENT
+    assert abs(track.keys[0].place - track.keys[-1].place) < 1e-9, "it comes round"
+
+
+def test_a_click_records_nothing(window, bent):
+    before = bent.document
+    record(window, bent, [])
+    assert bent.document is before
+    assert bent.take is None
+    assert bent.playhead.since is None
