@@ -155,7 +155,10 @@ class Project:
     curves: Derived[Clip, Curves | None] = field(default_factory=lambda: Derived(None))
     twin_curves: Derived[Clip, Curves | None] = field(default_factory=lambda: Derived(None))
     # Of the active figure's handles; they are traced while they are shown.
-    paths: Derived[Clip, MotionPaths | None] = field(default_factory=lambda: Derived(None))
+    # By the clips of the active figure, and of all that it hangs on.
+    paths: Derived[tuple[Clip, ...], MotionPaths | None] = field(
+        default_factory=lambda: Derived(None)
+    )
     # Of the figures that hang on others; `hung` has those of the document as it is now.
     joints: Derived[tuple[object, ...], Joints | None] = field(
         default_factory=lambda: Derived(None)
@@ -207,6 +210,16 @@ class Project:
     def figure(self) -> Figure:
         """The figure that is posed, as it is now."""
         return self.document.figure(self.active)
+
+    @property
+    def rows(self) -> list[KeyRow]:
+        """The rows of the timeline from top to bottom: the figure in front comes first."""
+        rows: list[KeyRow] = []
+        for figure in reversed(self.document.figures):
+            rows.append(figure.id)
+            if figure.id in self.timing.unfolded:
+                rows += [row_of(figure, track) for track in figure.tracks]
+        return rows
 
     def track_in(self, row: KeyRow) -> Track | None:
         """Return the track of a row; None where it is of poses, or not there any more."""

@@ -20,6 +20,7 @@ from app.editor.actions import (
 )
 from app.editor.actions.timing import (
     keys as keys,
+    springs as springs,
     timeline_pointing as timeline_pointing,
     tracks as tracks,
 )

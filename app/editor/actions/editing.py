@@ -22,7 +22,7 @@ from app.document import (
 from app.editor.actions import playback, posing
 from app.editor.project import Project, Puppet
 from app.editor.session import Session, with_project
-from app.editor.timeline_view import KeyRow, KeysOf, TrackRow, frames_in
+from app.editor.timeline_view import KeyRow, KeysOf, TrackRow, figure_of, frames_in
 from app.storage import decode_picture
 
 Arguments = ParamSpec("Arguments")
@@ -149,10 +149,11 @@ def select(_: Session, project: Project, handles: frozenset[int]) -> None:
 
 @with_project
 def select_all(session: Session, project: Project) -> None:
-    """Select every handle or, in the timeline, the keys of all layers that are posed."""
+    """Select every handle or, in the timeline, the keys in all rows of layers that are posed."""
     if session.in_timeline:
-        posed = [figure.id for figure in project.document.figures if not figure.still]
-        choose_keys_of(session, {row: frames_in(project.document, row) for row in posed})
+        document = project.document
+        posed = [row for row in project.rows if not document.figure(figure_of(row)).still]
+        choose_keys_of(session, {row: frames_in(document, row) for row in posed})
     else:
         select(session, frozenset(handle.id for handle in project.figure.handles))
 
@@ -236,9 +237,11 @@ def change_keys(verb: KeyVerb, chosen_of: KeysOf, *args: object) -> Command:
 
 @with_project
 def delete(session: Session, project: Project) -> None:
-    """Delete the selected keys, or the selected handles."""
+    """Delete the selected keys or, in the timeline, the chosen track, or the selected handles."""
     if project.chosen_of:
         edit(session, change_keys(DELETE, project.chosen_of))
+    elif session.in_timeline and project.chosen_track is not None:
+        edit_figure(session, track_commands.remove_tracks, (project.chosen_track,))
     elif project.selected:
         posing.remove_handles(session, project.selected)
 

@@ -2,6 +2,7 @@
 
 from app.editor.project import Project
 from app.editor.session import Session, with_project
+from app.editor.timeline_view import frames_in, seen_at
 
 SPEEDS = (0.25, 0.5, 1.0, 2.0)
 
@@ -55,8 +56,15 @@ def step(session: Session, project: Project, frames: int) -> None:
 
 @with_project
 def to_key(session: Session, project: Project, direction: int) -> None:
-    """Go to the next key (1) or the previous one (-1); at the ends stay."""
-    _to_next(session, project, [key.frame for key in project.figure.keys], direction)
+    """Go to the next key (1) of the chosen row, or the previous one (-1); at the ends stay."""
+    _to_next(session, project, keyed_frames(project), direction)
+
+
+def keyed_frames(project: Project) -> list[int]:
+    """Return the frames at which keys of the chosen row are seen, in their order."""
+    document, row = project.document, project.row
+    track = project.track_in(row)
+    return sorted(seen_at(document, track, frame) for frame in frames_in(document, row))
 
 
 @with_project

@@ -23,6 +23,8 @@ class FrameCorrection:
         Coefficients over the functions of the span; None where there are none.
     misses : mapping of int to float
         By how many pixels handles, by their ids, miss where their tracks want them.
+    wishes : mapping of int to complex
+        Where that is, of the same handles.
     is_held_back : bool
         Whether a bound is reached.
     steps : int
@@ -33,6 +35,7 @@ class FrameCorrection:
     phi: Complexes | None = None
     psi: Complexes | None = None
     misses: Mapping[int, float] = field(default_factory=dict)
+    wishes: Mapping[int, complex] = field(default_factory=dict)
     is_held_back: bool = False
     steps: int = 0
 

@@ -231,16 +231,14 @@ class Corrections:
         def solve() -> FrameCorrection:
             found = self._corrector.correct(base, pins, self.clip.figure.bounds)
             phi, psi = self._anchored(found)
-            misses = {
-                handle.id: float(miss)
-                for handle, miss in zip(self.clip.figure.handles, found.misses, strict=False)
-                if handle.id in wanted.tracked
-            }
+            handles = self.clip.figure.handles
+            tracked = [i for i, handle in enumerate(handles) if handle.id in wanted.tracked]
             return FrameCorrection(
                 motion=still.motion,
                 phi=phi if still.phi is None else phi + still.phi,
                 psi=psi if still.psi is None else psi + still.psi,
-                misses=misses,
+                misses={handles[i].id: float(found.misses[i]) for i in tracked},
+                wishes={handles[i].id: complex(wanted.places[i]) for i in tracked},
                 is_held_back=found.is_held_back,
                 steps=still.steps + found.steps,
             )

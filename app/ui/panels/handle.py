@@ -65,7 +65,6 @@ def draw(session: Session, look: Look, project: Project) -> list[Action]:
         heading(look, f"{len(chosen)} handles")
         small(look, "Dragging one of them moves them all; arrows nudge them.")
         actions += _firmness(session, look, chosen)
-        actions += bound_text_button(session, "key handle", FILL)
     else:
         small(look, "Select a handle to see its settings.")
     if len(chosen) != 1 and session.tints_depth:
@@ -181,7 +180,7 @@ def _firmness(session: Session, look: Look, chosen: Sequence[Handle]) -> list[Ac
     for pair in (names[:2], names[2:]):
         for name, width in zip(pair, beside(2), strict=True):
             actions += bound_text_button(session, name, width)
-    return actions
+    return actions + bound_text_button(session, "key handle", FILL)
 
 
 def _wish(look: Look, project: Project, handle: Handle) -> list[Action]:

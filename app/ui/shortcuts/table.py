@@ -261,7 +261,7 @@ MENUS: dict[str, dict[str, Binding]] = {
             do(tracks.key_selected),
             "Shift+I",
             icon=icons.ICON_FA_KEY,
-            hint="Give it a key of its own here, on a track beside the keys of whole poses",
+            hint="Give it a key of its own in this frame: it gets a track beside the keys of poses",
             possible=_selected,
             parted=True,
         ),
@@ -424,7 +424,7 @@ MENUS: dict[str, dict[str, Binding]] = {
         ),
         "insert key": Binding(
             "Insert key",
-            do(posing.insert_key),
+            do(keys.insert),
             "I",
             icon=icons.ICON_FA_DIAMOND,
             hint="Keep this pose in a key",

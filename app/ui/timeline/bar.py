@@ -85,7 +85,7 @@ def _key_buttons(session: Session, look: Look, project: Project) -> list[Action]
     actions += _to_key(look, *previous)
     imgui.same_line(0, TIGHT * look.em)
     frame = playback.current_frame(session, project)
-    is_free = project.unkeyed is not None or all(k.frame != frame for k in project.figure.keys)
+    is_free = project.unkeyed is not None or frame not in playback.keyed_frames(project)
     imgui.begin_disabled(not is_free)
     actions += bound_button(session, look, "insert key")
     imgui.end_disabled()

@@ -6,7 +6,8 @@ from itertools import pairwise
 from imgui_bundle import ImVec2, imgui
 
 from app.document import HOLD, LINEAR, Keyframe, Transit, closes, transits
-from app.editor import Action
+from app.editor import Action, do
+from app.editor.actions import tracks
 from app.ui.style import SMALL, in_hand, ink, is_pressed, sized, tip
 from app.ui.timeline.bands import ROUNDING, Bands
 from app.ui.timeline.easing_curve import draw_curve, easing_popup, fill_curve
@@ -109,8 +110,10 @@ def _interval(bands: Bands, bar: _Bar, left: float, right: float) -> list[Action
     if is_pressed():
         actions += begin_box(bands)
     if clicked and is_plain_click():
+        actions.append(do(tracks.choose, None))
         imgui.open_popup(popup)
     if imgui.is_item_clicked(imgui.MouseButton_.right):
+        actions.append(do(tracks.choose, None))
         imgui.open_popup("menu of track")
     is_open = imgui.is_popup_open(popup)
     hot = is_open or (in_hand() and bands.project.timing.gesture is None)

@@ -18,7 +18,7 @@ from app.editor import (
     figure_of,
     layering,
 )
-from app.editor.actions import editing, timeline_pointing, tracks
+from app.editor.actions import editing, keys, timeline_pointing, tracks
 from app.ui.shortcuts import CTRL, with_key
 from app.ui.style import begin_tip, in_hand, ink, is_pressed, tip
 from app.ui.timeline.bands import (
@@ -30,7 +30,7 @@ from app.ui.timeline.bands import (
     tag,
     was_dragged,
 )
-from app.ui.timeline.menus import PASSINGS, insert_at, key_menu, track_menu
+from app.ui.timeline.menus import PASSINGS, key_menu, track_menu
 from app.ui.timeline.misses import told
 
 REACH, SMALLEST = 0.55, 0.26  # em: half a key's diagonal, with room and among many
@@ -68,7 +68,7 @@ def _press_ground(bands: Bands, low: ImVec2, high: ImVec2) -> list[Action]:
         if miss:
             tip(miss)
     if twice and round(bands.pointed) in bands.project.document.frames:
-        actions.append(insert_at(row, round(bands.pointed)))
+        actions.append(do(keys.insert_at, round(bands.pointed)))
     if imgui.is_item_clicked(imgui.MouseButton_.right):
         if row != bands.project.row:
             actions += choose_row(row, {})

@@ -3,7 +3,7 @@
 from imgui_bundle import imgui
 
 from app.document import PRESETS, Keyframe, Passing, TrackKey, track_commands
-from app.editor import Action, KeyRow, Project, Session, TrackRow, do, frames_in, seen_at
+from app.editor import Action, KeyRow, Project, Session, do, frames_in, seen_at
 from app.editor.actions import editing, keys, playback, tracks
 from app.editor.poses import copying
 from app.ui.shortcuts import BINDINGS, bound_item
@@ -73,11 +73,11 @@ def track_menu(bands: Bands) -> list[Action]:
     frame = bands.project.document.frames.clamp(round(bands.frame(opened.x)))
     row = bands.project.row
     if imgui.menu_item_simple(f"Insert key at frame {frame}###Insert key"):
-        actions.append(insert_at(row, frame))
+        actions.append(do(keys.insert_at, frame))
     track = bands.project.track_in(row)
     if track is not None and not track.planted:
         if imgui.menu_item_simple(f"Insert key in the pose at frame {frame}###Insert in pose"):
-            actions += [do(playback.scrub, frame), do(tracks.key_in_pose, track.handles[0])]
+            actions += [do(playback.scrub, frame), do(tracks.put, track.handles[0], 0j, 0.0)]
         tip("Where the pose has the handle: the track begins and ends there without a jump")
     actions += _paste_items(bands.session, frame)
     if imgui.menu_item_simple(f"Add marker at frame {frame}###Add marker"):
@@ -90,13 +90,6 @@ def track_menu(bands: Bands) -> list[Action]:
             actions.append(do(editing.edit_figure, track_commands.remove_tracks, track.handles[:1]))
     imgui.end_popup()
     return actions
-
-
-def insert_at(row: KeyRow, frame: int) -> Action:
-    """Return what inserts a key into a row at a frame."""
-    if isinstance(row, TrackRow):
-        return do(tracks.insert_at, row.handle, frame)
-    return do(keys.insert_at, frame)
 
 
 def time_menu(session: Session, look: Look, project: Project) -> list[Action]:

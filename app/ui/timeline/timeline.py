@@ -20,7 +20,7 @@ from app.editor.actions import editing, playback, timeline_pointing
 from app.editor.tools import pointing
 from app.ui.shortcuts import CTRL, with_key
 from app.ui.style import Look
-from app.ui.timeline.bands import THIN, Bands, in_seconds, was_dragged
+from app.ui.timeline.bands import THIN, Bands, TrackLane, in_seconds, was_dragged
 from app.ui.timeline.bar import draw_bar
 from app.ui.timeline.dropping import draw_dropped
 from app.ui.timeline.intervals import draw_intervals
@@ -189,6 +189,8 @@ def _hint(bands: Bands) -> str:
 def _hint_of_place(bands: Bands) -> str:
     x, y = imgui.get_mouse_pos()
     if x < bands.left:
+        if isinstance(bands.pointed_row, TrackLane):
+            return "Click a track to choose it: keys and drags of its handle go there then"
         return "Click a layer to see its handles and keys, wheel to see more layers"
     if y < bands.ruler_top:
         return "Drag the ends of the preview range, double-click to play all frames"

@@ -2,16 +2,16 @@
 
 import numpy as np
 import pytest
-from imgui_bundle import ImVec2
+from imgui_bundle import ImVec2, imgui
 
-from app.document import clip_of, track_at, track_commands
+from app.document import clip_of, figure_commands, key_commands, track_at, track_commands
 from app.document.timing import PRESETS, Passing, Spring, Track, TrackKey
-from app.editor.actions import editing, keys, playback, timeline_pointing, tracks
+from app.editor.actions import editing, keys, playback, springs, timeline_pointing, tracks
 from app.editor.timeline_view import TrackRow, frames_in
 from app.motion import Animation
 from app.ui.style import PALETTES
 from app.ui.timeline.misses import misses_of, told
-from app.ui.viewport.marks import mark_all, staying
+from app.ui.viewport.marks import mark_all, staying, unreached
 
 LEFT, RIGHT = 0, 1  # ids of the bar's handles
 WAVE = ((0, 0), (8, 12 + 6j), (16, 0))
@@ -68,8 +68,11 @@ class Rows:
     def y(self, handle=RIGHT):
         return self.robot.item_info(self.of("name", handle)).rect_full.get_center().y
 
+    def x(self, frame):
+        return self._origin + frame * self._step
+
     def go_to(self, frame, y):
-        self.robot.mouse_move_to_pos(ImVec2(self._origin + frame * self._step, y))
+        self.robot.mouse_move_to_pos(ImVec2(self.x(frame), y))
 
     def drag(self, item, *frames, key=None):
         self.robot.mouse_move(self.of(item))
@@ -287,6 +290,56 @@ def test_a_key_in_the_pose_ends_a_track_without_a_jump(window, bent, play):
     assert (key.frame, key.place) == (18, 0)
 
 
+def test_what_is_chosen_is_where_keys_come_and_go(window, bent, play):
+    with_track(window, bent, delay=1)
+    poses = bent.figure.keys
+    window.act(playback.seek, 5)
+    window.run(lambda robot: robot.key_press(int(window.Key.i)))
+    window.settle()
+    assert frames_of(bent) == (0, 4, 8, 16)
+    assert bent.figure.keys is poses
+    seen = []
+    for _ in range(3):
+        window.act(playback.to_key, 1)
+        seen.append(playback.current_frame(window.session, bent))
+    assert seen == [9, 17, 17]
+    window.session.in_timeline = True
+    window.act(editing.select_all)
+    assert bent.chosen_of == {bent.active: {0, 24}, row(bent): {0, 4, 8, 16}}
+    # The row of the poses takes it back.
+    play(lambda rows: rows.robot.item_click(f"**/name {bent.active}"))
+    assert bent.chosen_track is None
+    window.act(keys.insert_at, 12)
+    window.settle()
+    assert [key.frame for key in bent.figure.keys] == [0, 12, 24]
+
+
+def test_a_chosen_track_is_deleted_in_the_timeline_and_its_handle_stays(window, bent, play):
+    with_track(window, bent)
+    before = bent.document
+
+    def delete(rows):
+        rows.robot.item_click(rows.of("name"))
+        rows.robot.key_press(int(window.Key.delete))
+
+    play(delete)
+    assert not bent.figure.tracks
+    assert len(bent.figure.handles) == 2
+    window.act(editing.undo)
+    assert bent.document is before
+    # Folded away, it is not what is meant any more.
+    tracks.choose(window.session, RIGHT)
+    play(lambda rows: rows.robot.item_click(f"**/fold {bent.active}"))
+    assert bent.chosen_track is None
+
+
+def test_a_row_switches_its_track_off(window, bent, play):
+    with_track(window, bent)
+    play(lambda rows: rows.robot.item_click(rows.of("switch")))
+    assert not bent.figure.track_of(RIGHT).enabled
+    assert bent.figure.track_of(RIGHT).keys
+
+
 def test_keys_of_a_track_are_copied_and_pasted(window, bent):
     with_track(window, bent, delay=2)
     before = bent.document
@@ -356,6 +409,14 @@ def test_the_panel_sets_what_a_track_has(window, bent, press):
         )
         window.settle()
 
+    window.act(playback.seek, 12)
+    enter("track x", 9.0)
+    enter("track y", 4.0)
+    (key,) = (key for key in bent.figure.track_of(RIGHT).keys if key.frame == 12)
+    assert key.place == 9 - 4j, "y goes down for people"
+    enter("track turn", 90.0)
+    (key,) = (key for key in bent.figure.track_of(RIGHT).keys if key.frame == 12)
+    assert abs(key.turn - np.pi / 2) < 1e-6
     enter("delay", 5.0)
     enter("reach", 0.4)
     track = bent.figure.track_of(RIGHT)
@@ -380,6 +441,37 @@ def test_a_handle_follows_like_a_tail(window, bent, press):
     assert bent.document is before
 
 
+def test_a_spring_becomes_keys_that_swing_as_it_did(window, bent, press):
+    spring = Spring(handle=RIGHT, frequency=2.0, damping=0.3)
+    editing.edit(window.session, track_commands.put_spring(bent.active, spring))
+    window.act(editing.select, frozenset({RIGHT}))
+    window.settle()
+    before, frames = bent.document, range(0, 49, 4)
+    swung = np.array([place_of(bent, RIGHT, frame) for frame in frames])
+    press("Make keys of it")
+    track = bent.figure.track_of(RIGHT)
+    assert bent.figure.spring_of(RIGHT) is None
+    assert bent.chosen_track == RIGHT
+    assert len(track.keys) < 40
+    keyed = np.array([place_of(bent, RIGHT, frame) for frame in frames])
+    assert np.abs(keyed - swung).max() < 1, "half a pixel, and what is solved"
+    window.act(editing.undo)
+    assert bent.document is before
+
+
+def test_a_spring_that_nothing_moves_stays_a_spring(window, bent):
+    editing.edit(window.session, figure_commands.set_stillness(bent.active, stillness=False))
+    editing.edit(window.session, key_commands.delete_keys(bent.active, {24}))
+    spring = Spring(handle=RIGHT, frequency=2.0, damping=0.3)
+    editing.edit(window.session, track_commands.put_spring(bent.active, spring))
+    window.settle()
+    before = bent.document
+    window.act(springs.make_keys, RIGHT)
+    window.settle()
+    assert bent.document is before
+    assert "does not swing" in window.session.toasts[-1].text
+
+
 def test_what_the_limits_hold_back_is_told_with_its_pixels(window, bent):
     hold = Track(handles=(LEFT,), keys=tuple(TrackKey(frame=f, place=0j) for f in (4, 16)))
     editing.edit(window.session, track_commands.put_track(bent.active, hold))
@@ -391,10 +483,47 @@ def test_what_the_limits_hold_back_is_told_with_its_pixels(window, bent):
     assert f"{misses[10]:.0f} px" in text
     assert "limits" in text
     assert told(bent, bent.figure, track, 4) == ""
+    # In the viewport a dashed line leads from where it is to where it is wanted.
+    window.act(playback.seek, 10)
+    window.settle()
+    shown = bent.puppet.shown
+    wish = shown.correction.wishes[RIGHT]
+    assert abs(abs(shown.handle_places[RIGHT] - wish) - misses[10]) < 1
+    palette = PALETTES[window.session.preferences.theme]
+    ends = [line.points[0] for line in mark_all(window.session, bent, shown, palette)[0]]
+    assert wish in ends
     # Switched off, it misses nothing.
     window.act(editing.edit, track_commands.enable_track(bent.active, RIGHT, enabled=False))
     window.settle()
     assert not misses_of(bent, bent.figure, bent.figure.track_of(RIGHT))
+
+
+def test_a_red_stretch_of_a_row_tells_by_how_much_it_is_missed(window, bent, play):
+    hold = Track(handles=(LEFT,), keys=tuple(TrackKey(frame=f, place=0j) for f in (4, 16)))
+    editing.edit(window.session, track_commands.put_track(bent.active, hold))
+    with_track(window, bent, keys=((4, 0), (10, FAR), (16, 0)))
+    at = []
+    play(lambda rows: at.extend([ImVec2(rows.x(20), rows.y()), ImVec2(rows.x(9), rows.y())]))
+    assert tooltip_at(window, at[0]) is None
+    assert tooltip_at(window, at[1]) is not None
+
+
+def test_a_tracked_handle_at_a_key_of_poses_is_not_short_of_that(window, bent):
+    with_track(window, bent, keys=((20, 0), (24, 60j), (30, 0)))
+    window.act(playback.seek, 24)
+    window.settle()
+    shown = bent.puppet.shown
+    target = shown.pose.targets[RIGHT].position
+    assert abs(shown.handle_places[RIGHT] - target) > 50
+    assert not unreached(bent, shown)
+
+
+def tooltip_at(window, place):
+    """Return the tooltip that there is some time after the pointer came to a place, if any."""
+    imgui.get_io().add_mouse_pos_event(place.x, place.y)
+    window.frames(40)
+    windows = imgui.get_current_context().windows
+    return next((w for w in windows if w.name.startswith("##Tooltip") and w.active), None)
 
 
 def test_handles_that_stay_have_a_mark_and_can_be_freed(window, bent, press):

@@ -124,7 +124,7 @@ def test_what_is_out_of_reach_is_wished_all_the_same(window, keyed):
     goal = start + 1.5 * keyed.document.canvas[0]
     drag(window, start, goal)
     shown = keyed.puppet.shown
-    wishes = tracking.wishes(keyed, shown)
+    wishes = shown.correction.wishes
     assert_allclose(wishes[END], goal, atol=PIXEL)
     assert abs(place_of(keyed) - goal) > 20
     assert shown.correction.is_held_back

@@ -7,6 +7,7 @@ Imports: the other `app.editor.actions`.
 
 from app.editor.actions.timing import (
     keys as keys,
+    springs as springs,
     timeline_pointing as timeline_pointing,
     tracks as tracks,
 )

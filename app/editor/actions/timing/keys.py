@@ -14,6 +14,7 @@ from app.document import (
     track_commands,
 )
 from app.editor.actions import editing, playback, posing
+from app.editor.actions.timing import tracks
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.timeline_view import KeysOf, frames_in, keys_in, own_frame
@@ -35,10 +36,20 @@ def retime(session: Session, project: Project, command: Command) -> None:
         project.playhead = project.playhead.seek(frame, session.clock())
 
 
+@with_project
+def insert(session: Session, project: Project) -> None:
+    """Insert a key at the present frame into the chosen row: of the pose, or of a track alone."""
+    track = project.chosen_track
+    if track is None or project.unkeyed is not None:
+        posing.insert_key(session)
+    else:
+        tracks.key_here(session, (track,))
+
+
 def insert_at(session: Session, frame: int) -> None:
-    """Put the playhead on a frame, and insert a key of what is shown there."""
+    """Put the playhead on a frame, and insert a key into the chosen row."""
     playback.scrub(session, frame)
-    posing.insert_key(session)
+    insert(session)
 
 
 def set_easing(session: Session, keys: KeysOf, easing: Easing) -> None:

@@ -32,7 +32,6 @@ from app.editor.timeline_view import (
     figure_of,
     frames_in,
     keys_in,
-    row_of,
     seen_at,
 )
 
@@ -110,25 +109,17 @@ def cancel(session: Session, project: Project) -> None:
 
 @with_project
 def unfold(_: Session, project: Project, figure: int) -> None:
-    """Let the tracks of a figure have rows, or fold them away."""
+    """Let the tracks of a figure have rows, or fold them away: then none of them is chosen."""
     project.timing.unfolded ^= {figure}
-
-
-def rows_of(project: Project) -> list[KeyRow]:
-    """Return the rows of the timeline from top to bottom: the figure in front comes first."""
-    rows: list[KeyRow] = []
-    for figure in reversed(project.document.figures):
-        rows.append(figure.id)
-        if figure.id in project.timing.unfolded:
-            rows += [row_of(figure, track) for track in figure.tracks]
-    return rows
+    if figure == project.active and figure not in project.timing.unfolded:
+        project.chosen_track = None
 
 
 def _inside(project: Project, box: KeyBox, frame: float, row: KeyRow) -> KeysOf:
     """Return the keys within a box that ends at a frame and a row, and those that it keeps."""
     document = project.document
     low, high = sorted((box.start, frame))
-    order = rows_of(project)
+    order = project.rows
     if box.row not in order or row not in order:
         return box.keeps
     first, last = sorted(map(order.index, (box.row, row)))

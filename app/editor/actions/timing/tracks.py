@@ -34,12 +34,6 @@ def choose(_: Session, project: Project, handle: int | None) -> None:
     project.chosen_track = handle
 
 
-def insert_at(session: Session, handle: int, frame: int) -> None:
-    """Put the playhead on a frame, and key a handle alone as it is there."""
-    playback.scrub(session, frame)
-    key_here(session, (handle,))
-
-
 @with_project
 def key_selected(session: Session, project: Project) -> None:
     """Key the selected handles alone at the present frame."""
@@ -94,16 +88,21 @@ def _key(session: Session, project: Project, track: Track, gesture: object) -> N
 
 
 @with_project
-def key_in_pose(session: Session, project: Project, handle: int) -> None:
-    """Key a handle alone at the present frame, where the pose has it: there its track may end."""
+def put(
+    session: Session, project: Project, handle: int, place: complex, turn: float | None = None
+) -> None:
+    """Let the track of a handle have a key at the present frame that wants it at a place.
+
+    Of a track with the pose, 0 is where the pose has it: there the track may begin and end.
+    """
+    playback.halt(session)
     track = project.figure.track_of(handle)
-    if track is None or track.planted:
+    if track is None:
         return
     own = _own_frame(session, project, track, playback.current_frame(session, project))
     if own is not None:
-        easing = session.preferences.easing
-        put = track_commands.put_track_key
-        editing.edit_figure(session, put, handle, own, 0j, turn=0.0, easing=easing)
+        key, easing = track_commands.put_track_key, session.preferences.easing
+        editing.edit_figure(session, key, handle, own, place, turn=turn, easing=easing)
 
 
 def _own_frame(session: Session, project: Project, track: Track, frame: int) -> int | None:

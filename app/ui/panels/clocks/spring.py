@@ -7,8 +7,9 @@ from imgui_bundle import icons_fontawesome_6 as icons, imgui
 
 from app.document import SPRINGS, Handle, Spring, track_commands
 from app.editor import Action, Project, do
-from app.editor.actions import editing
+from app.editor.actions import editing, springs
 from app.ui.style import (
+    FILL,
     Look,
     Scale,
     at_end,
@@ -18,6 +19,7 @@ from app.ui.style import (
     segments,
     slider,
     small,
+    text_button,
     tip,
 )
 
@@ -55,6 +57,9 @@ def draw_spring(look: Look, project: Project, handle: Handle) -> list[Action]:
     if spring is None:
         small(look, "It follows the shape at once. Choose what it swings like.")
         return actions
+    track = project.figure.track_of(handle.id)
+    if track is not None and track.enabled:
+        small(look, "Its track comes first: the spring waits until that is off.")
     label(look, "Spring")
     changed, enabled = imgui.checkbox("on##spring", spring.enabled)
     tip("Whether it follows so; its numbers stay")
@@ -66,6 +71,16 @@ def draw_spring(look: Look, project: Project, handle: Handle) -> list[Action]:
         if entered is not None:
             changed_field: dict[str, Any] = {field: _allowed(field, entered.value)}
             actions.append(_set(replace(spring, **changed_field)))
+    can = spring.enabled and track is None
+    hint = (
+        "Turn the swing into a track, whose keys can be changed"
+        if can
+        else "Switch the spring on first"
+        if not spring.enabled
+        else "Its track comes before the spring: delete the track first"
+    )
+    if text_button("Make keys of it", FILL, hint, enabled=can):
+        actions.append(do(springs.make_keys, handle.id))
     return actions
 
 

@@ -1,13 +1,14 @@
 """The track of a handle: keys of its own, beside those of whole poses."""
 
+import math
+from dataclasses import replace
+
 from imgui_bundle import icons_fontawesome_6 as icons, imgui
 
-from app.document import Handle, Track, falls_short, pairs_by_name, track_commands
+from app.document import Handle, Track, falls_short, pairs_by_name, track_at, track_commands
 from app.editor import Action, Project, Session, do
 from app.editor.actions import editing, playback, tracks
-from app.ui.shortcuts import bound_text_button
 from app.ui.style import (
-    FILL,
     Look,
     Scale,
     at_end,
@@ -15,6 +16,7 @@ from app.ui.style import (
     heading,
     icon_button,
     label,
+    number,
     segments,
     slider,
     small,
@@ -28,22 +30,19 @@ KINDS = (("pose", "With the pose"), ("picture", "Planted"))
 
 
 def draw_track(session: Session, look: Look, project: Project, handle: Handle) -> list[Action]:
-    """Draw the track of a handle, and what makes it one."""
+    """Draw the track of a handle, if it has one."""
     track = project.figure.track_of(handle.id)
     if track is None:
-        heading(look, "Own track")
-        actions = bound_text_button(session, "key handle", FILL)
-        small(look, "It moves with the whole pose. Keyed alone, it gets keys of its own.")
-        return actions
+        return []
     heading(look, "Own track", framed=True)
     at_end(1.15 * imgui.get_frame_height())
-    actions = []
+    actions: list[Action] = []
     hint = "Delete the track: the handle moves with the whole pose again"
     if icon_button(look, icons.ICON_FA_TRASH, "delete track", hint):
         command = track_commands.remove_tracks
         actions.append(do(editing.edit_figure, command, (handle.id,)))
-    actions += bound_text_button(session, "key handle", FILL)
     _together(look, project, track)
+    actions += _here(session, look, project, track)
     actions += _kind(look, project, handle, track) + _numbers(look, project, handle, track)
     actions += _copies(project, handle)
     _out_of_reach(session, look, project, handle)
@@ -55,6 +54,45 @@ def _together(look: Look, project: Project, track: Track) -> None:
     if len(track.handles) > 1:
         names = ", ".join(project.figure.handle(identity).name for identity in track.handles)
         small(look, f"It moves {names} together.")
+
+
+def _here(session: Session, look: Look, project: Project, track: Track) -> list[Action]:
+    """Draw what the track wants in the present frame; what is entered there becomes a key."""
+    actions: list[Action] = []
+    frame = playback.current_frame(session, project)
+    at = track_at(replace(track, enabled=True), project.clip, frame)
+    if at is None:
+        small(look, "It acts from its first key to its last, not in this frame.")
+        return actions
+    first, height = track.handles[0], project.document.canvas[1] if track.planted else 0.0
+    name = "Place" if track.planted else "Offset"
+    hint = (
+        "Where it is wanted here, in pixels from the upper left corner: typing makes a key"
+        if track.planted
+        else "How far it is beside the pose here, in pixels right and down: typing makes a key"
+    )
+    label(look, name)
+    entered = []
+    widths = beside(2, imgui.get_style().item_inner_spacing.x)
+    for axis, value, width in zip(
+        "xy", (at.place.real, height - at.place.imag), widths, strict=True
+    ):
+        imgui.set_next_item_width(width)
+        entered.append(number(f"track {axis}", value, "%.1f"))
+        tip(hint)
+    x, y = entered
+    if x is not None or y is not None:
+        place = complex(
+            at.place.real if x is None else x, at.place.imag if y is None else height - y
+        )
+        actions.append(do(tracks.put, first, place))
+    if track.turns:
+        label(look, "Turned by")
+        turn = number("track turn", math.degrees(at.turn), "%.1f°")
+        tip("Beyond what the pose turns it here, counter-clockwise: typing makes a key")
+        if turn is not None:
+            actions.append(do(tracks.put, first, at.place, math.radians(turn)))
+    return actions
 
 
 def _kind(look: Look, project: Project, handle: Handle, track: Track) -> list[Action]:

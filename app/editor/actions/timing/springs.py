@@ -1,0 +1,107 @@
+"""What is done with springs: their swing becomes keys of a track."""
+
+from collections.abc import Mapping
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+
+from app.document import Document, Spring, Track, TrackKey, clip_of, track_commands
+from app.editor import promises
+from app.editor.project import Project
+from app.editor.session import Session, with_project
+from app.editor.work import Kind
+from app.motion import Animation, Joints, PoseSampler
+from engine.arrays import Complexes, Indices
+from engine.geometry.kinematics import fit_keys
+
+KEYING = Kind("Making keys of a spring", "The swing could not be made into keys")
+NEAR = 0.5  # pixels that the keys' motion may be beside the swing
+AT_REST = 0.01  # pixels
+
+
+class _Swing(NamedTuple):
+    """By how much a handle swings beside the pose: at frames from the first to the last (n,)."""
+
+    frames: Indices
+    offsets: Complexes
+
+
+@with_project
+def make_keys(session: Session, project: Project, handle: int) -> None:
+    """Give a handle a track that swings as its spring does, in place of the spring."""
+    figure, spring = project.figure, project.figure.spring_of(handle)
+    if spring is None or not spring.enabled or figure.track_of(handle) is not None:
+        return
+    work = partial(_measure, project.document, figure.id, handle, project.samplers)
+
+    def take(swing: _Swing) -> None:
+        _put(session, project, figure.id, spring, swing)
+
+    promises.begin(session, project, KEYING, work, take)
+
+
+def _measure(
+    document: Document, identity: int, handle: int, siblings: Mapping[int, PoseSampler]
+) -> _Swing:
+    """Measure how a handle swings beside the pose that it has without its spring."""
+    without = track_commands.remove_springs(identity, (handle,))(document)
+    figure = document.figure(identity)
+    sampler = PoseSampler(
+        figure.domain,
+        anchor=figure.anchor,
+        points=np.array([figure.handle(handle).position]),
+        sibling=siblings.get(identity),
+    )
+    swinging, resting = (
+        Animation(
+            clip_of(each, identity),
+            sampler=sampler,
+            carried=None
+            if figure.attachment is None
+            else partial(Joints(each, siblings).carried, identity),
+        )
+        for each in (document, without)
+    )
+    frames = np.arange(document.frames.first, document.frames.last + 1)
+    offsets = []
+    for frame in frames.tolist():
+        still = resting.still_frame(frame)
+        fz = complex(still.fz[0])
+        offset = complex(swinging.positions(frame)[0] - still.positions[0])
+        offsets.append(offset * fz.conjugate() / abs(fz))
+    return _Swing(frames, np.array(offsets))
+
+
+def _put(session: Session, project: Project, identity: int, spring: Spring, swing: _Swing) -> None:
+    """Put a swing into a track, in place of its spring, unless this is another one by now."""
+    figures = {figure.id: figure for figure in project.document.figures}
+    figure = figures.get(identity)
+    if figure is None or spring not in figure.springs:
+        return
+    moves = np.flatnonzero(np.abs(swing.offsets) > AT_REST)
+    if not len(moves):
+        session.tell("It does not swing: nothing moves its place in the shape.")
+        return
+    # It begins and ends at rest, where there is room for that.
+    first, last = max(moves[0] - 1, 0), min(moves[-1] + 1, len(swing.frames) - 1)
+    part = slice(first, last + 1)
+    frames, places = fit_keys(swing.frames[part], swing.offsets[part], NEAR)
+    is_round = project.document.loop and last - first == len(swing.frames) - 1
+    if is_round:
+        places[-1] = places[0]
+    keys = tuple(
+        TrackKey(frame=frame, place=place)
+        for frame, place in zip(frames.tolist(), places.tolist(), strict=True)
+    )
+    gesture = object()
+    track = Track(handles=(spring.handle,), keys=keys)
+    for command in (
+        track_commands.remove_springs(identity, (spring.handle,)),
+        track_commands.put_track(identity, track),
+    ):
+        project.history.do(command, gesture=gesture)
+    project.timing.unfolded |= {identity}
+    if project.active == identity:
+        project.chosen_track = spring.handle
+    session.tell(f"The spring has become a track of {len(keys)} keys.")
