@@ -35,7 +35,8 @@ def come(monkeypatch, window, bent):
 def in_between(project):
     """Return where the handles are in the in-between that is awaited."""
     store, mesh = project.puppet.store, project.puppet.store.mesh
-    positions = store.positions(project.clip, FRAME)
+    correction = project.puppet.corrected.at(project.clip, FRAME)
+    positions = store.positions(project.clip, FRAME, correction)
     rest = np.array([handle.position for handle in project.figure.handles])
     return mesh.locate(rest, mesh.domain.mesh.vertices).on(positions)
 
