@@ -92,8 +92,8 @@ class Pulling(Tool):
         self.tracked = pressed if track is None else track.handles[0]
         identities = [handle.id for handle in shown.clip.figure.handles]
         self.origin = complex(shown.handle_places[identities.index(self.tracked)])
-        if self.at_target:
-            self.origin = tracking.wishes(project, shown).get(self.tracked, self.origin)
+        if self.at_target and shown.correction is not None:
+            self.origin = shown.correction.wishes.get(self.tracked, self.origin)
         if session.records:
             self.records = True
             tracking.begin_take(session, self.tracked, self.origin, gesture=self)

@@ -7,7 +7,6 @@ from imgui_bundle import ImVec4
 
 from app.document import Clip, Track, falls_short, time_of, track_at
 from app.editor import Project, Session
-from app.editor.actions import tracking
 from app.motion import AttachedPoints, Box, PosableMesh, Shown, still_handles
 from app.render import Colour, Disc, HandleMark, Line, mark_anchor, mark_handles
 from app.ui.style import Palette, density, interface_scale
@@ -64,7 +63,7 @@ def mark_all(
 
 
 def _handles(session: Session, project: Project, shown: Shown) -> list[HandleMark]:
-    figure, wishes = shown.clip.figure, {**unreached(project, shown), **_missed(shown)}
+    figure, wishes = shown.clip.figure, unreached(project, shown)
     return [
         HandleMark(
             place=_on(shown, place),
@@ -81,20 +80,21 @@ def _handles(session: Session, project: Project, shown: Shown) -> list[HandleMar
 def unreached(project: Project, shown: Shown) -> dict[int, complex]:
     """Return where handles that have not arrived are wanted, by their ids.
 
-    A handle whose track acts is wanted by that, and not where the pose alone would have it.
+    Those that go their own ways, by tracks or springs, are not where the pose wants them for that.
     """
     figure, targets = shown.clip.figure, shown.pose.targets if shown.pose else {}
+    own = {handle for track in _acting(shown) for handle in track.handles} | figure.followers
     if project.pull and project.pull.asked is not None:
         targets = project.pull.asked
-    own = tracking.acting(project, shown.frame) | figure.followers
-    wanted = {i: target.position for i, target in targets.items() if i not in own}
-    wanted |= tracking.wishes(project, shown)
     places = zip(figure.handles, shown.handle_places.tolist(), strict=True)
-    return {
-        handle.id: wanted[handle.id]
-        for handle, place in places
-        if handle.id in wanted and falls_short(figure, abs(wanted[handle.id] - place))
+    wanted = ((handle.id, targets.get(handle.id), place) for handle, place in places)
+    short = {
+        identity: target.position
+        for identity, target, place in wanted
+        if target is not None and identity not in own
+        if falls_short(figure, abs(target.position - place))
     }
+    return {**short, **_missed(shown)}
 
 
 def _missed(shown: Shown) -> dict[int, complex]:

@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 from app.document.commands import scene_commands, track_commands
 from app.document.settings import FrameRange
 from app.document.timing import Track, TrackKey
-from app.editor.actions import playback, tracking
+from app.editor.actions import editing, playback, tracking
 from app.editor.actions.timing import tracks
 from app.ui.bars.status import limit_of_pose
 from app.ui.viewport.marks import unreached
@@ -124,7 +124,7 @@ def test_what_is_out_of_reach_is_wished_all_the_same(window, keyed):
     goal = start + 1.5 * keyed.document.canvas[0]
     drag(window, start, goal)
     shown = keyed.puppet.shown
-    wishes = tracking.wishes(keyed, shown)
+    wishes = shown.correction.wishes
     assert_allclose(wishes[END], goal, atol=PIXEL)
     assert abs(place_of(keyed) - goal) > 20
     assert shown.correction.is_held_back
@@ -182,9 +182,9 @@ def test_a_key_of_a_path_is_dragged_where_it_is_seen(window, keyed):
     assert keyed.document is before
 
 
-def record(window, project, ways, *, until=None):
-    """Press R, take the handle at the end, and drag it along."""
-    start = place_of(project)
+def record(window, project, ways, *, until=None, handle=END):
+    """Press R, take a handle, and drag it along."""
+    start = place_of(project, handle)
 
     def act(robot):
         robot.key_press(int(window.Key.r))
@@ -298,3 +298,45 @@ def test_a_click_records_nothing(window, bent):
     assert bent.document is before
     assert bent.take is None
     assert bent.playhead.since is None
+
+
+def test_passes_add_up_and_undo_takes_back_the_last(window, bent):
+    playback.scrub(window.session, 0)
+    window.settle()
+    record(window, bent, CIRCLE)
+    (first,) = bent.figure.tracks
+    # Without a word the first one is kept.
+    record(window, bent, CIRCLE / 5, handle=0)
+    assert {track.handles for track in bent.figure.tracks} == {(END,), (0,)}
+    assert bent.figure.track_of(END) == first
+    assert bent.take is not None
+    editing.undo(window.session)
+    window.settle()
+    assert bent.figure.tracks == (first,)
+    assert bent.take is None, "there is nothing to be kept"
+
+
+def test_a_planted_track_is_recorded_in_places_of_the_picture(window, bent):
+    playback.scrub(window.session, 0)
+    window.settle()
+    planted = Track(handles=(END,), planted=True, keys=(TrackKey(frame=0, place=place_of(bent)),))
+    bent.history.do(track_commands.put_track(bent.active, planted))
+    window.settle()
+    record(window, bent, CIRCLE)
+    (track,) = bent.figure.tracks
+    assert track.planted
+    places = {sample.time: sample.in_scene for sample in bent.take.samples}
+    for key in track.keys:
+        time = min(places, key=lambda time: abs(time - key.frame))
+        assert abs(key.place - places[time]) < 5
+
+
+def test_a_late_track_says_why_it_has_no_key_there(window, keyed):
+    keyed.history.do(track_commands.set_delay(keyed.active, END, 16))
+    window.settle()
+    before, start = keyed.document, place_of(keyed)
+    drag(window, start, start + 30j)
+    assert keyed.document is before
+    assert [toast.text for toast in window.session.toasts if toast.topic == "late"] == [
+        "The track is 16 frames late: no key of it can be seen at frame 12."
+    ]

@@ -71,7 +71,10 @@ def put_key(
     own = frame if track is None else own_frame(project.document, track, frame)
     if own is None:
         late = 0 if track is None else track.delay
-        session.tell(f"The track is {late} frames late: no key of it can be seen at frame {frame}.")
+        session.tell(
+            f"The track is {late} frames late: no key of it can be seen at frame {frame}.",
+            topic="late",
+        )
         return True
     value = kept(project, handle, frame, place)
     if value is None:

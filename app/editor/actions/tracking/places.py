@@ -2,7 +2,7 @@
 
 from app.document import Track, track_at
 from app.editor.project import Project
-from app.motion import Ground, Shown
+from app.motion import Ground
 
 
 def ground_at(project: Project, frame: int) -> Ground | None:
@@ -49,29 +49,3 @@ def kept(project: Project, handle: int, frame: int, place: complex) -> complex |
         return None
     index = index_of(project, handle)
     return complex((place - ground.places[index]) * ground.turns[index].conjugate())
-
-
-def acting(project: Project, frame: int) -> frozenset[int]:
-    """Return the handles whose tracks act at a frame."""
-    clip = project.clip
-    tracks = (track for track in clip.figure.tracks if track_at(track, clip, frame) is not None)
-    return frozenset(handle for track in tracks for handle in track.handles)
-
-
-def wishes(project: Project, shown: Shown) -> dict[int, complex]:
-    """Return where tracks want their handles in the frame that is shown, as far as it is known.
-
-    By their ids, on the figure by itself. A pose that no key holds yet has other places.
-    """
-    ground, wanted = ground_at(project, shown.frame), dict[int, complex]()
-    if ground is None or project.unkeyed is not None or project.pull is not None:
-        return wanted
-    for track in project.figure.tracks:
-        place = wished(project, track, shown.frame)
-        if place is None:
-            continue
-        first = ground.places[index_of(project, track.handles[0])]
-        for handle in track.handles:
-            # The others are moved by as much.
-            wanted[handle] = complex(place + ground.places[index_of(project, handle)] - first)
-    return wanted

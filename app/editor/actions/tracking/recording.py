@@ -81,8 +81,9 @@ def end_take(session: Session, project: Project) -> None:
         session.pointer = None
     take.is_over = True
     project.playhead = replace(take.playhead, since=None, speed=take.speed)
-    project.chosen_track = take.handle
-    project.timing.unfolded |= {take.figure}
+    if take.figure == project.active:
+        project.chosen_track = take.handle
+        project.timing.unfolded |= {take.figure}
 
 
 def keep(session: Session) -> None:
