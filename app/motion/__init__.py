@@ -30,6 +30,7 @@ from app.motion.intervals import (
 from app.motion.joints import (
     Joints as Joints,
     hung_animations as hung_animations,
+    hung_on as hung_on,
     joints_source as joints_source,
 )
 from app.motion.paint_order import PaintOrder as PaintOrder

@@ -9,7 +9,7 @@ import numpy as np
 
 from app.document import Attachment, Document, Figure, Pose, clip_of
 from app.errors import LissomError
-from app.motion.inbetweens import Animation, PoseSampler
+from app.motion.inbetweens import Animation, Hung, PoseSampler
 from app.motion.tracing import TrackedPoints
 from engine.arrays import Complexes
 from engine.errors import EngineError
@@ -99,7 +99,7 @@ class Joints:
                 np.array(points),
                 siblings.get(figure),
                 known.get(figure),
-                partial(self.carried, figure),
+                self.hung(figure),
             )
             for figure, points in self.points.items()
             if points
@@ -134,6 +134,14 @@ class Joints:
         if (figure, frame) not in self._placements:
             self._placements[figure, frame] = self._work_out(chain, frame, {})
         return self._placements[figure, frame]
+
+    def hung(self, figure: int) -> Hung | None:
+        """Return where a figure hangs; None where it hangs on nothing."""
+        chain = self.document.carriers(figure)
+        if len(chain) == 1:
+            return None
+        by = tuple(clip_of(self.document, each.id) for each in chain)
+        return Hung(partial(self.carried, figure), by)
 
     def carried(self, figure: int, frame: float) -> RigidMotion:
         """Return where a figure hangs, but for what is corrected of itself.
@@ -290,6 +298,15 @@ class HungAnimation:
         """Return where the points (m,) are at a frame, which may lie between two numbers."""
         placement = self._joints.placement(self._animation.clip.figure.id, frame)
         return placement.on(self._animation.positions(frame))
+
+
+def hung_on(
+    document: Document, figure: int, siblings: Mapping[int, PoseSampler] | None = None
+) -> Hung | None:
+    """Return where a figure of a document hangs; None where it hangs on nothing."""
+    if document.figure(figure).attachment is None:
+        return None
+    return Joints(document, siblings).hung(figure)
 
 
 def joints_source(document: Document) -> tuple[object, ...]:

@@ -15,10 +15,12 @@ from app.motion import (
     IntervalPart,
     IntervalStore,
     Joints,
+    MotionPaths,
     PosableMesh,
     corrected_clip,
     extent_source,
     hang_shown,
+    hung_on,
     joints_source,
     measure_extent,
     show,
@@ -293,8 +295,15 @@ def _trace(session: Session, project: Project) -> Iterator[Job]:
     """Yield the paths of the active figure's handles, while some are shown."""
     clip, paths = project.clip, project.paths
     if session.overlays.paths and project.selected:
-        trace = partial(trace_paths, clip, paths.value, project.puppet.store.sampler)
-        yield from _derive(session, TRACING, paths, clip, trace)
+        document, samplers = project.document, project.samplers
+        sibling, earlier = project.puppet.store.sampler, paths.value
+
+        def trace() -> MotionPaths:
+            hung = hung_on(document, clip.figure.id, samplers)
+            return trace_paths(clip, earlier, sibling, hung)
+
+        source = tuple(clip_of(document, each.id) for each in document.carriers(project.active))
+        yield from _derive(session, TRACING, paths, source, trace)
 
 
 def _hang(session: Session, project: Project) -> Iterator[Job]:

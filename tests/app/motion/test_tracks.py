@@ -10,6 +10,8 @@ from still_poses import PLACES, animate, posed, with_figure
 from app.document import RUBBERY, Attachment, Spring, Track, TrackKey, clip_of, track_at
 from app.motion import Animation, Joints
 from app.motion.corrected_frames import CorrectedFrames
+from app.motion.joints import hung_on
+from app.motion.tracing import trace_paths
 from app.reports import Verdict, certify_clip
 
 IDS = {name: number for number, name in enumerate(PLACES)}
@@ -208,3 +210,36 @@ def test_the_frames_of_a_window_are_those_of_an_export():
     assert later.at(clip_of(changed, 0), 12) is frames.at(clip, 12)
     assert not later.is_exact(clip_of(changed, 0), 12)
     assert later.at(clip, 12) is None
+
+
+def test_what_a_hung_figure_is_planted_in_follows_its_parent():
+    document = posed()
+    place = PLACES["top"] + 2j
+    child = replace(
+        document.figures[0],
+        id=1,
+        name="child",
+        anchor=60 + 45j,
+        attachment=Attachment(to=0, at=60 + 45j),
+        bounds=RUBBERY.bounds,
+        tracks=(track("top", ((0, place), (30, place)), planted=True),),
+    )
+    parent = with_figure(document, stillness=False).figures[0]
+    scene = replace(document, figures=(parent, child))
+    points = np.array([handle.position for handle in child.handles])
+    before = trace_paths(clip_of(scene, 1), hung=hung_on(scene, 1))
+    joints = Joints(scene)
+    assert joints.tracked[1].at(14.0) is joints.tracked[1].at(14.0)
+    # The child is the same, but what it hangs on is not.
+    moved = replace(parent, keys=(parent.keys[0], replace(parent.keys[1], frame=12)))
+    changed = replace(scene, figures=(moved, child))
+    later = Joints(changed, earlier=joints)
+    paths = trace_paths(clip_of(changed, 1), before, hung=hung_on(changed, 1))
+    for frame in (6, 14):
+        fresh = Animation(
+            clip_of(changed, 1), points=points, carried=Joints(changed).hung(1).carried
+        )
+        expected = fresh.positions(float(frame))
+        assert_allclose(paths.places[frame], expected, rtol=0, atol=1e-6)
+        assert abs(later.placement(1, frame).on(expected)[IDS["top"]] - place) < 0.1
+    assert np.abs(paths.places[14] - before.places[14]).max() > 0.5
