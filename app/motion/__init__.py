@@ -18,6 +18,7 @@ from app.motion.extent import (
 )
 from app.motion.inbetweens import (
     Animation as Animation,
+    Carried as Carried,
     PoseSampler as PoseSampler,
     still_handles as still_handles,
 )
@@ -29,6 +30,7 @@ from app.motion.intervals import (
 )
 from app.motion.joints import (
     Joints as Joints,
+    carried_in as carried_in,
     hung_animations as hung_animations,
     joints_source as joints_source,
 )

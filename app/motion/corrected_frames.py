@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from app.document import Clip, Document, clip_of
 from app.motion.inbetweens import Corrections, FrameCorrection, PoseSampler, is_corrected
-from app.motion.joints import Joints
+from app.motion.joints import carried_in
 
 BATCH = 2  # frames that are solved before a worker looks for more urgent work
 MOST_ROUGH = 2_000  # frames of which the rigid motion is worked out ahead
@@ -94,9 +94,7 @@ def _begin(document: Document, clip: Clip, siblings: Mapping[int, PoseSampler]) 
     sibling = siblings.get(figure.id)
     if sibling is None or sibling.domain.cage is not figure.domain.cage:
         sibling = PoseSampler(figure.domain, anchor=figure.anchor, points=figure.domain.outline)
-    carried = None
-    if figure.attachment is not None:
-        carried = partial(Joints(document, siblings).carried, figure.id)
+    carried = carried_in(document, figure.id, siblings)
     corrections = Corrections(clip, clip.figure.variant, sibling, carried)
     frames = range(clip.frames.first, clip.frames.last + 1)[:MOST_ROUGH]
     return FoundCorrections(

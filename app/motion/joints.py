@@ -9,7 +9,7 @@ import numpy as np
 
 from app.document import Attachment, Document, Figure, Pose, clip_of
 from app.errors import LissomError
-from app.motion.inbetweens import Animation, PoseSampler
+from app.motion.inbetweens import Animation, Carried, PoseSampler
 from app.motion.tracing import TrackedPoints
 from engine.arrays import Complexes
 from engine.errors import EngineError
@@ -275,6 +275,15 @@ class Joints:
             f"There is nothing of {figure.name!r} at ({place.real:.0f}, {place.imag:.0f}); a joint "
             "must be on both layers: let them overlap, or put the anchor there."
         )
+
+
+def carried_in(
+    document: Document, figure: int, siblings: Mapping[int, PoseSampler] | None = None
+) -> Carried | None:
+    """Return what tells where a figure of a document hangs; None where it hangs on nothing."""
+    if document.figure(figure).attachment is None:
+        return None
+    return partial(Joints(document, siblings).carried, figure)
 
 
 class HungAnimation:

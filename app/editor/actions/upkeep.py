@@ -15,7 +15,9 @@ from app.motion import (
     IntervalPart,
     IntervalStore,
     Joints,
+    MotionPaths,
     PosableMesh,
+    carried_in,
     corrected_clip,
     extent_source,
     hang_shown,
@@ -293,7 +295,13 @@ def _trace(session: Session, project: Project) -> Iterator[Job]:
     """Yield the paths of the active figure's handles, while some are shown."""
     clip, paths = project.clip, project.paths
     if session.overlays.paths and project.selected:
-        trace = partial(trace_paths, clip, paths.value, project.puppet.store.sampler)
+        document, known, siblings = project.document, paths.value, project.samplers
+        sibling = project.puppet.store.sampler
+
+        def trace() -> MotionPaths:
+            carried = carried_in(document, clip.figure.id, siblings)
+            return trace_paths(clip, known, sibling, carried)
+
         yield from _derive(session, TRACING, paths, clip, trace)
 
 

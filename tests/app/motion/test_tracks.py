@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from still_poses import PLACES, animate, posed, with_figure
 
 from app.document import RUBBERY, Attachment, Spring, Track, TrackKey, clip_of, track_at
-from app.motion import Animation, Joints
+from app.motion import Animation, Joints, carried_in, corrected_clip, trace_paths
 from app.motion.corrected_frames import CorrectedFrames
 from app.reports import Verdict, certify_clip
 
@@ -23,6 +23,11 @@ def track(name="right", keys=WAVE, **settings):
 
 def tracked(*tracks, loop=False, **changes):
     return with_figure(posed(loop=loop), tracks=tracks, **changes)
+
+
+def reversed_in_time(keys):
+    frames, poses = [key.frame for key in keys], [key.pose for key in reversed(keys)]
+    return [replace(key, frame=f, pose=p) for key, f, p in zip(keys, frames, poses, strict=True)]
 
 
 def test_tracked_handles_go_beside_the_pose_as_their_keys_say():
@@ -180,11 +185,28 @@ def test_a_hung_spring_feels_what_it_hangs_on():
     alone = Animation(clip_of(scene, 1), points=points)
     assert_array_equal(alone.positions(12.0), alone.still_frame(12.0).positions)
     joints = Joints(scene)
+    joints.tracked[1].at(12.0)
     hung = Animation(
         clip_of(scene, 1), points=points, carried=lambda frame: joints.carried(1, frame)
     )
     swung = hung.positions(12.0) - hung.still_frame(12.0).positions
     assert abs(swung[IDS["top"]]) > 0.1
+    # What was found for another motion of what it hangs on does not stay.
+    moved = with_figure(scene, keys=tuple(reversed_in_time(scene.figures[0].keys)))
+    window = corrected_clip(scene, 1, None)
+    assert corrected_clip(scene, 1, window) is window
+    assert corrected_clip(moved, 1, window) is not window
+    later = Joints(moved, earlier=joints)
+    assert_allclose(
+        later.tracked[1].at(12.0).positions,
+        Joints(moved).tracked[1].at(12.0).positions,
+        atol=1e-9,
+    )
+    # Paths and reports are of what is shown.
+    paths = trace_paths(clip_of(scene, 1), carried=carried_in(scene, 1))
+    assert_allclose(paths.places[12], hung.positions(12.0), atol=1e-9)
+    assert certify_clip(clip_of(scene, 1)).corrected.frames == 0
+    assert certify_clip(clip_of(scene, 1), None, carried_in(scene, 1)).corrected.frames > 10
 
 
 def test_the_frames_of_a_window_are_those_of_an_export():

@@ -22,7 +22,7 @@ from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.timeline_view import own_frame, seen_at
 from app.editor.work import Kind
-from app.motion import Animation, Joints, PoseSampler
+from app.motion import Animation, PoseSampler, carried_in
 from engine.geometry import HERE, RigidMotion
 
 PLACING = Kind("Placing keys of a track", "The places of the track's keys could not be found")
@@ -142,9 +142,7 @@ def _beside(
 ) -> list[_Beside]:
     """Return where the first handle of a track is in some frames without it."""
     clip, point = clip_of(document, figure.id), figure.handle(track.handles[0]).position
-    carried = None
-    if figure.attachment is not None:
-        carried = partial(Joints(document, siblings).carried, figure.id)
+    carried = carried_in(document, figure.id, siblings)
     sampler = PoseSampler(
         figure.domain,
         anchor=figure.anchor,
