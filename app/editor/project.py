@@ -155,10 +155,7 @@ class Project:
     curves: Derived[Clip, Curves | None] = field(default_factory=lambda: Derived(None))
     twin_curves: Derived[Clip, Curves | None] = field(default_factory=lambda: Derived(None))
     # Of the active figure's handles; they are traced while they are shown.
-    # By the clips of the active figure, and of all that it hangs on.
-    paths: Derived[tuple[Clip, ...], MotionPaths | None] = field(
-        default_factory=lambda: Derived(None)
-    )
+    paths: Derived[Clip, MotionPaths | None] = field(default_factory=lambda: Derived(None))
     # Of the figures that hang on others; `hung` has those of the document as it is now.
     joints: Derived[tuple[object, ...], Joints | None] = field(
         default_factory=lambda: Derived(None)

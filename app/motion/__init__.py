@@ -19,6 +19,7 @@ from app.motion.extent import (
 )
 from app.motion.inbetweens import (
     Animation as Animation,
+    Carried as Carried,
     Ground as Ground,
     PoseSampler as PoseSampler,
     still_handles as still_handles,
@@ -31,8 +32,8 @@ from app.motion.intervals import (
 )
 from app.motion.joints import (
     Joints as Joints,
+    carried_in as carried_in,
     hung_animations as hung_animations,
-    hung_on as hung_on,
     joints_source as joints_source,
 )
 from app.motion.paint_order import PaintOrder as PaintOrder

@@ -9,7 +9,7 @@ import numpy as np
 
 from app.document import Attachment, Document, Figure, Pose, clip_of
 from app.errors import LissomError
-from app.motion.inbetweens import Animation, Hung, PoseSampler
+from app.motion.inbetweens import Animation, Carried, PoseSampler
 from app.motion.tracing import TrackedPoints
 from engine.arrays import Complexes
 from engine.errors import EngineError
@@ -99,7 +99,7 @@ class Joints:
                 np.array(points),
                 siblings.get(figure),
                 known.get(figure),
-                self.hung(figure),
+                partial(self.carried, figure),
             )
             for figure, points in self.points.items()
             if points
@@ -134,14 +134,6 @@ class Joints:
         if (figure, frame) not in self._placements:
             self._placements[figure, frame] = self._work_out(chain, frame, {})
         return self._placements[figure, frame]
-
-    def hung(self, figure: int) -> Hung | None:
-        """Return where a figure hangs; None where it hangs on nothing."""
-        chain = self.document.carriers(figure)
-        if len(chain) == 1:
-            return None
-        by = tuple(clip_of(self.document, each.id) for each in chain)
-        return Hung(partial(self.carried, figure), by)
 
     def carried(self, figure: int, frame: float) -> RigidMotion:
         """Return where a figure hangs, but for what is corrected of itself.
@@ -233,7 +225,7 @@ class Joints:
             sibling=self._siblings.get(figure.id),
         )
         clip = clip_of(self.document, figure.id)
-        return Animation(clip, sampler=sampler, hung=self.hung(figure.id))
+        return Animation(clip, sampler=sampler, carried=partial(self.carried, figure.id))
 
     def _at(self, figure: Figure, place: complex, frame: float) -> Hinge:
         moved = self._animation_at(figure, np.array([place])).frame(frame)
@@ -285,27 +277,27 @@ class Joints:
         )
 
 
+def carried_in(
+    document: Document, figure: int, siblings: Mapping[int, PoseSampler] | None = None
+) -> Carried | None:
+    """Return what tells where a figure of a document hangs; None where it hangs on nothing."""
+    if document.figure(figure).attachment is None:
+        return None
+    return partial(Joints(document, siblings).carried, figure)
+
+
 class HungAnimation:
     """The motion of a figure by itself, brought to where the joints of its scene have it."""
 
     def __init__(self, animation: Animation, joints: Joints) -> None:
         self._animation = animation
-        animation.hung = joints.hung(animation.clip.figure.id)
+        animation.carried = partial(joints.carried, animation.clip.figure.id)
         self._joints = joints
 
     def positions(self, frame: float) -> Complexes:
         """Return where the points (m,) are at a frame, which may lie between two numbers."""
         placement = self._joints.placement(self._animation.clip.figure.id, frame)
         return placement.on(self._animation.positions(frame))
-
-
-def hung_on(
-    document: Document, figure: int, siblings: Mapping[int, PoseSampler] | None = None
-) -> Hung | None:
-    """Return where a figure of a document hangs; None where it hangs on nothing."""
-    if document.figure(figure).attachment is None:
-        return None
-    return Joints(document, siblings).hung(figure)
 
 
 def joints_source(document: Document) -> tuple[object, ...]:

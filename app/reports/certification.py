@@ -8,7 +8,7 @@ from functools import reduce
 import numpy as np
 
 from app.document import HOLD, Clip, Extremes, Transit, Variant, intervals, time_of, transits
-from app.motion import Animation
+from app.motion import Animation, Carried
 from app.reports.corrected_frames import CorrectedReport, report_corrected
 from engine.arrays import Floats
 from engine.interpolation import Inbetweens, Proof, prove
@@ -131,10 +131,13 @@ def _are_within(reached: Extremes, limits: Extremes) -> bool:
     )
 
 
-def certify_clip(clip: Clip, variant: Variant | None = None) -> Report:
+def certify_clip(
+    clip: Clip, variant: Variant | None = None, carried: Carried | None = None
+) -> Report:
     """Prove and measure the distortion of a figure over time and space.
 
-    It is that of its own variant, unless another one is given.
+    It is that of its own variant, unless another one is given; `carried` tells where a figure that
+    hangs on others is, at a frame.
 
     Notes
     -----
@@ -159,7 +162,7 @@ def certify_clip(clip: Clip, variant: Variant | None = None) -> Report:
     every += [Extremes(own.k, own.sigma_a, own.sigma_b) for _, own in keys]
     bounds = Extremes(figure.bounds.k, figure.bounds.sigma_a, figure.bounds.sigma_b)
     limits = reduce(Extremes.joined, every, bounds)
-    corrected = report_corrected(clip, boundary, limits, variant)
+    corrected = report_corrected(clip, boundary, limits, variant, carried)
     return Report(keys=keys, intervals=reports, corrected=corrected)
 
 

@@ -8,7 +8,7 @@ from itertools import groupby
 import numpy as np
 
 from app.document import Clip, Extremes, Variant, falls_short
-from app.motion import Animation
+from app.motion import Animation, Carried
 from engine.maps import Boundary
 
 BETWEEN = (0.25, 0.5, 0.75)  # of each segment of the outline: where it is measured beside its ends
@@ -58,7 +58,11 @@ class CorrectedReport:
 
 
 def report_corrected(
-    clip: Clip, boundary: Boundary, limits: Extremes, variant: Variant | None = None
+    clip: Clip,
+    boundary: Boundary,
+    limits: Extremes,
+    variant: Variant | None = None,
+    carried: Carried | None = None,
 ) -> CorrectedReport | None:
     """Measure the whole frames of a clip that are corrected; None where none is.
 
@@ -71,12 +75,14 @@ def report_corrected(
         Of the keys and the bounds.
     variant : Variant, optional
         The figure's own by default.
+    carried : callable, optional
+        Where the figure hangs, at a frame.
     """
     ends = boundary.points[boundary.following]
     points = np.concatenate(
         [boundary.points, *(boundary.points * (1 - s) + ends * s for s in BETWEEN)]
     )
-    animation = Animation(clip, variant, points=points)
+    animation = Animation(clip, variant, points=points, carried=carried)
     if animation.corrections is None:
         return None
     corrected, found, misses = 0, [], {}

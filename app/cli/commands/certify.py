@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from app.document import Extremes, clip_of
+from app.motion import carried_in
 from app.reports import IntervalReport, Report, Verdict, certify_clip
 from app.storage import load_project
 from engine.interpolation import Proof
@@ -22,7 +23,9 @@ def run(arguments: argparse.Namespace) -> int:
     """Print the report of a project."""
     document = load_project(arguments.project)
     reports = {
-        figure.name: certify_clip(clip_of(document, figure.id), arguments.variant)
+        figure.name: certify_clip(
+            clip_of(document, figure.id), arguments.variant, carried_in(document, figure.id)
+        )
         for figure in document.figures
         if not figure.still
     }

@@ -22,6 +22,8 @@ class Clip:
     fps: float  # springs swing in seconds
     # A method that the figure's own variant is compared with, in place of it.
     baseline: Baseline | None = None
+    # Those of the figures that it hangs on, where springs and planted tracks follow from them.
+    carriers: "tuple[Clip, ...]" = ()
 
     @property
     def keys(self) -> tuple[Keyframe, ...]:
@@ -36,11 +38,15 @@ class Clip:
 
 def clip_of(document: Document, figure: int) -> Clip:
     """Return the clip of the figure with this id."""
+    own, *carriers = document.carriers(figure)
+    feels = [each.enabled for each in own.springs]
+    feels += [each.enabled and each.planted for each in own.tracks]
     return Clip(
-        figure=document.figure(figure),
+        figure=own,
         frames=document.frames,
         loop=document.loop,
         fps=document.fps,
+        carriers=tuple(clip_of(document, each.id) for each in carriers) if any(feels) else (),
     )
 
 

@@ -17,10 +17,10 @@ from app.motion import (
     Joints,
     MotionPaths,
     PosableMesh,
+    carried_in,
     corrected_clip,
     extent_source,
     hang_shown,
-    hung_on,
     joints_source,
     measure_extent,
     show,
@@ -284,15 +284,14 @@ def _trace(session: Session, project: Project) -> Iterator[Job]:
     """Yield the paths of the active figure's handles, while some are shown."""
     clip, paths = project.clip, project.paths
     if session.overlays.paths and project.selected:
-        document, samplers = project.document, project.samplers
-        sibling, earlier = project.puppet.store.sampler, paths.value
+        document, known, siblings = project.document, paths.value, project.samplers
+        sibling = project.puppet.store.sampler
 
         def trace() -> MotionPaths:
-            hung = hung_on(document, clip.figure.id, samplers)
-            return trace_paths(clip, earlier, sibling, hung)
+            carried = carried_in(document, clip.figure.id, siblings)
+            return trace_paths(clip, known, sibling, carried)
 
-        source = tuple(clip_of(document, each.id) for each in document.carriers(project.active))
-        yield from _derive(session, TRACING, paths, source, trace)
+        yield from _derive(session, TRACING, paths, clip, trace)
 
 
 def _hang(session: Session, project: Project) -> Iterator[Job]:

@@ -13,7 +13,7 @@ from app.motion.inbetweens.corrections import (
     have_one_ground as have_one_ground,
     is_corrected as is_corrected,
 )
-from app.motion.inbetweens.own_clocks import Carried as Carried, Hung as Hung
+from app.motion.inbetweens.own_clocks import Carried as Carried
 from app.motion.inbetweens.pairs import Pair as Pair, pair_of as pair_of
 from app.motion.inbetweens.pose_sampler import PoseSampler as PoseSampler
 from app.motion.inbetweens.stillness import still_handles as still_handles

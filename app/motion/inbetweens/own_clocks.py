@@ -16,16 +16,6 @@ TURNED = 50.0  # pixels that count as much as a turn by one radian
 Carried = Callable[[float], RigidMotion]
 
 
-class Hung(NamedTuple):
-    """Where a figure hangs, and the clips of itself and of all that it hangs on.
-
-    Where these are equal, so is that.
-    """
-
-    carried: Carried
-    by: tuple[Clip, ...]
-
-
 class Wanted(NamedTuple):
     """Where the handles (h,) are wanted, as `engine.deform.relative.Pins` has it.
 

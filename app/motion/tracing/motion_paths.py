@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.document import Clip
-from app.motion.inbetweens import Hung, PoseSampler
+from app.motion.inbetweens import Carried, PoseSampler
 from app.motion.tracing.tracked_points import TrackedPoints
 from engine.arrays import Complexes, Indices, freeze
 
@@ -26,7 +26,7 @@ def trace_paths(
     clip: Clip,
     earlier: MotionPaths | None = None,
     sibling: PoseSampler | None = None,
-    hung: Hung | None = None,
+    carried: Carried | None = None,
 ) -> MotionPaths:
     """Work out where a clip's handles are in all frames; exactly, since they are few points.
 
@@ -36,14 +36,15 @@ def trace_paths(
         What is known of the same handles and poses is used again.
     sibling : PoseSampler, optional
         With the same outline and cage; what depends on them alone is shared.
-    hung : Hung, optional
-        Where the figure hangs.
+    carried : callable, optional
+        Where the figure hangs, at a frame.
     """
     first, last = clip.frames.first, clip.frames.last
     frames = np.arange(first, last + 1, 1 + (last - first) // MOST)
     points = np.array([handle.position for handle in clip.figure.handles], dtype=np.complex128)
     tracked, places = None, np.empty((len(frames), 0), dtype=np.complex128)
     if len(points):
-        tracked = TrackedPoints(clip, points, sibling, earlier.tracked if earlier else None, hung)
+        known = earlier.tracked if earlier else None
+        tracked = TrackedPoints(clip, points, sibling, known, carried)
         places = np.array([tracked.at(float(frame)).positions for frame in frames])
     return MotionPaths(clip=clip, frames=freeze(frames), places=freeze(places), tracked=tracked)

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from app.document import Clip, Pose, resting_pose, time_of, transits
-from app.motion.inbetweens import Animation, Hung, PoseSampler, is_corrected, pair_of
+from app.motion.inbetweens import Animation, Carried, PoseSampler, is_corrected, pair_of
 from engine.arrays import Complexes
 
 REMEMBERED = 4  # times as many moments as a clip has frames, for undo and redo
@@ -30,8 +30,8 @@ class TrackedPoints:
         With the same outline and cage; what it knows of them is used again.
     earlier : TrackedPoints, optional
         If it is of the same points, what it knows is used again.
-    hung : Hung, optional
-        Where the figure hangs.
+    carried : callable, optional
+        Where the figure hangs, at a frame.
 
     Attributes
     ----------
@@ -41,7 +41,7 @@ class TrackedPoints:
         None until the first of them.
     known : dict
         What was found, by the pair of the keys around and the weight between them; where frames are
-        corrected, by the clip, what it hangs on, and the frame.
+        corrected, by the clip and the frame.
     """
 
     def __init__(
@@ -50,7 +50,7 @@ class TrackedPoints:
         points: Complexes,
         sibling: PoseSampler | None = None,
         earlier: "TrackedPoints | None" = None,
-        hung: Hung | None = None,
+        carried: Carried | None = None,
     ) -> None:
         self.clip = clip
         self.points = points
@@ -58,7 +58,7 @@ class TrackedPoints:
         self.sampler: PoseSampler | None = None
         self.known: dict[tuple[object, float], TrackedFrame] = {}
         self._sibling = sibling
-        self._hung = hung
+        self._carried = carried
         self._is_corrected = is_corrected(clip)
         self._animation: Animation | None = None
         if earlier is None:
@@ -76,7 +76,7 @@ class TrackedPoints:
         resting = resting_pose(self.clip, moment)
         key: tuple[object, float]
         if self._is_corrected:
-            key = (self.clip, self._hung and self._hung.by), frame
+            key = self.clip, frame
         elif resting is None:
             key = pair_of(self.clip, moment.interval), moment.weight
         else:
@@ -100,6 +100,6 @@ class TrackedPoints:
             sampler = self.sampler or PoseSampler(
                 figure.domain, anchor=figure.anchor, points=self.points, sibling=self._sibling
             )
-            self._animation = Animation(self.clip, sampler=sampler, hung=self._hung)
+            self._animation = Animation(self.clip, sampler=sampler, carried=self._carried)
             self.sampler = sampler
         return self._animation

@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from engine.arrays import Booleans, Complexes, Floats, ratio
+from engine.arrays import Complexes, Floats, ratio
 from engine.deform.model import (
     SHIFT,
     Barrier,
@@ -20,7 +20,7 @@ from engine.deform.model import (
     solved,
 )
 from engine.deform.relative.base import Base, Pins
-from engine.deform.relative.energy import RelativeEnergy, Rows
+from engine.deform.relative.energy import TINY, RelativeEnergy, Rows
 from engine.maps import Boundary, Limits
 
 MOST_STEPS = 60
@@ -31,11 +31,12 @@ LEAST_WEIGHT = 1e-3
 SHORT, LONG = 0.1, 0.5
 GROWTH, OF_VALUE, FALL = 2.0, 1e-3, 0.1
 # Walls are inside the bounds by this part of the way to the identity: between two samples a map is
-# beyond what it is at them by less. A base beyond that keeps a part of what it has left.
+# beyond what it is at them by less. A base near that keeps half of what it has left.
 MARGIN = 1e-2
 LEFT = 1e-4
-# A step (of L, and of the derivatives in the mean) after which a correction is at rest.
-ENOUGH = 1e-4
+# What is left to go (of L, and of the derivatives in the mean) where a correction is at rest: steps
+# shrink by a factor that itself shrinks off the bounds, and hardly does while a map creeps along.
+ENOUGH = 1e-5
 SHORTEST = 1e-7
 SUFFICIENT = 1e-4
 TO_THE_WALL = 0.95
@@ -123,6 +124,7 @@ class Corrector:
         energy = RelativeEnergy(rows=self.rows, base=base, pins=pins)
         unknowns = np.zeros(len(energy.fixed))
         weight, at, steps, duals = LEAST_WEIGHT, base, 0, None
+        last = TINY
         while steps < MOST_STEPS:
             barrier = Barrier(walls=walls, weight=weight, duals=duals)
             load = energy.load(barrier)
@@ -142,8 +144,10 @@ class Corrector:
                 break
             duals = _next_duals(barrier, at, change)
             at, unknowns, steps = tried, unknowns + length * step, steps + 1
-            if length * self._size(change) < ENOUGH and weight == LEAST_WEIGHT:
+            moved = length * self._size(change)
+            if moved * min(moved / last, 1.0) < ENOUGH and weight == LEAST_WEIGHT:
                 break
+            last = moved
             if length < SHORT:
                 weight = max(GROWTH * weight, OF_VALUE * there)
             elif length > LONG:
@@ -211,26 +215,13 @@ def _walls(base: Base, limits: Limits) -> Walls:
     inner = Walls.around(limits.towards_identity(MARGIN), len(a))
     outer = Walls.around(limits, len(a))
     k, sigma_a, sigma_b = ratio(b, a), a + b, a - b
+    # As smooth in time as the base: no sample's wall leaps as it comes near.
     return Walls(
-        k=np.where(_near(k, inner.k), _between(k, np.maximum(outer.k, k + LEFT)), inner.k),
-        sigma_a=np.where(
-            _near(sigma_a, inner.sigma_a),
-            _between(sigma_a, np.maximum(outer.sigma_a, sigma_a * (1 + LEFT))),
-            inner.sigma_a,
+        k=np.maximum(inner.k, (k + np.maximum(outer.k, k + LEFT)) / 2),
+        sigma_a=np.maximum(
+            inner.sigma_a, (sigma_a + np.maximum(outer.sigma_a, sigma_a * (1 + LEFT))) / 2
         ),
-        sigma_b=np.where(
-            sigma_b < inner.sigma_b * (1 + LEFT),
-            _between(sigma_b, np.minimum(outer.sigma_b, sigma_b * (1 - LEFT))),
-            inner.sigma_b,
+        sigma_b=np.minimum(
+            inner.sigma_b, (sigma_b + np.minimum(outer.sigma_b, sigma_b * (1 - LEFT))) / 2
         ),
     )
-
-
-def _near(value: Floats, wall: Floats) -> Booleans:
-    near: Booleans = value > wall * (1 - LEFT)
-    return near
-
-
-def _between(value: Floats, limit: Floats) -> Floats:
-    middle: Floats = (value + limit) / 2
-    return middle

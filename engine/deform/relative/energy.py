@@ -8,7 +8,8 @@ g = f ∘ base⁻¹ has
 and Re(p dP + q dQ) = Re((p α + conj(q β)) dF + (conj(p β) + q α) dG): rows of the derivatives by P
 and Q become rows by φ and ψ, and the projection of the Hessian is that of the energy in P and Q.
 The identity is the minimum of the energy; so that it is that of all together, the slope of the
-barrier at the base is taken off, as a function of |F| and |G|² that turns with the map.
+barrier at the base is taken off, as a function of |F| and |G| that turns with the map. The barrier
+is convex in these two, so that what is left of it is nowhere negative, however near a wall is.
 """
 
 from dataclasses import dataclass, field
@@ -40,7 +41,7 @@ FELT = 0.02
 TINY = 1e-300
 LOOSE = 1e4  # stiffness of constants on the cages of holes, which change no map
 
-# By |F| and by |G|² / 2, each (m,).
+# By |F| and by |G|, each (m,).
 Load = tuple[Floats, Floats]
 # Rows by φ and ψ (k,), and of which of some samples.
 Block = tuple[Complexes, Complexes, Indices]
@@ -163,9 +164,10 @@ class RelativeEnergy:
         )
 
     def load(self, barrier: Barrier) -> Load:
-        """Return the slope of the barrier at the base, by |F| and by |G|² / 2, per weight."""
-        radial = barrier.derivatives(np.abs(self.base.f), np.abs(self.base.g))
-        return radial.a, radial.b_per_b
+        """Return the slope of the barrier at the base, by |F| and by |G|."""
+        b = np.abs(self.base.g)
+        radial = barrier.derivatives(np.abs(self.base.f), b)
+        return radial.a, radial.b_per_b * b
 
     def value(self, at: Base, unknowns: Floats, barrier: Barrier, load: Load) -> float:
         """Return what is minimised; ∞ beyond the walls."""
@@ -175,7 +177,7 @@ class RelativeEnergy:
         p, q = self.relative(at)
         density = symmetric_dirichlet(np.abs(p), np.abs(q)) + barrier.value(a, b)
         density -= load[0] * (a - np.abs(self.base.f))
-        density -= load[1] * (b**2 - np.abs(self.base.g) ** 2) / 2
+        density -= load[1] * (b - np.abs(self.base.g))
         value = self.rows.boundary.weights @ density
         value += self.stiffness @ np.abs(at.positions - self.pins.places) ** 2
         if self.held:
@@ -195,7 +197,7 @@ class RelativeEnergy:
         a, b = np.abs(at.f), np.abs(at.g)
         p, q = self.relative(at)
         energy = symmetric_dirichlet_derivatives(np.abs(p), np.abs(q))
-        bar = _unloaded(barrier.derivatives(a, b), a, load)
+        bar = _unloaded(barrier.derivatives(a, b), a, b, load)
         by_p = weights * energy.a * p.conj() / np.abs(p)
         by_q = weights * energy.b_per_b * q.conj()
         by_f = by_p * self.alpha + (by_q * self.beta).conj()
@@ -281,15 +283,15 @@ class RelativeEnergy:
         _add_squared(hessian, every.view(every.real.dtype))
 
 
-def _unloaded(radial: Radial, a: Floats, load: Load) -> Radial:
-    """Return the derivatives of a barrier less a load, for a = |F|."""
+def _unloaded(radial: Radial, a: Floats, b: Floats, load: Load) -> Radial:
+    """Return the derivatives of a barrier less a load, for a = |F| and b = |G|."""
     by_a, by_b = load
+    per_b = by_b / np.maximum(b, TINY)
     return radial._replace(
         a=radial.a - by_a,
-        b_per_b=radial.b_per_b - by_b,
-        bb=np.maximum(radial.bb - by_b, 0.0),
+        b_per_b=radial.b_per_b - per_b,
         around_a=radial.around_a - by_a / a,
-        around_b=np.maximum(radial.around_b - by_b, 0.0),
+        around_b=np.maximum(radial.around_b - per_b, 0.0),
     )
 
 

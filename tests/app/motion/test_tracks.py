@@ -8,10 +8,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 from still_poses import PLACES, animate, posed, with_figure
 
 from app.document import RUBBERY, Attachment, Spring, Track, TrackKey, clip_of, track_at
-from app.motion import Animation, Joints, PoseSampler
-from app.motion.corrected_frames import CorrectedFrames, corrected_clip
-from app.motion.joints import hung_on
-from app.motion.tracing import trace_paths
+from app.motion import Animation, Joints, carried_in, corrected_clip, trace_paths
+from app.motion.corrected_frames import CorrectedFrames
 from app.reports import Verdict, certify_clip
 
 IDS = {name: number for number, name in enumerate(PLACES)}
@@ -25,6 +23,11 @@ def track(name="right", keys=WAVE, **settings):
 
 def tracked(*tracks, loop=False, **changes):
     return with_figure(posed(loop=loop), tracks=tracks, **changes)
+
+
+def reversed_in_time(keys):
+    frames, poses = [key.frame for key in keys], [key.pose for key in reversed(keys)]
+    return [replace(key, frame=f, pose=p) for key, f, p in zip(keys, frames, poses, strict=True)]
 
 
 def test_tracked_handles_go_beside_the_pose_as_their_keys_say():
@@ -76,7 +79,7 @@ def test_a_planted_handle_of_a_hung_figure_stays_in_the_scene():
     joints = Joints(scene)
     handles = np.array([handle.position for handle in child.handles])
     hung = Animation(clip_of(scene, 1), points=np.append(handles, child.anchor))
-    hung.hung = joints.hung(1)
+    hung.carried = lambda frame: joints.carried(1, frame)
     for frame in (0.0, 6.0, 15.0, 22.5):
         placed = joints.placement(1, frame).on(hung.positions(frame))
         assert abs(placed[IDS["top"]] - place) < 0.1
@@ -182,9 +185,28 @@ def test_a_hung_spring_feels_what_it_hangs_on():
     alone = Animation(clip_of(scene, 1), points=points)
     assert_array_equal(alone.positions(12.0), alone.still_frame(12.0).positions)
     joints = Joints(scene)
-    hung = Animation(clip_of(scene, 1), points=points, hung=joints.hung(1))
+    joints.tracked[1].at(12.0)
+    hung = Animation(
+        clip_of(scene, 1), points=points, carried=lambda frame: joints.carried(1, frame)
+    )
     swung = hung.positions(12.0) - hung.still_frame(12.0).positions
     assert abs(swung[IDS["top"]]) > 0.1
+    # What was found for another motion of what it hangs on does not stay.
+    moved = with_figure(scene, keys=tuple(reversed_in_time(scene.figures[0].keys)))
+    window = corrected_clip(scene, 1, None)
+    assert corrected_clip(scene, 1, window) is window
+    assert corrected_clip(moved, 1, window) is not window
+    later = Joints(moved, earlier=joints)
+    assert_allclose(
+        later.tracked[1].at(12.0).positions,
+        Joints(moved).tracked[1].at(12.0).positions,
+        atol=1e-9,
+    )
+    # Paths and reports are of what is shown.
+    paths = trace_paths(clip_of(scene, 1), carried=carried_in(scene, 1))
+    assert_allclose(paths.places[12], hung.positions(12.0), atol=1e-9)
+    assert certify_clip(clip_of(scene, 1)).corrected.frames == 0
+    assert certify_clip(clip_of(scene, 1), None, carried_in(scene, 1)).corrected.frames > 10
 
 
 def test_the_frames_of_a_window_are_those_of_an_export():
@@ -225,40 +247,17 @@ def test_what_a_hung_figure_is_planted_in_follows_its_parent():
     parent = with_figure(document, stillness=False).figures[0]
     scene = replace(document, figures=(parent, child))
     points = np.array([handle.position for handle in child.handles])
-    before = trace_paths(clip_of(scene, 1), hung=hung_on(scene, 1))
+    before = trace_paths(clip_of(scene, 1), carried=carried_in(scene, 1))
     joints = Joints(scene)
     assert joints.tracked[1].at(14.0) is joints.tracked[1].at(14.0)
     # The child is the same, but what it hangs on is not.
     moved = replace(parent, keys=(parent.keys[0], replace(parent.keys[1], frame=12)))
     changed = replace(scene, figures=(moved, child))
     later = Joints(changed, earlier=joints)
-    paths = trace_paths(clip_of(changed, 1), before, hung=hung_on(changed, 1))
+    paths = trace_paths(clip_of(changed, 1), before, carried=carried_in(changed, 1))
     for frame in (6, 14):
-        fresh = Animation(clip_of(changed, 1), points=points, hung=hung_on(changed, 1))
+        fresh = Animation(clip_of(changed, 1), points=points, carried=carried_in(changed, 1))
         expected = fresh.positions(float(frame))
         assert_allclose(paths.places[frame], expected, rtol=0, atol=1e-6)
         assert abs(later.placement(1, frame).on(expected)[IDS["top"]] - place) < 0.1
     assert np.abs(paths.places[14] - before.places[14]).max() > 0.5
-
-
-def test_frames_of_a_window_are_found_anew_where_what_the_figure_hangs_on_moves():
-    document = posed()
-    child = replace(
-        document.figures[0],
-        id=1,
-        name="child",
-        anchor=60 + 45j,
-        attachment=Attachment(to=0, at=60 + 45j),
-    )
-    scene = replace(document, figures=(document.figures[0], child))
-    known = corrected_clip(scene, 1, None)
-    assert corrected_clip(scene, 1, known) is known
-    parent = scene.figures[0]
-    moved = replace(parent, keys=(parent.keys[0], replace(parent.keys[1], frame=12)))
-    changed = replace(scene, figures=(moved, child))
-    later = corrected_clip(changed, 1, known)
-    assert later is not known
-    sampler = PoseSampler(child.domain, anchor=child.anchor, points=child.domain.outline)
-    late = known.missing(scene, 5, {1: sampler})()
-    later.take(late)
-    assert later.at(clip_of(changed, 1), 5) is None

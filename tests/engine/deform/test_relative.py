@@ -122,6 +122,25 @@ def test_nothing_is_the_minimum_where_nothing_is_asked():
         assert np.abs(found.change.f).max() < 1e-11
 
 
+def test_nothing_is_the_minimum_however_near_a_wall_is():
+    boundary, nowhere = star_boundary(), np.zeros(0, dtype=np.complex128)
+    corrector = Corrector(boundary=boundary, points=nowhere)
+    ones = np.ones(len(boundary.points), dtype=np.complex128)
+    base = Base(f=1.25 * ones, g=0.25 * ones, positions=nowhere, fz=nowhere)
+    # 1e-5 below the largest stretch, and far from the other bounds.
+    walls = Walls.around(Bounds(k=0.9, sigma_a=1.50001, sigma_b=0.1), len(ones))
+    barrier = Barrier(walls=walls, weight=1e-3)
+    energy = RelativeEnergy(rows=corrector.rows, base=base, pins=pins(base, 0.0))
+    load, nothing = energy.load(barrier), np.zeros(len(energy.fixed))
+    least = energy.value(base, nothing, barrier, load)
+    cage = boundary.span.cage
+    for amount in (-0.1, -1e-3, -1e-5, 1e-5, 1e-3, 0.1):
+        # Along the wall: |F| + |G| stays.
+        along = base.plus(corrector.measured(-amount * cage, amount * cage))
+        assert_allclose(np.abs(along.f) + np.abs(along.g), 1.5, rtol=1e-10)
+        assert energy.value(along, nothing, barrier, load) > least
+
+
 def test_a_common_motion_of_all_pins_is_a_rigid_one():
     corrector = star()
     base = bent(corrector)
