@@ -230,3 +230,27 @@ def test_the_frames_of_a_window_are_those_of_an_export():
     assert later.at(clip_of(changed, 0), 12) is frames.at(clip, 12)
     assert not later.is_exact(clip_of(changed, 0), 12)
     assert later.at(clip, 12) is None
+
+
+def test_what_one_outline_knows_is_changed_by_one_thread_at_a_time(monkeypatch):
+    monkeypatch.setattr("app.motion.inbetweens.corrections.KEPT", 1)
+    animation = animate(tracked(track(), stillness=False))
+    outline = animation.sampler.known
+
+    class Guarded(dict):
+        def __iter__(self):
+            assert outline.guard.locked()
+            return super().__iter__()
+
+        def __setitem__(self, key, value):
+            assert outline.guard.locked()
+            super().__setitem__(key, value)
+
+        def __delitem__(self, key):
+            assert outline.guard.locked()
+            super().__delitem__(key)
+
+    outline.corrections = Guarded()
+    for frame in (8.0, 9.0):
+        assert animation.corrections.at(frame).steps > 0
+    assert len(outline.corrections) == 1
