@@ -88,7 +88,7 @@ class Corrections:
     ) -> None:
         figure = clip.figure
         self.clip, self._variant = clip, variant
-        self._known = sampler.known.corrections
+        self._known, self._guard = sampler.known.corrections, sampler.known.guard
         self._lock = threading.RLock()
         self._handles = slice(0, len(figure.handles))
         points = [handle.position for handle in figure.handles]
@@ -266,12 +266,14 @@ class Corrections:
         self, key: tuple[object, ...], solve: Callable[[], FrameCorrection]
     ) -> FrameCorrection:
         """Return the correction that is known by a key, solved where it is not."""
-        known = self._known.pop(key, None)
+        with self._guard:
+            known = self._known.pop(key, None)
         if known is None:
             known = solve()
+        with self._guard:
             while len(self._known) > KEPT // max(known.nbytes, 1):
                 del self._known[next(iter(self._known))]
-        self._known[key] = known
+            self._known[key] = known
         return known
 
     def _anchored(self, corrected: Corrected) -> tuple[Complexes, Complexes]:

@@ -38,7 +38,8 @@ class OutlineKnowledge:
     Attributes
     ----------
     corrections : dict
-        Of frames, by all that they follow from; those that were wanted longest ago first.
+        Of frames, by all that they follow from; those that were wanted longest ago first. It is
+        read and changed under `guard`: several threads may.
     """
 
     def __init__(self, domain: Domain) -> None:
@@ -47,6 +48,7 @@ class OutlineKnowledge:
         self._lock = threading.RLock()
         self._transform: HilbertTransform | None = None
         self.corrections: dict[object, FrameCorrection] = {}
+        self.guard = threading.Lock()
 
     @property
     def transform(self) -> HilbertTransform:

@@ -144,10 +144,10 @@ class Corrector:
                 break
             duals = _next_duals(barrier, at, change)
             at, unknowns, steps = tried, unknowns + length * step, steps + 1
-            moved = length * self._size(change)
-            if moved * min(moved / last, 1.0) < ENOUGH and weight == LEAST_WEIGHT:
+            size = self._size(change)
+            if size * min(size / last, 1.0) < ENOUGH and weight == LEAST_WEIGHT:
                 break
-            last = moved
+            last = size
             if length < SHORT:
                 weight = max(GROWTH * weight, OF_VALUE * there)
             elif length > LONG:

@@ -261,3 +261,27 @@ def test_what_a_hung_figure_is_planted_in_follows_its_parent():
         assert_allclose(paths.places[frame], expected, rtol=0, atol=1e-6)
         assert abs(later.placement(1, frame).on(expected)[IDS["top"]] - place) < 0.1
     assert np.abs(paths.places[14] - before.places[14]).max() > 0.5
+
+
+def test_what_one_outline_knows_is_changed_by_one_thread_at_a_time(monkeypatch):
+    monkeypatch.setattr("app.motion.inbetweens.corrections.KEPT", 1)
+    animation = animate(tracked(track(), stillness=False))
+    outline = animation.sampler.known
+
+    class Guarded(dict):
+        def __iter__(self):
+            assert outline.guard.locked()
+            return super().__iter__()
+
+        def __setitem__(self, key, value):
+            assert outline.guard.locked()
+            super().__setitem__(key, value)
+
+        def __delitem__(self, key):
+            assert outline.guard.locked()
+            super().__delitem__(key)
+
+    outline.corrections = Guarded()
+    for frame in (8.0, 9.0):
+        assert animation.corrections.at(frame).steps > 0
+    assert len(outline.corrections) == 1
