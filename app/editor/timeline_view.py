@@ -224,7 +224,8 @@ class Timing:
     seen: int = 0
     # By how many em the rows of figures are scrolled down, where there are more than have room.
     scrolled: float = 0.0
-    # The figure that was active last, so that the rows follow it only when another one is.
-    seen_row: int | None = None
+    # The row that was chosen last, and the figures whose tracks had rows then, so that the rows
+    # are scrolled to it only when that is another one.
+    seen_rows: tuple[KeyRow, frozenset[int]] | None = None
     unfolded: frozenset[int] = frozenset()  # the figures whose tracks have rows
     shortfalls: Derived[Figure, Shortfalls] = field(default_factory=lambda: Derived({}))

@@ -13,7 +13,7 @@ from app.motion.inbetweens import (
     have_one_ground,
     is_corrected,
 )
-from app.motion.joints import Joints
+from app.motion.joints import hung_on
 
 BATCH = 2  # frames that are solved before a worker looks for more urgent work
 GROUNDS = 6  # the same of frames of which only the ground is wanted
@@ -40,10 +40,18 @@ class CorrectedFrames:
     Attributes
     ----------
     clip : Clip
+    parents : tuple of Clip
+        Of what the figure hangs on, and that on, and so on.
     """
 
-    def __init__(self, clip: Clip, earlier: "CorrectedFrames | None" = None) -> None:
+    def __init__(
+        self,
+        clip: Clip,
+        earlier: "CorrectedFrames | None" = None,
+        parents: tuple[Clip, ...] = (),
+    ) -> None:
         self.clip = clip
+        self.parents = parents
         self._is_asked = is_corrected(clip)
         self._corrections: Corrections | None = None
         self._exact: dict[int, FrameCorrection | None] = {}
@@ -57,7 +65,7 @@ class CorrectedFrames:
 
     def _take_over(self, earlier: "CorrectedFrames") -> None:
         """Take what an earlier clip's frames have as what stands in for these."""
-        if have_one_ground(self.clip, earlier.clip):
+        if have_one_ground(self.clip, earlier.clip) and self.parents == earlier.parents:
             self._grounds, self._latest = earlier._grounds, earlier._latest  # noqa: SLF001 - its own
             if earlier._corrections is not None:  # noqa: SLF001
                 self._corrections = earlier._corrections.with_tracks(self.clip)  # noqa: SLF001
@@ -171,7 +179,7 @@ class CorrectedFrames:
         It is the newest where it is of the frame that a person watches.
         """
         clip = found.corrections.clip
-        if not have_one_ground(self.clip, clip):
+        if not have_one_ground(self.clip, clip) or found.corrections.parents != self.parents:
             return
         if self._corrections is None:
             self._corrections = found.corrections.with_tracks(self.clip)
@@ -198,10 +206,8 @@ def _prepare(
     sibling = siblings.get(figure.id)
     if sibling is None or sibling.domain.cage is not figure.domain.cage:
         sibling = PoseSampler(figure.domain, anchor=figure.anchor, points=figure.domain.outline)
-    carried = None
-    if figure.attachment is not None:
-        carried = partial(Joints(document, siblings).carried, figure.id)
-    return Corrections(clip, clip.figure.variant, sibling, carried)
+    hung = hung_on(document, figure.id, siblings)
+    return Corrections(clip, clip.figure.variant, sibling, hung)
 
 
 def _begin(document: Document, clip: Clip, siblings: Mapping[int, PoseSampler]) -> FoundCorrections:
@@ -225,7 +231,8 @@ def corrected_clip(
     document: Document, figure: int, earlier: CorrectedFrames | None
 ) -> CorrectedFrames:
     """Return the corrections of a figure's clip; the earlier ones where the motion is the same."""
-    clip = clip_of(document, figure)
-    if earlier is not None and earlier.clip == clip:
+    clip, *parents = (clip_of(document, each.id) for each in document.carriers(figure))
+    by = tuple(parents)
+    if earlier is not None and (earlier.clip, earlier.parents) == (clip, by):
         return earlier
-    return CorrectedFrames(clip, earlier)
+    return CorrectedFrames(clip, earlier, by)

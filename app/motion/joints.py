@@ -232,8 +232,8 @@ class Joints:
             points=points,
             sibling=self._siblings.get(figure.id),
         )
-        clip, carried = clip_of(self.document, figure.id), partial(self.carried, figure.id)
-        return Animation(clip, sampler=sampler, carried=carried)
+        clip = clip_of(self.document, figure.id)
+        return Animation(clip, sampler=sampler, hung=self.hung(figure.id))
 
     def _at(self, figure: Figure, place: complex, frame: float) -> Hinge:
         moved = self._animation_at(figure, np.array([place])).frame(frame)
@@ -290,8 +290,7 @@ class HungAnimation:
 
     def __init__(self, animation: Animation, joints: Joints) -> None:
         self._animation = animation
-        if animation.clip.figure.attachment is not None:
-            animation.carried = partial(joints.carried, animation.clip.figure.id)
+        animation.hung = joints.hung(animation.clip.figure.id)
         self._joints = joints
 
     def positions(self, frame: float) -> Complexes:

@@ -4,7 +4,7 @@ from app.document import Clip, Variant
 from app.motion.inbetweens.base_motion import BaseMotion
 from app.motion.inbetweens.correction import FrameCorrection
 from app.motion.inbetweens.corrections import Corrections, is_corrected
-from app.motion.inbetweens.own_clocks import Carried
+from app.motion.inbetweens.own_clocks import Hung
 from app.motion.inbetweens.pose_sampler import PoseSampler
 from engine.arrays import Complexes
 from engine.interpolation import Frame
@@ -28,7 +28,7 @@ class Animation:
     ----------
     base : BaseMotion
         The closed-form motion from key to key.
-    carried : callable, optional
+    hung : Hung, optional
         Where the figure hangs, for what is planted in the scene; by itself without.
     """
 
@@ -39,7 +39,7 @@ class Animation:
         *,
         points: Complexes | None = None,
         sampler: PoseSampler | None = None,
-        carried: Carried | None = None,
+        hung: Hung | None = None,
     ) -> None:
         self.clip = clip
         self.variant: Variant = clip.figure.variant if variant is None else Variant(variant)
@@ -52,14 +52,14 @@ class Animation:
             sampler = PoseSampler(clip.figure.domain, anchor=clip.figure.anchor, points=points)
         self.sampler = sampler
         self.base = BaseMotion(clip, self.variant, sampler)
-        self.carried = carried
+        self.hung = hung
         self._corrections: Corrections | None = None
 
     @property
     def corrections(self) -> Corrections | None:
         """What is added to the base motion; None where nothing ever is."""
         if self._corrections is None and is_corrected(self.clip):
-            self._corrections = Corrections(self.clip, self.variant, self.sampler, self.carried)
+            self._corrections = Corrections(self.clip, self.variant, self.sampler, self.hung)
         return self._corrections
 
     def positions(self, frame: float) -> Complexes:

@@ -14,7 +14,7 @@ import numpy as np
 from app.document import Clip, Variant, resting_pose, time_of, transits
 from app.motion.inbetweens.base_motion import BaseMotion
 from app.motion.inbetweens.correction import FrameCorrection
-from app.motion.inbetweens.own_clocks import Carried, OwnClocks, Wanted
+from app.motion.inbetweens.own_clocks import Hung, OwnClocks, Wanted
 from app.motion.inbetweens.pairs import pair_of
 from app.motion.inbetweens.pose_sampler import PoseSampler
 from app.motion.inbetweens.stillness import Lack, Stillness, still_handles
@@ -75,16 +75,18 @@ class Corrections:
     variant : Variant
     sampler : PoseSampler
         Of the figure's domain, at any points; what it knows of the outline is used, and kept there.
-    carried : callable, optional
-        Where the figure hangs, at a frame; by itself without.
+    hung : Hung, optional
+        Where the figure hangs; by itself without.
 
     Attributes
     ----------
     clip : Clip
+    parents : tuple of Clip
+        Of what it hangs on, and that on, and so on.
     """
 
     def __init__(
-        self, clip: Clip, variant: Variant, sampler: PoseSampler, carried: Carried | None = None
+        self, clip: Clip, variant: Variant, sampler: PoseSampler, hung: Hung | None = None
     ) -> None:
         figure = clip.figure
         self.clip, self._variant = clip, variant
@@ -107,7 +109,8 @@ class Corrections:
         )
         self._motion = BaseMotion(clip, variant, own)
         self._stillness = Stillness(self._motion, self._handles)
-        self._own = OwnClocks(clip, self._still_places, carried)
+        self.parents: tuple[Clip, ...] = hung.by[1:] if hung else ()
+        self._own = OwnClocks(clip, self._still_places, hung and hung.carried)
 
     def at(self, frame: float) -> FrameCorrection | None:
         """Return what is added to the base motion at a frame; None where that is nothing."""

@@ -100,8 +100,6 @@ class TrackedPoints:
             sampler = self.sampler or PoseSampler(
                 figure.domain, anchor=figure.anchor, points=self.points, sibling=self._sibling
             )
-            self._animation = Animation(
-                self.clip, sampler=sampler, carried=self._hung and self._hung.carried
-            )
+            self._animation = Animation(self.clip, sampler=sampler, hung=self._hung)
             self.sampler = sampler
         return self._animation

@@ -164,13 +164,18 @@ def _follow(bands: Bands, frame: int) -> list[Action]:
 
 
 def _follow_active(bands: Bands) -> list[Action]:
-    """Scroll the rows to that of a figure that has become the active one."""
+    """Scroll the rows to one that has come to be chosen, or to the tracks that have come to it."""
     timing, row, em = bands.project.timing, bands.row, bands.look.em
-    if timing.seen_row == row.figure.id:
+    if timing.seen_rows == (bands.project.row, timing.unfolded):
         return []
-    above, below = bands.track_top - row.top, row.bottom - bands.track_bottom
+    own = [lane for lane in bands.track_rows if lane.figure is row.figure]
+    chosen = next((lane for lane in own if lane.is_chosen), None)
+    top = row.top if chosen is None else chosen.top
+    bottom = max((lane.bottom for lane in own), default=row.bottom)
+    bottom = bottom if chosen is None else chosen.bottom
+    by = min(max(bottom - bands.track_bottom, 0.0), top - bands.track_top)
     scrolled = min(timing.scrolled, bands.overflow / em)
-    return [do(timeline_pointing.scroll_rows, scrolled + (max(below, 0.0) - max(above, 0.0)) / em)]
+    return [do(timeline_pointing.scroll_rows, scrolled + by / em)]
 
 
 def _hint(bands: Bands) -> str:

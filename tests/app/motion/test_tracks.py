@@ -8,8 +8,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 from still_poses import PLACES, animate, posed, with_figure
 
 from app.document import RUBBERY, Attachment, Spring, Track, TrackKey, clip_of, track_at
-from app.motion import Animation, Joints
-from app.motion.corrected_frames import CorrectedFrames
+from app.motion import Animation, Joints, PoseSampler
+from app.motion.corrected_frames import CorrectedFrames, corrected_clip
 from app.motion.joints import hung_on
 from app.motion.tracing import trace_paths
 from app.reports import Verdict, certify_clip
@@ -76,7 +76,7 @@ def test_a_planted_handle_of_a_hung_figure_stays_in_the_scene():
     joints = Joints(scene)
     handles = np.array([handle.position for handle in child.handles])
     hung = Animation(clip_of(scene, 1), points=np.append(handles, child.anchor))
-    hung.carried = lambda frame: joints.carried(1, frame)
+    hung.hung = joints.hung(1)
     for frame in (0.0, 6.0, 15.0, 22.5):
         placed = joints.placement(1, frame).on(hung.positions(frame))
         assert abs(placed[IDS["top"]] - place) < 0.1
@@ -182,9 +182,7 @@ def test_a_hung_spring_feels_what_it_hangs_on():
     alone = Animation(clip_of(scene, 1), points=points)
     assert_array_equal(alone.positions(12.0), alone.still_frame(12.0).positions)
     joints = Joints(scene)
-    hung = Animation(
-        clip_of(scene, 1), points=points, carried=lambda frame: joints.carried(1, frame)
-    )
+    hung = Animation(clip_of(scene, 1), points=points, hung=joints.hung(1))
     swung = hung.positions(12.0) - hung.still_frame(12.0).positions
     assert abs(swung[IDS["top"]]) > 0.1
 
@@ -236,10 +234,31 @@ def test_what_a_hung_figure_is_planted_in_follows_its_parent():
     later = Joints(changed, earlier=joints)
     paths = trace_paths(clip_of(changed, 1), before, hung=hung_on(changed, 1))
     for frame in (6, 14):
-        fresh = Animation(
-            clip_of(changed, 1), points=points, carried=Joints(changed).hung(1).carried
-        )
+        fresh = Animation(clip_of(changed, 1), points=points, hung=hung_on(changed, 1))
         expected = fresh.positions(float(frame))
         assert_allclose(paths.places[frame], expected, rtol=0, atol=1e-6)
         assert abs(later.placement(1, frame).on(expected)[IDS["top"]] - place) < 0.1
     assert np.abs(paths.places[14] - before.places[14]).max() > 0.5
+
+
+def test_frames_of_a_window_are_found_anew_where_what_the_figure_hangs_on_moves():
+    document = posed()
+    child = replace(
+        document.figures[0],
+        id=1,
+        name="child",
+        anchor=60 + 45j,
+        attachment=Attachment(to=0, at=60 + 45j),
+    )
+    scene = replace(document, figures=(document.figures[0], child))
+    known = corrected_clip(scene, 1, None)
+    assert corrected_clip(scene, 1, known) is known
+    parent = scene.figures[0]
+    moved = replace(parent, keys=(parent.keys[0], replace(parent.keys[1], frame=12)))
+    changed = replace(scene, figures=(moved, child))
+    later = corrected_clip(changed, 1, known)
+    assert later is not known
+    sampler = PoseSampler(child.domain, anchor=child.anchor, points=child.domain.outline)
+    late = known.missing(scene, 5, {1: sampler})()
+    later.take(late)
+    assert later.at(clip_of(changed, 1), 5) is None

@@ -7,6 +7,7 @@ import pytest
 
 from app.document.commands import key_commands
 from app.editor.actions import editing, exporting, playback, posing
+from app.motion import Animation
 
 FRAME, TURN = 12, np.exp(0.5j)
 WAY = 30 - 20j  # pixels of the picture
@@ -34,11 +35,8 @@ def come(monkeypatch, window, bent):
 
 def in_between(project):
     """Return where the handles are in the in-between that is awaited."""
-    store, mesh = project.puppet.store, project.puppet.store.mesh
-    correction = project.puppet.corrected.at(project.clip, FRAME)
-    positions = store.positions(project.clip, FRAME, correction)
     rest = np.array([handle.position for handle in project.figure.handles])
-    return mesh.locate(rest, mesh.domain.mesh.vertices).on(positions)
+    return Animation(project.clip, points=rest).positions(FRAME)
 
 
 def drag(robot, window, project):

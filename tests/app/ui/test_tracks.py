@@ -4,7 +4,15 @@ import numpy as np
 import pytest
 from imgui_bundle import ImVec2, imgui
 
-from app.document import clip_of, figure_commands, key_commands, track_at, track_commands
+from app.document import (
+    clip_of,
+    figure_commands,
+    handle_commands,
+    key_commands,
+    track_at,
+    track_commands,
+)
+from app.document.keyframe import Handle
 from app.document.timing import PRESETS, Passing, Spring, Track, TrackKey
 from app.editor.actions import editing, keys, playback, springs, timeline_pointing, tracks
 from app.editor.timeline_view import TrackRow, frames_in
@@ -331,6 +339,26 @@ def test_a_chosen_track_is_deleted_in_the_timeline_and_its_handle_stays(window, 
     tracks.choose(window.session, RIGHT)
     play(lambda rows: rows.robot.item_click(f"**/fold {bent.active}"))
     assert bent.chosen_track is None
+
+
+def test_rows_are_scrolled_to_a_track_that_is_chosen(window, bent):
+    for number in range(12):
+        handle = Handle(id=0, name=f"joint {number}", position=150 + 60 * number + 117j)
+        command = handle_commands.add_handles(bent.active, [handle])
+        editing.edit(window.session, command)
+    own = (TrackKey(frame=3, place=0j), TrackKey(frame=9, place=0j))
+    for handle in bent.figure.handles:
+        track = Track(handles=(handle.id,), keys=own)
+        editing.edit(window.session, track_commands.put_track(bent.active, track))
+    timeline_pointing.unfold(window.session, bent.active)
+    window.settle()
+    assert bent.timing.scrolled == 0, "the row of the poses is to be seen"
+    tracks.choose(window.session, bent.figure.handles[-1].id)
+    window.frames(3)
+    assert bent.timing.scrolled > 0
+    tracks.choose(window.session, None)
+    window.frames(3)
+    assert bent.timing.scrolled == 0
 
 
 def test_a_row_switches_its_track_off(window, bent, play):

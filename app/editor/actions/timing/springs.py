@@ -11,7 +11,7 @@ from app.editor import promises
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work import Kind
-from app.motion import Animation, Joints, PoseSampler
+from app.motion import Animation, PoseSampler, hung_on
 from engine.arrays import Complexes, Indices
 from engine.geometry.kinematics import fit_keys
 
@@ -57,9 +57,7 @@ def _measure(
         Animation(
             clip_of(each, identity),
             sampler=sampler,
-            carried=None
-            if figure.attachment is None
-            else partial(Joints(each, siblings).carried, identity),
+            hung=hung_on(each, identity, siblings),
         )
         for each in (document, without)
     )

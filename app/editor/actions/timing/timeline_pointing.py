@@ -63,8 +63,9 @@ def follow(session: Session, project: Project, frame: int, strip: Strip | None) 
 
 @with_project
 def scroll_rows(_: Session, project: Project, to: float) -> None:
-    """Scroll the rows of figures to a number of em below the first one; the active one is seen."""
-    project.timing.scrolled, project.timing.seen_row = to, project.active
+    """Scroll the rows to a number of em below the first one; the chosen one is seen."""
+    project.timing.scrolled = to
+    project.timing.seen_rows = project.row, project.timing.unfolded
 
 
 @with_project

@@ -22,7 +22,7 @@ from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.timeline_view import own_frame, seen_at
 from app.editor.work import Kind
-from app.motion import Animation, Joints, PoseSampler
+from app.motion import Animation, PoseSampler, hung_on
 from engine.geometry import HERE, RigidMotion
 
 PLACING = Kind("Placing keys of a track", "The places of the track's keys could not be found")
@@ -141,21 +141,19 @@ def _beside(
 ) -> list[_Beside]:
     """Return where the first handle of a track is in some frames without it."""
     clip, point = clip_of(document, figure.id), figure.handle(track.handles[0]).position
-    carried = None
-    if figure.attachment is not None:
-        carried = partial(Joints(document, siblings).carried, figure.id)
+    hung = hung_on(document, figure.id, siblings)
     sampler = PoseSampler(
         figure.domain,
         anchor=figure.anchor,
         points=np.array([point]),
         sibling=siblings.get(figure.id),
     )
-    animation = Animation(clip, sampler=sampler, carried=carried)
+    animation = Animation(clip, sampler=sampler, hung=hung)
     found = []
     for frame in frames:
         still = animation.still_frame(frame)
         fz = complex(still.fz[0])
-        hangs = HERE if carried is None else carried(frame)
+        hangs = HERE if hung is None else hung.carried(frame)
         found.append(_Beside(complex(still.positions[0]), fz / abs(fz), hangs))
     return found
 
