@@ -97,6 +97,11 @@ class CorrectedFrames:
         return self._grounds.get(frame)
 
     @property
+    def is_begun(self) -> bool:
+        """Whether what takes longest is done: a frame comes in moments from now on."""
+        return self._corrections is not None
+
+    @property
     def count_grounds(self) -> int:
         """Of how many frames that is known."""
         return len(self._grounds)

@@ -48,10 +48,11 @@ def _follow(session: Session, project: Project) -> Iterator[Job]:
     if FOLLOWING in session.jobs.kinds or (is_playing and project.take is None):
         # Of a frame that only plays it would come too late.
         return
-    frame = playback.current_frame(session, project)
+    frame, is_urgent = playback.current_frame(session, project), is_under_way(session, project)
     for clip, puppet, corrected in _corrected(project):
         work = corrected.missing_here(project.document, frame, project.samplers)
-        if work is not None:
+        # The next drag of a pose is not to wait until all is prepared.
+        if work is not None and (corrected.is_begun or is_urgent):
             yield _job(session, FOLLOWING, puppet, clip, work)
             return
 
