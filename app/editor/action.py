@@ -15,12 +15,15 @@ class Action:
     # A function of `app.editor.actions` whose first parameter is the session.
     verb: Callable[..., None]
     arguments: tuple[Any, ...] = ()  # the others
+    keywords: tuple[tuple[str, Any], ...] = ()  # those that are given by name
 
     def apply(self, session: object) -> None:
         """Do it."""
-        self.verb(session, *self.arguments)
+        self.verb(session, *self.arguments, **dict(self.keywords))
 
 
-def do(verb: Callable[Concatenate[State, P], None], *arguments: P.args, **_: P.kwargs) -> Action:
+def do(
+    verb: Callable[Concatenate[State, P], None], *arguments: P.args, **keywords: P.kwargs
+) -> Action:
     """Return the action of a verb; its arguments are checked like those of a call."""
-    return Action(verb, arguments)
+    return Action(verb, arguments, tuple(keywords.items()))
