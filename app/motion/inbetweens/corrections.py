@@ -18,12 +18,13 @@ from app.motion.inbetweens.own_clocks import Carried, OwnClocks, Wanted
 from app.motion.inbetweens.pairs import pair_of
 from app.motion.inbetweens.pose_sampler import PoseSampler
 from app.motion.inbetweens.stillness import Lack, Stillness, still_handles
-from engine.arrays import Complexes, Floats
-from engine.deform.relative import Base, Corrected, Corrector, Pins, best_rigid
+from engine.arrays import Complexes, Floats, Indices
+from engine.deform.model import Jet
+from engine.deform.relative import Corrected, Corrector, Pins, best_rigid
 from engine.geometry import RigidMotion
 
 LEFT_OVER = 0.02  # pixels that handles may lack after the rigid motion without being solved for
-BESIDE = 0.03  # of the diagonal: handles nearer to an anchor are held by it
+BESIDE = 0.03  # of the diagonal: handles nearer to an anchor, or to one that goes, give way
 KEPT = 2**26  # bytes of corrections of one outline that are kept
 
 
@@ -156,7 +157,7 @@ class Corrections:
                 return None
             return FrameCorrection(motion=self._rigid(base, lack))
 
-    def base_at(self, frame: float) -> Base:
+    def base_at(self, frame: float) -> Jet:
         """Return the closed-form motion of the handles, then of the anchor of what hangs."""
         with self._lock:
             return self._base(frame)
@@ -167,33 +168,33 @@ class Corrections:
         still = self._still(frame, base, self._lack(frame, base))
         return self._with(base, still).positions[self._handles]
 
-    def _base(self, frame: float) -> Base:
+    def _base(self, frame: float) -> Jet:
         found, count = self._motion.frame(frame), len(self._points)
-        return Base(
+        return Jet(
             f=found.fz[count:],
             g=found.fzbar[count:].conj(),
             positions=found.positions[:count],
             fz=found.fz[:count],
         )
 
-    def _with(self, base: Base, correction: FrameCorrection | None) -> Base:
+    def _with(self, base: Jet, correction: FrameCorrection | None) -> Jet:
         """Return a base corrected."""
         if correction is None:
             return base
         moved = base.moved(correction.motion)
         if correction.phi is None or correction.psi is None:
             return moved
-        return moved.plus(self._corrector.measured(correction.phi, correction.psi))
+        return moved.advanced(1.0, self._corrector.measured(correction.phi, correction.psi))
 
-    def _lack(self, frame: float, base: Base) -> Lack | None:
+    def _lack(self, frame: float, base: Jet) -> Lack | None:
         return self._stillness.lack(frame, base.positions[self._handles])
 
-    def _rigid(self, base: Base, lack: Lack) -> RigidMotion:
+    def _rigid(self, base: Jet, lack: Lack) -> RigidMotion:
         pivot = complex(base.positions[-1]) if self._is_hung else None
         places = base.positions[self._handles]
         return best_rigid(places, lack.offsets, lack.weights, pivot)
 
-    def _still(self, frame: float, base: Base, lack: Lack | None) -> FrameCorrection | None:
+    def _still(self, frame: float, base: Jet, lack: Lack | None) -> FrameCorrection | None:
         """Return the correction by which handles stay."""
         if lack is None or not lack.offsets.any():
             return None
@@ -220,10 +221,14 @@ class Corrections:
         return self._remembered((*self._whose(frame), *_content(lack)), solve)
 
     def _gone(
-        self, frame: float, base: Base, lack: Lack | None, still: FrameCorrection, wanted: Wanted
+        self, frame: float, base: Jet, lack: Lack | None, still: FrameCorrection, wanted: Wanted
     ) -> FrameCorrection:
         """Return the correction by which handles also go their own ways."""
-        firmness = wanted.firmness if lack is None else np.maximum(wanted.firmness, lack.weights)
+        firmness = wanted.firmness
+        if lack is not None:
+            # Those beside one that goes its own way give way: held as firmly, they tear at it.
+            own = np.flatnonzero(wanted.firmness)
+            firmness = np.maximum(firmness, self._away_from(own) * lack.weights)
         places = base.positions.copy()
         places[self._handles] = wanted.places
         pins = self._pins(places, firmness, wanted.turns, wanted.reach)
@@ -253,14 +258,20 @@ class Corrections:
         """
         more = len(places) - len(firmness)
         if more:
-            away = np.abs(self._points[:-1] - self._points[-1]) / self._corrector.boundary.size
-            firmness = firmness * -np.expm1(-((away / BESIDE) ** 2))
+            firmness = firmness * self._away_from(np.array([len(places) - 1]))
         return Pins(
             places,
             np.concatenate([firmness, np.ones(more)]),
             np.concatenate([turns, np.full(more, np.nan)]),
             reach,
         )
+
+    def _away_from(self, others: Indices) -> Floats:
+        """Return how far the handles are from some points, (h,): 0 at the nearest, 1 if far."""
+        away = np.abs(self._points[self._handles, None] - self._points[others]).min(axis=1)
+        size = self._corrector.boundary.size
+        far: Floats = -np.expm1(-((away / (BESIDE * size)) ** 2))
+        return far
 
     def _remembered(
         self, key: tuple[object, ...], solve: Callable[[], FrameCorrection]

@@ -7,6 +7,7 @@ import numpy as np
 
 from engine.arrays import Complexes, Floats
 from engine.deform.model.energy import symmetric_dirichlet
+from engine.geometry import RigidMotion
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -52,6 +53,15 @@ class Jet:
             g=factor * self.g,
             positions=factor * self.positions,
             fz=factor * self.fz,
+        )
+
+    def moved(self, motion: RigidMotion) -> "Jet":
+        """Return the jet of a map, and a rigid motion after it."""
+        return Jet(
+            f=motion.factor * self.f,
+            g=np.conj(motion.factor) * self.g,
+            positions=motion.on(self.positions),
+            fz=motion.factor * self.fz,
         )
 
     def advanced(self, length: float, direction: "Jet") -> "Jet":

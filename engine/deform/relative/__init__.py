@@ -6,9 +6,9 @@ Out: the rigid motion and the map of the span that are to be added.
 Imports: `engine.maps`, `engine.deform.model`.
 """
 
-from engine.deform.relative.base import Base as Base, Pins as Pins
 from engine.deform.relative.corrector import (
     Corrected as Corrected,
     Corrector as Corrector,
 )
+from engine.deform.relative.pins import Pins as Pins
 from engine.deform.relative.rigid import best_rigid as best_rigid

@@ -13,14 +13,15 @@ from engine.arrays import Complexes, Floats, ratio
 from engine.deform.model import (
     SHIFT,
     Barrier,
+    Jet,
     Walls,
     factor_of,
     factor_shifted,
     in_basis,
     solved,
 )
-from engine.deform.relative.base import Base, Pins
 from engine.deform.relative.energy import TINY, RelativeEnergy, Rows
+from engine.deform.relative.pins import Pins
 from engine.maps import Boundary, Limits
 
 MOST_STEPS = 60
@@ -51,7 +52,7 @@ class Corrected:
     ----------
     phi, psi : complex128, shape (n,)
         Coefficients over the functions of the span.
-    change : Base
+    change : Jet
         The same at the samples and the points.
     misses : float64, shape (h,)
         How far the points are from where they are wanted.
@@ -62,7 +63,7 @@ class Corrected:
 
     phi: Complexes
     psi: Complexes
-    change: Base
+    change: Jet
     misses: Floats
     steps: int
     is_held_back: bool
@@ -88,12 +89,12 @@ class Corrector:
         """What does not depend on the base."""
         return Rows.of(self.boundary, self.points)
 
-    def measured(self, phi: Complexes, psi: Complexes) -> Base:
+    def measured(self, phi: Complexes, psi: Complexes) -> Jet:
         """Return a map of the span, by its coefficients (n,), at the samples and the points."""
         boundary, points = self.boundary, self._of_points
         span = boundary.span
         alone = span.without_constant(phi)
-        return Base(
+        return Jet(
             f=boundary.derivatives @ alone,
             g=boundary.derivatives @ span.without_constant(psi),
             positions=points[0] @ phi + (points[0] @ psi).conj(),
@@ -106,7 +107,7 @@ class Corrector:
         span = self.boundary.span
         return span.coordinates(self.points), span.derivatives(self.points)
 
-    def correct(self, base: Base, pins: Pins, limits: Limits) -> Corrected:
+    def correct(self, base: Jet, pins: Pins, limits: Limits) -> Corrected:
         """Return the map of the span that brings the points of a base where they are wanted.
 
         It minimises the symmetric Dirichlet energy relative to the base, with the points held as
@@ -135,7 +136,7 @@ class Corrector:
             change, slope = self.rows.change(step), float(gradient @ step)
             length = _longest(barrier, at, change)
             while length > SHORTEST:
-                tried = at.plus(change.times(length))
+                tried = at.advanced(length, change)
                 there = energy.value(tried, unknowns + length * step, barrier, load)
                 if there <= value + SUFFICIENT * length * slope + 1e-13 * abs(value):
                     break
@@ -154,7 +155,7 @@ class Corrector:
                 weight = max(FALL * weight, LEAST_WEIGHT)
         return self._corrected(unknowns, pins, at, walls, steps)
 
-    def _nothing(self, base: Base, pins: Pins) -> Corrected:
+    def _nothing(self, base: Jet, pins: Pins) -> Corrected:
         """Return the correction of a base that none can be added to."""
         nothing = np.zeros(len(self.boundary.span), dtype=np.complex128)
         return Corrected(
@@ -166,17 +167,17 @@ class Corrector:
             is_held_back=True,
         )
 
-    def _size(self, change: Base) -> float:
+    def _size(self, change: Jet) -> float:
         """Return how large a change is."""
         weights = self.boundary.weights
         moved = np.abs(change.positions).max(initial=0.0) / self.boundary.size
         return float(max(moved, np.abs(change.f) @ weights, np.abs(change.g) @ weights))
 
     def _corrected(
-        self, unknowns: Floats, pins: Pins, at: Base, walls: Walls, steps: int
+        self, unknowns: Floats, pins: Pins, at: Jet, walls: Walls, steps: int
     ) -> Corrected:
         phi, psi = in_basis(self.boundary, unknowns)
-        slacks = Barrier(walls=walls, weight=LEAST_WEIGHT).slacks(np.abs(at.f), np.abs(at.g))
+        slacks = Barrier(walls=walls, weight=LEAST_WEIGHT).slacks(at.a, at.b)
         return Corrected(
             phi=self.boundary.basis @ phi,
             psi=self.boundary.basis @ psi,
@@ -187,13 +188,13 @@ class Corrector:
         )
 
 
-def _next_duals(barrier: Barrier, at: Base, change: Base) -> Floats:
+def _next_duals(barrier: Barrier, at: Jet, change: Jet) -> Floats:
     """Return the dual variables (3, m) of the barrier after a whole step."""
-    a, b = np.abs(at.f), np.abs(at.g)
+    a, b = at.a, at.b
     return barrier.next_duals(a, b, np.abs(at.f + change.f) - a, np.abs(at.g + change.g) - b)
 
 
-def _longest(barrier: Barrier, at: Base, change: Base) -> float:
+def _longest(barrier: Barrier, at: Jet, change: Jet) -> float:
     """Return how much of a step leads at most so far towards the walls as is allowed."""
 
     def stays(length: float) -> bool:
@@ -209,9 +210,9 @@ def _longest(barrier: Barrier, at: Base, change: Base) -> float:
     return TO_THE_WALL * inside
 
 
-def _walls(base: Base, limits: Limits) -> Walls:
+def _walls(base: Jet, limits: Limits) -> Walls:
     """Return where the barrier of each sample becomes infinite."""
-    a, b = np.abs(base.f), np.abs(base.g)
+    a, b = base.a, base.b
     inner = Walls.around(limits.towards_identity(MARGIN), len(a))
     outer = Walls.around(limits, len(a))
     k, sigma_a, sigma_b = ratio(b, a), a + b, a - b

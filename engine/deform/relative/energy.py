@@ -21,13 +21,14 @@ import numpy as np
 from engine.arrays import Complexes, Floats, Indices, Singles
 from engine.deform.model import (
     Barrier,
+    Jet,
     Radial,
     by_unknowns,
     in_basis,
     symmetric_dirichlet,
     symmetric_dirichlet_derivatives,
 )
-from engine.deform.relative.base import Base, Pins
+from engine.deform.relative.pins import Pins
 from engine.maps import Boundary
 
 # A prescribed turn is as stiff as two points this far (of L) on either side.
@@ -93,11 +94,11 @@ class Rows(NamedTuple):
             some_rows=boundary.basis_derivatives[some].astype(np.complex64),
         )
 
-    def change(self, unknowns: Floats) -> Base:
+    def change(self, unknowns: Floats) -> Jet:
         """Return the map of the span that unknowns (u,) stand for."""
         phi, psi = in_basis(self.boundary, unknowns)
         rows = self.boundary.basis_derivatives
-        return Base(
+        return Jet(
             f=rows @ phi,
             g=rows @ psi,
             positions=self.coordinates @ phi + (self.coordinates @ psi).conj(),
@@ -112,7 +113,7 @@ class RelativeEnergy:
     Parameters
     ----------
     rows : Rows
-    base : Base
+    base : Jet
     pins : Pins
     fixed : float64, shape (u, u)
         The Hessian of the places of the pins and of what holds the outline, twice the upper
@@ -120,7 +121,7 @@ class RelativeEnergy:
     """
 
     rows: Rows
-    base: Base
+    base: Jet
     pins: Pins
     alpha: Complexes = field(init=False)
     beta: Complexes = field(init=False)
@@ -156,7 +157,7 @@ class RelativeEnergy:
         """The points that are to be turned, (t,)."""
         return np.flatnonzero(~np.isnan(self.pins.turns))
 
-    def relative(self, at: Base) -> tuple[Complexes, Complexes]:
+    def relative(self, at: Jet) -> tuple[Complexes, Complexes]:
         """Return P and Q (m,)."""
         return (
             self.alpha * at.f + self.beta * at.g.conj(),
@@ -165,19 +166,19 @@ class RelativeEnergy:
 
     def load(self, barrier: Barrier) -> Load:
         """Return the slope of the barrier at the base, by |F| and by |G|."""
-        b = np.abs(self.base.g)
-        radial = barrier.derivatives(np.abs(self.base.f), b)
+        b = self.base.b
+        radial = barrier.derivatives(self.base.a, b)
         return radial.a, radial.b_per_b * b
 
-    def value(self, at: Base, unknowns: Floats, barrier: Barrier, load: Load) -> float:
+    def value(self, at: Jet, unknowns: Floats, barrier: Barrier, load: Load) -> float:
         """Return what is minimised; ∞ beyond the walls."""
-        a, b = np.abs(at.f), np.abs(at.g)
+        a, b = at.a, at.b
         if not np.all(barrier.slacks(a, b) > 0):
             return np.inf
         p, q = self.relative(at)
         density = symmetric_dirichlet(np.abs(p), np.abs(q)) + barrier.value(a, b)
-        density -= load[0] * (a - np.abs(self.base.f))
-        density -= load[1] * (b - np.abs(self.base.g))
+        density -= load[0] * (a - self.base.a)
+        density -= load[1] * (b - self.base.b)
         value = self.rows.boundary.weights @ density
         value += self.stiffness @ np.abs(at.positions - self.pins.places) ** 2
         if self.held:
@@ -187,14 +188,14 @@ class RelativeEnergy:
         return float(value)
 
     def model(
-        self, at: Base, unknowns: Floats, barrier: Barrier, load: Load
+        self, at: Jet, unknowns: Floats, barrier: Barrier, load: Load
     ) -> tuple[Floats, Floats, Floats]:
         """Return the gradient (u,), the projected Hessian (u, u), and what the projection removed.
 
         With that taken off again the Hessian is the exact one, which need not be positive.
         """
         boundary, weights = self.rows.boundary, self.rows.boundary.weights
-        a, b = np.abs(at.f), np.abs(at.g)
+        a, b = at.a, at.b
         p, q = self.relative(at)
         energy = symmetric_dirichlet_derivatives(np.abs(p), np.abs(q))
         bar = _unloaded(barrier.derivatives(a, b), a, b, load)
@@ -229,7 +230,7 @@ class RelativeEnergy:
         stiffness: Floats = 2.0 * arm**2 * self.stiffness[self.turning]
         return stiffness
 
-    def _turned(self, at: Base) -> Floats:
+    def _turned(self, at: Jet) -> Floats:
         """Return by how much the points are turned too far, (t,)."""
         wanted = np.exp(-1j * self.pins.turns[self.turning])
         angles: Floats = np.angle(at.fz[self.turning] * wanted)
@@ -251,7 +252,7 @@ class RelativeEnergy:
             self._add(into, blocks, self.rows.some_rows)
 
     def _add_barrier(
-        self, hessian: Floats, removed: Floats, at: Base, barrier: Radial, energy: Radial
+        self, hessian: Floats, removed: Floats, at: Jet, barrier: Radial, energy: Radial
     ) -> None:
         felt = np.flatnonzero(barrier.aa + barrier.bb > FELT * (energy.aa + energy.bb))
         if not len(felt):

@@ -7,8 +7,28 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from still_poses import PLACES, animate, posed, with_figure
 
-from app.document import RUBBERY, Attachment, Spring, Track, TrackKey, clip_of, track_at
-from app.motion import Animation, Joints, carried_in, corrected_clip, trace_paths
+from app.document import (
+    RUBBERY,
+    Attachment,
+    Spring,
+    Track,
+    TrackKey,
+    clip_of,
+    handle_commands,
+    track_at,
+)
+from app.motion import (
+    Animation,
+    IntervalStore,
+    Joints,
+    PosableMesh,
+    box_around,
+    carried_in,
+    corrected_clip,
+    hung_animations,
+    measure_extent,
+    trace_paths,
+)
 from app.motion.corrected_frames import CorrectedFrames
 from app.reports import Verdict, certify_clip
 
@@ -97,6 +117,17 @@ def test_a_group_moves_together_and_a_handle_turns_where_that_is_asked():
     animation = animate(tracked(turning))
     turned = animation.frame(12.0).fz[2] / animation.still_frame(12.0).fz[2]
     assert np.angle(turned) == pytest.approx(0.3, abs=0.02)
+
+
+def test_a_still_handle_beside_one_that_goes_gives_way():
+    document = posed()
+    beside = handle_commands.add_handle(0, PLACES["right"] - 1.5, name="beside")(document)
+    animation = animate(with_figure(beside, tracks=(track(),)))
+    still = animation.still_frame(10.0)
+    turn = still.fz[IDS["right"]] / abs(still.fz[IDS["right"]])
+    moved = animation.positions(10.0) - still.positions
+    assert abs(moved[IDS["right"]] - (8 + 4j) * turn) < 0.3
+    assert abs(moved[len(PLACES)] - (8 + 4j) * turn) < 1.0
 
 
 def test_a_second_track_begins_without_a_jump():
@@ -230,6 +261,27 @@ def test_the_frames_of_a_window_are_those_of_an_export():
     assert later.at(clip_of(changed, 0), 12) is frames.at(clip, 12)
     assert not later.is_exact(clip_of(changed, 0), 12)
     assert later.at(clip, 12) is None
+
+
+def test_the_extent_and_the_exports_are_of_what_is_shown():
+    document = tracked(track(keys=((5, 0), (15, 25 - 10j), (25, 0))))
+    clip, figure = clip_of(document, 0), document.figures[0]
+    store = IntervalStore(mesh=PosableMesh.coarse(figure.domain))
+    store.take(store.preparing(clip, store.missing(clip, 0))())
+    frames = corrected_clip(document, 0, None)
+    while (work := frames.missing(document, 0, {0: store.sampler})) is not None:
+        frames.take(work())
+    animation = Animation(clip)
+    (hung,) = hung_animations([Animation(clip)], document).values()
+    places = [animation.positions(float(frame)) for frame in range(31)]
+    assert_allclose(hung.positions(15.0), places[15], rtol=0, atol=1e-9)
+    found = measure_extent(document, {0: store}, corrected={0: frames})
+    # On the screen positions have single precision.
+    assert_allclose(found, box_around(np.concatenate(places)), rtol=0, atol=1e-2)
+    bare = measure_extent(document, {0: store})
+    assert found.upper.real - bare.upper.real > 5
+    shown = store.vertices(clip, 15, correction=frames.at(clip, 15)).positions
+    assert_allclose(shown, places[15], rtol=0, atol=1e-2)
 
 
 def test_what_a_hung_figure_is_planted_in_follows_its_parent():

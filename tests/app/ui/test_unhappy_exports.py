@@ -24,7 +24,7 @@ from app.editor.layering import pictures
 from app.export.writers.gif import GifWriter
 from app.export.writers.png import PngSequence
 from app.export.writers.video import VideoWriter
-from app.motion import inbetweens
+from app.motion.inbetweens import pose_sampler
 from app.storage.assets import sample_images
 from app.ui.window import exporter
 
@@ -277,7 +277,7 @@ def test_a_cancel_is_answered_at_once_whatever_is_being_prepared(
     format_ = {"frames": "png", "sheet.png": "spritesheet"}.get(name, name[4:])
     exporting.set_export(session, ExportSettings(format=format_, size=SIZE, framing="canvas"))
     window.settle()
-    worker = held(inbetweens, stage)
+    worker = held(pose_sampler, stage)
     window.act(exporting.start, out)
     window.until(worker.begun.is_set)
     assert (session.export is None) == (stage == "prepare_sites")

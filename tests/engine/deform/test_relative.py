@@ -8,8 +8,8 @@ from deform_shapes import BAR_POINTS, STAR_POINTS, bar_boundary, star_boundary
 from holed_shapes import ring
 from numpy.testing import assert_allclose, assert_array_equal
 
-from engine.deform.model import Barrier, Walls
-from engine.deform.relative import Base, Corrector, Pins, best_rigid, energy as energy_module
+from engine.deform.model import Barrier, Jet, Walls
+from engine.deform.relative import Corrector, Pins, best_rigid, energy as energy_module
 from engine.deform.relative.energy import RelativeEnergy, Rows
 from engine.geometry import HERE, RigidMotion
 from engine.maps import Boundary, Bounds
@@ -25,7 +25,7 @@ def bent(corrector, amount=0.15):
     def fz(z):
         return turn * (1 + amount / 2 * np.exp(z))
 
-    return Base(
+    return Jet(
         f=fz(z),
         g=np.conj(turn) * 2 * amount * z / 3,
         positions=turn * (points + amount / 2 * np.exp(points) + np.conj(amount * points**2 / 3)),
@@ -36,7 +36,7 @@ def bent(corrector, amount=0.15):
 def rest(corrector):
     boundary, points = corrector.boundary, corrector.points
     ones = np.ones(len(boundary.points), dtype=np.complex128)
-    return Base(f=ones, g=0 * ones, positions=points, fz=np.ones(len(points), dtype=np.complex128))
+    return Jet(f=ones, g=0 * ones, positions=points, fz=np.ones(len(points), dtype=np.complex128))
 
 
 def pins(base, moves, *, firm=None, turns=None, reach=1.0):
@@ -67,7 +67,7 @@ def holed():
 
 
 def value_of(energy, barrier, load, unknowns):
-    at = energy.base.plus(energy.rows.change(unknowns))
+    at = energy.base.advanced(1.0, energy.rows.change(unknowns))
     return energy.value(at, unknowns, barrier, load)
 
 
@@ -91,7 +91,7 @@ def test_gradient_and_hessian_are_those_of_the_value(make, monkeypatch):
     at = 1e-3 * rng.normal(size=count)
     # Constants on the cages of holes change no map: their stiffness is of the Hessian alone.
     free = np.flatnonzero(np.abs(rows.held).sum(axis=0) > 1e-12)
-    there = base.plus(rows.change(at))
+    there = base.advanced(1.0, rows.change(at))
     gradient, hessian, removed = energy.model(there, at, barrier, load)
     for direction in np.eye(count)[rng.choice(free, 6, replace=False)]:
         e = 1e-5
@@ -100,7 +100,7 @@ def test_gradient_and_hessian_are_those_of_the_value(make, monkeypatch):
         assert gradient @ direction == pytest.approx(slope, rel=1e-5, abs=1e-6)
         found = [
             energy.model(
-                base.plus(rows.change(at + s * e * direction)),
+                base.advanced(1.0, rows.change(at + s * e * direction)),
                 at + s * e * direction,
                 barrier,
                 load,
@@ -126,7 +126,7 @@ def test_nothing_is_the_minimum_however_near_a_wall_is():
     boundary, nowhere = star_boundary(), np.zeros(0, dtype=np.complex128)
     corrector = Corrector(boundary=boundary, points=nowhere)
     ones = np.ones(len(boundary.points), dtype=np.complex128)
-    base = Base(f=1.25 * ones, g=0.25 * ones, positions=nowhere, fz=nowhere)
+    base = Jet(f=1.25 * ones, g=0.25 * ones, positions=nowhere, fz=nowhere)
     # 1e-5 below the largest stretch, and far from the other bounds.
     walls = Walls.around(Bounds(k=0.9, sigma_a=1.50001, sigma_b=0.1), len(ones))
     barrier = Barrier(walls=walls, weight=1e-3)
@@ -136,7 +136,7 @@ def test_nothing_is_the_minimum_however_near_a_wall_is():
     cage = boundary.span.cage
     for amount in (-0.1, -1e-3, -1e-5, 1e-5, 1e-3, 0.1):
         # Along the wall: |F| + |G| stays.
-        along = base.plus(corrector.measured(-amount * cage, amount * cage))
+        along = base.advanced(1.0, corrector.measured(-amount * cage, amount * cage))
         assert_allclose(np.abs(along.f) + np.abs(along.g), 1.5, rtol=1e-10)
         assert energy.value(along, nothing, barrier, load) > least
 
@@ -146,7 +146,7 @@ def test_a_common_motion_of_all_pins_is_a_rigid_one():
     base = bent(corrector)
     turned = np.exp(0.3j) * base.positions + 0.2 - base.positions
     found = corrector.correct(base, pins(base, turned), WIDE)
-    after = base.plus(found.change)
+    after = base.advanced(1.0, found.change)
     assert_allclose(after.f, np.exp(0.3j) * base.f, atol=2e-3)
     assert_allclose(after.g, np.exp(-0.3j) * base.g, atol=2e-3)
 
@@ -172,7 +172,7 @@ def test_bounds_are_kept_however_far_pins_are_wanted(seed):
     count = len(STAR_POINTS)
     moves = rng.normal(size=count) + 1j * rng.normal(size=count)
     found = corrector.correct(base, pins(base, moves), bounds)
-    after = base.plus(found.change)
+    after = base.advanced(1.0, found.change)
     a, b = np.abs(after.f), np.abs(after.g)
     assert (b / a).max() < bounds.k
     assert (a + b).max() < bounds.sigma_a
@@ -187,7 +187,7 @@ def test_a_base_beyond_its_bounds_gets_no_worse():
     bounds = Bounds(k=0.05, sigma_a=1.05, sigma_b=0.95)
     moves, firm = one_arm(0.2j)
     found = corrector.correct(base, pins(base, moves, firm=firm), bounds)
-    after, a0, b0 = base.plus(found.change), np.abs(base.f), np.abs(base.g)
+    after, a0, b0 = base.advanced(1.0, found.change), np.abs(base.f), np.abs(base.g)
     a, b = np.abs(after.f), np.abs(after.g)
     assert (b / a).max() <= (b0 / a0).max() + 1e-4
     assert (a + b).max() <= (a0 + b0).max() * (1 + 1e-4)
@@ -223,7 +223,7 @@ def test_a_point_is_turned_where_it_is_asked():
     turns = np.full(len(STAR_POINTS), np.nan)
     turns[2] = np.angle(base.fz[2]) + 0.5
     found = corrector.correct(base, pins(base, 0.0, turns=turns), WIDE)
-    after = base.plus(found.change)
+    after = base.advanced(1.0, found.change)
     assert np.angle(after.fz[2] / base.fz[2]) == pytest.approx(0.5, abs=5e-3)
 
 
