@@ -28,6 +28,7 @@ from engine.errors import EngineError
 
 # A drag that is not at rest by then creeps along a bound.
 MOST_STEPS = 1500
+SAME_PLACE = 1e-6  # pixels: a handle at rest is where the identity takes it, up to rounding
 STEPS_AT_ONCE = 25
 
 
@@ -180,7 +181,10 @@ def _posed(
 
 def _wishes_alike(rig: Rig, pose: Pose, other: Pose) -> bool:
     """Tell whether two poses are wanted alike where they are held."""
-    return all(pose.targets[held.id] == other.targets[held.id] for held in rig.handles)
+    return all(
+        abs(pose.targets[held.id].position - other.targets[held.id].position) <= SAME_PLACE
+        for held in rig.handles
+    )
 
 
 def _solve(rig: Rig, start: Pose, key: PoseKey) -> tuple[Pose, list[str]]:

@@ -154,6 +154,8 @@ def _poses_alike(clip: Clip, first: Moment, second: Moment) -> bool:
         abs(target.position - other.targets[handle].position) <= SAME_PLACE
         and target.rotation == other.targets[handle].rotation
         for handle, target in one.targets.items()
+        # Those that follow are not wished anywhere: poses have them where the body carries them.
+        if handle not in clip.figure.followers
     )
 
 

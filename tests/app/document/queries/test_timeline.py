@@ -10,12 +10,12 @@ from numpy.testing import assert_allclose
 
 from app.document.commands.handle_commands import add_handle
 from app.document.commands.key_commands import pose_key
-from app.document.keyframe import Keyframe, Passing
+from app.document.keyframe import Keyframe, Passing, Target
 from app.document.playhead import Playhead
 from app.document.queries.clips import clip_of, closes, intervals
 from app.document.queries.timeline import Moment, exported_frames, frame_times, time_of
 from app.document.settings import FrameRange
-from app.document.timing import HOLD, PRESETS
+from app.document.timing import HOLD, PRESETS, Spring
 from app.errors import LissomError
 
 EMPTY = disc_document()
@@ -135,6 +135,17 @@ def test_exports_leave_out_the_frame_that_a_loop_repeats():
     assert exported_frames(keyed(10, 30, loop=True)) == FrameRange(0, 47)
     chosen = replace(EMPTY.export, frames=FrameRange(5, 48))
     assert exported_frames(keyed(0, 9, loop=True, export=chosen)) == FrameRange(5, 48)
+
+
+def test_what_follows_does_not_keep_a_loop_from_closing():
+    document = add_handle(0, 0.1 + 0j)(keyed(0, 48, loop=True))
+    figure = document.figures[0]
+    first, last = figure.keys
+    carried = replace(last.pose, targets={0: Target(position=0.1 + 1e-3j)})
+    changed = altered(document, keys=(first, replace(last, pose=carried)))
+    assert exported_frames(changed) == FrameRange(0, 48)
+    spring = Spring(handle=0, frequency=2.0, damping=0.2)
+    assert exported_frames(altered(changed, springs=(spring,))) == FrameRange(0, 47)
 
 
 def test_frame_times_at_another_rate():
