@@ -19,6 +19,7 @@ from app.document.timing import HOLD, PRESETS, Spring
 from app.errors import LissomError
 
 EMPTY = disc_document()
+MIDDLE = 100 + 100j
 
 
 def keyed(*frames, last=48, first=0, easing=PRESETS["linear"], **settings):
@@ -138,10 +139,10 @@ def test_exports_leave_out_the_frame_that_a_loop_repeats():
 
 
 def test_what_follows_does_not_keep_a_loop_from_closing():
-    document = add_handle(0, 0.1 + 0j)(keyed(0, 48, loop=True))
+    document = add_handle(0, MIDDLE)(keyed(0, 48, loop=True))
     figure = document.figures[0]
     first, last = figure.keys
-    carried = replace(last.pose, targets={0: Target(position=0.1 + 1e-3j)})
+    carried = replace(last.pose, targets={0: Target(position=MIDDLE + 1e-3j)})
     changed = altered(document, keys=(first, replace(last, pose=carried)))
     assert exported_frames(changed) == FrameRange(0, 48)
     spring = Spring(handle=0, frequency=2.0, damping=0.2)
