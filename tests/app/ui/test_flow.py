@@ -11,7 +11,8 @@ from app.editor.action import do
 from app.editor.actions import editing, exporting, keys, playback, posing, saving, viewing
 from app.render.view import View
 from app.storage.assets import sample_images
-from app.ui.viewport import hints, marks
+from app.ui.viewport import marks
+from app.ui.viewport.hand import hints
 from engine.deform import Status
 
 BAR = sample_images() / "bar.png"
