@@ -249,17 +249,35 @@ def _weights(weights: npt.ArrayLike | None, count: int) -> Floats:
 
 
 def _hessian(boundary: Boundary, coordinates: Complexes, stiffness: Floats) -> Floats:
-    root = np.sqrt(2.0 * stiffness)[:, None] * coordinates
+    hessian = squared_places(boundary, np.sqrt(2.0 * stiffness)[:, None] * coordinates)
+    hold_constants(boundary, hessian)
+    return hessian
+
+
+def squared_places(boundary: Boundary, rows: Complexes) -> Floats:
+    """Return the Gram matrix (u, u), in the order of `Objective`, of how places are moved.
+
+    Parameters
+    ----------
+    rows : complex128, shape (p, r)
+        The functions of the boundary's basis at the points, times a factor of each.
+    """
+    root = rows.copy()
     r, count = root.shape[1], len(boundary.holes)
     of_psi = root[:, 1 : r - count]
     # A logarithm is in Φ and, conjugate, in Ψ.
     root[:, r - count :] *= 2.0
     # Re f = Re(Σ C φ + Σ C ψ), Im f = Im(Σ C φ − Σ C ψ).
     real, imaginary = np.hstack([root, of_psi]), -1j * np.hstack([root, -of_psi])
-    rows = np.concatenate([real, imaginary]).view(np.float64)
-    hessian: Floats = rows.T @ rows
-    for constant in range(1, 1 + count):
+    both = np.concatenate([real, imaginary]).view(np.float64)
+    squared: Floats = both.T @ both
+    return squared
+
+
+def hold_constants(boundary: Boundary, hessian: Floats) -> None:
+    """Add to a Hessian (u, u) what holds the constants on the cages of holes."""
+    r = boundary.basis.shape[1]
+    for constant in range(1, 1 + len(boundary.holes)):
         # On the cage of a hole it is nothing, and would be free.
         for first in (2 * constant, 2 * (constant + r - 1)):
             hessian[[first, first + 1], [first, first + 1]] += STIFFNESS
-    return hessian

@@ -53,12 +53,13 @@ class Animation:
         self.sampler = sampler
         self.base = BaseMotion(clip, self.variant, sampler)
         self.carried = carried
+        self._is_corrected = is_corrected(clip)
         self._corrections: Corrections | None = None
 
     @property
     def corrections(self) -> Corrections | None:
         """What is added to the base motion; None where nothing ever is."""
-        if self._corrections is None and is_corrected(self.clip):
+        if self._corrections is None and self._is_corrected:
             self._corrections = Corrections(self.clip, self.variant, self.sampler, self.carried)
         return self._corrections
 

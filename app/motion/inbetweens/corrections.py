@@ -157,11 +157,6 @@ class Corrections:
                 return None
             return FrameCorrection(motion=self._rigid(base, lack))
 
-    def base_at(self, frame: float) -> Jet:
-        """Return the closed-form motion of the handles, then of the anchor of what hangs."""
-        with self._lock:
-            return self._base(frame)
-
     def _still_places(self, frame: float) -> Complexes:
         """Return where the handles are at a frame before springs and tracks, (h,)."""
         base = self._base(frame)

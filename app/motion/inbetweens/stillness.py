@@ -123,11 +123,6 @@ class Stillness:
                     slope = -velocities[other, 1 - side]
                     self._slopes[number, side] = np.where(there & ~here, slope, 0.0)
 
-    @property
-    def asks(self) -> bool:
-        """Whether anything is still at any time."""
-        return bool(self._still.any())
-
     def lack(self, frame: float, places: Complexes) -> Lack | None:
         """Return what the handles, which the base has at these places (h,), lack at a frame.
 

@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices, Singles
+from engine.deform.handles import hold_constants, squared_places
 from engine.deform.model import (
     Barrier,
     Jet,
@@ -40,7 +41,6 @@ HELD = 300.0
 SAMPLES_PER_FUNCTION = 6
 FELT = 0.02
 TINY = 1e-300
-LOOSE = 1e4  # stiffness of constants on the cages of holes, which change no map
 
 # By |F| and by |G|, each (m,).
 Load = tuple[Floats, Floats]
@@ -83,7 +83,7 @@ class Rows(NamedTuple):
         starts = np.arange(0, count, stride)
         some = np.minimum(starts + stride // 2, count - 1)
         vertices = boundary.vertex_coordinates @ basis / boundary.size
-        held = _squared(boundary, vertices / np.sqrt(len(vertices)))
+        held = squared_places(boundary, vertices / np.sqrt(len(vertices)))
         return cls(
             boundary=boundary,
             coordinates=span.coordinates(points) @ basis,
@@ -116,8 +116,8 @@ class RelativeEnergy:
     base : Jet
     pins : Pins
     fixed : float64, shape (u, u)
-        The Hessian of the places of the pins and of what holds the outline, twice the upper
-        triangle's sum: it does not change in a solve.
+        The Hessian of the places of the pins and of what holds the outline, which does not change
+        in a solve.
     """
 
     rows: Rows
@@ -133,13 +133,10 @@ class RelativeEnergy:
         object.__setattr__(self, "alpha", f.conj() / area)
         object.__setattr__(self, "beta", -g / area)
         root = np.sqrt(2.0 * self.stiffness)[:, None]
-        fixed = _squared(boundary, root * self.rows.coordinates)
+        fixed = squared_places(boundary, root * self.rows.coordinates)
         if self.held:
             fixed += 2.0 * self.held * self.rows.held
-        r = boundary.basis.shape[1]
-        for constant in range(1, 1 + len(boundary.holes)):
-            for first in (2 * constant, 2 * (constant + r - 1)):
-                fixed[[first, first + 1], [first, first + 1]] += LOOSE
+        hold_constants(boundary, fixed)
         object.__setattr__(self, "fixed", fixed)
 
     @cached_property
@@ -323,15 +320,6 @@ def _roots(
         (tangential[up], nothing[up], up),
     ]
     return kept, [(tangential[down], nothing[down], down)] if len(down) else []
-
-
-def _squared(boundary: Boundary, rows: Complexes) -> Floats:
-    """Return the Hessian (u, u) of Σ |δ|² / 2 of places whose rows of the basis are these."""
-    real = by_unknowns(boundary, rows.copy(), rows.copy())
-    imaginary = by_unknowns(boundary, -1j * rows, 1j * rows)
-    both = np.concatenate([real, imaginary])
-    squared: Floats = both.T @ both
-    return squared
 
 
 def _add_squared(hessian: Floats, rows: Floats | Singles) -> None:

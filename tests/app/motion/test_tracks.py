@@ -83,7 +83,8 @@ def test_a_planted_handle_stays_in_the_picture():
         assert abs(animation.positions(frame)[2] - place) < 0.1
 
 
-def test_a_planted_handle_of_a_hung_figure_stays_in_the_scene():
+def planted_child():
+    """A figure that hangs on a moving one, with a handle that stays in the scene; and where."""
     document = posed()
     place = PLACES["top"] + 2j
     child = replace(
@@ -95,7 +96,13 @@ def test_a_planted_handle_of_a_hung_figure_stays_in_the_scene():
         bounds=RUBBERY.bounds,
         tracks=(track("top", ((0, place), (30, place)), planted=True),),
     )
-    scene = replace(document, figures=(with_figure(document, stillness=False).figures[0], child))
+    parent = with_figure(document, stillness=False).figures[0]
+    return replace(document, figures=(parent, child)), place
+
+
+def test_a_planted_handle_of_a_hung_figure_stays_in_the_scene():
+    scene, place = planted_child()
+    child = scene.figures[1]
     joints = Joints(scene)
     handles = np.array([handle.position for handle in child.handles])
     hung = Animation(clip_of(scene, 1), points=np.append(handles, child.anchor))
@@ -285,19 +292,8 @@ def test_the_extent_and_the_exports_are_of_what_is_shown():
 
 
 def test_what_a_hung_figure_is_planted_in_follows_its_parent():
-    document = posed()
-    place = PLACES["top"] + 2j
-    child = replace(
-        document.figures[0],
-        id=1,
-        name="child",
-        anchor=60 + 45j,
-        attachment=Attachment(to=0, at=60 + 45j),
-        bounds=RUBBERY.bounds,
-        tracks=(track("top", ((0, place), (30, place)), planted=True),),
-    )
-    parent = with_figure(document, stillness=False).figures[0]
-    scene = replace(document, figures=(parent, child))
+    scene, place = planted_child()
+    parent, child = scene.figures
     points = np.array([handle.position for handle in child.handles])
     before = trace_paths(clip_of(scene, 1), carried=carried_in(scene, 1))
     joints = Joints(scene)
