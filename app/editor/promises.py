@@ -91,6 +91,7 @@ def once_settled(
     then: Action,
     what: str,
     *,
+    changes: bool = True,
     after_saves: bool = False,
     patience: float = inf,
 ) -> None:
@@ -101,13 +102,18 @@ def once_settled(
     then : Action
     what : str
         The same in words, for the status bar.
+    changes : bool
+        Whether it changes the document, and undo takes it back as long as it waits.
     after_saves : bool
         Whether it also waits for a save that is under way.
     patience : float
         Seconds after which it is done whatever is still on its way.
     """
     until = session.clock() + patience
-    waiting = Afterwards(then=then, what=what, after_saves=after_saves, until=until)
+    position = project.history.position if changes else None
+    waiting = Afterwards(
+        then=then, what=what, after_saves=after_saves, until=until, position=position
+    )
     project.afterwards.append(waiting)
     go_on(session)
 
@@ -123,6 +129,19 @@ def go_on(session: Session, project: Project) -> None:
         if waiting in project.afterwards and session.project is project:
             project.afterwards.remove(waiting)
             waiting.then.apply(session)
+
+
+def take_back(project: Project) -> str | None:
+    """Take back the change that waits and was asked for last, if nothing was done since.
+
+    Returns it in words, for the person to be told; None if there is none.
+    """
+    position = project.history.position
+    since = [each for each in project.afterwards if each.position == position]
+    if not since:
+        return None
+    project.afterwards.remove(since[-1])
+    return since[-1].what
 
 
 def waits_for(project: Project) -> str:

@@ -179,7 +179,7 @@ class Drag:
         deformer = self.deformer
         if rig.deformer.handles is not deformer.handles:
             deformer = replace(deformer, handles=rig.deformer.handles)
-        wish = rig.wish(self._completed(targets, rig), self.pins, hands)
+        wish = rig.wish(targets, self.pins, hands)
         state = self.state
         for _ in range(steps):
             state = deformer.step(state, wish)
@@ -189,27 +189,13 @@ class Drag:
 
     def let_go(self, targets: Mapping[int, Target], hands: Sequence[Hand]) -> Mapping[int, Target]:
         """Return the targets of the handles that hands have pulled, once these let go here."""
-        wish = self.rig.wish(self._completed(targets, self.rig), self.pins, hands)
+        wish = self.rig.wish(targets, self.pins, hands)
         left = wish.let_go(self.deformer.positions(self.state)).positions
         pulled = {identity for hand in hands for identity in hand.handles}
         return {
             handle.id: replace(targets[handle.id], position=complex(place))
             for handle, place in zip(self.rig.handles, left, strict=False)
             if handle.id in pulled
-        }
-
-    def _completed(self, targets: Mapping[int, Target], rig: Rig) -> Mapping[int, Target]:
-        """Return targets with those of handles that are newer: where the drag has them."""
-        newer = [handle for handle in rig.handles if handle.id not in targets]
-        if not newer:
-            return targets
-        places = self.state.map(np.array([handle.position for handle in newer], np.complex128))
-        return {
-            **targets,
-            **{
-                handle.id: Target(position=complex(place))
-                for handle, place in zip(newer, places, strict=True)
-            },
         }
 
     def pose(self, targets: Mapping[int, Target]) -> Pose:

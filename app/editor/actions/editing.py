@@ -19,6 +19,7 @@ from app.document import (
     pairs_by_name,
     track_commands,
 )
+from app.editor import promises
 from app.editor.actions import playback, posing
 from app.editor.project import Project, Puppet
 from app.editor.session import Session, with_project
@@ -80,7 +81,15 @@ def use_widget(_: Session, project: Project, widget: int) -> None:
 
 @with_project
 def undo(session: Session, project: Project) -> None:
-    """Take the last step back; a pull that is under way goes on in it, should it be done again."""
+    """Take the last step back; a pull that is under way goes on in it, should it be done again.
+
+    A change that waits for it, and is the last that was asked for, is taken back before it.
+    """
+    is_held = any(pull.is_held for pull in project.pulls)
+    waiting = None if is_held else promises.take_back(project)
+    if waiting is not None:
+        _tell_step(session, "Undone", waiting)
+        return
     before, unkeyed, label = project.document, project.history.unkeyed, project.history.undo_label
     position = project.history.position
     # What was done since they were wished is taken back before them.

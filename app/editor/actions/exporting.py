@@ -118,7 +118,7 @@ def start(session: Session, project: Project, out: Path) -> None:
         )
         return
     session.cancellation = Cancellation()
-    promises.once_settled(session, do(_begin, request), "Export")
+    promises.once_settled(session, do(_begin, request), "Export", changes=False)
 
 
 @with_project
@@ -150,7 +150,7 @@ def copy_picture(session: Session, project: Project) -> None:
     request = _request(session, project, out, settings)
     check_request(project.document, request)
     session.cancellation = Cancellation()
-    promises.once_settled(session, do(_begin_copy, request), "Copy the picture")
+    promises.once_settled(session, do(_begin_copy, request), "Copy the picture", changes=False)
 
 
 @with_project

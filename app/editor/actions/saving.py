@@ -62,7 +62,9 @@ def write(session: Session, path: Path, then: Action | None) -> None:
     would take the first for another program's.
     """
     writing = do(write_now, path, then)
-    promises.once_settled(session, writing, "Save", after_saves=True, patience=PATIENCE)
+    promises.once_settled(
+        session, writing, "Save", changes=False, after_saves=True, patience=PATIENCE
+    )
 
 
 @with_project
@@ -216,7 +218,9 @@ def unless_unsaved(session: Session, then: Action) -> None:
     if not promises.is_settled(project, after_saves=True):
         session.tell(f"{promises.coming(project)} comes first.", topic="settling")
     asking = do(ask_unsaved, then)
-    promises.once_settled(session, asking, "Close", after_saves=True, patience=PATIENCE)
+    promises.once_settled(
+        session, asking, "Close", changes=False, after_saves=True, patience=PATIENCE
+    )
 
 
 def _asks_about(waiting: Action, then: Action) -> bool:

@@ -26,3 +26,4 @@ class Afterwards:
     # The clock's seconds when it is done whatever is still on its way: a worker that never ends is
     # to delay neither saving nor closing.
     until: float = inf
+    position: int | None = None  # of the history when that was asked; None if it changes nothing

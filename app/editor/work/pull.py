@@ -204,7 +204,10 @@ class Pull(Promise):
     def aim(self) -> None:
         """Work out the targets anew."""
         self.steps = 0
-        if self.start is not None:
+        if self.start is None:
+            # Those of a start that was left knew other handles.
+            self.targets, self.pulled = None, frozenset()
+        else:
             self.targets = targets_of(self.start, self.wishes.values())
             self.pulled = pulled_by(self.start, self.wishes.values())
 

@@ -404,3 +404,57 @@ def test_a_drag_that_was_undone_before_anything_was_seen_is_done_again(window, b
     check_at_rest(bent.document, goal)
     editing.undo(window.session)
     assert bent.document is before
+
+
+def test_undo_takes_back_first_a_paste_that_still_waits_and_nothing_is_lost(
+    window, bent, monkeypatch
+):
+    before = bent.document
+    with held_up(monkeypatch, "app.editor.actions.posing.solving._take_steps"):
+        goal = drag_bar(window, bent)
+        copying.copy(window.session)
+        playback.scrub(window.session, 40)
+        flipping.paste(window.session)
+        assert [each.what for each in bent.afterwards] == ["Paste flipped"]
+        editing.undo(window.session)
+        assert not bent.afterwards
+        assert bent.pulls, "the drag goes on"
+    window.settle()
+    check_at_rest(bent.document, goal)
+    assert bent.figure.key_frames == {0, 24}
+    rested = bent.document
+    editing.undo(window.session)
+    assert bent.document is before
+    editing.redo(window.session)
+    assert bent.document is rested
+
+
+def test_a_save_that_waits_is_not_taken_back(window, bent, monkeypatch, tmp_path):
+    bent.path = tmp_path / "bent.lissom"
+    with held_up(monkeypatch, "app.editor.actions.posing.solving._take_steps"):
+        drag_bar(window, bent)
+        saving.save(window.session)
+        editing.undo(window.session)
+        assert [each.what for each in bent.afterwards] == ["Save"]
+    window.settle()
+    assert bent.path.exists()
+
+
+def test_handles_that_come_before_a_drag_knows_where_it_begins_are_held_by_it(
+    window, bent, monkeypatch
+):
+    playback.scrub(window.session, 12)
+    window.settle()
+    places = bent.puppet.shown.handle_places
+    with held_up(monkeypatch, "app.editor.actions.posing.solving._take_steps"):
+        posing.wish(window.session, {0: Target(position=places[0] + 5j)})
+        posing.let_go(window.session)
+        posing.add_handle(window.session, complex(places.mean()))
+        (added,) = bent.selected
+        # Of a document that is not shown yet, nobody knows where a drag begins.
+        posing.wish(window.session, {1: Target(position=places[1] + 5j)})
+        posing.let_go(window.session)
+        (pull,) = bent.pulls
+        assert pull.start is None
+    window.settle()
+    assert bent.figure.key(12).pose.targets.keys() == {0, 1, added}

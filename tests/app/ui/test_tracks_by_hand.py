@@ -5,12 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from bars import BENT
+from harness import MOST_FRAMES
 from numpy.testing import assert_allclose
 
+from app.document import Target
 from app.document.commands import scene_commands, track_commands
 from app.document.settings import FrameRange
 from app.document.timing import Track, TrackKey
-from app.editor.actions import editing, playback, tracking
+from app.editor.actions import editing, playback, posing, tracking
 from app.editor.actions.timing import tracks
 from app.ui.bars.status import limit_of_pose
 from app.ui.viewport.marks import unreached
@@ -340,3 +342,29 @@ def test_a_late_track_says_why_it_has_no_key_there(window, keyed):
     assert [toast.text for toast in window.session.toasts if toast.topic == "late"] == [
         "The track is 16 frames late: no key of it can be seen at frame 12."
     ]
+
+
+def test_a_hand_sees_its_track_while_a_pose_elsewhere_waits_for_what_is_shown(window, keyed):
+    start, track = place_of(keyed), keyed.chosen_track
+    playback.scrub(window.session, BENT)
+    keyed.chosen_track = None
+    place = complex(keyed.figure.key(BENT).pose.targets[END].position)
+    posing.wish(window.session, {END: Target(position=place - 15j)})
+    posing.let_go(window.session)
+    playback.scrub(window.session, 12)
+    keyed.chosen_track = track
+    assert any(not pull.is_at_rest for pull in keyed.pulls)
+
+    def then(robot):
+        for _ in range(MOST_FRAMES):
+            if keyed.puppet.shown.is_current:
+                break
+            window.session.jobs.settle()
+            robot.yield_()
+        seen.append(keyed.puppet.shown.is_current)
+        robot.mouse_up(0)
+
+    seen = []
+    drag(window, start, start + 10j, then=then)
+    assert seen == [True]
+    assert not keyed.pending

@@ -38,7 +38,8 @@ def missing(session: Session, project: Project) -> Iterator[Job]:
 
 def missing_here(session: Session, project: Project) -> Iterator[Job]:
     """Yield what finds the correction of the frame that is watched, and what hands need."""
-    if not project.pulls:
+    # Pulls come first, but for those that wait until what a hand on a track sees is there.
+    if not project.pulls or is_under_way(session, project):
         yield from _follow(session, project)
         yield from _ground(session, project)
 
