@@ -53,10 +53,13 @@ class Hands(NamedTuple):
     gives: Floats
 
     @classmethod
-    def of(cls, hands: Sequence[Hand], stiffness: Floats, size: float) -> "Hands | None":
+    def of(
+        cls, hands: Sequence[Hand], stiffness: Floats, around: Floats, size: float
+    ) -> "Hands | None":
         """Return what hands are to handles of this stiffness (h,), on a shape of this size.
 
-        One of infinite force holds, as does none at all.
+        One of infinite force holds, as does none at all. How stiff the shape is `around` handles is
+        a factor of their stiffness, and so of the force: a hand gives in at the same distance.
 
         Raises
         ------
@@ -81,10 +84,11 @@ class Hands(NamedTuple):
             raise EngineError(f"Two hands pull at handle {twice[0]}; let one of them do it.")
         totals = weights.sum(axis=1)
         forces = np.array([hand.pull for hand in hands]) / size
+        in_usual = (weights / around).sum(axis=1)
         return cls(
             shares=readonly(weights / totals[:, None]),
             stiffness=readonly(totals),
-            gives=readonly(forces / (2.0 * totals)),
+            gives=readonly(forces / (2.0 * in_usual)),
         )
 
     @property
