@@ -84,10 +84,10 @@ class Handles:
     points : complex128, shape (h,)
         Where the handles sit in the shape at rest.
     stiffness : float64, shape (h,)
-        λ of each: the energy is Σ λ |f(point) − target|². Where the shape is stiff it is so many
-        times as large, and what is held misses no more.
+        λ of each: the energy is Σ λ |f(point) − target|². The quadratic mean of the shape's
+        stiffness around it is a factor: near stiff parts, whose forces it bears, it misses no more.
     around : float64, shape (h,)
-        How stiff the shape is around each, a factor of λ.
+        The mean of that stiffness, a factor of the forces of hands.
     arm : float
         Length that turns a rotation into a distance: an angle δ costs 2 λ (arm · δ)².
     coordinates, derivatives : complex128, shape (h, n)
@@ -132,8 +132,9 @@ class Handles:
             have too many vertices.
         """
         points = require_held(points, boundary.outline, boundary.cage, boundary.holes)
-        around = boundary.stiffness_around(points)
-        stiffness = _weights(weights, len(points)) * STIFFNESS / boundary.size**2 * around
+        around, firmer = boundary.stiffness_around(points)
+        factors = _weights(weights, len(points)) * firmer
+        stiffness = factors * STIFFNESS / boundary.size**2
         coordinates = boundary.span.coordinates(points)
         derivatives = boundary.span.derivatives(points)
         of_basis = coordinates @ boundary.basis

@@ -58,8 +58,8 @@ class Hands(NamedTuple):
     ) -> "Hands | None":
         """Return what hands are to handles of this stiffness (h,), on a shape of this size.
 
-        One of infinite force holds, as does none at all. How stiff the shape is `around` handles is
-        a factor of their stiffness, and so of the force: a hand gives in at the same distance.
+        One of infinite force holds, as does none at all. How stiff the shape is `around` handles
+        (h,) is a factor of the force.
 
         Raises
         ------
@@ -84,11 +84,11 @@ class Hands(NamedTuple):
             raise EngineError(f"Two hands pull at handle {twice[0]}; let one of them do it.")
         totals = weights.sum(axis=1)
         forces = np.array([hand.pull for hand in hands]) / size
-        in_usual = (weights / around).sum(axis=1)
+        forces *= (weights * around).sum(axis=1) / totals
         return cls(
             shares=readonly(weights / totals[:, None]),
             stiffness=readonly(totals),
-            gives=readonly(forces / (2.0 * in_usual)),
+            gives=readonly(forces / (2.0 * totals)),
         )
 
     @property

@@ -203,18 +203,18 @@ class Boundary:
             stiffness=freeze(at_samples),
         )
 
-    def stiffness_around(self, points: Complexes) -> Floats:
-        """Return the stiffness around points (h,) of the closed domain, a geometric mean.
+    def stiffness_around(self, points: Complexes) -> tuple[Floats, Floats]:
+        """Return the mean and the quadratic mean of the stiffness around points, (h,) each.
 
         A sample counts by its length over the square of its distance: along a straight side that is
-        its harmonic measure, by which ln s would be continued into the domain.
+        its harmonic measure, by which s would be continued into the domain.
         """
         if np.all(self.stiffness == 1.0):
-            return np.ones(len(points))
+            return np.ones(len(points)), np.ones(len(points))
         squares = np.abs(points[:, None] - self.points) ** 2
         kernel = self.shares / np.maximum(squares, self.half_lengths**2)
-        around: Floats = np.exp(kernel @ np.log(self.stiffness) / kernel.sum(axis=1))
-        return around
+        kernel /= kernel.sum(axis=1, keepdims=True)
+        return kernel @ self.stiffness, np.sqrt(kernel @ self.stiffness**2)
 
     def refined(self, segments: Indices) -> Self:
         """Return the boundary with one more sample in the middle of each given segment (s,)."""
