@@ -197,11 +197,11 @@ class Boundary:
         loops = self.loops
         at_vertices = require_stiffness(stiffness, sum(map(len, loops)))
         at_samples = along_loops(at_vertices, loops, np.split(self.points, self.starts[1:]))
-        return replace(
-            self,
-            weights=freeze(self.shares * at_samples),
-            stiffness=freeze(at_samples),
-        )
+        return self.stiffened_at_samples(at_samples)
+
+    def stiffened_at_samples(self, stiffness: Floats) -> Self:
+        """Return the same with the stiffness at each sample, float64 (m,)."""
+        return replace(self, weights=freeze(self.shares * stiffness), stiffness=readonly(stiffness))
 
     def stiffness_around(self, points: Complexes) -> tuple[Floats, Floats]:
         """Return the mean and the quadratic mean of the stiffness around points, (h,) each.

@@ -3,7 +3,7 @@
 import pytest
 
 from app.document import Handle
-from app.document.handle_pairs import mirrored_name, pairs_by_name
+from app.document.body.pairs import mirrored_name, pairs_by_name
 
 SIDES = [
     ("hand.L", "hand.R"),
