@@ -61,6 +61,7 @@ from app.document.queries import (
     time_of as time_of,
     track_at as track_at,
     transits as transits,
+    velocity_at as velocity_at,
 )
 from app.document.settings import (
     FRAME_NAMES as FRAME_NAMES,

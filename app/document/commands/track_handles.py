@@ -41,6 +41,7 @@ def mirrored_track(figure: Figure, track: Track) -> Track:
             if track.planted
             else _reflected(key.place, 0.0),
             turn=0.0 - key.turn,
+            velocity=None if key.velocity is None else _reflected(key.velocity, 0.0),
         )
         for key in track.keys
     )

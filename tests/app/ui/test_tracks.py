@@ -409,6 +409,56 @@ def test_planting_moves_nothing_at_the_keys_and_leads_back(window, bent, press):
     assert bent.figure.track_of(RIGHT) == track
 
 
+def test_planting_keeps_the_motion_around_keys_that_have_velocities(window, bent, press):
+    keys = tuple(
+        TrackKey(frame=frame, place=place, velocity=velocity)
+        for frame, place, velocity in ((4, 0, 0j), (10, 20j, 3 + 1j), (16, 9, None))
+    )
+    with_track(window, bent)
+    window.act(
+        editing.edit, track_commands.put_track(bent.active, Track(handles=(RIGHT,), keys=keys))
+    )
+    window.act(editing.select, frozenset({RIGHT}))
+    window.settle()
+
+    def passing():
+        before, after = (place_of(bent, RIGHT, frame) for frame in (9.99, 10.01))
+        return (after - before) / 0.02
+
+    beside = passing()
+    press("kind/###picture")
+    planted = bent.figure.track_of(RIGHT)
+    assert planted.keys[2].velocity is None
+    np.testing.assert_allclose(planted.keys[1].velocity, beside, rtol=0, atol=0.1)
+    np.testing.assert_allclose(passing(), beside, rtol=0, atol=0.1)
+    assert abs(beside - (3 + 1j)) > 1, "the base moves, too"
+    press("kind/###pose")
+    again = bent.figure.track_of(RIGHT)
+    velocities = [key.velocity for key in again.keys[:2]]
+    np.testing.assert_allclose(velocities, [0, 3 + 1j], rtol=0, atol=0.01)
+
+
+def test_a_new_key_on_a_way_with_velocities_leaves_the_way_as_it_is(window, bent):
+    keys = tuple(
+        TrackKey(frame=frame, place=place, velocity=5 - 3j)
+        for frame, place in ((4, 0), (20, 20j), (28, 0))
+    )
+    with_track(window, bent)
+    track = Track(handles=(RIGHT,), keys=keys)
+    window.act(editing.edit, track_commands.put_track(bent.active, track))
+    for frame, insert in ((7, tracks.key_here), (15, tracks.put)):
+        playback.scrub(window.session, frame)
+        at = track_at(track, bent.clip, frame).place
+        insert(window.session, *(((RIGHT,),) if insert is tracks.key_here else (RIGHT, at)))
+    window.settle()
+    more = bent.figure.track_of(RIGHT)
+    assert len(more.keys) == 5
+    ways = [
+        [track_at(t, bent.clip, f).place for f in np.arange(4, 28.1, 0.5)] for t in (track, more)
+    ]
+    np.testing.assert_allclose(*ways, rtol=0, atol=1e-9)
+
+
 def test_a_new_key_of_a_planted_track_is_where_the_handle_is(window, bent):
     with_track(window, bent, keys=((4, 300 + 100j), (8, 310 + 100j)), planted=True)
     window.act(playback.seek, 16)
@@ -480,7 +530,7 @@ def test_a_spring_becomes_keys_that_swing_as_it_did(window, bent, press):
     track = bent.figure.track_of(RIGHT)
     assert bent.figure.spring_of(RIGHT) is None
     assert bent.chosen_track == RIGHT
-    assert len(track.keys) < 40
+    assert len(track.keys) < 20
     keyed = np.array([place_of(bent, RIGHT, frame) for frame in frames])
     assert np.abs(keyed - swung).max() < 1, "half a pixel, and what is solved"
     window.act(editing.undo)

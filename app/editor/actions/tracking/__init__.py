@@ -6,7 +6,7 @@ Imports: `app.editor`, `app.document`, `app.motion`.
 """
 
 from app.editor.actions.tracking.carrying import carried_track as carried_track, carry as carry
-from app.editor.actions.tracking.places import wished as wished
+from app.editor.actions.tracking.places import key_frame as key_frame, wished as wished
 from app.editor.actions.tracking.recording import (
     RECORDING_SPEEDS as RECORDING_SPEEDS,
     again as again,

@@ -4,12 +4,11 @@ The document has the key at once. What is shown follows as fast as corrections a
 the newest place.
 """
 
-from app.document import Track, track_at, track_commands
+from app.document import Track, track_at, track_commands, velocity_at
 from app.editor.actions import playback
-from app.editor.actions.tracking.places import kept
+from app.editor.actions.tracking.places import kept, key_frame
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.timeline_view import own_frame
 from app.editor.work import Carry
 
 
@@ -68,22 +67,19 @@ def put_key(
     """Give a handle's track a key at a frame of the scene; tell whether nothing is awaited."""
     figure, clip = project.figure, project.clip
     track = figure.track_of(handle)
-    own = frame if track is None else own_frame(project.document, track, frame)
+    own = frame if track is None else key_frame(session, project.document, track, frame)
     if own is None:
-        late = 0 if track is None else track.delay
-        session.tell(
-            f"The track is {late} frames late: no key of it can be seen at frame {frame}.",
-            topic="late",
-        )
         return True
     value = kept(project, handle, frame, place)
     if value is None:
         return False
-    at = None if track is None else track_at(track, clip, frame)
-    is_new = track is not None and own not in track.key_frames
-    turn = at.turn if at is not None and is_new else None
+    turn = velocity = None
+    if track is not None and own not in track.key_frames:
+        at, velocity = track_at(track, clip, frame), velocity_at(track, clip, frame)
+        turn = None if at is None else at.turn
+    easing = session.preferences.easing
     command = track_commands.put_track_key(
-        figure.id, handle, own, value, turn=turn, easing=session.preferences.easing
+        figure.id, handle, own, value, turn=turn, velocity=velocity, easing=easing
     )
     project.history.do(command, gesture=gesture)
     return True

@@ -1,8 +1,21 @@
 """What tracks' keys are on the figure that is posed: places, and back."""
 
-from app.document import Track, track_at
+from app.document import Document, Track, track_at
 from app.editor.project import Project
+from app.editor.session import Session
+from app.editor.timeline_view import own_frame
 from app.motion import Ground
+
+
+def key_frame(session: Session, document: Document, track: Track, frame: int) -> int | None:
+    """Return the frame of the key that is seen at a frame; where there can be none, it is told."""
+    own = own_frame(document, track, frame)
+    if own is None:
+        session.tell(
+            f"The track is {track.delay} frames late: no key of it can be seen at frame {frame}.",
+            topic="late",
+        )
+    return own
 
 
 def ground_at(project: Project, frame: int) -> Ground | None:
