@@ -207,6 +207,30 @@ def test_keys_of_a_track_are_moved_copied_and_deleted(window, bent, play):
     assert playback.current_frame(window.session, bent) == 11
 
 
+def test_chosen_keys_of_poses_and_of_a_track_are_scaled_and_reversed_together(window, bent):
+    with_track(window, bent, keys=((2, 0), (12, 5j), (22, 0)), delay=6)
+    before = bent.document
+    editing.choose_keys_of(
+        window.session, {bent.active: frozenset({0, 24}), row(bent): frozenset({2, 12, 22})}
+    )
+    window.act(keys.scale, 0.5)
+    assert bent.figure.key_frames == {0, 12}
+    # Around the first of all, each in its own time: the track is as late as it was.
+    assert frames_of(bent) == (1, 6, 11)
+    assert bent.figure.track_of(RIGHT).delay == 6
+    window.act(keys.reverse)
+    assert frames_of(bent) == (1, 6, 11)
+    assert [key.place for key in bent.figure.track_of(RIGHT).keys] == [0, 5j, 0]
+    window.act(editing.undo)
+    window.act(editing.undo)
+    assert bent.document is before
+    # Those of poses alone leave the track, which has its own time, and the other way round.
+    editing.choose_keys_of(window.session, {bent.active: frozenset({0, 24})})
+    window.act(keys.scale, 0.5)
+    assert frames_of(bent) == (2, 12, 22)
+    assert bent.figure.key_frames == {0, 12}
+
+
 def test_a_drag_of_a_track_key_is_given_up_with_esc(window, bent, play):
     with_track(window, bent)
     before = bent.document

@@ -9,7 +9,7 @@ from app.editor.actions.tracking.places import ground_at, index_of
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.timeline_view import own_frame
-from app.editor.work import Sample, Take
+from app.editor.work import Carry, Sample, Take
 from app.motion import Ground, corrected_clip
 from engine.geometry.kinematics import fit_keys
 
@@ -154,7 +154,14 @@ def _record(session: Session, project: Project, take: Take) -> None:
         take.samples[-1] = sample
     else:
         take.samples.append(sample)
-    put_key(session, project, take.handle, frame, take.place, take.gesture)
+    held = Carry(
+        figure=take.figure,
+        handle=take.handle,
+        frame=frame,
+        gesture=take.gesture,
+        place=take.place,
+    )
+    put_key(session, project, held)
     if project.playhead is not take.playhead or time == take.last:
         end_take(session)
 
