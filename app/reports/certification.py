@@ -118,8 +118,11 @@ class Report:
         """What is known of the frames that are corrected."""
         if self.corrected is None or not self.corrected.solved:
             return Verdict.PROVEN
-        reached, limits = self.corrected.reached, self.corrected.limits
-        return Verdict.MEASURED if _are_within(reached, limits) else Verdict.OVER
+        corrected = self.corrected
+        if not _are_within(corrected.reached.joined(corrected.between), corrected.limits):
+            return Verdict.OVER
+        is_proven = corrected.proven == corrected.solved
+        return Verdict.PROVEN if is_proven else Verdict.MEASURED
 
 
 def _are_within(reached: Extremes, limits: Extremes) -> bool:
@@ -145,7 +148,8 @@ def certify_clip(
     outline; there it is measured at graded samples, some hundred an edge, the same for keys and
     in-betweens. The proof leaves nothing out between samples and times, and is of the in-betweens
     as they are defined; what is measured is as they are worked out. Frames in which handles are
-    held still or go their own ways are solved one by one, and measured.
+    held still or go their own ways are solved one by one; each is proven but with the metric
+    variant, and what is between two of them is measured.
     """
     figure, domain = clip.figure, clip.figure.domain
     boundary = Boundary.sample(domain.outline, domain.cage, domain.holes)

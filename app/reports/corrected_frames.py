@@ -7,10 +7,12 @@ from itertools import groupby
 
 import numpy as np
 
-from app.document import Clip, Extremes, Variant, falls_short
+from app.document import Clip, Extremes, Variant, falls_short, resting_pose, time_of
 from app.motion import Animation, Carried
-from engine.maps import Boundary
+from engine.interpolation import prove_frame
+from engine.maps import Boundary, Bounds, Certificate, certify
 
+NOTHING = Extremes(0.0, 1.0, 1.0)
 BETWEEN = (0.25, 0.5, 0.75)  # of each segment of the outline: where it is measured beside its ends
 
 
@@ -34,10 +36,14 @@ class CorrectedReport:
         How many.
     solved : int
         How many of them are more than moved as a whole, which distorts nothing.
+    proven : int
+        How many of these are proven, over all of the domain; the others are measured.
     points : int
-        On the outline, at which each of these is measured.
+        On the outline, at which frames are measured.
     reached : Extremes
-        Of all of them.
+        Of all of them: what is proven of those that are, what is measured of the others.
+    between : Extremes
+        What is measured halfway between frames.
     limits : Extremes
         What they are to keep: the figure's bounds, or what its keys have beyond them.
     short : tuple of Short
@@ -46,15 +52,17 @@ class CorrectedReport:
 
     frames: int
     solved: int
+    proven: int
     points: int
     reached: Extremes
+    between: Extremes
     limits: Extremes
     short: tuple[Short, ...]
 
     @property
     def excess(self) -> Extremes:
-        """By how much they are beyond the limits."""
-        return self.reached.beyond(self.limits)
+        """By how much they, or what is between them, are beyond the limits."""
+        return self.reached.joined(self.between).beyond(self.limits)
 
 
 def report_corrected(
@@ -64,7 +72,7 @@ def report_corrected(
     variant: Variant | None = None,
     carried: Carried | None = None,
 ) -> CorrectedReport | None:
-    """Measure the whole frames of a clip that are corrected; None where none is.
+    """Prove or measure the whole frames of a clip that are corrected; None where none is.
 
     Parameters
     ----------
@@ -85,24 +93,51 @@ def report_corrected(
     animation = Animation(clip, variant, points=points, carried=carried)
     if animation.corrections is None:
         return None
-    corrected, found, misses = 0, [], {}
-    for frame in range(clip.frames.first, clip.frames.last + 1):
-        correction = animation.corrections.at(frame)
-        if correction is None:
-            continue
-        corrected += 1
-        misses[frame] = correction.misses
-        if correction.phi is not None:
-            moved = animation.frame(frame)
-            found.append(Extremes.measured(moved.fz, moved.fzbar))
+    frames = range(clip.frames.first, clip.frames.last + 1)
+    corrections = {frame: animation.corrections.at(frame) for frame in frames}
+    found = {frame: each for frame, each in corrections.items() if each is not None}
+    solved = [frame for frame, each in found.items() if each.phi is not None]
+    proofs = {frame: _proven(animation, boundary, frame, limits) for frame in solved}
+    reached = [
+        _measured(animation, frame) if proof is None else proof for frame, proof in proofs.items()
+    ]
+    between = [frame + 0.5 for frame in solved if frame < clip.frames.last]
     return CorrectedReport(
-        frames=corrected,
-        solved=len(found),
+        frames=len(found),
+        solved=len(solved),
+        proven=sum(proof is not None for proof in proofs.values()),
         points=len(points),
-        reached=reduce(Extremes.joined, found, Extremes(0.0, 1.0, 1.0)),
+        reached=reduce(Extremes.joined, reached, NOTHING),
+        between=reduce(Extremes.joined, (_measured(animation, at) for at in between), NOTHING),
         limits=limits,
-        short=_short(clip, misses),
+        short=_short(clip, {frame: each.misses for frame, each in found.items()}),
     )
+
+
+def _proven(
+    animation: Animation, boundary: Boundary, frame: int, limits: Extremes
+) -> Extremes | None:
+    """Return what is proven of a solved frame; None of a variant that allows no proof."""
+    clip, corrections = animation.clip, animation.corrections
+    correction = None if corrections is None else corrections.at(frame)
+    if correction is None or correction.phi is None or correction.psi is None:
+        return None
+    bounds = Bounds(**limits._asdict()) if limits.k < 1 else clip.figure.bounds
+    added = np.column_stack([correction.phi, correction.psi]).astype(np.complex128)
+    factor, moment = correction.motion.factor, time_of(clip, frame)
+    resting = resting_pose(clip, moment)
+    if resting is not None:
+        f = clip.figure.map_of(resting).moved(factor, 0.0).changed(*added.T)
+        proof: Certificate | None = certify(f, boundary, bounds)
+    else:
+        inbetweens = animation.base.inbetweens(moment.interval)
+        proof = prove_frame(inbetweens, moment.weight, added, bounds, factor=factor)
+    return None if proof is None else Extremes(proof.k, proof.sigma_a, proof.sigma_b)
+
+
+def _measured(animation: Animation, at: float) -> Extremes:
+    frame = animation.frame(at)
+    return Extremes.measured(frame.fz, frame.fzbar)
 
 
 def _short(clip: Clip, misses: Mapping[int, Mapping[int, float]]) -> tuple[Short, ...]:

@@ -30,7 +30,7 @@ from engine.interpolation.preparation import (
     prepare as prepare,
     require_keyframes as require_keyframes,
 )
-from engine.interpolation.proof import Proof as Proof, prove as prove
+from engine.interpolation.proof import Proof as Proof, prove as prove, prove_frame as prove_frame
 from engine.interpolation.scaling import (
     PointSamples as PointSamples,
     Scaling as Scaling,

@@ -20,9 +20,9 @@ The winding has to be 0 along every loop by itself: a map like 1/z turns a ring 
 fold, but comes from the identity by no deformation, and has no single-valued log f_z.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf, pi
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -105,8 +105,36 @@ def certify_segments(
         If the map is over another cage.
     """
     with np.errstate(over="ignore", invalid="ignore"):
-        coefficients, segments = _measure(harmonic_map, boundary)
-        return _bisect(boundary, coefficients, segments, limits)
+        return _bisect(boundary, _measure(harmonic_map, boundary), limits)
+
+
+def certify_pieces(pieces: "BoundaryPieces", boundary: Boundary, limits: Limits) -> Certificate:
+    """Certify what has these holomorphic derivatives along the segments of the boundary."""
+    certificate, _, _ = _bisect(boundary, pieces, limits)
+    return certificate
+
+
+class BoundaryPieces(Protocol):
+    """BoundaryPieces (s,) of the sampled segments `origins`.
+
+    `ends` are F and G at both ends, complex128 (2, 2, s); `errors` how far they may be off their
+    chords, float64 (2, s).
+    """
+
+    @property
+    def ends(self) -> Complexes:
+        """F and G at both ends."""
+
+    @property
+    def errors(self) -> Floats:
+        """How far off their chords."""
+
+    @property
+    def origins(self) -> Indices:
+        """The segments that they are of."""
+
+    def divided(self, which: Booleans, /) -> tuple["BoundaryPieces", int]:
+        """Return the equal parts of some of them, and how many of each."""
 
 
 class Enclosures(NamedTuple):
@@ -125,13 +153,13 @@ def segment_enclosures(harmonic_map: HarmonicMap, boundary: Boundary) -> Enclosu
     EngineError
         If the map is over another cage.
     """
-    _, segments = _measure(harmonic_map, boundary)
+    segments = _measure(harmonic_map, boundary)
     (k, sigma_a, negative_sigma_b), _, _ = _enclose(segments)
     return Enclosures(k, sigma_a, -negative_sigma_b)
 
 
-def _measure(harmonic_map: HarmonicMap, boundary: Boundary) -> tuple[Complexes, "_Segments"]:
-    """Return φ and ψ (n, 2), and what is known of the map at the samples and between them."""
+def _measure(harmonic_map: HarmonicMap, boundary: Boundary) -> "_Segments":
+    """Return what is known of the map at the samples and between them."""
     span = boundary.span
     if not harmonic_map.span.equals(span):
         raise EngineError("The map is over another cage than the outline's samples.")
@@ -140,45 +168,55 @@ def _measure(harmonic_map: HarmonicMap, boundary: Boundary) -> tuple[Complexes, 
     starts[0] = boundary.points
     starts[1:] = (boundary.derivatives @ span.without_constant(coefficients)).T
     bending = boundary.bending_kernel @ span.bending(coefficients)
-    segments = _Segments(
-        ends=np.stack([starts, starts[:, boundary.following]], axis=1),
+    return _Segments(
+        nodes=np.stack([starts, starts[:, boundary.following]], axis=1),
         errors=bending.T * (boundary.half_lengths**2 / 2),
         origins=np.arange(len(boundary.points)),
+        span=span,
+        coefficients=coefficients,
     )
-    return coefficients, segments
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _Segments:
-    """Pieces (s,) of the sampled segments `origins`.
+    """Those of a map.
 
-    `ends` are z, F and G at both ends, complex128 (3, 2, s); `errors` ε_f and ε_g, float64 (2, s).
+    `nodes` are z, F and G at both ends, complex128 (3, 2, s); `errors` ε_f and ε_g, float64 (2, s).
     """
 
-    ends: Complexes
+    nodes: Complexes
     errors: Floats
     origins: Indices
+    span: Span
+    coefficients: Complexes
 
-    def divided(
-        self, which: Booleans, parts: int, span: Span, coefficients: Complexes
-    ) -> "_Segments":
+    @property
+    def ends(self) -> Complexes:
+        """F and G at both ends."""
+        ends: Complexes = self.nodes[1:]
+        return ends
+
+    def divided(self, which: Booleans, /) -> tuple["_Segments", int]:
         """Return the parts of the chosen segments; the bound on |Φ'''| holds on in each."""
-        ends, origins = self.ends[:, :, which], self.origins[which]
+        ends, origins = self.nodes[:, :, which], self.origins[which]
+        parts = 4 if len(origins) * len(self.span) < FEW else 2
         share = (np.arange(1, parts) / parts)[:, None]
         nodes = np.empty((3, parts + 1, len(origins)), np.complex128)
         nodes[:, 0], nodes[:, parts] = ends[:, 0], ends[:, 1]
         nodes[0, 1:parts] = ends[0, 0] + share * (ends[0, 1] - ends[0, 0])
-        (values,) = span.evaluate(coefficients, nodes[0, 1:parts].ravel(), orders=(1,))
+        (values,) = self.span.evaluate(self.coefficients, nodes[0, 1:parts].ravel(), orders=(1,))
         nodes[1:, 1:parts] = values.T.reshape(2, parts - 1, -1)
-        return _Segments(
-            ends=np.stack([nodes[:, :-1], nodes[:, 1:]], axis=1).reshape(3, 2, -1),
+        divided = replace(
+            self,
+            nodes=np.stack([nodes[:, :-1], nodes[:, 1:]], axis=1).reshape(3, 2, -1),
             errors=np.tile(self.errors[:, which] / parts**2, parts),
             origins=np.tile(origins, parts),
         )
+        return divided, parts
 
 
 def _bisect(
-    boundary: Boundary, coefficients: Complexes, segments: _Segments, limits: Limits
+    boundary: Boundary, segments: BoundaryPieces, limits: Limits
 ) -> tuple[Certificate, Indices, Enclosures]:
     # Where it is the same for all samples one column will do, at less cost.
     at = limits.at(boundary)
@@ -192,7 +230,7 @@ def _bisect(
     worst, clear, delta = _enclose(segments)
     enclosures = Enclosures(worst[0], worst[1], -worst[2])
     while True:
-        distortions = _distortions(*np.abs(segments.ends[1:, 0]))
+        distortions = _distortions(*np.abs(segments.ends[:, 0]))
         its = limit[:, segments.origins] if limit.shape[1] > 1 else limit
         attained = _largest(attained, distortions)
         kept &= (distortions <= its).all(axis=1)
@@ -214,8 +252,7 @@ def _bisect(
         np.add.at(turned, segments.origins[tight], delta[tight])
         broken.append(segments.origins[tight & ~within])
         proven = _largest(proven, worst[:, tight])
-        parts = 4 if count * len(boundary.span) < FEW else 2
-        segments = segments.divided(loose, parts, boundary.span, coefficients)
+        segments, parts = segments.divided(loose)
         shorter *= parts
         worst, clear, delta = _enclose(segments)
     turns = np.add.reduceat(turned, boundary.starts)
@@ -236,10 +273,10 @@ def _distortions(a: Floats, b: Floats) -> Floats:
     return np.array([ratio(b, a), a + b, b - a])
 
 
-def _enclose(segments: _Segments) -> tuple[Floats, Booleans, Floats]:
+def _enclose(segments: BoundaryPieces) -> tuple[Floats, Booleans, Floats]:
     """Return the enclosures (3, s), where F is proven not to vanish, and its angles of turn Δ."""
-    (start, end), _ = segments.ends[1:]
-    a, b = np.abs(segments.ends[1:])
+    (start, end), _ = segments.ends
+    a, b = np.abs(segments.ends)
     delta = np.angle(end * start.conj())
     r = a * np.cos(delta / 2)
     error_f, error_g = segments.errors + ROUNDING * (a[0] + a[1])

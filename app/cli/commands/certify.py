@@ -18,6 +18,10 @@ EXITS = {Verdict.PROVEN: 0, Verdict.MEASURED: 3, Verdict.OVER: 1}
 # As the table calls them.
 WORDS = {Verdict.PROVEN: "proven", Verdict.MEASURED: "MEASURED ONLY", Verdict.OVER: "OVER"}
 
+BY_METRIC = (
+    " (the metric variant turns f_z by an integral over the whole outline, which nothing encloses)"
+)
+
 
 def run(arguments: argparse.Namespace) -> int:
     """Print the report of a project."""
@@ -73,8 +77,10 @@ def _corrected_block(report: Report) -> dict[str, Any] | None:
         "verdict": report.corrected_verdict,
         "frames": corrected.frames,
         "solved": corrected.solved,
+        "proven": corrected.proven,
         "points": corrected.points,
         **_named(corrected.reached),
+        "between": _named(corrected.between),
         "excess": list(_named(corrected.excess).values()),
         "out_of_reach": [
             {"handle": short.handle, "from": short.first, "to": short.last, "pixels": short.lag}
@@ -144,7 +150,7 @@ def _as_table(report: Report) -> str:
 
 
 def _corrected_lines(report: Report) -> list[str]:
-    """Return what is measured of frames in which handles stay or go their own ways."""
+    """Return what is known of frames in which handles stay or go their own ways."""
     corrected = report.corrected
     if corrected is None or not corrected.frames:
         return []
@@ -154,10 +160,12 @@ def _corrected_lines(report: Report) -> list[str]:
         cells = [f"{value:.4f} ({sign}{by:.4f})" for value, sign, by in reached]
         lines.append(_line("own ways", cells, WORDS[report.corrected_verdict]))
     lines.append(
-        f"In {corrected.frames} frames handles are held still or go their own ways; "
-        f"{corrected.solved} of them are measured at {corrected.points:,} points of the outline "
-        "each, the others are moved as a whole, which distorts nothing. Between frames nothing is "
-        "measured."
+        f"In {corrected.frames} frames handles are held still or go their own ways: "
+        f"{corrected.frames - corrected.solved} of them are moved as a whole, which distorts "
+        f"nothing, {corrected.proven} are proven, and {corrected.solved - corrected.proven} are "
+        f"measured at {corrected.points:,} points of the outline each"
+        f"{BY_METRIC if corrected.proven < corrected.solved else ''}. So is what is halfway "
+        "between two of them."
     )
     lines += [
         f"{short.handle!r} is out of reach of its track by up to {short.lag:.1f} px in frame"

@@ -17,9 +17,9 @@ the motion passes through its keys:
   measured  in-betweens never fold, but that they are within is measured only; exit status 3
   over      some are not within, or may fold, or a keyframe is not certified; exit status 1
 Frames in which handles are held still between keys, or go their own ways on tracks and springs, are
-solved one by one: they are measured, at some thousand points of the outline each, and between
-frames nothing is. Handles that cannot come where their tracks want them are named, with frames and
-pixels.
+solved one by one. Each is proven, with the metric variant only measured, at some thousand points of
+the outline; what is halfway between two of them is measured. Handles that cannot come where their
+tracks want them are named, with frames and pixels.
 Proven values are enclosures, and count as within up to .002 (k) or .2 % (both sigmas) beyond. Where
 a key is held, nothing but that key counts until the next one. Around holes the metric variant meets
 its Equation (13) by least squares only.

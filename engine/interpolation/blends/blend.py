@@ -16,7 +16,7 @@ from engine.interpolation.courses import (
     derivatives_along,
     shortened,
 )
-from engine.interpolation.enclosing import Changes, EdgeCurves, EndValues, Patch
+from engine.interpolation.enclosing import Changes, Chord, EdgeCurves, EndValues, Patch
 from engine.interpolation.passage import Derivatives, Interval, Passage
 from engine.interpolation.periods import Closing
 from engine.interpolation.series import HoleConstants, Residual
@@ -44,6 +44,9 @@ class Blend(ABC):
     # Whether Ψ is scaled by a ρ: always, or where closed periods around holes ask for it.
     is_scaled: ClassVar[bool] = False
     is_scaled_around_holes: ClassVar[bool] = False
+
+    # Whether what is blended at a place follows from the keyframes there, and not from elsewhere.
+    is_closed_form: ClassVar[bool] = True
 
     passage: Passage
     bounds: Bounds
@@ -142,6 +145,24 @@ class Blend(ABC):
     @abstractmethod
     def curves(self, values: EndValues) -> PairCurves:
         """Return what is known of the two quantities along pieces of the boundary."""
+
+    @abstractmethod
+    def chords(
+        self, values: EndValues, time: float, start: Complexes, change: Chord, /
+    ) -> tuple[Chord, Chord]:
+        """Return f_z and conj(f_z̄) of an in-between along pieces (p,) of the boundary.
+
+        Of a variant in closed form, before any scaling.
+
+        Parameters
+        ----------
+        values : EndValues
+        time : float
+        start : complex128, shape (p,)
+            f_z where the pieces begin.
+        change : Chord
+            How log f_z changes from there.
+        """
 
     @staticmethod
     @abstractmethod

@@ -82,6 +82,7 @@ class MetricBlend(EtaBlend):
     """
 
     is_scaled_around_holes = True
+    is_closed_form = False
 
     lost: HoleConstants
 

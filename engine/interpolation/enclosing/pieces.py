@@ -20,7 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.arrays import Booleans, Complexes, Floats, Indices
-from engine.maps import ROUNDING, Boundary, HarmonicMap, Span
+from engine.maps import ROUNDING, Boundary, Span
 
 type_ = TypeVar("type_", bound=np.generic)
 number = TypeVar("number", np.float64, np.complex128)
@@ -82,10 +82,10 @@ class Subdivision:
     loops: Indices
 
     @classmethod
-    def of(cls, maps: Sequence[HarmonicMap], boundary: Boundary) -> Self:
-        """Begin with the segments of the boundary."""
+    def of(cls, maps: Sequence[Complexes], boundary: Boundary) -> Self:
+        """Begin with the segments of the boundary, and maps by their coefficients (n, 2)."""
         span, following = boundary.span, boundary.following
-        coefficients = np.hstack([f.coefficients for f in maps])
+        coefficients = np.hstack(maps)
         values = boundary.derivatives @ span.without_constant(coefficients)
         bending = boundary.bending_kernel @ span.bending(coefficients)
         return cls(
@@ -139,6 +139,15 @@ class EndValues(NamedTuple):
     g1: Complexes
     eg: Floats
 
+    def of(self, which: Indices, keyframes: slice) -> "EndValues":
+        """Return those of some of the pieces, and of some of the keyframes."""
+
+        def part(values: npt.NDArray[type_]) -> npt.NDArray[type_]:
+            return values[which, keyframes]
+
+        f0, f1, ef, g0, g1, eg = self
+        return EndValues(part(f0), part(f1), part(ef), part(g0), part(g1), part(eg))
+
     @property
     def least(self) -> Floats:
         """The least |F| of the linear interpolants, at least."""
@@ -156,12 +165,20 @@ class EndValues(NamedTuple):
 
     def log_modulus(self) -> EdgeCurves[np.float64]:
         """Return ln |F|."""
+        ends = np.log(np.abs(np.stack([self.f0, self.f1], axis=2)))
+        return EdgeCurves(ends, self._errors_of_log())
+
+    def log_change(self) -> EdgeCurves[np.complex128]:
+        """Return by how much log F is more than where pieces begin."""
+        change = np.log(self.f1 / self.f0)
+        return EdgeCurves(np.stack([0 * change, change], axis=2), self._errors_of_log())
+
+    def _errors_of_log(self) -> Floats:
         r, bend = self.least, np.abs(self.f1 - self.f0) ** 2 / 8
         clear = r > self.ef
         safe = np.where(clear, r, 1.0)
         errors = bend / safe**2 - np.log1p(-np.where(clear, self.ef, 0.0) / safe)
-        ends = np.log(np.abs(np.stack([self.f0, self.f1], axis=2)))
-        return EdgeCurves(ends, _where_clear(clear, errors))
+        return _where_clear(clear, errors)
 
     def nu(self) -> EdgeCurves[np.complex128]:
         """Return ν up to conjugation."""

@@ -60,7 +60,7 @@ class Proof:
 def prove(inbetweens: Inbetweens) -> Proof:
     """Enclose the distortion of in-betweens: cut cells until they are tight."""
     keyframes = inbetweens.passage.keyframes
-    pieces = Subdivision.of([key.map for key in keyframes], inbetweens.boundary)
+    pieces = Subdivision.of([key.map.coefficients for key in keyframes], inbetweens.boundary)
     with np.errstate(over="ignore", invalid="ignore"):
         return _bisect(pieces, CellEnclosures(inbetweens, pieces))
 

@@ -46,6 +46,16 @@ def test_in_betweens_are_proven_between_frames_too(capsys):
             assert by == pytest.approx(sign * (proven[name] - interval[f"{name}_keys"]))
 
 
+def test_frames_in_which_handles_stay_are_proven_where_f_z_is_in_closed_form(capsys):
+    status, said = certified(capsys, "--variant", "nu", "--json")
+    assert status == 0
+    corrected = json.loads(said)["corrected"]
+    assert corrected["proven"] == corrected["solved"] > 10
+    assert corrected["between"]["k"] <= corrected["k"] + 0.02
+    _, said = certified(capsys, "--variant", "nu")
+    assert f"{corrected['proven']} are proven, and 0 are measured" in said
+
+
 def test_frames_that_fold_are_named(capsys):
     status, said = certified(capsys, "--variant", "linear")
     assert status == 1

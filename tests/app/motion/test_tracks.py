@@ -10,6 +10,7 @@ from still_poses import PLACES, animate, posed, with_figure
 from app.document import (
     RUBBERY,
     Attachment,
+    Extremes,
     Spring,
     Track,
     TrackKey,
@@ -151,6 +152,23 @@ def test_tracks_come_round_in_a_loop_with_their_delay():
     first, last = animation.positions(0.0), animation.positions(40.0)
     assert_array_equal(first, last)
     assert np.abs(animation.positions(39.999) - animation.positions(0.001)).max() < 0.02
+
+
+@pytest.mark.parametrize(("variant", "wish"), [("nu", 300 + 200j), ("scaled-eta", 8j)])
+def test_frames_of_closed_variants_are_proven(variant, wish):
+    document = tracked(track(keys=((5, 0), (15, wish), (25, 0))))
+    report = certify_clip(clip_of(document, 0), variant)
+    corrected = report.corrected
+    assert corrected.solved == corrected.proven > 10
+    assert report.corrected_verdict is Verdict.PROVEN
+    clip = clip_of(document, 0)
+    outline = clip.figure.domain.outline
+    between = outline + np.linspace(0, 1, 40)[:, None] * (np.roll(outline, -1) - outline)
+    animation = Animation(clip, variant, points=between.ravel())
+    for frame in (8, 15, 20):
+        shown = animation.frame(frame)
+        found = Extremes.measured(shown.fz, shown.fzbar)
+        assert found.beyond(corrected.reached) == Extremes(0, 0, 0)
 
 
 def test_out_of_reach_a_handle_keeps_the_bounds_and_says_by_how_much_it_misses():

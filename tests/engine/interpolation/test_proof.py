@@ -6,13 +6,14 @@ from holed_shapes import plate, random_map as holed_map
 from hypothesis import given, settings, strategies as st
 from interpolation_shapes import bar, inner_points, letter_l, random_map, scattered_on
 
+from engine.errors import EngineError
 from engine.interpolation import Course, Joint, Tangent, Variant, prepare
 from engine.interpolation.blends.eta import EtaBlend
 from engine.interpolation.blends.linear import LinearBlend
 from engine.interpolation.blends.metric import MetricBlend
 from engine.interpolation.blends.nu import NuBlend
 from engine.interpolation.enclosing import Changes, Patch, Subdivision
-from engine.interpolation.proof import bisection, prove
+from engine.interpolation.proof import bisection, prove, prove_frame
 from engine.interpolation.proof.bisection import TIGHTNESS
 from engine.maps import Boundary, Bounds, distortion
 from engine.maps.harmonic_map import HarmonicMap
@@ -163,7 +164,7 @@ def test_times_that_cannot_be_settled_are_named(monkeypatch):
 @pytest.mark.parametrize("name", ["log_modulus", "nu", "conj_eta", "trace", "conformal"])
 def test_curves_along_a_piece_hold_everywhere_on_it(name):
     maps = [random_map(SHAPE, seed, k=0.8, bend=1.0) for seed in range(3)]
-    pieces = Subdivision.of(maps, BOUNDARY)
+    pieces = Subdivision.of([f.coefficients for f in maps], BOUNDARY)
     pieces.halve(np.arange(0, len(BOUNDARY.points), 3))
     pieces.halve(np.arange(len(BOUNDARY.points), len(pieces.halves), 2))
     controls, errors = getattr(pieces.derivatives(0), name)()
@@ -280,3 +281,99 @@ def test_the_bound_on_rho_encloses_it_and_is_near():
         off = np.abs(np.log(rho) - (1 - share) * ends_of[0] - share * ends_of[1])
         assert off.max() <= error + 1e-15
         assert error <= off.max() + 5e-3
+
+
+def added_to(shape, holes=(), seed=0, size=0.05):
+    """Return a map that is small, over a shape's span, as coefficients."""
+    rng = np.random.default_rng(seed)
+    outline, cage = shape
+    identity = HarmonicMap.identity(cage, holes)
+    count = len(identity.coefficients)
+    draw = rng.normal(size=(2, count, 2)) * size * np.ptp(outline.real) / np.sqrt(count)
+    coefficients = draw[0] + 1j * draw[1]
+    if holes:
+        coefficients[-len(holes) :, 1] = coefficients[-len(holes) :, 0].conj()
+    return coefficients
+
+
+def distortion_of_sum(interval, time, span, added, factor, points):
+    """Return k, σ_a and σ_b of a corrected frame at the points, which the interval has."""
+    frame = interval.frame(time)
+    (slopes,) = span.evaluate(added, points, orders=(1,))
+    fz, fzbar = factor * frame.fz + slopes[:, 0], factor * frame.fzbar + slopes[:, 1].conj()
+    return (
+        distortion.k(fz, fzbar).max(),
+        distortion.sigma_a(fz, fzbar).max(),
+        distortion.sigma_b(fz, fzbar).min(),
+    )
+
+
+CLOSED = [v for v in Variant if v is not Variant.METRIC]
+
+
+@pytest.mark.parametrize("through", [False, True])
+@pytest.mark.parametrize("holed", [False, True])
+@pytest.mark.parametrize("variant", CLOSED)
+def test_frames_with_a_map_added_are_proven_as_tightly(variant, holed, through):
+    shape = plate(2) if holed else None
+    outline, cage, holes = (shape.outline, shape.cage, shape.holes) if holed else (*SHAPE, ())
+    boundary = Boundary.sample(outline, cage, holes)
+    draw = (
+        (lambda seed: holed_map(shape, seed, 0.1))
+        if holed
+        else (lambda seed: random_map(SHAPE, seed, k=0.3, bend=0.5))
+    )
+    maps = [draw(seed) for seed in range(3 if through else 2)]
+    ends = boundary.points[boundary.following]
+    points = np.concatenate(
+        [boundary.points, *(boundary.points * (1 - s) + ends * s for s in (0.21, 0.5, 0.83))]
+    )
+    bounds = Bounds(k=0.8, sigma_a=5, sigma_b=0.1)
+    interval = prepare(
+        maps, points, outline=outline, variant=variant, through=through, bounds=bounds
+    ).intervals[0]
+    added, factor = added_to((outline, cage), holes), np.exp(0.7j)
+    for time in (0.0, 0.37, 0.8):
+        k, sigma_a, sigma_b = distortion_of_sum(
+            interval, time, boundary.span, added, factor, points
+        )
+        proof = prove_frame(interval, time, added, bounds, factor=factor)
+        assert k <= proof.k <= k + 0.01
+        assert sigma_a <= proof.sigma_a <= 1.01 * sigma_a
+        # Of what folds only that is known, which unscaled η does.
+        assert proof.sigma_b <= sigma_b
+        assert proof.sigma_b >= sigma_b * 0.98 - 0.005 or sigma_b <= 0
+        assert proof.winding == 0
+        assert proof.certified == (k < 0.8 and sigma_a < 5 and sigma_b > 0.1)
+
+
+def test_a_frame_that_folds_with_what_is_added_is_not_certified():
+    maps = [random_map(SHAPE, seed, k=0.3, bend=0.5) for seed in (1, 2)]
+    (interval,) = prepare(maps, BOUNDARY.points, outline=OUTLINE, variant="nu").intervals
+    wide = Bounds(k=0.999, sigma_a=1e6, sigma_b=1e-6)
+    assert prove_frame(interval, 0.5, added_to(SHAPE, size=0.02), wide).certified
+    folded = prove_frame(interval, 0.5, added_to(SHAPE, size=3.0), wide)
+    assert not folded.certified
+    assert folded.k >= 1
+
+
+def test_what_is_added_may_not_wind():
+    # f_z has a zero inside, and on the boundary nothing shows it but how often it turns.
+    (interval,) = prepare(
+        [HarmonicMap.identity(CAGE)] * 2, BOUNDARY.points, outline=OUTLINE, variant="nu"
+    ).intervals
+    centre = complex(inner_points(OUTLINE, 1, 0)[0])
+    phi = 4 * (CAGE - centre) ** 2 / np.ptp(OUTLINE.real) - CAGE
+    added = np.column_stack([phi, 0 * phi])
+    proof = prove_frame(interval, 0.5, added, Bounds(k=0.9, sigma_a=1e3, sigma_b=1e-9))
+    assert not proof.certified
+    assert proof.k == np.inf
+
+
+def test_of_the_metric_variant_no_frame_is_proven():
+    maps = [random_map(SHAPE, seed, k=0.3, bend=0.5) for seed in (1, 2)]
+    (interval,) = prepare(maps, BOUNDARY.points, outline=OUTLINE, variant="metric").intervals
+    assert prove_frame(interval, 0.5, added_to(SHAPE), interval.bounds) is None
+    (other,) = prepare(maps, POINTS, outline=OUTLINE, variant="nu").intervals
+    with pytest.raises(EngineError, match="samples"):
+        prove_frame(other, 0.5, added_to(SHAPE), interval.bounds)

@@ -174,7 +174,7 @@ def test_what_overflows_is_not_certified(phi, psi):
 def test_one_sample_that_is_not_a_number_is_enough_to_refuse():
     # Only G has it there: all that compares with it is false.
     segments = certificate_module._Segments(
-        ends=np.array(
+        nodes=np.array(
             [
                 [BOUNDARY.points[:3], np.roll(BOUNDARY.points[:3], -1)],
                 [[1, 1, 1], [1, 1, 1]],
@@ -183,9 +183,10 @@ def test_one_sample_that_is_not_a_number_is_enough_to_refuse():
         ),
         errors=np.zeros((2, 3)),
         origins=np.arange(3),
+        span=BOUNDARY.span,
+        coefficients=np.column_stack([CAGE, 0 * CAGE]),
     )
-    coefficients = np.column_stack([CAGE, 0 * CAGE])
-    proof, broken, _ = certificate_module._bisect(BOUNDARY, coefficients, segments, LOOSE)
+    proof, broken, _ = certificate_module._bisect(BOUNDARY, segments, LOOSE)
     assert not proof.certified
     assert proof.k == np.inf
     assert {0, 1} <= set(broken.tolist())
@@ -282,9 +283,11 @@ def test_a_chord_that_passes_near_zero_bounds_the_segment(monkeypatch):
     monkeypatch.setattr(certificate_module, "FINEST", 1)
     ends = np.array([[0, 1], [-1 + 0.1j, 1 + 0.1j], [0, 0]])
     segment = certificate_module._Segments(
-        ends=ends[:, :, None],
+        nodes=ends[:, :, None],
         errors=np.zeros((2, 1)),
         origins=np.array([0]),
+        span=BOUNDARY.span,
+        coefficients=np.zeros((len(CAGE), 2), np.complex128),
     )
-    found, _, _ = certificate_module._bisect(BOUNDARY, np.zeros((len(CAGE), 2)), segment, LOOSE)
+    found, _, _ = certificate_module._bisect(BOUNDARY, segment, LOOSE)
     assert_allclose(found.sigma_b, 0.1, rtol=1e-6)
