@@ -22,7 +22,11 @@ from app.document.figure import (
     PictureFile as PictureFile,
     new_figure as new_figure,
 )
-from app.document.handle_pairs import mirrored_name as mirrored_name, pairs_by_name as pairs_by_name
+from app.document.handle_pairs import (
+    mirrored_name as mirrored_name,
+    pairs_by_name as pairs_by_name,
+    partners_of as partners_of,
+)
 from app.document.history import History as History, UnkeyedPose as UnkeyedPose
 from app.document.keyframe import (
     HOLDS as HOLDS,

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from app.document.figure import Figure
-from app.document.handle_pairs import pairs_by_name
+from app.document.handle_pairs import partners_of
 from app.document.timing import Track, TrackKey
 
 
@@ -28,9 +28,11 @@ def with_moved_handle(figure: Figure, identity: int, position: complex) -> Figur
 
 
 def mirrored_track(figure: Figure, track: Track) -> Track:
-    """Return a track mirrored at the figure's axis, for the partners of its handles, by name."""
-    pairs, axis = pairs_by_name(figure.handles), figure.axis
-    handles = tuple(pairs.get(handle, handle) for handle in track.handles)
+    """Return a track mirrored at the figure's axis, for the partners of its handles."""
+    axis = figure.axis
+    pairs = partners_of(figure.handles, axis, figure.domain.outline)
+    # Two that lie together may have one partner.
+    handles = tuple(dict.fromkeys(pairs.get(handle, handle) for handle in track.handles))
     old, new = (figure.handle(each[0]).position for each in (track.handles, handles))
     # A drawing is hardly its own mirror image: what the partner is beside that of the handle.
     beside = new - _reflected(old, axis)

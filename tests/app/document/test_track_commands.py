@@ -298,6 +298,17 @@ def test_a_mirrored_track_is_that_of_the_other_side(planted):
     )
 
 
+def test_a_track_is_mirrored_to_the_handle_on_the_other_side_if_names_tell_nothing():
+    document = tracked(row(4, 10, handles=(2,)), mirror=AXIS)
+    for beside in (30 + 40j, -29 + 41j, -30 + 38j):
+        document = handle_commands.add_handle(0, CENTRE + beside)(document)
+    ids = [handle.id for handle in document.figures[0].handles][-3:]
+    document = altered(document, tracks=(row(4, 10, handles=(ids[1], ids[2])),))
+    figure = tracks.mirror_track(0, ids[1])(document).figures[0]
+    assert [track.handles for track in figure.tracks] == [(ids[1], ids[2]), (ids[0],)]
+    assert [key.place for key in figure.tracks[1].keys] == [-4 + 8j, -10 + 20j]
+
+
 def test_a_handle_without_a_partner_does_its_own_mirror_image():
     document = tracked(row(4, handles=(2,)))
     assert only(tracks.mirror_track(0, 2)(document)).keys[0].place == -4 + 8j

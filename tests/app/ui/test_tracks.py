@@ -583,7 +583,7 @@ def test_what_the_limits_hold_back_is_told_with_its_pixels(window, bent):
     assert not {4, 16, 20} & misses.keys()
     text = told(bent, bent.figure, track, 10)
     assert f"{misses[10]:.0f} px" in text
-    assert "limits" in text
+    assert "limit of stretch holds" in text or "limits of stretch and" in text
     assert told(bent, bent.figure, track, 4) == ""
     # In the viewport a dashed line leads from where it is to where it is wanted.
     window.act(playback.seek, 10)
