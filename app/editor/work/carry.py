@@ -9,7 +9,7 @@ from app.editor.work.promise import Promise
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class Carry(Promise):
-    """A handle at a frame, wanted elsewhere by its own track.
+    """A handle at a frame, wanted elsewhere or turned by its own track.
 
     It is a promise until the track has the key, which it gets once it is known what that is
     relative to.
@@ -24,6 +24,9 @@ class Carry(Promise):
         What is one step of undo together.
     place : complex
         Where the handle is wanted, on the figure by itself.
+    turn : float, optional
+        By how much the shape is to be turned there, in radians; the place is then where the handle
+        is, for a track that wants it nowhere yet.
     """
 
     label: str = "Keys of a handle"
@@ -32,6 +35,7 @@ class Carry(Promise):
     frame: int
     gesture: object
     place: complex
+    turn: float | None = None
 
 
 class Sample(NamedTuple):
