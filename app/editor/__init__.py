@@ -20,6 +20,7 @@ from app.editor.project import Project as Project, Puppet as Puppet, Twin as Twi
 from app.editor.session import (
     BoxMark as BoxMark,
     CurveKind as CurveKind,
+    BoneMark as BoneMark,
     CutTool as CutTool,
     EntryMark as EntryMark,
     ExportRun as ExportRun,
@@ -30,7 +31,9 @@ from app.editor.session import (
     Mark as Mark,
     Overlays as Overlays,
     Session as Session,
+    MaterialTool as MaterialTool,
     StrokeMark as StrokeMark,
+    Tint as Tint,
     SweepMark as SweepMark,
     Toast as Toast,
     with_project as with_project,

@@ -218,3 +218,8 @@ def answer(session: Session, action: Action) -> None:
 def dismiss(session: Session, toast: Toast) -> None:
     """Take a message away."""
     session.toasts = [other for other in session.toasts if other is not toast]
+
+
+def tint(session: Session, by: Tint | None) -> None:
+    """Show by colours what of the drawing is in front, or stiff; None shows it as it is."""
+    session.tint = by

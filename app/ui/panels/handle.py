@@ -67,8 +67,8 @@ def draw(session: Session, look: Look, project: Project) -> list[Action]:
         actions += _firmness(session, look, chosen)
     else:
         small(look, "Select a handle to see its settings.")
-    if len(chosen) != 1 and session.tints_depth:
-        actions.append(do(layering.tint_depth, not session.tints_depth))
+    if len(chosen) != 1 and session.tint == "depth":
+        actions.append(do(viewing.tint, None))
     heading(look, "Anchor")
     return actions + _anchor(look, project, chosen)
 

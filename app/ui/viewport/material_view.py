@@ -1,0 +1,57 @@
+"""What of a figure is stiff or soft, over its picture: colours, bones, and the brush."""
+
+from math import log
+
+import numpy as np
+from imgui_bundle import ImVec2, ImVec4, imgui
+from scipy.spatial import cKDTree
+
+from app.document import Figure, stiffness_along
+from app.editor.actions import material
+from app.motion import Shown
+from app.ui.style import Look, ink, outlined
+from app.ui.viewport.screen import Screen
+from engine.arrays import Floats
+
+EXTENT = log(material.STRONGEST)  # what is so stiff has the last of the colours
+WIDEST, AT = 0.09, 0.2  # of a bone's length: how wide it is, and where
+MOST = 0.7  # em: how wide a bone is at most, to either side
+
+
+def tint_of(figure: Figure, shown: Shown) -> Floats:
+    """Return how stiff the vertices of the mesh are, (v,): −1 to 1, as the outline next to them."""
+    domain = shown.mesh.domain
+    along = np.concatenate(figure.domain.loops)
+    values = np.log(stiffness_along(figure)) / EXTENT
+    _, nearest = cKDTree(np.column_stack([along.real, along.imag])).query(
+        np.column_stack([domain.mesh.vertices.real, domain.mesh.vertices.imag])
+    )
+    tinted: Floats = values[nearest]
+    return tinted
+
+
+def draw_bones(look: Look, screen: Screen) -> None:
+    """Draw the bones that are shown, as thin diamonds from handle to handle."""
+    shown = screen.shown
+    handles = [handle.id for handle in shown.clip.figure.handles]
+    places = dict(zip(handles, shown.handle_places.tolist(), strict=True))
+    for bone in screen.project.figure.bones:
+        if bone.is_shown and places.keys() >= set(bone.ends):
+            start, end = (screen.point(places[identity]) for identity in bone.ends)
+            draw_bone(look, start, end, look.palette.text)
+
+
+def draw_bone(look: Look, start: ImVec2, end: ImVec2, colour: ImVec4) -> None:
+    """Draw a bone between two points of the screen."""
+    way = complex(end.x - start.x, end.y - start.y)
+    if not way:
+        return
+    aside = 1j * way / abs(way) * min(WIDEST * abs(way), MOST * look.em)
+    middle = complex(start.x, start.y) + AT * way
+    corners = [start, *(ImVec2(at.real, at.imag) for at in (middle + aside, middle - aside)), end]
+    diamond = [corners[0], corners[1], corners[3], corners[2]]
+    draw_list = imgui.get_window_draw_list()
+    draw_list.add_convex_poly_filled(diamond, ink(colour, 0.3))
+    for tone, width in outlined(look, ink(colour), 0.08):
+        draw_list.add_polyline(diamond, tone, width, imgui.ImDrawFlags_.closed)
+
