@@ -10,6 +10,7 @@ from app.editor.actions import (
     editing as editing,
     exporting as exporting,
     files as files,
+    material as material,
     playback as playback,
     posing as posing,
     rebuilding as rebuilding,

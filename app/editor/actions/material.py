@@ -1,13 +1,13 @@
 """Making parts of a figure stiff or soft: a brush, bones, and what handles' names suggest."""
 
+import re
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from app.document import brushed_stiffness, limb_of, material_commands
 from app.document.body import Bone
-from app.editor.actions import editing
-from app.editor.actions.cutting import brush_radius
+from app.editor.actions import cutting, editing, playback
 from app.editor.project import Project
 from app.editor.session import MaterialTool, Session, with_project
 from app.errors import LissomError
@@ -18,19 +18,23 @@ from engine.geometry import distance_to_boundary
 BRUSHES: Mapping[str | None, bool | None] = {"stiff": True, "soft": False, "normal": None}
 WEAKEST, STRONGEST, SOFTEST = 1.5, 100.0, 30.0  # of the brush and of bones
 # What parts are made by the words in their handles' names, and by how much.
+FIRST_BRUSH = 0.1  # of the picture's longer side: it is to reach the edge of a limb
 AROUND = 2.0  # times as far around a handle as it is away from the outline
 SUGGESTED = (
-    (("head", "face", "skull", "hand", "fist", "shoe", "boot", "foot", "hoof", "paw"), 10.0),
-    (("tail", "trunk", "tentacle", "hair", "scarf", "ribbon", "cape"), 0.2),
+    ({"head", "face", "skull", "hand", "fist", "shoe", "boot", "foot", "hoof", "paw"}, 10.0),
+    ({"tail", "trunk", "tentacle", "hair", "scarf", "ribbon", "cape"}, 0.2),
 )
 
 
 @with_project
-def take_up(session: Session, _: Project, tool: MaterialTool | None) -> None:
+def take_up(session: Session, project: Project, tool: MaterialTool | None) -> None:
     """Take a tool in hand that changes the material; None, or the same again, goes back to pose."""
     if session.pointer is None:
+        playback.halt(session)
         session.material = None if tool == session.material else tool
         session.cutting, session.moves = None, False
+        if project.brush is None:
+            cutting.set_brush(session, FIRST_BRUSH * max(project.figure.picture.size))
 
 
 def set_strength(session: Session, strength: float) -> None:
@@ -51,7 +55,7 @@ def paint(session: Session, project: Project, places: Sequence[complex]) -> None
         return
     at = np.array(places, dtype=np.complex128)
     rest = shown.mesh.locate(at, shown.positions).on(shown.mesh.domain.mesh.vertices).tolist()
-    radius = brush_radius(project)
+    radius = cutting.brush_radius(project)
     amount = {"stiff": session.strength, "soft": 1 / min(session.strength, SOFTEST)}.get(tool, 1.0)
     _, is_reached = brushed_stiffness(
         project.figure, rest, radius=radius, amount=amount, softness=session.softness
@@ -105,7 +109,7 @@ def set_bone(session: Session, ends: tuple[int, int], amount: float) -> None:
     editing.edit_figure(session, material_commands.set_bone_amount, ends, amount)
 
 
-def show_bones(session: Session, shown: bool) -> None:  # noqa: FBT001 - of an action
+def show_bones(session: Session, *, shown: bool) -> None:
     """Show the bones, or hide them: they act either way."""
     editing.edit_figure(session, material_commands.show_bones, shown=shown)
 
@@ -125,8 +129,8 @@ def suggest(session: Session, project: Project) -> None:
     """Make heads, hands and feet stiff and tails and trunks soft, by the names of their handles."""
     figure, gesture, done = project.figure, object(), list[str]()
     for handle in figure.handles:
-        words = handle.name.lower()
-        amount = next((by for names, by in SUGGESTED if any(name in words for name in names)), None)
+        words = set(re.findall("[a-z]+", handle.name.lower()))
+        amount = next((by for names, by in SUGGESTED if words & names), None)
         if amount is None:
             continue
         outline, *holes = figure.domain.loops

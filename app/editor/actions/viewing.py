@@ -9,7 +9,7 @@ from app.document import Baseline, Meshing, Variant
 from app.editor.action import Action
 from app.editor.dialogs import Dialog, FileDialog, ShortcutSheet
 from app.editor.project import Project, view_around
-from app.editor.session import CurveKind, HeatMap, Session, Toast, with_project
+from app.editor.session import CurveKind, HeatMap, Session, Tint, Toast, with_project
 from app.motion import Box, box_around
 from app.render import View
 from app.storage import LARGEST_GHOST_STEP, LARGEST_SCALE, MOST_GHOSTS, SMALLEST_SCALE, ThemeName

@@ -3,8 +3,8 @@
 from imgui_bundle import imgui
 
 from app.document import USUAL_EXTENT, Figure, Handle, Keyframe, layer_commands
-from app.editor import Action, Project, Session, do, layering
-from app.editor.actions import editing, playback
+from app.editor import Action, Project, Session, do
+from app.editor.actions import editing, playback, viewing
 from app.ui.style import Look, Scale, heading, label, slider, small, tip
 from engine.geometry import box_diagonal
 

@@ -15,8 +15,8 @@ from app.document import (
     find_shortfall,
     handle_commands,
 )
-from app.editor import Action, Project, Session, do, layering
-from app.editor.actions import editing, posing
+from app.editor import Action, Project, Session, do
+from app.editor.actions import editing, posing, viewing
 from app.ui.panels import depth
 from app.ui.panels.clocks import draw_spring, draw_stillness, draw_track
 from app.ui.shortcuts import BINDINGS, CTRL, bound_button, bound_text_button, with_key

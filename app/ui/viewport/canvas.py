@@ -15,8 +15,8 @@ from app.ui.style import PALETTES
 from app.ui.viewport.backdrop import background
 from app.ui.viewport.cut_view import mark_holes
 from app.ui.viewport.drawing import Drawing
-from app.ui.viewport.material_view import tint_of
 from app.ui.viewport.marks import forget_places, mark_all, pixel_scale, plain
+from app.ui.viewport.material_view import tint_of
 from app.ui.viewport.pose_pictures import PosePictures
 from engine.arrays import Floats
 
@@ -164,7 +164,7 @@ def _scene(session: Session, project: Project, shown: Shown, drawing: Drawing) -
     shows = {figure: puppet.shown for figure, puppet in project.puppets.items()}
     heat = None
     if session.tint is not None:
-        heat = Heat(low=-1.0, high=1.0, contours=0, strength=0.5)
+        heat = Heat(low=-1.0, high=1.0, contours=0, strength=0.6, two_sided=True)
     elif overlays.heat_map != "none":
         low, high = heat_limits(project, overlays.heat_map)
         heat = Heat(low=low, high=high)

@@ -115,7 +115,7 @@ def draw_brush(session: Session, look: Look, at: ImVec2, scale: float) -> None:
         return
     radius = cutting.brush_radius(session.project) * scale
     draw_list = imgui.get_window_draw_list()
-    colour = ink(stroke_colour(look, keeps))
+    colour = ink(stroke_colour(look, keeps=keeps))
     for tone, width in outlined(look, colour, 0.1):
         draw_list.add_circle(at, radius, tone, 64, width)
     if keeps is None:
@@ -126,9 +126,8 @@ def draw_brush(session: Session, look: Look, at: ImVec2, scale: float) -> None:
         draw_list.add_line(ImVec2(at.x, at.y - sign), ImVec2(at.x, at.y + sign), colour, width)
 
 
-def stroke_colour(look: Look, keeps: bool | None) -> ImVec4:
-    """Return the colour of a brush that keeps, or makes stiffer; that does the opposite; neither.
-    """
+def stroke_colour(look: Look, *, keeps: bool | None) -> ImVec4:
+    """Return the colour of a brush that keeps, or stiffens; that does the opposite; or neither."""
     if keeps is None:
         return look.palette.accent
     return look.palette.good if keeps else look.palette.danger

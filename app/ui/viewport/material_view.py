@@ -1,21 +1,35 @@
 """What of a figure is stiff or soft, over its picture: colours, bones, and the brush."""
 
+from contextlib import suppress
 from math import log
 
 import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui
 from scipy.spatial import cKDTree
 
-from app.document import Figure, stiffness_along
+from app.document import Figure, limb_of
+from app.document.body import joined_stiffness
 from app.editor.actions import material
 from app.motion import Shown
 from app.ui.style import Look, ink, outlined
 from app.ui.viewport.screen import Screen
 from engine.arrays import Floats
+from engine.errors import EngineError
 
 EXTENT = log(material.STRONGEST)  # what is so stiff has the last of the colours
 WIDEST, AT = 0.09, 0.2  # of a bone's length: how wide it is, and where
 MOST = 0.7  # em: how wide a bone is at most, to either side
+
+
+def stiffness_along(figure: Figure) -> Floats:
+    """Return how stiff a figure is at the vertices of its outline and of its holes', (p,)."""
+    points = np.concatenate(figure.domain.loops)
+    parts = [np.ones(len(points)) if figure.stiffness is None else figure.stiffness]
+    for bone in figure.bones:
+        # One that has come to leave the drawing does nothing.
+        with suppress(EngineError):
+            parts.append(bone.amount ** limb_of(figure, bone, points))
+    return joined_stiffness(parts)
 
 
 def tint_of(figure: Figure, shown: Shown) -> Floats:
@@ -48,10 +62,9 @@ def draw_bone(look: Look, start: ImVec2, end: ImVec2, colour: ImVec4) -> None:
         return
     aside = 1j * way / abs(way) * min(WIDEST * abs(way), MOST * look.em)
     middle = complex(start.x, start.y) + AT * way
-    corners = [start, *(ImVec2(at.real, at.imag) for at in (middle + aside, middle - aside)), end]
-    diamond = [corners[0], corners[1], corners[3], corners[2]]
+    left, right = (ImVec2(at.real, at.imag) for at in (middle + aside, middle - aside))
+    diamond = start, left, end, right
     draw_list = imgui.get_window_draw_list()
-    draw_list.add_convex_poly_filled(diamond, ink(colour, 0.3))
+    draw_list.add_convex_poly_filled(list(diamond), ink(colour, 0.3))
     for tone, width in outlined(look, ink(colour), 0.08):
-        draw_list.add_polyline(diamond, tone, width, imgui.ImDrawFlags_.closed)
-
+        draw_list.add_polyline(list(diamond), tone, width, imgui.ImDrawFlags_.closed)

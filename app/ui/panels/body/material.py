@@ -8,7 +8,6 @@ from app.editor.actions import cutting, material, posing, rebuilding, viewing
 from app.ui.panels.body.cut_out import BRUSHES
 from app.ui.shortcuts import BINDINGS
 from app.ui.style import (
-    FILL,
     Look,
     Scale,
     at_end,
@@ -98,7 +97,7 @@ def _bones(look: Look, figure: Figure) -> list[Action]:
     at_end(1.15 * imgui.get_frame_height())
     eye = icons.ICON_FA_EYE if is_shown else icons.ICON_FA_EYE_SLASH
     if icon_button(look, eye, "show bones", "Show the bones, or hide them: they act either way"):
-        actions.append(do(material.show_bones, not is_shown))
+        actions.append(do(material.show_bones, shown=not is_shown))
     for bone in figure.bones:
         first, second = (figure.handle(identity).name for identity in bone.ends)
         name = f"{first} – {second}"

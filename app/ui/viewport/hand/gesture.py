@@ -133,7 +133,7 @@ def _draw_entry(look: Look, screen: Screen, mark: EntryMark) -> None:
 
 
 def _draw_stroke(look: Look, screen: Screen, mark: StrokeMark) -> None:
-    colour = ink(stroke_colour(look, mark.keeps), STROKE)
+    colour = ink(stroke_colour(look, keeps=mark.keeps), STROKE)
     points, radius = [screen.point(place) for place in mark.points], mark.radius * screen.scale
     draw_list = imgui.get_window_draw_list()
     if len(points) > 1:
