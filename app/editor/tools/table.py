@@ -4,9 +4,8 @@ from typing import Final
 
 from app.editor.session import Session
 from app.editor.tools.anchoring import Anchoring
-from app.editor.tools.cutting_tools import Brushing, Parting, Pointing
+from app.editor.tools.brushes import Boning, Brushing, Parting, Pointing, Stiffening
 from app.editor.tools.joining import Joining
-from app.editor.tools.material_tools import Boning, Stiffening
 from app.editor.tools.mirroring import Mirroring
 from app.editor.tools.moving import Moving
 from app.editor.tools.pulling import Pulling

@@ -3,8 +3,7 @@
 from dataclasses import dataclass
 from typing import Self
 
-from app.editor.actions import material
-from app.editor.actions.cutting import brush_radius
+from app.editor.actions.body import cutting, material
 from app.editor.project import Project
 from app.editor.session import BoneMark, Hint, Mark, Session, StrokeMark
 from app.editor.tools.tool import Spot, Tool
@@ -39,7 +38,7 @@ class Stiffening(Tool):
         return cls(
             project=project,
             places=[spot.place],
-            radius=brush_radius(project),
+            radius=cutting.brush_radius(project),
             stiffens=material.BRUSHES[session.material],
         )
 

@@ -7,7 +7,8 @@ import numpy as np
 
 from app.document import brushed_stiffness, limb_of, material_commands
 from app.document.body import Bone
-from app.editor.actions import cutting, editing, playback
+from app.editor.actions import editing, playback
+from app.editor.actions.body import cutting
 from app.editor.project import Project
 from app.editor.session import MaterialTool, Session, with_project
 from app.errors import LissomError
