@@ -18,6 +18,7 @@ from engine.errors import EngineError
 
 EXTENT = log(material.STRONGEST)  # what is so stiff has the last of the colours
 WIDEST, AT = 0.09, 0.2  # of a bone's length: how wide it is, and where
+AROUND, TINY = 48, 1e-6  # vertices of the outline that colour a place inside
 MOST = 0.7  # em: how wide a bone is at most, to either side
 
 
@@ -33,14 +34,17 @@ def stiffness_along(figure: Figure) -> Floats:
 
 
 def tint_of(figure: Figure, shown: Shown) -> Floats:
-    """Return how stiff the vertices of the mesh are, (v,): −1 to 1, as the outline next to them."""
+    """Return how stiff the vertices of the mesh are, (v,): −1 to 1, as the outline around them."""
     domain = shown.mesh.domain
     along = np.concatenate(figure.domain.loops)
     values = np.log(stiffness_along(figure)) / EXTENT
-    _, nearest = cKDTree(np.column_stack([along.real, along.imag])).query(
-        np.column_stack([domain.mesh.vertices.real, domain.mesh.vertices.imag])
+    tree = cKDTree(np.column_stack([along.real, along.imag]))
+    vertices = domain.mesh.vertices
+    away, nearest = tree.query(
+        np.column_stack([vertices.real, vertices.imag]), k=range(1, min(AROUND, len(along)) + 1)
     )
-    tinted: Floats = values[nearest]
+    weights = 1.0 / np.maximum(away, TINY * np.max(away)) ** 3
+    tinted: Floats = (weights * values[nearest]).sum(axis=1) / weights.sum(axis=1)
     return tinted
 
 

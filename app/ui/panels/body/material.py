@@ -1,5 +1,6 @@
 """Where the drawing is stiff and where it is soft: a brush, bones, and keys posed again by it."""
 
+import numpy as np
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.document import Figure
@@ -85,6 +86,8 @@ def _brush(session: Session, look: Look, project: Project) -> list[Action]:
     if entered is not None:
         actions.append(do(material.set_softness, entered.value))
     small(look, "It acts on the outline within its radius, and by that as deep as a limb is thick.")
+    if session.material == "stiff":
+        small(look, _promise(project.figure, session.strength))
     return actions
 
 
@@ -111,8 +114,22 @@ def _bones(look: Look, figure: Figure) -> list[Action]:
         entered = slider(look, "amount", bone.amount, AMOUNTS, text="%.1f ×", hint=hint)
         if entered is not None:
             actions.append(do(material.set_bone, bone.ends, entered.value))
+        small(look, _promise(figure, bone.amount))
         imgui.pop_id()
     return actions
+
+
+def _promise(figure: Figure, amount: float) -> str:
+    """Return in words what new poses keep to where a figure is so stiff all around."""
+    if amount <= 1:
+        return "It gives way first, within the limits of the figure."
+    limits = figure.bounds.stiffened(np.array([amount]))
+    fields = limits.k, limits.sigma_a, limits.sigma_b
+    shear, stretch, squeeze = (float(np.ravel(each)[0]) for each in fields)
+    return (
+        f"In new poses it bends at most {shear:.0%}, stretches at most {stretch - 1:.0%} and "
+        f"shrinks at most {1 - squeeze:.0%}."
+    )
 
 
 def _whole(figure: Figure) -> list[Action]:
