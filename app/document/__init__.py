@@ -5,6 +5,13 @@ Out: frozen documents, each of them valid, and where time stands in them.
 Imports: `engine`, `app.errors`, `app.export_formats`; no pictures, graphics, window or clock.
 """
 
+from app.document.body import (
+    Bone as Bone,
+    carried_over as carried_over,
+    mirrored_name as mirrored_name,
+    pairs_by_name as pairs_by_name,
+    partners_of as partners_of,
+)
 from app.document.commands import (
     Command as Command,
     Settled as Settled,
@@ -13,6 +20,7 @@ from app.document.commands import (
     handle_commands as handle_commands,
     key_commands as key_commands,
     layer_commands as layer_commands,
+    material_commands as material_commands,
     pose_commands as pose_commands,
     scene_commands as scene_commands,
     track_commands as track_commands,
@@ -21,11 +29,6 @@ from app.document.figure import (
     Figure as Figure,
     PictureFile as PictureFile,
     new_figure as new_figure,
-)
-from app.document.handle_pairs import (
-    mirrored_name as mirrored_name,
-    pairs_by_name as pairs_by_name,
-    partners_of as partners_of,
 )
 from app.document.history import History as History, UnkeyedPose as UnkeyedPose
 from app.document.keyframe import (
@@ -49,6 +52,7 @@ from app.document.queries import (
     Shortfall as Shortfall,
     TrackPlace as TrackPlace,
     Transit as Transit,
+    brushed_stiffness as brushed_stiffness,
     changed_stretches as changed_stretches,
     clip_of as clip_of,
     closes as closes,
@@ -61,7 +65,10 @@ from app.document.queries import (
     fronts_at as fronts_at,
     intervals as intervals,
     is_visible as is_visible,
+    limb_of as limb_of,
     resting_pose as resting_pose,
+    stiff_outline as stiff_outline,
+    stiffened as stiffened,
     time_of as time_of,
     track_at as track_at,
     transits as transits,

@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from app.document.body import Bone, pairs_by_name
 from app.document.checks import (
     NOTHING,
     Unknown,
@@ -17,17 +18,16 @@ from app.document.checks import (
     require_place,
     require_size,
 )
-from app.document.handle_pairs import pairs_by_name
 from app.document.keyframe import Handle, KeptPose, Keyframe, Pose
 from app.document.layering import Attachment, Switch, require_in_order
 from app.document.settings import NATURAL, VARIANTS, Meshing
 from app.document.timing import Spring, Track
 from app.errors import LissomError
-from engine.arrays import Booleans, Complexes
+from engine.arrays import Booleans, Complexes, Floats, readonly
 from engine.deform import MOST_HANDLES
 from engine.domain import CutOut, Domain
 from engine.geometry import ON_OUTLINE, box_diagonal, contains
-from engine.maps import Bounds, Certificate, HarmonicMap
+from engine.maps import Bounds, Certificate, HarmonicMap, require_stiffness
 from engine.variant import Variant
 
 Posed = TypeVar("Posed", Keyframe, KeptPose)
@@ -72,6 +72,10 @@ class Figure:
     stillness: bool = True
     tracks: tuple[Track, ...] = ()  # no handle has two
     springs: tuple[Spring, ...] = ()  # no handle has two
+    # float64 (p,): How stiff it is painted, at the vertices of the domain's loops; None is the
+    # usual material, 1 everywhere.
+    stiffness: Floats | None = field(default=None, hash=False)
+    bones: tuple[Bone, ...] = ()
     variant: Variant = Variant.METRIC  # it may be given by its name
     bounds: Bounds = NATURAL.bounds  # distortion that the solver allows in new poses
     library: tuple[KeptPose, ...] = ()  # poses that are kept to be used again
@@ -119,6 +123,7 @@ class Figure:
         self._check_keys()
         self._check_library()
         self._check_clocks()
+        self._check_material()
         if self.mirror is not None:
             require_place(complex(self.mirror), "The axis of mirroring")
         require(
@@ -311,6 +316,20 @@ class Figure:
                     identity in known, f"A {what} is of the handle {identity}, which is not there."
                 )
             require_distinct(identities, f"Two {what}s are of the handle {{!r}}.")
+
+    def _check_material(self) -> None:
+        if self.stiffness is not None:
+            count = sum(map(len, self.domain.loops))
+            object.__setattr__(
+                self, "stiffness", readonly(require_stiffness(self.stiffness, count))
+            )
+        known = {handle.id for handle in self.handles}
+        for bone in self.bones:
+            for end in bone.ends:
+                require(end in known, f"A bone ends at the handle {end}, which is not there.")
+        require_distinct(
+            (tuple(sorted(bone.ends)) for bone in self.bones), "Two bones are between handles {!r}."
+        )
 
     def _check_pose(self, pose: Pose, what: str) -> None:
         require(

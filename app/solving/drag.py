@@ -6,12 +6,12 @@ from typing import Self
 
 import numpy as np
 
-from app.document import Clip, Figure, Handle, Pose, Target, resting_pose, time_of
+from app.document import Clip, Figure, Handle, Pose, Target, resting_pose, stiffened, time_of
 from app.motion import Animation, PoseSampler
 from engine.arrays import Booleans, Complexes
 from engine.deform import Deformer, Hand, Handles, State, Wish
 from engine.errors import EngineError
-from engine.maps import Boundary, Bounds, Certificate, HarmonicMap, certify
+from engine.maps import Boundary, Certificate, HarmonicMap, certify
 
 # A pose that the present bounds do not allow is the start of a drag back into them: its own
 # distortion is allowed, and this much more of what is left.
@@ -53,15 +53,20 @@ class Rig:
         held = tuple(handle for handle in figure.handles if handle.id not in carried)
         if earlier is not None and earlier.figure.domain is domain:
             boundary = earlier.deformer.boundary
+            is_same = _are_alike(earlier.figure, figure)
         else:
-            boundary, earlier = Boundary.sample(domain.outline, domain.cage, domain.holes), None
+            boundary, is_same = Boundary.sample(domain.outline, domain.cage, domain.holes), False
+        if not is_same:
+            boundary, earlier = stiffened(figure, boundary), None
         if earlier and earlier.handles == held and earlier.pins == pins:
             handles = earlier.deformer.handles
         else:
             places = [*(handle.position for handle in held), *pins]
             pulls = [*(handle.pull for handle in held), *(PIN for _ in pins)]
             handles = Handles.place(boundary, np.array(places, dtype=np.complex128), pulls)
-        deformer = Deformer(boundary=boundary, handles=handles, bounds=figure.bounds)
+        # Where it is stiff, new poses give way less.
+        bounds = figure.bounds.where_stiff(boundary)
+        deformer = Deformer(boundary=boundary, handles=handles, bounds=bounds)
         return cls(figure=figure, handles=held, deformer=deformer)
 
     @property
@@ -112,17 +117,7 @@ class Rig:
 
     def within_bounds_of(self, pose: Pose) -> Deformer:
         """Return a deformer that allows a pose, be it outside the figure's present bounds."""
-        deformer = self.deformer
-        certificate = certify(self.figure.map_of(pose), deformer.boundary, deformer.bounds)
-        if certificate.certified:
-            return deformer
-        bounds = self.figure.bounds
-        wider = Bounds(
-            k=max(bounds.k, 1.0 - (1.0 - LEEWAY) * (1.0 - certificate.k)),
-            sigma_a=max(bounds.sigma_a, (1.0 + LEEWAY) * certificate.sigma_a),
-            sigma_b=min(bounds.sigma_b, (1.0 - LEEWAY) * certificate.sigma_b),
-        )
-        return Deformer(boundary=deformer.boundary, handles=deformer.handles, bounds=wider)
+        return self.deformer.allowing(self.figure.map_of(pose), LEEWAY)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -209,6 +204,15 @@ def pins_of(figure: Figure, pose: Pose) -> tuple[Target, ...]:
     return tuple(Target(position=complex(place)) for place in places)
 
 
+def _are_alike(figure: Figure, other: Figure) -> bool:
+    """Tell whether two figures of one domain are stiff in the same places."""
+    own, others = (
+        [(bone.amount, *(each.handle(end).position for end in bone.ends)) for bone in each.bones]
+        for each in (figure, other)
+    )
+    return figure.stiffness is other.stiffness and own == others
+
+
 def _pins(figure: Figure) -> tuple[complex, ...]:
     """Return the points of a figure that are held where they are."""
     anchor = figure.anchor
@@ -249,7 +253,8 @@ def pose_at(rig: Rig, clip: Clip, frame: float, sibling: PoseSampler | None = No
         mixed = own.changed(
             *(share * (new - old) for new, old in zip(fitted.columns, own.columns, strict=True))
         )
-        certificate = certify(mixed, boundary, rig.deformer.bounds)
+        # What is shown may be older than what is stiff now.
+        certificate = certify(mixed, boundary, figure.bounds)
         if certificate.certified:
             break
     else:

@@ -12,6 +12,7 @@ from app.document import (
     Meshing,
     Pose,
     Target,
+    carried_over,
     figure_commands,
     layer_commands,
 )
@@ -144,7 +145,8 @@ def _with_domain(renewal: Renewal, picture: Bytes, meshing: Meshing) -> Renewal:
     domain = domain.moved(before.corner)
     rest = HarmonicMap.identity(domain.cage, domain.holes)
     poses = (pose.with_map(rest) for pose in before.poses)
-    into = before.with_poses(poses, domain=domain, meshing=meshing)
+    stiffness = carried_over(before.stiffness, before.domain, domain)
+    into = before.with_poses(poses, domain=domain, meshing=meshing, stiffness=stiffness)
     return replace(renewal, into=into, notices=notices)
 
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.document import Figure, Pose, Target, Track, TrackKey
+from app.document import Figure, Pose, Target, Track, TrackKey, carried_over
 from app.solving.renewal import Renewal, carried
 from engine.arrays import Complexes
 from engine.domain import Domain
@@ -38,6 +38,7 @@ def begin_replacing(before: Figure, made: Figure, canvas: tuple[int, int]) -> Re
         cut_out=made.cut_out,
         is_stale=False,
         domain=domain,
+        stiffness=carried_over(before.stiffness, before.domain, domain),
         handles=handles,
         tracks=tuple(_replanted(before, track, places) for track in before.tracks),
         anchor=None if before.anchor is None else places[before.anchor],

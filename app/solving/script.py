@@ -11,6 +11,7 @@ from app.document import (
     LINEAR,
     NATURAL,
     VARIANTS,
+    Bone,
     Easing,
     Passing,
     Spring,
@@ -26,6 +27,7 @@ from app.solving.script_fields import (
     require_handle,
     require_order,
 )
+from app.solving.script_material import StiffPart, parse_material
 from app.storage import (
     JsonObject,
     as_flag,
@@ -43,7 +45,7 @@ from engine.maps import Bounds
 SCHEMA = 1
 LARGEST = 32 * 1024 * 1024  # bytes
 SCENE_FIELDS = ("schema", "fps", "loop", "variant", "bounds", "still")
-OWN_FIELDS = ("anchor", "handles", "keys", "tracks", "springs")
+OWN_FIELDS = ("anchor", "handles", "keys", "tracks", "springs", "stiff")
 FIGURE_FIELDS = ("layer", "variant", "bounds", "still", *OWN_FIELDS, "attach", "visible")
 HANDLE_FIELDS = ("at", "front", "extent", "still")
 JOINT_FIELDS = ("to", "at", "turn")
@@ -87,7 +89,7 @@ class FigureScript:
     """The animation of one figure, in pixels of the canvas with y up.
 
     The defaults are those of the file format. `layer` is None where the script has but one figure.
-    Tracks and springs tell handles by their places among `handles`.
+    Tracks, springs and bones tell handles by their places among `handles`.
     """
 
     layer: str | None = None
@@ -99,6 +101,8 @@ class FigureScript:
     still: bool = True
     tracks: tuple[Track, ...] = ()
     springs: tuple[Spring, ...] = ()
+    parts: tuple[StiffPart, ...] = ()
+    bones: tuple[Bone, ...] = ()
     attach: ScriptJoint | None = None
     visible: tuple[tuple[int, bool], ...] = ()
 
@@ -208,6 +212,9 @@ def _figure(script: JsonObject, where: str, usual: Mapping[str, Any]) -> FigureS
     own["visible"] = tuple(switches)
     own["tracks"] = parse_tracks(script.get("tracks", []), f"{where}tracks", tuple(handles))
     own["springs"] = parse_springs(script.get("springs", []), f"{where}springs", tuple(handles))
+    own["parts"], own["bones"] = parse_material(
+        script.get("stiff", []), f"{where}stiff", tuple(handles)
+    )
     return FigureScript(handles=handles, keys=parsed, **own)
 
 

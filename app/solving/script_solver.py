@@ -15,9 +15,11 @@ from app.document import (
     Pose,
     Switch,
     Target,
+    brushed_stiffness,
     find_shortfall,
     handle_commands,
     layer_commands,
+    material_commands,
 )
 from app.errors import LissomError
 from app.solving.drag import Drag, Rig
@@ -61,18 +63,19 @@ def pose_document(
         If a layer is not there or hangs on itself, or a handle, a joint or the anchor lies outside
         its shape.
     """
-    named = _by_figure(document, script)
+    named, notices = _by_figure(document, script), list[str]()
     document = replace(
         document, frames=FrameRange(0, script.last), fps=script.fps, loop=script.loop
     )
     for identity, part in named.items():
         with _whose(part):
             document = _prepared(document, identity, part)
+            document, told = _with_material(document, identity, part)
+        notices += told
     if script.figures[0].layer is not None:
         for figure in document.figures:
             if figure.id not in named and not figure.still:
                 document = document.with_figure(still_figure(figure))
-    notices: list[str] = []
     for identity, part in named.items():
         with _whose(part):
             figure, told = _posed(document.figure(identity), part, progress, loop=script.loop)
@@ -152,6 +155,32 @@ def _prepared(document: Document, identity: int, part: FigureScript) -> Document
     anchor = at if part.anchor is None else part.anchor
     joint = Attachment(to=parent.id, at=part.attach.at, turns=part.attach.turns)
     return layer_commands.attach(identity, anchor, joint)(document)
+
+
+def _with_material(
+    document: Document, identity: int, part: FigureScript
+) -> tuple[Document, list[str]]:
+    """Return the document with a figure's stiff and soft parts; tell of those that reach none."""
+    notices = []
+    for each in part.parts:
+        at, options = each.around, {"radius": each.radius, "amount": each.amount}
+        _, reached = brushed_stiffness(document.figure(identity), [at], **options)
+        if not reached:
+            whose = "" if part.layer is None else f"{part.layer}, "
+            notices.append(
+                f"{whose}no outline is seen within {each.radius:g} px of ({at.real:g}, "
+                f"{at.imag:g}): nothing is stiff or soft there"
+            )
+        document = material_commands.paint(identity, [at], **options)(document)
+    ids = [handle.id for handle in document.figure(identity).handles]
+    for bone in part.bones:
+        ends = (ids[bone.ends[0]], ids[bone.ends[1]])
+        first, second = (document.figure(identity).handle(end).name for end in ends)
+        try:
+            document = material_commands.add_bone(identity, ends, bone.amount)(document)
+        except EngineError as error:
+            raise LissomError(f"stiff from {first!r} to {second!r}: {error}") from error
+    return document, notices
 
 
 def _posed(

@@ -2,7 +2,7 @@
 
 In: a certified map, handles, and where they are wanted.
 Out: certified maps whose handles are nearer, with status and statistics.
-Imports: `engine.maps`, `engine.geometry`.
+Imports: `engine.dirichlet`, `engine.maps`, `engine.geometry`.
 """
 
 from engine.deform.deformer import Deformer as Deformer
@@ -15,6 +15,7 @@ from engine.deform.handles import (
 from engine.deform.hands import PULL as PULL, Hand as Hand
 from engine.deform.model import (
     Objective as Objective,
+    limits_inside as limits_inside,
     line_search as line_search,
     newton_direction as newton_direction,
     projected_hessian as projected_hessian,

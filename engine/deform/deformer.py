@@ -7,6 +7,8 @@ the minimum is searched for along several ways (`settling`), and the pose of lea
 
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from engine.arrays import Complexes
 from engine.deform.following import follow_hand
 from engine.deform.handles import Wish
@@ -14,9 +16,9 @@ from engine.deform.held_shape import HeldShape
 from engine.deform.rest import Way
 from engine.deform.settling import begin_searches, search_on
 from engine.deform.state import State, Status
-from engine.deform.steering import FULL, LEASH, limits_for
+from engine.deform.steering import FOLLOW, FULL, LEASH, limits_for, proven_around
 from engine.errors import EngineError
-from engine.maps import HarmonicMap, certify
+from engine.maps import Certificate, HarmonicMap, Limits, certify
 
 # One row of a recorded path: so many steps, or until the expected gain is below this.
 PATH_STEPS = 10
@@ -70,7 +72,7 @@ class Deformer(HeldShape):
                 "The start map folds, or nearly: it is not proven to be locally injective. Start "
                 "from another map."
             )
-        limits = limits_for(certificate, self.bounds)
+        limits = self._limits_for(harmonic_map, certificate)
         return State(
             map=harmonic_map,
             certificate=certify(harmonic_map, self.boundary, limits),
@@ -78,6 +80,29 @@ class Deformer(HeldShape):
             status=Status.TIGHTENING,
             boundary=self.boundary,
         )
+
+    def allowing(self, harmonic_map: HarmonicMap, room: float) -> "Deformer":
+        """Return the deformer, with bounds as much wider as a map needs.
+
+        Parameters
+        ----------
+        harmonic_map : HarmonicMap
+        room : float
+            The part of what is left of distortions that is allowed beyond the map's own.
+        """
+        certificate = certify(harmonic_map, self.boundary, self.bounds)
+        if certificate.certified:
+            return self
+        return replace(self, bounds=self._limits_for(harmonic_map, certificate, room=room))
+
+    def _limits_for(
+        self, harmonic_map: HarmonicMap, certificate: Certificate, *, room: float = FOLLOW
+    ) -> Limits:
+        """Return the bounds, widened as a map needs it: where they differ, each by itself."""
+        if not np.ndim(self.bounds.k):
+            return limits_for(certificate, self.bounds, room=room)
+        proven = proven_around(harmonic_map, certificate, self.boundary)
+        return limits_for(proven, self.bounds, room=room)
 
     def positions(self, state: State) -> Complexes:
         """Return where the handles are now, complex128 (h,)."""

@@ -70,7 +70,7 @@ def follow_hand(shape: HeldShape, state: State, wish: Wish) -> State:
         limits=step.limits,
         status=status,
         statistics=Statistics(
-            energy=float(state.boundary.weights @ step.jet.density),
+            energy=float(state.boundary.lengths @ step.jet.density),
             objective=free.energy(taken.jet),
             handle_error=free.handle_error(taken.jet),
             decrement=-taken.direction.derivative / 2,

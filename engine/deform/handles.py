@@ -84,7 +84,10 @@ class Handles:
     points : complex128, shape (h,)
         Where the handles sit in the shape at rest.
     stiffness : float64, shape (h,)
-        λ of each: the energy is Σ λ |f(point) − target|².
+        λ of each: the energy is Σ λ |f(point) − target|². The quadratic mean of the shape's
+        stiffness around it is a factor: near stiff parts, whose forces it bears, it misses no more.
+    around : float64, shape (h,)
+        The mean of that stiffness, a factor of the forces of hands.
     arm : float
         Length that turns a rotation into a distance: an angle δ costs 2 λ (arm · δ)².
     coordinates, derivatives : complex128, shape (h, n)
@@ -99,6 +102,7 @@ class Handles:
 
     points: Complexes
     stiffness: Floats
+    around: Floats
     arm: float
     coordinates: Complexes
     derivatives: Complexes
@@ -128,7 +132,9 @@ class Handles:
             have too many vertices.
         """
         points = require_held(points, boundary.outline, boundary.cage, boundary.holes)
-        stiffness = _weights(weights, len(points)) * STIFFNESS / boundary.size**2
+        around, firmer = boundary.stiffness_around(points)
+        factors = _weights(weights, len(points)) * firmer
+        stiffness = factors * STIFFNESS / boundary.size**2
         coordinates = boundary.span.coordinates(points)
         derivatives = boundary.span.derivatives(points)
         of_basis = coordinates @ boundary.basis
@@ -137,6 +143,7 @@ class Handles:
         return cls(
             points=points,
             stiffness=readonly(stiffness),
+            around=readonly(around),
             arm=ARM * boundary.size,
             coordinates=readonly(coordinates),
             derivatives=readonly(derivatives),
@@ -190,7 +197,7 @@ class Handles:
         for i, j in self.coincident:
             if abs(targets[i] - targets[j]) > APART * size:
                 raise _told_twice(i, j, "targets")
-        pulling = Hands.of(hands, self.stiffness, size)
+        pulling = Hands.of(hands, self.stiffness, self.around, size)
         if rotations is None:
             return Wish(targets, np.full(len(targets), np.nan), pulling)
         angles = np.asarray(rotations, dtype=np.float64)

@@ -53,10 +53,13 @@ class Hands(NamedTuple):
     gives: Floats
 
     @classmethod
-    def of(cls, hands: Sequence[Hand], stiffness: Floats, size: float) -> "Hands | None":
+    def of(
+        cls, hands: Sequence[Hand], stiffness: Floats, around: Floats, size: float
+    ) -> "Hands | None":
         """Return what hands are to handles of this stiffness (h,), on a shape of this size.
 
-        One of infinite force holds, as does none at all.
+        One of infinite force holds, as does none at all. How stiff the shape is `around` handles
+        (h,) is a factor of the force.
 
         Raises
         ------
@@ -81,6 +84,7 @@ class Hands(NamedTuple):
             raise EngineError(f"Two hands pull at handle {twice[0]}; let one of them do it.")
         totals = weights.sum(axis=1)
         forces = np.array([hand.pull for hand in hands]) / size
+        forces *= (weights * around).sum(axis=1) / totals
         return cls(
             shares=readonly(weights / totals[:, None]),
             stiffness=readonly(totals),

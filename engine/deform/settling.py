@@ -154,7 +154,8 @@ def _may_pay(shape: HeldShape, way: Way, outcome: Search) -> bool:
     targets, size = outcome.wish.positions, shape.boundary.size
     common = common_motion(shape.handles, shape.handles.points, targets)
     if way.is_turned:
-        return outcome.energy > WOUND and common.misfit > MISFIT * size
+        energy = outcome.energy / shape.boundary.mean_stiffness
+        return energy > WOUND and common.misfit > MISFIT * size
     # Handles that are wanted far away, past each other: there are many valleys, and those that wide
     # and widening bounds lead to may differ.
     farthest = float(np.abs(targets - shape.handles.points).max(initial=0.0))
@@ -182,7 +183,7 @@ def _showing(state: State, search: Search) -> State:
 def _statistics(objective: Objective, jet: Jet, search: Search, outcome: Search) -> Statistics:
     """Return what a step of a search did, and what is known of the outcome."""
     return Statistics(
-        energy=float(objective.boundary.weights @ jet.density),
+        energy=float(objective.boundary.lengths @ jet.density),
         objective=objective.energy(jet),
         handle_error=objective.handle_error(jet),
         decrement=search.gain,

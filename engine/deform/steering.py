@@ -9,7 +9,7 @@ import numpy as np
 from engine.arrays import Complexes, Floats
 from engine.deform.handles import Handles, Wish
 from engine.deform.model import MARGIN, Jet, Walls
-from engine.maps import Boundary, Certificate, HarmonicMap, Limits
+from engine.maps import Boundary, Certificate, HarmonicMap, Limits, segment_enclosures
 
 # The leash: a handle is pulled towards a point at most this far (of L) ahead of it, and turned by
 # at most this angle; farther away the quadratic model says nothing. Both times the part of the
@@ -44,6 +44,8 @@ LEAST_SLACK = 1e-10
 KEPT = 0.1
 # While a map is outside its bounds the limits follow it at this relative distance.
 FOLLOW = 0.005
+# Of k, σ_a and σ_b.
+WORST = (np.maximum, np.maximum, np.minimum)
 # Maps are held this far (of the way to the identity) inside their bounds: then whoever certifies
 # them anew, from other samples or on another machine, finds them within.
 ROUNDING = 1e-9
@@ -190,13 +192,28 @@ def common_motion(handles: Handles, positions: Complexes, targets: Complexes) ->
     )
 
 
-def limits_for(certificate: Certificate, bounds: Limits) -> Limits:
-    """Return the bounds, widened as far as the map of a certificate needs it."""
-    k, sigma_a, sigma_b = certificate.k, certificate.sigma_a, certificate.sigma_b
+def limits_for(proven: Certificate | Limits, bounds: Limits, *, room: float = FOLLOW) -> Limits:
+    """Return the bounds, widened as far as what is proven needs, and by a part of what is left."""
     return Limits(
-        k=np.maximum(bounds.k, k + FOLLOW * (1 - k)),
-        sigma_a=np.maximum(bounds.sigma_a, sigma_a * (1 + FOLLOW)),
-        sigma_b=np.minimum(bounds.sigma_b, sigma_b * (1 - FOLLOW)),
+        k=np.maximum(bounds.k, proven.k + room * (1 - proven.k)),
+        sigma_a=np.maximum(bounds.sigma_a, proven.sigma_a * (1 + room)),
+        sigma_b=np.minimum(bounds.sigma_b, proven.sigma_b * (1 - room)),
+    )
+
+
+def proven_around(
+    harmonic_map: HarmonicMap, certificate: Certificate, boundary: Boundary
+) -> Limits:
+    """Return what is proven around each sample of a map; without bisection, but for the worst."""
+    of_segments = segment_enclosures(harmonic_map, boundary)
+    k, sigma_a, sigma_b = (np.empty_like(each) for each in of_segments)
+    for at, its, worst in zip((k, sigma_a, sigma_b), of_segments, WORST, strict=True):
+        at[boundary.following] = its
+        worst(at, its, out=at)
+    return Limits(
+        k=np.minimum(k, certificate.k),
+        sigma_a=np.minimum(sigma_a, certificate.sigma_a),
+        sigma_b=np.maximum(sigma_b, certificate.sigma_b),
     )
 
 

@@ -25,3 +25,9 @@ from engine.maps.certificate import (
 )
 from engine.maps.harmonic_map import HarmonicMap as HarmonicMap, derivatives_of as derivatives_of
 from engine.maps.span import Span as Span
+from engine.maps.stiffness import (
+    SOFTEST as SOFTEST,
+    STIFFEST as STIFFEST,
+    along_loops as along_loops,
+    require_stiffness as require_stiffness,
+)

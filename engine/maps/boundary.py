@@ -6,6 +6,7 @@ from functools import cached_property
 from typing import Self
 
 import numpy as np
+import numpy.typing as npt
 
 from engine.arrays import Complexes, Floats, Indices, as_points, freeze, readonly
 from engine.geometry import (
@@ -18,6 +19,7 @@ from engine.geometry import (
     sample_graded,
 )
 from engine.maps.span import Span
+from engine.maps.stiffness import along_loops, require_stiffness
 
 # Longest segments of the outline, over their distance to the nearest cage vertex, and over the
 # diagonal of the outline. Measured: the extremes on the samples are then within a few thousandths
@@ -45,11 +47,13 @@ class Boundary:
     starts : intp, shape (1 + holes,)
         The first sample of each loop.
     weights : float64, shape (m,)
-        Of the samples in means over the boundary, with sum 1: the arc length that belongs to each,
-        and 0 for those that were added. Sums do not change by refinement.
+        Of the samples in the energy: the arc length that belongs to each, with sum 1, times the
+        stiffness there, and 0 for those that were added. Sums do not change by refinement.
     shares : float64, shape (m,)
         Of the samples in sums of barriers: their weights, and for those that were added the mean
         weight. A bound that presses at one of these few points then keeps as much slack as others.
+    stiffness : float64, shape (m,)
+        At the samples, 1 unless the boundary is `stiffened`.
     half_lengths : float64, shape (m,)
         Of the segments.
     derivatives : complex128, shape (m, n)
@@ -73,6 +77,7 @@ class Boundary:
     starts: Indices
     weights: Floats
     shares: Floats
+    stiffness: Floats
     half_lengths: Floats
     derivatives: Complexes
     bending_kernel: Floats
@@ -129,6 +134,7 @@ class Boundary:
             starts=readonly(starts),
             weights=lengths,
             shares=lengths,
+            stiffness=freeze(np.ones(len(points))),
             half_lengths=readonly(half),
             derivatives=derivatives,
             bending_kernel=readonly(span.bending_kernel(points, ends)),
@@ -163,6 +169,53 @@ class Boundary:
         own = np.flatnonzero(self.weights)
         return own, np.searchsorted(own, [*self.starts, len(self.points)]).tolist()
 
+    @property
+    def lengths(self) -> Floats:
+        """The weights of the samples (m,) in means over the boundary, with sum 1."""
+        lengths: Floats = self.weights / self.stiffness
+        return lengths
+
+    @property
+    def mean_stiffness(self) -> float:
+        """That of the boundary, by its length."""
+        return float(self.weights.sum() / self.lengths.sum())
+
+    def stiffened(self, stiffness: npt.ArrayLike) -> Self:
+        """Return the boundary, as it was sampled, with its energy's weights times a stiffness.
+
+        Parameters
+        ----------
+        stiffness : array_like of float, shape (p,)
+            At the vertices of `loops`, one loop after the other, from 1/30 to 100; logarithmically
+            linear along the edges.
+
+        Raises
+        ------
+        EngineError
+            If it is not so many such numbers.
+        """
+        loops = self.loops
+        at_vertices = require_stiffness(stiffness, sum(map(len, loops)))
+        at_samples = along_loops(at_vertices, loops, np.split(self.points, self.starts[1:]))
+        return self.stiffened_at_samples(at_samples)
+
+    def stiffened_at_samples(self, stiffness: Floats) -> Self:
+        """Return the same with the stiffness at each sample, float64 (m,)."""
+        return replace(self, weights=freeze(self.shares * stiffness), stiffness=readonly(stiffness))
+
+    def stiffness_around(self, points: Complexes) -> tuple[Floats, Floats]:
+        """Return the mean and the quadratic mean of the stiffness around points, (h,) each.
+
+        A sample counts by its length over the square of its distance: along a straight side that is
+        its harmonic measure, by which s would be continued into the domain.
+        """
+        if np.all(self.stiffness == 1.0):
+            return np.ones(len(points)), np.ones(len(points))
+        squares = np.abs(points[:, None] - self.points) ** 2
+        kernel = self.shares / np.maximum(squares, self.half_lengths**2)
+        kernel /= kernel.sum(axis=1, keepdims=True)
+        return kernel @ self.stiffness, np.sqrt(kernel @ self.stiffness**2)
+
     def refined(self, segments: Indices) -> Self:
         """Return the boundary with one more sample in the middle of each given segment (s,)."""
         segments = np.unique(segments)
@@ -180,12 +233,14 @@ class Boundary:
         rows = self.span.derivatives(middles)
         of_basis = np.insert(self.basis_derivatives, segments + 1, rows @ self.basis, axis=0)
         share = 1.0 / np.count_nonzero(self.weights)
+        between = np.sqrt(self.stiffness[segments] * self.stiffness[self.following[segments]])
         return replace(
             self,
             points=freeze(points),
             starts=freeze(loops),
             weights=freeze(np.insert(self.weights, segments + 1, 0.0)),
             shares=freeze(np.insert(self.shares, segments + 1, share)),
+            stiffness=freeze(np.insert(self.stiffness, segments + 1, between)),
             half_lengths=freeze(half),
             derivatives=freeze(np.insert(self.derivatives, segments + 1, rows, axis=0)),
             bending_kernel=freeze(kernel),

@@ -53,6 +53,32 @@ class Limits:
             sigma_b=np.minimum(sigma_b[first], sigma_b[second]),
         )
 
+    def where_stiff(self, boundary: Boundary) -> "Limits":
+        """Return the limits of a shape, tighter where it is stiff.
+
+        Where its stiffness s is above 1, ln σ_a, ln σ_b and k are those of the shape over √s. Each
+        segment is held to what its stiffer end allows, which all of it then keeps: a sample takes
+        the tightest limits of its neighbours.
+        """
+        own, ends = boundary.own_samples
+        stiffness = np.maximum(boundary.stiffness[own], 1.0)
+        if np.all(stiffness == 1.0):
+            return self
+        following = next_on_loop(np.array(ends[:-1]), len(own))
+        before = np.empty_like(stiffness)
+        before[following] = stiffness
+        stiffest = np.maximum(np.maximum(stiffness, stiffness[following]), before)
+        return self.stiffened(stiffest)
+
+    def stiffened(self, stiffness: Floats) -> "Limits":
+        """Return the limits of parts of such a stiffness (s,), at least 1."""
+        root = np.sqrt(stiffness)
+        return Limits(
+            k=self.k / root,
+            sigma_a=np.exp(np.log(self.sigma_a) / root),
+            sigma_b=np.exp(np.log(self.sigma_b) / root),
+        )
+
     def towards_identity(self, fraction: float) -> "Limits":
         """Return the limits moved by a fraction of what lies between them and the identity."""
         rest = 1.0 - fraction

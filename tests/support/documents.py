@@ -10,12 +10,14 @@ import numpy as np
 from pictures import blank_png
 from shapes import regular_polygon
 
+from app.document.body import Bone
 from app.document.commands import (
     Command,
     figure_commands,
     handle_commands,
     key_commands,
     layer_commands,
+    material_commands,
     pose_commands,
     scene_commands,
     track_commands,
@@ -94,11 +96,12 @@ def random_command(rng: np.random.Generator, document: Document) -> Command:
         _random_handle_command,
         _random_key_command,
         _random_layer_command,
+        _random_material_command,
         _random_pose_command,
         _random_settings_command,
         _random_track_command,
     )
-    return makers[rng.integers(6)](rng, document)
+    return makers[rng.integers(len(makers))](rng, document)
 
 
 def _random_layer_command(rng: np.random.Generator, document: Document) -> Command:
@@ -260,6 +263,24 @@ def _random_track_command(rng: np.random.Generator, document: Document) -> Comma
         track_commands.mirror_track(0, one),
         track_commands.remove_tracks(0, {one}),
         track_commands.remove_springs(0, {one}),
+    ]
+    return commands[rng.integers(len(commands))]
+
+
+def _random_material_command(rng: np.random.Generator, document: Document) -> Command:
+    figure = document.figures[0]
+    ids = [handle.id for handle in figure.handles] or [99]
+    ends = tuple(rng.choice(ids, 2).tolist())
+    amount = float(np.exp(rng.uniform(-3, 4)))
+    way = [inside(rng) for _ in range(3)]
+    commands = [
+        *2 * [material_commands.paint(0, way, radius=60.0, amount=amount, softness=rng.random())],
+        *2 * [material_commands.add_bone(0, ends, amount)],
+        material_commands.set_bone_amount(0, ends, amount),
+        material_commands.remove_bone(0, ends),
+        material_commands.show_bones(0, shown=bool(rng.integers(2))),
+        material_commands.clear(0),
+        material_commands.mirror(0),
     ]
     return commands[rng.integers(len(commands))]
 
@@ -438,7 +459,7 @@ def full_document() -> Document:
 
 
 def clocked_document() -> Document:
-    """The full document with clocks of single handles: tracks and springs."""
+    """The full document with clocks of single handles, tracks and springs, and with material."""
     full = full_document()
     figure = full.figures[0]
     nose, foot = figure.handles
@@ -462,7 +483,14 @@ def clocked_document() -> Document:
         stillness=True,
         tracks=(planted,),
     )
-    child = dataclasses.replace(figure, tracks=(track,), springs=(spring,))
+    painted = np.exp(np.linspace(-3, 4, sum(map(len, figure.domain.loops))))
+    child = dataclasses.replace(
+        figure,
+        tracks=(track,),
+        springs=(spring,),
+        stiffness=painted,
+        bones=(Bone(ends=(4, 1), amount=1 / 3, is_shown=False, unknown=more),),
+    )
     return dataclasses.replace(full, figures=(child, parent))
 
 

@@ -12,9 +12,10 @@ from app.errors import LissomError
 from app.storage import check_writable, read_arrays, write_arrays
 from engine.arrays import Complexes
 from engine.deform import Deformer, Hand, Handles, require_held
-from engine.maps import Boundary, Bounds, HarmonicMap
+from engine.maps import Boundary, Bounds, HarmonicMap, Limits
 
 LIMITS = ("k_max", "sigma_a_max", "sigma_b_min")
+MATERIAL = ("stiffness", "local_limits")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -23,13 +24,17 @@ def run(arguments: argparse.Namespace) -> int:
     case = read_arrays(
         arguments.case,
         required=("outline", "cage", "handles", "targets", *LIMITS),
-        optional=("phi", "psi", "logs", "path", "pull", *HOLE_ARRAYS),
+        optional=("phi", "psi", "logs", "path", "pull", *MATERIAL, *HOLE_ARRAYS),
     )
     k, sigma_a, sigma_b = (_scalar(case, name) for name in LIMITS)
-    bounds = Bounds(k=k, sigma_a=sigma_a, sigma_b=sigma_b)
+    bounds: Limits = Bounds(k=k, sigma_a=sigma_a, sigma_b=sigma_b)
     outline, cage, holes = case["outline"], case["cage"], read_holes(case)
     points = require_held(case["handles"], outline, cage, holes)
     boundary = Boundary.sample(outline, cage, holes)
+    if "stiffness" in case:
+        boundary = boundary.stiffened(case["stiffness"])
+    if _is_local(case):
+        bounds = bounds.where_stiff(boundary)
     handles = Handles.place(boundary, points)
     rows = _rows(case, len(handles.points))
     hands = _hands(case, handles.points)
@@ -73,6 +78,14 @@ def _scalar(case: Mapping[str, npt.NDArray[Any]], name: str) -> float:
     if value.size != 1 or value.dtype.kind not in "biuf":
         raise LissomError(f"{name} must be one number, not of shape {value.shape}, {value.dtype}")
     return float(value.reshape(()))
+
+
+def _is_local(case: Mapping[str, npt.NDArray[Any]]) -> bool:
+    """Tell whether limits are tighter where the shape is stiff."""
+    value = _scalar(case, "local_limits") if "local_limits" in case else 0.0
+    if value not in (0.0, 1.0):
+        raise LissomError(f"local_limits must be 0 or 1, not {value:g}")
+    return value == 1.0
 
 
 def _rows(case: Mapping[str, npt.NDArray[Any]], count: int) -> list[npt.NDArray[Any]]:

@@ -14,6 +14,13 @@ CASE.npz holds the shape and what is asked of it:
   phi, psi     (n,)   complex128  optional, the map to start from, with logs (holes,) around holes
   hole_outlines, hole_outline_sizes, hole_cages, hole_cage_sizes, hole_centres
                                   optional, the holes, as lissom domain writes them
+  stiffness    (p,)   float64     optional, from 1/30 to 100 at the vertices of outline, then at
+                                  those of hole_outlines: a factor of the energy along the boundary
+                                  and of what holds and pulls the handles there, 1 without; its
+                                  logarithm is linear along edges
+  local_limits scalar             optional, 0 or 1: whether limits are tighter where stiffness is
+                                  above 1: k, ln sigma_a and ln sigma_b are there those of the
+                                  bounds over its square root
   path         (s, h) complex128  optional, positions of the handles on the way to the targets
   pull         (h,) or scalar     optional, the strongest force of each handle over the diagonal of
                                   the outline's box, infinite where it is held, as all are without;

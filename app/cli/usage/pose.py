@@ -56,9 +56,19 @@ A handle may say what is painted in front around it, from -1 (behind) to 1, and 
 pixels: {"at": [120, 880], "front": 0.5, "extent": 60}; a key with "front": {"nose": 1} says it from
 there on.
 
+Parts of the drawing are stiffer or softer with
+
+   "stiff": [{"around": [530, 800], "radius": 250, "amount": 10},
+             {"from": "elbow", "to": "wrist", "amount": 30}]
+
+The first is painted on the outline within so many pixels of a point, as far as it is seen from
+there; the second is a bone, the limb between two handles without the joints at its ends. amount is
+from 1/30, soft, to 100; where it is above 1 the drawing also bends and stretches less: k and the
+logarithms of sigma_a and sigma_b are there at most those of the bounds over the root of amount.
+
 DRAWING may have layers (OpenRaster .ora, or .psd where psd-tools is installed). Coordinates are
 pixels of the canvas then, and a script of several figures has, instead of anchor, handles, keys,
-tracks and springs:
+tracks, springs and stiff:
 
    "figures": [{"layer": "body", "handles": {}, "keys": [{"frame": 0}]},
                {"layer": "arm", "handles": {"hand": [310, 240]},
@@ -66,9 +76,9 @@ tracks and springs:
                 "attach": {"to": "body", "at": [200, 260], "turn": true},
                 "visible": [[0, true], [40, false]]}]
 
-Each may have a variant, bounds, an anchor, tracks and springs of its own. What is attached hangs by
-its anchor, or where none is given by that point, and is posed as if its parent were at rest. Layers
-that no entry names stand still.
+Each may have a variant, bounds, an anchor, tracks, springs and stiff of its own. What is attached
+hangs by its anchor, or where none is given by that point, and is posed as if its parent were at
+rest. Layers that no entry names stand still.
 
 examples:
   lissom pose giraffe.png nod.json --out nod.lissom

@@ -10,6 +10,7 @@ from app.document.commands import (
     handle_commands as handle_commands,
     key_commands as key_commands,
     layer_commands as layer_commands,
+    material_commands as material_commands,
     pose_commands as pose_commands,
     scene_commands as scene_commands,
     track_commands as track_commands,

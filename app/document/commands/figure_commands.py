@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
+from app.document.body import carried_over
 from app.document.commands.command import figure_command
 from app.document.figure import Figure
 from app.document.keyframe import Pose
@@ -83,4 +84,11 @@ def replace_domain(
         One for each of the figure's, solved again over the new cage.
     """
     unknown = {name: value for name, value in figure.unknown.items() if name != "domain"}
-    return figure.with_poses(poses, domain=domain, meshing=meshing, is_stale=False, unknown=unknown)
+    return figure.with_poses(
+        poses,
+        domain=domain,
+        meshing=meshing,
+        stiffness=carried_over(figure.stiffness, figure.domain, domain),
+        is_stale=False,
+        unknown=unknown,
+    )

@@ -59,7 +59,7 @@ def move_handle(figure: Figure, identity: int, position: complex) -> Figure:
 
 @figure_command("Delete handle")
 def remove_handles(figure: Figure, identities: Collection[int]) -> Figure:
-    """Remove handles by their ids, their springs and what tracks are of them. The poses stay."""
+    """Remove handles by their ids, with their springs, tracks and bones. The poses stay."""
     gone = {figure.handle(identity).id for identity in identities}
     if not gone:
         return figure

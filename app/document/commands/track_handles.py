@@ -1,20 +1,26 @@
-"""What becomes of tracks and springs where handles go, are put elsewhere, or are others."""
+"""What becomes of tracks, springs and bones where handles go, are put elsewhere, or are others."""
 
 from collections.abc import Collection
 from dataclasses import replace
 
 import numpy as np
 
+from app.document.body import partners_of
 from app.document.figure import Figure
-from app.document.handle_pairs import partners_of
 from app.document.timing import Track, TrackKey
 
 
 def without_handles(figure: Figure, gone: Collection[int]) -> Figure:
-    """Return the figure whose tracks and springs have nothing of some handles any more."""
+    """Return the figure whose tracks, springs and bones have nothing of some handles any more."""
     tracks = (left(figure, track, gone) for track in figure.tracks)
     springs = (spring for spring in figure.springs if spring.handle not in gone)
-    return replace(figure, tracks=tuple(filter(None, tracks)), springs=tuple(springs))
+    bones = (bone for bone in figure.bones if not set(bone.ends) & set(gone))
+    return replace(
+        figure,
+        tracks=tuple(filter(None, tracks)),
+        springs=tuple(springs),
+        bones=tuple(bones),
+    )
 
 
 def with_moved_handle(figure: Figure, identity: int, position: complex) -> Figure:

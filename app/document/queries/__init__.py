@@ -17,6 +17,12 @@ from app.document.queries.fronts import (
     fronts_at as fronts_at,
     is_visible as is_visible,
 )
+from app.document.queries.material import (
+    brushed_stiffness as brushed_stiffness,
+    limb_of as limb_of,
+    stiff_outline as stiff_outline,
+    stiffened as stiffened,
+)
 from app.document.queries.shortfall import (
     Extremes as Extremes,
     Shortfall as Shortfall,

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from app.document.figure import Figure
 from app.document.keyframe import Pose
+from app.document.queries.material import spends_local_limits
 from app.document.queries.remembered import remembered
 from engine.arrays import Complexes
 from engine.geometry import box_diagonal
@@ -125,5 +126,7 @@ def find_shortfall(figure: Figure, pose: Pose) -> Shortfall:
         for identity, lag in figure.lags(pose).items()
         if identity not in figure.followers and falls_short(figure, lag)
     }
-    at_limits = any(use.is_all for use in Extremes.of(pose).uses(figure.bounds))
+    at_limits = any(use.is_all for use in Extremes.of(pose).uses(figure.bounds)) or (
+        bool(lags) and spends_local_limits(figure, pose, AT_LIMIT)
+    )
     return Shortfall(lags=lags, at_limits=at_limits)

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.document import Clip, Extremes, Variant, resting_pose, time_of, transits
+from app.document import Clip, Extremes, Variant, resting_pose, stiffened, time_of, transits
 from app.motion.inbetweens.base_motion import BaseMotion
 from app.motion.inbetweens.correction import FrameCorrection
 from app.motion.inbetweens.own_clocks import Carried, OwnClocks, Wanted
@@ -52,6 +52,7 @@ def have_one_ground(clip: Clip, other: Clip) -> bool:
         return (
             *(figure.id, figure.domain, figure.handles, figure.keys, figure.anchor),
             *(figure.attachment, figure.stillness, figure.springs, figure.variant, figure.bounds),
+            *(id(figure.stiffness), figure.bones),
             *(of.frames, of.loop, of.fps, of.baseline, of.carriers),
         )
 
@@ -98,7 +99,8 @@ class Corrections:
         if figure.anchor is not None and self._is_hung:
             points.append(figure.anchor)
         self._points = np.array(points, dtype=np.complex128)
-        boundary = sampler.sites.boundary
+        boundary = stiffened(figure, sampler.sites.boundary)
+        self._of_what = (self._points.tobytes(), boundary.stiffness.tobytes(), figure.bounds)
         self._corrector = Corrector(boundary=boundary, points=self._points)
         own = PoseSampler(
             figure.domain,
@@ -300,12 +302,12 @@ class Corrections:
     def _whose(self, frame: float) -> tuple[object, ...]:
         """Return what the motion of a frame follows from; the poses stay alive with it."""
         clip, moment = self.clip, time_of(self.clip, frame)
-        resting, bounds = resting_pose(clip, moment), clip.figure.bounds
+        resting = resting_pose(clip, moment)
         if resting is not None:
-            return resting, self._points.tobytes(), bounds
+            return resting, *self._of_what
         poses = tuple(key.pose for key in transits(clip)[moment.interval].keys)
         pair = pair_of(clip, moment.interval, self._variant)
-        return poses, pair, moment.weight, self._points.tobytes(), bounds
+        return poses, pair, moment.weight, *self._of_what
 
 
 def _content(parts: Iterable[object]) -> tuple[object, ...]:

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from app.errors import LissomError
 from app.storage.files import MOST_UNPACKED
-from engine.arrays import Bytes, Complexes, Integers, readonly
+from engine.arrays import Bytes, Complexes, Floats, Integers, readonly
 
 MIMETYPE = b"application/x-lissom"
 MOST_MEMBERS = 65_535
@@ -114,6 +114,11 @@ class Archive:
         """Return an array of points, complex128 (n,), of which there are at most `most`."""
         array = self._array(name, np.dtype("<c16"), columns=1, most=most)
         return readonly(array.astype(np.complex128, copy=False))
+
+    def numbers(self, name: str, *, most: int) -> Floats:
+        """Return an array of numbers, float64 (n,), of which there are at most `most`."""
+        array = self._array(name, np.dtype("<f8"), columns=1, most=most)
+        return readonly(array.astype(np.float64, copy=False))
 
     def triangles(self, name: str, *, most: int) -> Integers:
         """Return an array of triangles, int32 (m, 3), of which there are at most `most`."""

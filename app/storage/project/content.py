@@ -11,6 +11,7 @@ import numpy as np
 from app.document import (
     FRAME_NAMES,
     Attachment,
+    Bone,
     Document,
     Easing,
     ExportSettings,
@@ -176,6 +177,12 @@ SPRING = record(
     Field("strength", NUMBER, usual=1.0),
     Field("enabled", FLAG, usual=True),
 )
+BONE = record(
+    Bone,
+    Field("ends", pair(WHOLE, WHOLE, "two handles")),
+    Field("amount", NUMBER),
+    Field("is_shown", FLAG, usual=True),
+)
 BACKGROUND = Codec(
     lambda value: list(value) if isinstance(value, tuple) else value,
     lambda content, where: (several(WHOLE) if isinstance(content, list) else TEXT).read(
@@ -225,6 +232,8 @@ FIGURE = record(
     Field("stillness", FLAG, usual=False),
     Field("tracks", several(TRACK), usual=()),
     Field("springs", several(SPRING), usual=()),
+    Field("bones", several(BONE), usual=()),
+    Field("stiffness", FLAG, lambda figure: figure.stiffness is not None, usual=False),
     Field("variant", TEXT),
     Field("bounds", part(Bounds, *(Field(name, NUMBER) for name in ("k", "sigma_a", "sigma_b")))),
     Field("library", several(KEPT_POSE)),
@@ -324,6 +333,7 @@ def _read_figure(fields: dict[str, Any], archive: Archive) -> Figure:
             "domain": domain,
             "meshing": Meshing(detail=made.pop("detail"), triangles=made.pop("triangles")),
             "is_stale": made.pop("stale"),
+            "stiffness": members.stiffness(domain) if fields["stiffness"] else None,
             "cut_out": _cut_out(made, members, picture.size),
             "keys": tuple(Keyframe(**key) for key in fields["keys"]),
             "library": tuple(KeptPose(**kept) for kept in fields["library"]),

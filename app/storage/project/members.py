@@ -4,7 +4,8 @@ They are in a folder of the figure: the picture byte for byte as `source.*`, the
 domain, what was cut out by hand, and phi and psi of each key under `keys/` and of the library's
 poses under `poses/`. Where the domain has holes, their outlines and cages are under `holes/`, their
 centres beside it, and the coefficients of a map's logarithms beside its phi and psi. Where it was
-parted by a knife, `closed.npy` tells where its loops are painted.
+parted by a knife, `closed.npy` tells where its loops are painted; `stiffness.npy` is the stiffness
+that is painted on the vertices of its loops.
 """
 
 from collections.abc import Sequence
@@ -17,7 +18,7 @@ from app.document import Figure, PictureFile
 from app.errors import LissomError
 from app.storage.pictures import stored_size
 from app.storage.project.archive import Archive, array_member
-from engine.arrays import Complexes, as_points
+from engine.arrays import Complexes, Floats, as_points
 from engine.domain import MOST_MESH_TRIANGLES, MOST_STROKE_POINTS, Domain, Mask, require_domain
 from engine.domain.meshing import Mesh
 from engine.domain.outline import LARGEST_OUTLINE
@@ -25,6 +26,7 @@ from engine.geometry import Hole
 from engine.maps import HarmonicMap
 
 CENTRES, CLOSED = "hole_centres.npy", "closed.npy"
+STIFFNESS = "stiffness.npy"
 
 
 def figure_members(figure: Figure) -> dict[str, bytes]:
@@ -44,6 +46,8 @@ def figure_members(figure: Figure) -> dict[str, bytes]:
         arrays["slits.npy"] = np.concatenate([slit.points for slit in cut_out.slits])
     if figure.domain.closed is not None:
         arrays[CLOSED] = figure.domain.closed
+    if figure.stiffness is not None:
+        arrays[STIFFNESS] = figure.stiffness
     if holes:
         arrays[CENTRES] = np.array([hole.centre for hole in holes], dtype=np.complex128)
     for index, hole in enumerate(holes):
@@ -104,6 +108,11 @@ class FigureMembers:
         )
         require_domain(domain)
         return domain
+
+    def stiffness(self, domain: Domain) -> Floats:
+        """Return what is painted on the vertices of the domain's loops."""
+        most = sum(map(len, domain.loops))
+        return self._archive.numbers(f"{self._folder}/{STIFFNESS}", most=most)
 
     def mask(self, size: tuple[int, int]) -> Mask:
         """Return the mask of the cut-out."""

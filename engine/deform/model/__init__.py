@@ -1,8 +1,8 @@
 """What a step minimises: energy, barrier and handles, and Newton's models of them.
 
 In: a boundary, handles, a wish, walls, and the measures of a map.
-Out: values, gradients, Hessians, and directions.
-Imports: `engine.maps`, and the handles of `engine.deform`.
+Out: values, gradients, Hessians, and directions; what limits on the boundary promise inside.
+Imports: `engine.dirichlet`, `engine.maps`, and the handles of `engine.deform`.
 """
 
 from engine.deform.model.barrier import (
@@ -26,6 +26,7 @@ from engine.deform.model.hessian import (
     projected_hessian as projected_hessian,
     stiffening as stiffening,
 )
+from engine.deform.model.inner_limits import limits_inside as limits_inside
 from engine.deform.model.jet import Jet as Jet
 from engine.deform.model.newton import (
     SHORTEST as SHORTEST,

@@ -231,7 +231,8 @@ def _quadrature(objective: Objective, radial: Radial) -> "_Quadrature":
         first.append(places)
         middles.append(np.minimum(places + stride // 2, end - 1))
         sketched |= stride > 1
-    density = (radial.aa + radial.bb) / objective.boundary.shares
+    boundary = objective.boundary
+    density = (radial.aa + radial.bb) / (boundary.shares * boundary.stiffness)
     stiffest = max(n, int(STIFF_PER_CALM * m / objective.stride)) if sketched else 1
     ordered = np.partition(density, sorted({m // 2, m - stiffest}))
     median = float(ordered[m // 2])

@@ -169,7 +169,7 @@ class Corrector:
 
     def _size(self, change: Jet) -> float:
         """Return how large a change is."""
-        weights = self.boundary.weights
+        weights = self.boundary.lengths
         moved = np.abs(change.positions).max(initial=0.0) / self.boundary.size
         return float(max(moved, np.abs(change.f) @ weights, np.abs(change.g) @ weights))
 

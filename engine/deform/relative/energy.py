@@ -57,6 +57,8 @@ class Rows(NamedTuple):
         With its own samples only.
     coordinates, derivatives : complex128, shape (h, r)
         Of the functions of the basis, at the points.
+    firmer : float64, shape (h,)
+        By which factor points are held more firmly, as handles are (`Handles`).
     held : float64, shape (u, u)
         The Hessian of the mean over the outline's vertices of |δ|² / L².
     some : intp, shape (s,)
@@ -69,6 +71,7 @@ class Rows(NamedTuple):
     boundary: Boundary
     coordinates: Complexes
     derivatives: Complexes
+    firmer: Floats
     held: Floats
     some: Indices
     some_weights: Floats
@@ -88,6 +91,7 @@ class Rows(NamedTuple):
             boundary=boundary,
             coordinates=span.coordinates(points) @ basis,
             derivatives=span.derivatives(points) @ basis,
+            firmer=boundary.stiffness_around(points)[1],
             held=held,
             some=some,
             some_weights=np.add.reduceat(boundary.weights, starts),
@@ -142,7 +146,7 @@ class RelativeEnergy:
     @cached_property
     def stiffness(self) -> Floats:
         """λ of the points (h,)."""
-        return self.pins.stiffness / self.rows.boundary.size**2
+        return self.pins.stiffness * self.rows.firmer / self.rows.boundary.size**2
 
     @cached_property
     def held(self) -> float:

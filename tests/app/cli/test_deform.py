@@ -5,6 +5,7 @@ import pytest
 from deform_shapes import STAR_POINTS, star_boundary
 from interpolation_shapes import subdivided
 from numpy.testing import assert_allclose
+from refusals import refusal
 
 from app.cli.main import main
 from engine.geometry.polygon import is_simple
@@ -159,3 +160,44 @@ def test_bad_input_is_one_line(write, tmp_path, capsys, changes, message):
     assert len(said) == 1
     assert re.search(message, said[0])
     assert not out.exists()
+
+
+STIFF = np.where(OUTLINE.imag > 0, 20.0, 1.0)
+
+
+def test_a_stiff_part_is_distorted_less_and_has_limits_of_its_own(write, tmp_path):
+    targets = STAR_POINTS + np.array([0, 0.4, -0.3j, 0, 0, 0.3])
+    points = star_boundary().points[star_boundary().points.imag > 0.15]
+    distortions = {}
+    for name, changes in {
+        "usual": {},
+        "ones": {"stiffness": np.ones(len(OUTLINE)), "local_limits": 1},
+        "stiff": {"stiffness": STIFF},
+        "limited": {"stiffness": STIFF, "local_limits": 1, "k_max": 0.4},
+    }.items():
+        got = deform(write(targets=targets, **changes), tmp_path / f"{name}.npz")
+        fz, fzbar = HarmonicMap(cage=CAGE, phi=got["phi"], psi=got["psi"]).derivatives(points)
+        distortions[name] = np.abs(fzbar / fz), got["phi"]
+        assert got["certified"]
+    assert np.array_equal(distortions["usual"][1], distortions["ones"][1])
+    assert distortions["stiff"][0].mean() < distortions["usual"][0].mean()
+    assert distortions["limited"][0].max() <= 0.4 / np.sqrt(20) < distortions["stiff"][0].max()
+
+
+@pytest.mark.parametrize(
+    ("changes", "name"),
+    [
+        ({"stiffness": np.ones(3)}, "stiffness"),
+        ({"stiffness": 2.0}, "stiffness"),
+        ({"stiffness": np.full(len(OUTLINE), np.nan)}, "stiffness"),
+        ({"stiffness": np.full(len(OUTLINE), 0.03)}, "stiffness"),
+        ({"stiffness": np.full(len(OUTLINE), "soft")}, "stiffness"),
+        ({"stiffness": OUTLINE}, "stiffness"),
+        ({"stiffness": STIFF, "local_limits": 2}, "local_limits"),
+        ({"stiffness": STIFF, "local_limits": np.nan}, "local_limits"),
+        ({"stiffness": STIFF, "local_limits": np.ones(3)}, "local_limits"),
+    ],
+)
+def test_other_materials_are_refused_by_name(write, tmp_path, capsys, changes, name):
+    said = refusal(capsys, "deform", write(**changes), "--out", tmp_path / "map.npz")
+    assert name in said

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from app.document import Handle
-from app.document.handle_pairs import mirrored_name, pairs_by_name, partners_of
+from app.document.body.pairs import mirrored_name, pairs_by_name, partners_of
 
 SIDES = [
     ("hand.L", "hand.R"),

@@ -24,7 +24,7 @@ from app.document.commands import handle_commands, key_commands, layer_commands,
 from app.document.keyframe import Passing
 from app.errors import LissomError
 from app.storage.assets import sample_images
-from app.storage.project.archive import MIMETYPE
+from app.storage.project.archive import MIMETYPE, array_member
 from app.storage.project_file import load_project, load_thumbnail, save_project
 from engine.domain.picture.cut_out import CutOut, Slit
 from engine.maps import Boundary, certify
@@ -40,7 +40,7 @@ STORED_2 = Path(__file__).parent / "data" / "schema_2.lissom"
 LAYER = ("name", "corner", "still", "reference", "locked", "hidden", "switches", "opacity")
 LAYER += ("attachment",)
 # What an animation has that is more than poses: older projects have none of it.
-CLOCKS = ("free", "stillness", "tracks", "springs")
+CLOCKS = ("free", "stillness", "tracks", "springs", "bones", "stiffness")
 
 
 @pytest.fixture(scope="module")
@@ -292,6 +292,51 @@ def test_clocks_that_make_no_sense_are_named(tmp_path, way, value, message):
     with pytest.raises(LissomError, match=message) as raised:
         load_project(pack(tmp_path / "a.lissom", broken))
     assert str(raised.value).startswith(f"cannot open {tmp_path / 'a.lissom'}: ")
+
+
+@pytest.mark.parametrize(
+    ("way", "value", "message"),
+    [
+        (["stiffness"], 1, "stiffness must be true or false"),
+        (["bones"], {}, "bones must be a list"),
+        (["bones", 0, "ends"], [4, 7], "bone ends at the handle 7, which is not there"),
+        (["bones", 0, "ends"], [4, 4], "from one handle to another one"),
+        (["bones", 0, "ends"], [4], "ends must be two handles"),
+        (["bones", 0, "amount"], 101, "stiffness is from 1/30 to 100"),
+        (["bones", 0, "amount"], 0, "stiffness is from 1/30 to 100"),
+        (["bones", 0, "amount"], "much", "amount must be a number"),
+        (["bones", 0, "is_shown"], 2, "is_shown must be true or false"),
+    ],
+)
+def test_material_that_makes_no_sense_is_named(tmp_path, way, value, message):
+    save_project(tmp_path / "a", clocked_document())
+    broken = with_json(read_members(tmp_path / "a"), "figures", 0, *way, value=value)
+    with pytest.raises(LissomError, match=message):
+        load_project(pack(tmp_path / "a.lissom", broken))
+
+
+def test_two_bones_in_one_place_and_wild_stiffnesses_are_refused(tmp_path):
+    save_project(tmp_path / "a", clocked_document())
+    members = read_members(tmp_path / "a")
+    bone = json.loads(members["project.json"])["figures"][0]["bones"][0]
+    twice = with_json(members, "figures", 0, "bones", value=[bone, bone | {"ends": [1, 4]}])
+    with pytest.raises(LissomError, match="Two bones are between handles"):
+        load_project(pack(tmp_path / "b", twice))
+    (name,) = (name for name in members if name.endswith("stiffness.npy"))
+    count = len(clocked_document().figures[0].stiffness)
+    for wrong, message in (
+        (np.ones(count - 1), "stiffness must be one number for each"),
+        (np.full(count, np.nan), "stiffness must be from 1/30"),
+        (np.full(count, 1e3), "stiffness must be from 1/30"),
+        (np.ones(count + 1), "cut short|too large|one number for each"),
+        (np.ones(count, np.float32), "is not an array float64"),
+    ):
+        other = members | {name: array_member(wrong)}
+        with pytest.raises(LissomError, match=message):
+            load_project(pack(tmp_path / "b", other))
+    del members[name]
+    with pytest.raises(LissomError, match=r"lacks figures/0/stiffness\.npy"):
+        load_project(pack(tmp_path / "b", members))
 
 
 def test_a_spring_without_damping_is_refused_in_a_loop(tmp_path):

@@ -1,0 +1,20 @@
+"""What handles are to each other and to the drawing: pairs on two sides, and bones in limbs.
+
+In: handles.
+Out: their partners, bones, and the material that these make.
+Imports: the values of `app.document`.
+"""
+
+from app.document.body.material import (
+    USUAL_STRENGTH as USUAL_STRENGTH,
+    Bone as Bone,
+    carried_over as carried_over,
+    joined_stiffness as joined_stiffness,
+    require_amount as require_amount,
+    usual_as_none as usual_as_none,
+)
+from app.document.body.pairs import (
+    mirrored_name as mirrored_name,
+    pairs_by_name as pairs_by_name,
+    partners_of as partners_of,
+)

@@ -1,0 +1,70 @@
+"""What a brush reaches: the outline near it, and by that what lies behind, as deep as a limb is."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import shapely
+
+from engine.arrays import Complexes, Floats
+from engine.geometry import ON_OUTLINE, box_diagonal, loop_ends, next_on_loop, region
+
+TINY = 1e-9
+
+
+def brushed(
+    loops: Sequence[Complexes], places: Complexes, radius: float, softness: float
+) -> Floats:
+    """Return how much the vertices of a drawing's loops get of a stroke, 0 to 1.
+
+    A dab acts on the outline within its radius that is seen from its centre, so that it does not
+    reach across a gap; where it lies beside the drawing, on all of that. A dab on a long edge acts
+    on the ends of that, the more the nearer they are.
+
+    Parameters
+    ----------
+    loops : sequence of complex128
+        The outline, and those of holes.
+    places : complex128, shape (d,)
+        The centres of the dabs.
+    radius : float
+    softness : float
+        The part of the radius over which the share falls to 0 at its edge, 0 to 1.
+
+    Returns
+    -------
+    float64, shape (p,)
+        All 0 where the stroke reaches no outline.
+    """
+    corners, ends = np.concatenate(loops), loop_ends(loops)
+    sides = ends - corners
+    area = region(loops[0], loops[1:]).buffer(ON_OUTLINE * box_diagonal(loops[0]))
+    shapely.prepare(area)
+    shares = np.zeros(len(corners))
+    starts = np.cumsum([0, *map(len, loops[:-1])])
+    following = next_on_loop(starts, len(corners))
+    for place in places.tolist():
+        along = np.clip(((place - corners) / sides).real, 0.0, 1.0)
+        # The nearest outline has all of it, however deep inside the brush is.
+        depth = min(float(np.abs(corners + along * sides - place).min()), radius)
+        for part in (along, np.zeros(len(corners))):
+            at = corners + part * sides
+            away = (np.abs(at - place) - depth) / max(radius - depth, TINY * radius)
+            strength = _falloff(away, softness)
+            reached = np.flatnonzero(strength > 0)
+            if shapely.intersects_xy(area, place.real, place.imag):
+                lines = np.column_stack([np.full(len(reached), place), at[reached]])
+                seen = shapely.covers(area, shapely.linestrings(lines.real, lines.imag))
+                reached = reached[seen]
+            strength, share = strength[reached], part[reached]
+            np.maximum.at(shares, reached, strength * (1 - share))
+            np.maximum.at(shares, following[reached], strength * share)
+    return shares
+
+
+def _falloff(distances: Floats, softness: float) -> Floats:
+    """Return 1 inside, falling smoothly to 0 at distance 1."""
+    if softness <= 0:
+        return (distances <= 1).astype(np.float64)
+    share = np.clip((1 - distances) / softness, 0.0, 1.0)
+    falloff: Floats = share * share * (3 - 2 * share)
+    return falloff

@@ -1,0 +1,98 @@
+"""The limb around a bone: as wide as it is, without its joints.
+
+A bone is a line in the drawing. Across it, at places along it, the outline is at some distance on
+either side; a limb is about equally thick along most of it, so that the distances where the bone
+enters the trunk, which are much larger, do not belong to it.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+import shapely
+
+from engine.arrays import Booleans, Complexes, Floats
+from engine.errors import EngineError
+from engine.geometry import ON_OUTLINE, as_xy, box_diagonal, region
+
+# Places along a bone at which its limb is measured.
+PLACES = 48
+# Half of a limb is on each side at least so wide as at this share of the places, and points
+# belong to it that are at most so many times as far away; from there on the share falls to 0.
+USUAL, THICKEST, BEYOND = 0.4, 1.35, 1.8
+# A joint is at each end, as long as the limb is wide on one side, but at most such a part of it.
+LONGEST_JOINT = 0.35
+
+
+def limb_around(
+    loops: Sequence[Complexes], start: complex, end: complex, points: Complexes
+) -> Floats:
+    """Return how much of a bone's stiffness points of a drawing's boundary have (t,), 0 to 1.
+
+    A point belongs to the limb where it is beside the bone, seen from there, and not much farther
+    away than the limb is thick. Towards both ends the share falls smoothly to 0: joints bend.
+
+    Parameters
+    ----------
+    loops : sequence of complex128
+        The outline, and those of holes.
+    start, end : complex
+        The ends of the bone, in the closed domain.
+    points : complex128, shape (t,)
+
+    Raises
+    ------
+    EngineError
+        If the bone is a point, or leaves the drawing or crosses a hole.
+    """
+    length = abs(end - start)
+    area = region(loops[0], loops[1:]).buffer(ON_OUTLINE * box_diagonal(loops[0]))
+    if not length > 0:
+        raise EngineError("A bone leads from one point to another one.")
+    bone = shapely.LineString([(start.real, start.imag), (end.real, end.imag)])
+    if not area.covers(bone):
+        raise EngineError(
+            "A bone must stay on the drawing, and this one leaves it or crosses a hole; put a "
+            "handle between its ends, and a bone to either side of that."
+        )
+    local = (points - start) * np.conj(end - start) / length
+    along, across = local.real / length, local.imag
+    widths = _widths(loops, start, end)
+    joint = min(float(widths.mean()), LONGEST_JOINT * length) / length
+    shares = _smooth(np.minimum(along, 1 - along) / joint)
+    width = np.where(across > 0, widths[0], widths[1])
+    shares *= np.clip((BEYOND - np.abs(across) / width) / (BEYOND - THICKEST), 0.0, 1.0)
+    beside = np.flatnonzero(shares > 0)
+    feet = start + along[beside] * (end - start)
+    shares[beside] *= _sees(area, feet, points[beside])
+    return shares
+
+
+def _widths(loops: Sequence[Complexes], start: complex, end: complex) -> Floats:
+    """Return how wide the limb is to the left of the bone and to the right of it."""
+    outlines = shapely.MultiLineString([shapely.LinearRing(as_xy(loop)) for loop in loops])
+    shapely.prepare(outlines)
+    feet = np.array(start + (np.arange(PLACES) + 0.5) / PLACES * (end - start), complex)
+    size = box_diagonal(loops[0])
+    aside = 1j * (end - start) / abs(end - start) * size
+    found = []
+    for direction in (aside, -aside):
+        rays = np.column_stack([feet, feet + direction])
+        hits = shapely.intersection(shapely.linestrings(rays.real, rays.imag), outlines)
+        distances = shapely.distance(shapely.points(as_xy(feet)), hits)
+        found.append(np.nanquantile(distances, USUAL))
+    return np.maximum(found, ON_OUTLINE * size)
+
+
+def _smooth(depth: Floats) -> Floats:
+    """Return a smooth step from 0 to 1 over depths from 0 to 1."""
+    share = np.clip(depth, 0.0, 1.0)
+    step: Floats = share * share * (3 - 2 * share)
+    return step
+
+
+def _sees(area: shapely.Geometry, feet: Complexes, points: Complexes) -> Booleans:
+    """Tell of each foot whether its point is seen from there."""
+    shapely.prepare(area)
+    lines = np.column_stack([feet, points])
+    seen = shapely.covers(area, shapely.linestrings(lines.real, lines.imag))
+    return np.asarray(seen, dtype=np.bool_)

@@ -1,0 +1,76 @@
+"""How stiff a drawing is: a factor of the energy's weights along its boundary.
+
+The stiffness s is given at the vertices of the outline and of the holes' outlines, and is
+logarithmically linear along the edges between them. The energy is a sum over samples of the
+boundary, of which s multiplies the weights. A harmonic map that is rigid on an open set is rigid
+everywhere: what is stiff gives way little, but never not at all.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from engine.arrays import Complexes, Floats
+from engine.errors import EngineError
+
+SOFTEST, STIFFEST = 1 / 30, 100.0
+# By which numbers may miss the ends of the range, for rounding.
+ROUNDING = 1e-9
+
+
+def require_stiffness(stiffness: npt.ArrayLike, count: int) -> Floats:
+    """Return the stiffness at the vertices of all loops, float64 (count,).
+
+    Raises
+    ------
+    EngineError
+        If they are not so many, or not numbers from 1/30 to 100.
+    """
+    values = np.asarray(stiffness)
+    if values.shape != (count,) or values.dtype.kind not in "biuf":
+        raise EngineError(
+            f"stiffness must be one number for each of the {count} vertices of the outline and of "
+            f"the holes' outlines, not of shape {values.shape}, {values.dtype}."
+        )
+    values = values.astype(np.float64)
+    fits = (values >= SOFTEST * (1 - ROUNDING)) & (values <= STIFFEST * (1 + ROUNDING))
+    if not fits.all():
+        first = int(np.flatnonzero(~fits)[0])
+        raise EngineError(
+            f"stiffness must be from 1/30 to {STIFFEST:g}, and is {values[first]:g} at vertex "
+            f"{first}; 1 is the usual one."
+        )
+    return values
+
+
+def along_loops(
+    stiffness: Floats, loops: Sequence[Complexes], points: Sequence[Complexes]
+) -> Floats:
+    """Return the stiffness at points of the boundary.
+
+    Parameters
+    ----------
+    stiffness : float64, shape (p,)
+        At the vertices of the loops, one loop after the other.
+    loops : sequence of complex128
+    points : sequence of complex128
+        On each loop in its order, from its first vertex on, with every vertex among them.
+    """
+    logarithms = np.split(np.log(stiffness), np.cumsum([len(loop) for loop in loops[:-1]]))
+    return np.concatenate(
+        [
+            np.exp(np.interp(_places(its), _places(loop), values, period=_length(loop)))
+            for loop, its, values in zip(loops, points, logarithms, strict=True)
+        ]
+    )
+
+
+def _places(loop: Complexes) -> Floats:
+    """Return how far along a loop its points are from the first one."""
+    places: Floats = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(loop)))])
+    return places
+
+
+def _length(loop: Complexes) -> float:
+    return float(np.abs(np.roll(loop, -1) - loop).sum())

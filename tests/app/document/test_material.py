@@ -1,0 +1,181 @@
+"""Painted stiffness and bones in the document."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from documents import CENTRE, RADIUS, disc_document, disc_domain
+from numpy.testing import assert_allclose, assert_array_equal
+
+from app.document import (
+    Bone,
+    Meshing,
+    brushed_stiffness,
+    figure_commands,
+    handle_commands,
+    layer_commands,
+    material_commands,
+    stiff_outline,
+    stiffened,
+)
+from app.errors import LissomError
+from engine.errors import EngineError
+from engine.maps import Boundary, HarmonicMap
+
+LEFT, RIGHT = CENTRE - 70, CENTRE + 70
+
+
+def boned():
+    """A disc with handles on its left, right and top, and a bone from left to right."""
+    document = disc_document()
+    for name, place in (("hand.L", LEFT), ("hand.R", RIGHT), ("top", CENTRE + 60j)):
+        document = handle_commands.add_handle(0, place, name=name)(document)
+    return material_commands.add_bone(0, (0, 1), 20.0)(document)
+
+
+def boundary_of(figure):
+    domain = figure.domain
+    return stiffened(figure, Boundary.sample(domain.outline, domain.cage, domain.holes))
+
+
+def test_a_stroke_is_painted_on_the_outline_it_reaches_and_cleared():
+    document = disc_document()
+    (figure,) = document.figures
+    painted, reached = brushed_stiffness(figure, [CENTRE], radius=40, amount=9.0)
+    assert (painted, reached) == (None, False)
+    assert material_commands.paint(0, [CENTRE], radius=40, amount=9.0)(document) is document
+    stiff = material_commands.paint(0, [RIGHT], radius=50, amount=9.0)(document)
+    (figure,) = stiff.figures
+    assert figure.keys is document.figures[0].keys
+    assert not figure.stiffness.flags.writeable
+    assert figure.stiffness[0] > 5
+    assert figure.stiffness[len(figure.stiffness) // 2] == 1
+    boundary = boundary_of(figure)
+    assert boundary.stiffness[0] == pytest.approx(figure.stiffness[0])
+    # Painted over as much with the usual one, nothing is left.
+    soft = material_commands.paint(0, [RIGHT], radius=50, amount=1.0, softness=0.0)(stiff)
+    again = material_commands.paint(0, [RIGHT], radius=90, amount=1.0, softness=0.0)(soft)
+    assert again.figures[0].stiffness is None
+    assert material_commands.clear(0)(stiff).figures[0].stiffness is None
+    assert material_commands.clear(0)(document) is document
+
+
+def test_bones_come_and_go_with_their_handles_and_their_names_do_not_matter():
+    document = boned()
+    assert document.figures[0].bones == (Bone(ends=(0, 1), amount=20.0),)
+    changed = material_commands.set_bone_amount(0, (1, 0), 50.0)(document)
+    assert changed.figures[0].bones[0].amount == 50
+    assert material_commands.set_bone_amount(0, (1, 0), 50.0)(changed) is changed
+    hidden = material_commands.show_bones(0, shown=False)(document)
+    assert not hidden.figures[0].bones[0].is_shown
+    assert_array_equal(
+        boundary_of(hidden.figures[0]).stiffness, boundary_of(document.figures[0]).stiffness
+    )
+    assert material_commands.show_bones(0, shown=True)(document) is document
+    renamed = handle_commands.rename_handle(0, 0, "paw")(document)
+    assert renamed.figures[0].bones == document.figures[0].bones
+    assert handle_commands.remove_handles(0, {1})(document).figures[0].bones == ()
+    assert handle_commands.remove_handles(0, {2})(document).figures[0].bones
+    assert material_commands.remove_bone(0, (1, 0))(document).figures[0].bones == ()
+    copied = layer_commands.duplicate_figure(0)(document)
+    assert copied.figures[1].bones == document.figures[0].bones
+
+
+@pytest.mark.parametrize(
+    ("command", "message"),
+    [
+        (
+            material_commands.add_bone(0, (1, 0)),
+            "There is a bone from 'hand.R' to 'hand.L' already",
+        ),
+        (material_commands.add_bone(0, (0, 0)), "from one handle to another one"),
+        (material_commands.add_bone(0, (0, 9)), "no handle with the id 9"),
+        (material_commands.add_bone(0, (0, 2), 101.0), "from 1/30 to 100, not 101"),
+        (material_commands.add_bone(0, (0, 2), float("nan")), "from 1/30 to 100, not nan"),
+        (material_commands.remove_bone(0, (0, 2)), "There is no bone from 'hand.L' to 'top'"),
+        (material_commands.set_bone_amount(0, (1, 2), 3.0), "There is no bone"),
+        (material_commands.set_bone_amount(0, (0, 1), 0.0), "from 1/30 to 100, not 0"),
+        (material_commands.paint(0, [CENTRE], radius=-1, amount=2.0), "radius of a brush is above"),
+        (material_commands.paint(0, [CENTRE], radius=9, amount=0.01), "from 1/30 to 100"),
+    ],
+)
+def test_what_is_not_possible_says_why(command, message):
+    with pytest.raises(LissomError, match=message):
+        command(boned())
+
+
+def test_a_bone_that_would_leave_the_drawing_is_refused_and_one_that_came_to_does_nothing():
+    document = disc_document()
+    points = CENTRE + RADIUS * np.exp(2j * np.pi * np.arange(24) / 24)
+    points[5:8] = CENTRE + 5 * np.exp(2j * np.pi * np.arange(5, 8) / 24)
+    domain = replace(disc_domain(24), outline=points)
+    (figure,) = document.figures
+    rest = figure.keys[0].pose.with_map(_identity(domain))
+    notched = figure_commands.replace_domain(0, domain, Meshing(), [rest])(document)
+    for place in (CENTRE + 60 * np.exp(1.05j), CENTRE + 60 * np.exp(2.1j)):
+        notched = handle_commands.add_handle(0, complex(place))(notched)
+    with pytest.raises(EngineError, match="leaves it or crosses a hole; put a handle between"):
+        material_commands.add_bone(0, (0, 1))(notched)
+    whole = handle_commands.add_handle(0, CENTRE + 60 * np.exp(1.05j))(document)
+    whole = handle_commands.add_handle(0, CENTRE + 60 * np.exp(2.1j))(whole)
+    whole = material_commands.add_bone(0, (0, 1))(whole)
+    assert boundary_of(whole.figures[0]).stiffness.max() > 10
+    rest = whole.figures[0].keys[0].pose.with_map(_identity(domain))
+    cut = figure_commands.replace_domain(0, domain, Meshing(), [rest])(whole)
+    assert (boundary_of(cut.figures[0]).stiffness == 1).all()
+
+
+def _identity(domain):
+    return HarmonicMap.identity(domain.cage, domain.holes)
+
+
+def test_the_larger_of_what_is_painted_and_of_bones_counts():
+    document = boned()
+    (figure,) = document.figures
+    bone = boundary_of(figure).stiffness
+    for amount, wanted in ((5.0, np.maximum(5.0, bone)), (0.2, np.where(bone > 1, bone, 0.2))):
+        painted = replace(figure, stiffness=np.full(12, amount))
+        assert_allclose(boundary_of(painted).stiffness, wanted)
+    soft = replace(figure.bones[0], amount=0.1)
+    assert_allclose(boundary_of(replace(figure, bones=(soft,))).stiffness.min(), 0.1)
+    points, stiffness = stiff_outline(figure)
+    assert points[0] == figure.domain.outline[0]
+    assert stiffness.max() == pytest.approx(20)
+
+
+def test_material_stays_in_its_place_on_another_domain():
+    document = material_commands.paint(0, [RIGHT], radius=60, amount=30.0)(boned())
+    (before,) = document.figures
+    domain = disc_domain(40)
+    rest = before.keys[0].pose.with_map(_identity(domain))
+    (after,) = figure_commands.replace_domain(0, domain, Meshing(), [rest])(document).figures
+    assert len(after.stiffness) == 40
+    old, new = boundary_of(before), boundary_of(after)
+    assert after.bones == before.bones
+    assert new.stiffness[0] == pytest.approx(old.stiffness[0], rel=0.05)
+    assert new.stiffness[np.argmin(new.points.real)] == pytest.approx(1, abs=0.2)
+    assert_array_equal(material_commands.clear(0)(document).figures[0].bones, before.bones)
+
+
+def test_material_is_mirrored_as_handles_are():
+    document = material_commands.paint(0, [RIGHT], radius=60, amount=30.0)(boned())
+    document = material_commands.add_bone(0, (0, 2), 40.0)(document)
+    mirrored = material_commands.mirror(0)(document)
+    (figure,) = mirrored.figures
+    assert [bone.ends for bone in figure.bones] == [(0, 1), (0, 2), (1, 2)]
+    assert figure.bones[2].amount == 40
+    outline, stiffness = figure.domain.outline, figure.stiffness
+    opposite = np.abs(outline[:, None] - (2 * figure.axis - outline.conj())).argmin(axis=0)
+    assert_allclose(stiffness, stiffness[opposite], rtol=1e-9)
+    assert stiffness.max() == document.figures[0].stiffness.max()
+    assert material_commands.mirror(0)(mirrored) is mirrored
+
+
+def test_a_figure_refuses_material_that_does_not_fit():
+    (figure,) = boned().figures
+    with pytest.raises(EngineError, match="one number for each of the 12 vertices"):
+        replace(figure, stiffness=np.ones(3))
+    with pytest.raises(LissomError, match="bone ends at the handle 7, which is not there"):
+        replace(figure, bones=(Bone(ends=(0, 7)),))
+    with pytest.raises(LissomError, match="Two bones are between handles"):
+        replace(figure, bones=(*figure.bones, Bone(ends=(1, 0))))

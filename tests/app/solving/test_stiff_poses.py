@@ -1,0 +1,171 @@
+"""Poses of figures that are stiff in places."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from animations import still_document
+
+from app.document import Target, find_shortfall, handle_commands, material_commands
+from app.errors import LissomError
+from app.solving import pose_document
+from app.solving.drag import Drag, Rig
+from app.solving.script import parse_pose_script
+
+BAR = np.zeros((80, 480, 4), np.uint8)
+BAR[20:60, 20:460] = 255
+PLACES = (30 + 40j, 240 + 40j, 450 + 40j)
+
+
+def bar(amount=40.0):
+    """A bar with handles at its ends and in the middle, and a bone in its left half."""
+    document = still_document(BAR)
+    for place in PLACES:
+        document = handle_commands.add_handle(0, place)(document)
+    if amount is not None:
+        document = material_commands.add_bone(0, (0, 1), amount)(document)
+    return document.figures[0]
+
+
+def targets_of(*places):
+    return {number: Target(position=place) for number, place in enumerate(places)}
+
+
+def pulled(figure, start, targets):
+    drag = Drag.begin(Rig.of(figure), start).towards(targets, 300)
+    assert drag.state.certificate.certified
+    return drag.pose(targets)
+
+
+def bent_in(figure, pose, left, right):
+    """Return the largest k at the outline between two places."""
+    outline = figure.domain.outline
+    outline = (
+        outline[:, None] + np.linspace(0, 1, 20) * (np.roll(outline, -1) - outline)[:, None]
+    ).ravel()
+    points = outline[(outline.real > left) & (outline.real < right)]
+    fz, fzbar = figure.map_of(pose).derivatives(points)
+    return float((np.abs(fzbar) / np.abs(fz)).max())
+
+
+UP = targets_of(60 + 100j, 240 + 40j, 420 + 100j)
+
+
+def test_a_bone_keeps_its_limb_straight_and_within_its_own_limits():
+    usual, boned = bar(None), bar()
+    before = pulled(usual, usual.keys[0].pose, UP)
+    after = pulled(boned, boned.keys[0].pose, UP)
+    assert bent_in(boned, after, 110, 160) < 0.6 * bent_in(usual, before, 110, 160)
+    assert bent_in(boned, after, 110, 160) <= boned.bounds.k / np.sqrt(40)
+    assert max(boned.lags(after).values()) < 1
+
+
+def test_what_is_stiff_is_known_to_rigs_and_taken_from_earlier_ones():
+    usual, boned = bar(None), bar()
+    first = Rig.of(usual)
+    assert first.deformer.bounds is usual.bounds
+    stiff = Rig.of(replace(usual, bones=boned.bones), first)
+    assert stiff.deformer.boundary.points is first.deformer.boundary.points
+    assert stiff.deformer.boundary.stiffness.max() == pytest.approx(40)
+    assert stiff.deformer.handles.around.max() > 5
+    assert Rig.of(replace(stiff.figure, name="other"), stiff).deformer.handles is (
+        stiff.deformer.handles
+    )
+    back = Rig.of(usual, stiff)
+    assert (back.deformer.boundary.stiffness == 1).all()
+    moved = handle_commands.move_handle(0, 1, 200 + 40j)
+    longer = moved(still_with(stiff.figure)).figures[0]
+    assert not np.array_equal(
+        Rig.of(longer, stiff).deformer.boundary.stiffness, stiff.deformer.boundary.stiffness
+    )
+
+
+def still_with(figure):
+    return still_document(BAR).with_figure(figure)
+
+
+def test_a_pose_of_before_stays_and_begins_a_drag_though_it_is_beyond_new_limits():
+    usual, boned = bar(None), bar(100.0)
+    before = pulled(usual, usual.keys[0].pose, UP)
+    figure = boned.with_poses([before])
+    assert figure.keys[0].pose.phi is before.phi
+    assert figure.is_proven(before)
+    drag = Drag.begin(Rig.of(figure), before)
+    assert np.array_equal(drag.state.map.phi, before.phi)
+    assert drag.state.certificate.certified
+    assert drag.towards(UP, 200).state.certificate.certified
+
+
+def test_a_limb_that_its_bone_holds_back_is_said_to_be_at_the_limits():
+    boned = bar(100.0)
+    far = targets_of(30 + 40j, 330 + 40j, 540 + 40j)
+    pose = pulled(boned, boned.keys[0].pose, far)
+    shortfall = find_shortfall(boned, pose)
+    assert 1 in shortfall.lags
+    assert shortfall.at_limits
+
+
+SCRIPT = {
+    "schema": 1,
+    "handles": {"start": [30, 40], "elbow": [240, 40], "end": [450, 40]},
+    "keys": [{"frame": 0}, {"frame": 8, "targets": {"end": [400, 110]}}],
+    "stiff": [
+        {"around": [450, 40], "radius": 60, "amount": 10},
+        {"from": "start", "to": "elbow", "amount": 30},
+    ],
+}
+
+
+def test_a_script_says_what_is_stiff():
+    document, notices = pose_document(
+        still_document(BAR), parse_pose_script(SCRIPT), lambda _: None
+    )
+    (figure,) = document.figures
+    assert notices == ()
+    assert figure.bones[0].ends == (0, 1)
+    assert figure.bones[0].amount == 30
+    assert figure.stiffness[np.argmax(figure.domain.outline.real)] > 5
+    plain = {name: value for name, value in SCRIPT.items() if name != "stiff"}
+    usual, _ = pose_document(still_document(BAR), parse_pose_script(plain), lambda _: None)
+    stiff, soft = figure.keys[1].pose, usual.figures[0].keys[1].pose
+    assert bent_in(figure, stiff, 110, 160) < 0.5 * bent_in(figure, soft, 110, 160)
+    nowhere = {**SCRIPT, "stiff": [{"around": [240, 400], "radius": 6, "amount": 10}]}
+    _, notices = pose_document(still_document(BAR), parse_pose_script(nowhere), lambda _: None)
+    assert notices == (
+        "no outline is seen within 6 px of (240, 400): nothing is stiff or soft there",
+    )
+
+
+@pytest.mark.parametrize(
+    ("stiff", "message"),
+    [
+        ({}, "stiff must be a list"),
+        ([7], "stiff[0] must be an object"),
+        ([{"from": "start", "to": "knee", "amount": 3}], "stiff[0] names the handle 'knee'"),
+        ([{"from": "start", "to": "start", "amount": 3}], "from 'start' to itself"),
+        ([{"from": "start", "to": "end"}], "lacks the field 'amount'"),
+        ([{"from": "start", "amount": 2}], "lacks the field 'to'"),
+        ([{"from": "start", "to": "end", "amount": 101}], "from 1/30 to 100, not 101"),
+        ([{"from": "start", "to": "end", "amount": "hard"}], "stiff[0].amount must be a number"),
+        ([{"from": "start", "to": "end", "amount": 2, "radius": 3}], "unknown field 'radius'"),
+        ([{"around": [1, 2], "radius": 0, "amount": 2}], "stiff[0].radius must be above 0"),
+        ([{"around": [1], "radius": 9, "amount": 2}], "stiff[0].around must be a point"),
+        ([{"around": [1, 2], "radius": 9, "amount": 0.03}], "from 1/30 to 100, not 0.03"),
+    ],
+)
+def test_other_stiff_parts_are_refused(stiff, message):
+    with pytest.raises(LissomError, match=re.escape(message)):
+        parse_pose_script({**SCRIPT, "stiff": stiff})
+
+
+def test_a_bone_of_a_script_that_leaves_the_drawing_is_named():
+    picture = BAR.copy()
+    picture[20:45, 200:280] = 0
+    script = {**SCRIPT, "handles": {"start": [30, 50], "elbow": [240, 26], "end": [450, 50]}}
+    script["stiff"] = [{"from": "start", "to": "end", "amount": 3}]
+    with pytest.raises(LissomError, match="stiff from 'start' to 'end': A bone must stay"):
+        pose_document(still_document(picture), parse_pose_script(script), lambda _: None)
+    script["stiff"] = 2 * [{"from": "start", "to": "elbow", "amount": 3}]
+    with pytest.raises(LissomError, match="There is a bone from 'start' to 'elbow' already"):
+        pose_document(still_document(BAR), parse_pose_script(script), lambda _: None)
