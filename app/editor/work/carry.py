@@ -69,6 +69,8 @@ class Take:
         Of the playhead before.
     place : complex
         Where the handle is wanted now, on the figure by itself.
+    scale : float
+        How many pixels of the screen one of the picture took, when it began.
     smoothing : float
         From 0 to 1.
     samples : list of Sample
@@ -86,6 +88,7 @@ class Take:
     last: int
     speed: float
     place: complex
+    scale: float
     smoothing: float
     samples: list[Sample] = field(default_factory=list)
     is_over: bool = False

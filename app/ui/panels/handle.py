@@ -65,6 +65,9 @@ def draw(session: Session, look: Look, project: Project) -> list[Action]:
         heading(look, f"{len(chosen)} handles")
         small(look, "Dragging one of them moves them all; arrows nudge them.")
         actions += _firmness(session, look, chosen)
+        track = figure.track_of(chosen[0].id)
+        if track is not None and set(track.handles) >= {handle.id for handle in chosen}:
+            actions += draw_track(session, look, project, figure.handle(track.handles[0]))
     else:
         small(look, "Select a handle to see its settings.")
     if len(chosen) != 1 and session.tint == "depth":

@@ -648,3 +648,45 @@ def test_handles_that_stay_have_a_mark_and_can_be_freed(window, bent, press):
     # With a track of its own it goes where that leads.
     with_track(window, bent, handle=LEFT)
     assert not staying(bent.puppet.shown)
+
+
+def test_handles_stay_or_not_as_the_menu_of_interpolation_says(window, bent):
+    before = bent.document
+    window.act(playback.seek, 12)
+    window.settle()
+
+    def switch():
+        def act(robot):
+            robot.item_click("//###Timeline/##variant")
+            robot.item_click("//##Combo_00/Handles stay between keys")
+
+        window.run(act)
+        window.settle()
+        playback.seek(window.session, 12)
+        window.settle()
+        return np.array(bent.puppet.shown.handle_places)
+
+    target = bent.figure.key(24).pose.targets[LEFT].position
+    still = np.array(bent.puppet.shown.handle_places)
+    assert abs(still[LEFT] - target) < 0.3
+    free = switch()
+    assert not bent.figure.stillness
+    assert not staying(bent.puppet.shown)
+    assert np.abs(free - still).max() > 0.5
+    np.testing.assert_allclose(switch(), still, rtol=0, atol=1e-6)
+    assert bent.figure.stillness
+    window.act(editing.undo)
+    window.act(editing.undo)
+    assert bent.document is before
+
+
+def test_a_track_of_several_handles_is_set_with_all_of_them_selected(window, bent, press):
+    with_track(window, bent)
+    track = Track(handles=(LEFT, RIGHT), keys=(TrackKey(frame=4, place=0j),))
+    window.act(editing.edit, track_commands.put_track(bent.active, track))
+    for chosen in ({LEFT, RIGHT}, {RIGHT}):
+        window.act(editing.select, frozenset(chosen))
+        window.settle()
+        was = bent.figure.track_of(LEFT).turns
+        press("Keys turn it, too")
+        assert bent.figure.track_of(LEFT).turns != was

@@ -315,6 +315,21 @@ def test_a_drag_is_recorded_while_it_plays_and_fitted_by_few_keys(window, bent):
     assert bent.document is before, "one take is one step"
 
 
+def test_a_recording_is_as_smooth_as_the_hand_was_on_the_screen(window, bent):
+    """A picture that is seen at a quarter of the size trembles by four times as many pixels."""
+    playback.scrub(window.session, 0)
+    window.settle()
+    record(window, bent, CIRCLE)
+    take, scale = bent.take, bent.view(window.session.screen).scale
+    assert take.scale == scale
+    keys = {}
+    for factor in (0.1, 1.0, 10.0):
+        take.scale = factor * scale
+        tracking.smooth(window.session, 0.5)
+        keys[factor] = len(bent.figure.track_of(END).keys)
+    assert keys[0.1] < keys[1.0] < keys[10.0]
+
+
 def test_a_take_is_done_again_or_given_up(window, bent):
     playback.scrub(window.session, 0)
     window.settle()

@@ -14,9 +14,9 @@ from app.motion import Ground, corrected_clip
 from engine.geometry.kinematics import fit_keys
 
 RECORDING_SPEEDS = (1.0, 0.5, 0.25)
-# Pixels of the picture that a fitted motion may be beside what was recorded, at no smoothing and
-# at all of it.
-CLOSEST, SMOOTHEST = 0.5, 20.0
+# How far a fitted motion may be from what was recorded, in pixels of the screen, on which hands
+# tremble: at no smoothing and at all of it.
+CLOSEST, SMOOTHEST = 0.3, 12.0
 SMOOTHING = 0.5  # at first
 
 
@@ -60,6 +60,7 @@ def begin_take(
         last=running.frame + frames.last - frames.first if goes_round else played.last,
         speed=standing.speed,
         place=place,
+        scale=project.view(session.screen).scale,
         smoothing=SMOOTHING,
     )
 
@@ -204,7 +205,7 @@ def _fitted(
     They go on over a loop's seam. There is one at the seam: the last frame of a loop is its first
     one again.
     """
-    tolerance = CLOSEST * (SMOOTHEST / CLOSEST) ** take.smoothing
+    tolerance = CLOSEST * (SMOOTHEST / CLOSEST) ** take.smoothing / take.scale
     times, seam = [sample.time for sample in take.samples], project.document.frames.last
     fitted = fit_keys(times, values, tolerance, required=(seam,))
     return list(zip(*(each.tolist() for each in fitted), strict=True))
