@@ -9,7 +9,7 @@ import numpy as np
 from app.document import Clip, Figure, Handle, Pose, Target, resting_pose, stiffened, time_of
 from app.motion import Animation, PoseSampler
 from engine.arrays import Booleans, Complexes
-from engine.deform import Deformer, Hand, Handles, State, Wish
+from engine.deform import Deformer, Hand, Handles, Link, State, Wish
 from engine.errors import EngineError
 from engine.maps import Boundary, Certificate, HarmonicMap, certify
 
@@ -18,6 +18,9 @@ from engine.maps import Boundary, Certificate, HarmonicMap, certify
 LEEWAY = 0.02
 # How strongly a joint holds; handles usually weigh 1.
 PIN = 10.0
+# The joints of bones stay where they are with at most such a force, per the shape's diagonal, when
+# a hand pulls beyond them.
+JOINT_PULL = 0.1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -85,7 +88,7 @@ class Rig:
         index = {handle.id: i for i, handle in enumerate(self.handles)}
         pulling = [
             Hand([index[i] for i in sorted(hand.handles) if i in index], hand.pull)
-            for hand in hands
+            for hand in (*hands, *self.yielding(hands))
             if not index.keys().isdisjoint(hand.handles)
         ]
         wanted = [*(targets[identity] for identity in index), *pins]
@@ -93,7 +96,38 @@ class Rig:
             np.array([target.position for target in wanted], dtype=np.complex128),
             [np.nan if target.rotation is None else target.rotation for target in wanted],
             pulling,
+            self._links(index) if pulling else (),
         )
+
+    def _links(self, index: Mapping[int, int]) -> list[Link]:
+        """Return what keeps the ends of stiff bones in reach of each other."""
+        links = []
+        for bone in self.figure.bones:
+            if bone.amount > 1 and index.keys() >= set(bone.ends):
+                start, end = (self.figure.handle(identity).position for identity in bone.ends)
+                limits, rest = self.figure.bounds.stiffened(np.array(bone.amount)), abs(end - start)
+                nearest, farthest = rest * float(limits.sigma_b), rest * float(limits.sigma_a)
+                links.append(Link(index[bone.ends[0]], index[bone.ends[1]], nearest, farthest))
+        return links
+
+    def yielding(self, hands: Sequence[Hand]) -> list[Hand]:
+        """Return the joints that give in to hands that pull beyond them, each by itself.
+
+        They are those on the way along bones from a pulled handle to where the bones end or part.
+        """
+        pulled = {identity for hand in hands for identity in hand.handles}
+        locked = {handle.id for handle in self.figure.handles if handle.locked}
+        beside: dict[int, list[int]] = {}
+        for first, second in (bone.ends for bone in self.figure.bones if bone.amount > 1):
+            beside.setdefault(first, []).append(second)
+            beside.setdefault(second, []).append(first)
+        joints, waiting = set[int](), list(pulled)
+        while waiting:
+            for joint in beside.get(waiting.pop(), ()):
+                if len(beside[joint]) == 2 and joint not in joints | pulled | locked:
+                    joints.add(joint)
+                    waiting.append(joint)
+        return [Hand([joint], JOINT_PULL) for joint in sorted(joints)]
 
     def pose(
         self, shape: HarmonicMap, targets: Mapping[int, Target], certificate: Certificate
@@ -183,10 +217,12 @@ class Drag:
         return replace(self, rig=rig, deformer=deformer, state=state)
 
     def let_go(self, targets: Mapping[int, Target], hands: Sequence[Hand]) -> Mapping[int, Target]:
-        """Return the targets of the handles that hands have pulled, once these let go here."""
+        """Return the targets of what hands have pulled, joints too, once these let go here."""
         wish = self.rig.wish(targets, self.pins, hands)
-        left = wish.let_go(self.deformer.positions(self.state)).positions
-        pulled = {identity for hand in hands for identity in hand.handles}
+        places = self.deformer.positions(self.state)
+        left = wish.let_go(places, self.deformer.handles.stiffness).positions
+        giving = (*hands, *self.rig.yielding(hands))
+        pulled = {identity for hand in giving for identity in hand.handles}
         return {
             handle.id: replace(targets[handle.id], position=complex(place))
             for handle, place in zip(self.rig.handles, left, strict=False)

@@ -12,7 +12,7 @@ from engine.deform.handles import (
     Wish as Wish,
     require_held as require_held,
 )
-from engine.deform.hands import PULL as PULL, Hand as Hand
+from engine.deform.hands import PULL as PULL, Hand as Hand, Link as Link
 from engine.deform.model import (
     Objective as Objective,
     limits_inside as limits_inside,

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.arrays import Complexes, Floats, as_points, readonly
-from engine.deform.hands import Hand, Hands
+from engine.deform.hands import Hand, Hands, Link, Links
 from engine.errors import EngineError
 from engine.geometry import Hole, box_diagonal, require_inside
 from engine.maps import Boundary
@@ -39,18 +39,23 @@ class Wish(NamedTuple):
         Angles that differ by whole turns are the same wish.
     hands : Hands or None
         Those that pull at some of the handles; all others are held.
+    links : Links or None
+        Those that keep handles in reach of each other.
     """
 
     positions: Complexes
     rotations: Floats
     hands: Hands | None = None
+    links: Links | None = None
 
     def is_same(self, other: "Wish | None") -> bool:
         """Tell whether another wish asks for the same."""
-        if other is None or (self.hands is None) != (other.hands is None):
+        if other is None:
             return False
-        ours, theirs = [*self[:2], *(self.hands or ())], [*other[:2], *(other.hands or ())]
-        return all(
+        ours, theirs = (
+            [*wish[:2], *(wish.hands or ()), *(wish.links or ())] for wish in (self, other)
+        )
+        return len(ours) == len(theirs) and all(
             np.array_equal(one, two, equal_nan=True) for one, two in zip(ours, theirs, strict=True)
         )
 
@@ -61,16 +66,19 @@ class Wish(NamedTuple):
             errors = errors - self.hands.at_handles(self.hands.given(errors))
         return errors
 
-    def let_go(self, positions: Complexes) -> "Wish":
-        """Return the wish of hands that let go where they have come to.
+    def let_go(self, positions: Complexes, stiffness: Floats) -> "Wish":
+        """Return the wish of hands that let go where they have come to, and of no links.
 
-        Each handle is then wanted a hair beyond its place, in the direction of its pull: the same
-        pose, where the hands have brought it to rest, is that of least energy.
+        Each handle (h,), so firmly held, is then wanted a hair beyond its place, in the direction
+        of its pull: the same pose, where the hands have brought it to rest, is that of least
+        energy.
         """
         if self.hands is None:
             return self
-        given = self.hands.given(positions - self.positions)
-        return Wish(self.positions + self.hands.at_handles(given), self.rotations)
+        left = self.positions + self.hands.at_handles(self.hands.given(positions - self.positions))
+        if self.links is not None:
+            left = left - self.links.pull(positions) / (2.0 * stiffness)
+        return Wish(left, self.rotations)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -166,6 +174,7 @@ class Handles:
         positions: Complexes,
         rotations: npt.ArrayLike | None = None,
         hands: Sequence[Hand] = (),
+        links: Sequence[Link] = (),
     ) -> Wish:
         """Check what is asked of the handles.
 
@@ -175,12 +184,14 @@ class Handles:
         rotations : array_like of float, shape (h,), optional
         hands : sequence of Hand
             Those that pull at some of the handles, with bounded force.
+        links : sequence of Link
+            Between handles that keep their distance.
 
         Raises
         ------
         EngineError
             If there are not as many targets as handles, one is not finite or absurdly far away, two
-            handles at one point are to be at different places, or hands pull at what is not there.
+            handles at one point are to be at different places, or hands or links are of others.
         """
         targets = as_points(positions, "targets")
         if len(targets) != len(self.points):
@@ -198,8 +209,9 @@ class Handles:
             if abs(targets[i] - targets[j]) > APART * size:
                 raise _told_twice(i, j, "targets")
         pulling = Hands.of(hands, self.stiffness, self.around, size)
+        linked = Links.of(links, self.around * STIFFNESS / size**2)
         if rotations is None:
-            return Wish(targets, np.full(len(targets), np.nan), pulling)
+            return Wish(targets, np.full(len(targets), np.nan), pulling, linked)
         angles = np.asarray(rotations, dtype=np.float64)
         if angles.shape != targets.shape or np.isinf(angles).any():
             raise EngineError(
@@ -209,7 +221,7 @@ class Handles:
         for i, j in self.coincident:
             if abs(np.exp(1j * angles[i]) - np.exp(1j * angles[j])) > APART:
                 raise _told_twice(i, j, "rotations")
-        return Wish(targets, angles, pulling)
+        return Wish(targets, angles, pulling, linked)
 
 
 def _told_twice(i: int, j: int, what: str) -> EngineError:

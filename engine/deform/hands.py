@@ -1,10 +1,13 @@
-"""Hands that pull at handles with bounded force.
+"""Hands that pull at handles with bounded force, and links that keep these in reach.
 
 A handle is held by λ |e|², e its distance from its target, which pulls without limit: one that is
 wanted far beyond its reach would move all others. A hand pulls with at most a force F. With ē the
 mean distance of its handles, Λ the sum of their λ and e₀ = F / (2 Λ), the part Λ |ē|² of their
 energy becomes 2 Λ e₀ |ē| − Λ e₀² beyond e₀ (Huber 1964), which is the least of
 Λ |ē − s|² + 2 Λ e₀ |s| over all s: the hand gives in by s, and its handles keep their formation.
+
+A link between two handles costs κ (r − c)² where their distance r is beyond the range that it may
+have, whose nearer end is c: what a hand pulls too far is drawn straight, and stops.
 """
 
 from collections.abc import Collection, Sequence
@@ -12,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from engine.arrays import Complexes, Floats, readonly
+from engine.arrays import Complexes, Floats, Indices, readonly
 from engine.errors import EngineError
 
 # A hand pulls at most so strongly, per L. An arm needs 1 to 2 to straighten to its limits; measured
@@ -122,3 +125,89 @@ class Hands(NamedTuple):
     def work(self, given: Complexes) -> float:
         """Return the energy of giving in."""
         return float((2.0 * self.stiffness * self.gives) @ np.abs(given))
+
+
+class Link(NamedTuple):
+    """Two handles, by their numbers, and the range of distances that they keep."""
+
+    first: int
+    second: int
+    shortest: float
+    longest: float
+
+
+class Links(NamedTuple):
+    """Some links.
+
+    Parameters
+    ----------
+    ends : intp, shape (2, l)
+        The handles of each.
+    shortest, longest : float64, shape (l,)
+    stiffness : float64, shape (l,)
+        κ of each.
+    """
+
+    ends: Indices
+    shortest: Floats
+    longest: Floats
+    stiffness: Floats
+
+    @classmethod
+    def of(cls, links: Sequence[Link], stiffness: Floats) -> "Links | None":
+        """Return links between handles of which each by itself is so firm (h,).
+
+        Raises
+        ------
+        EngineError
+            If a link is not between two handles that are there, or has no range of distances.
+        """
+        if not links:
+            return None
+        for first, second, shortest, longest in links:
+            if first == second or not all(0 <= end < len(stiffness) for end in (first, second)):
+                raise EngineError(f"A link between handles {first} and {second} is none.")
+            if not 0 <= shortest <= longest:
+                raise EngineError(f"A link cannot be from {shortest:g} to {longest:g} long.")
+        ends = np.array([(link.first, link.second) for link in links], np.intp).T
+        return cls(
+            ends=readonly(ends),
+            shortest=readonly(np.array([link.shortest for link in links])),
+            longest=readonly(np.array([link.longest for link in links])),
+            stiffness=readonly(stiffness[ends].max(axis=0)),
+        )
+
+    def _measured(self, positions: Complexes) -> tuple[Complexes, Floats, Floats]:
+        """Return direction, length, and length beyond the range of each link (l,)."""
+        between = positions[self.ends[0]] - positions[self.ends[1]]
+        lengths = np.maximum(np.abs(between), np.finfo(np.float64).tiny)
+        beyond = lengths - np.clip(lengths, self.shortest, self.longest)
+        return between / lengths, lengths, beyond
+
+    def energy(self, positions: Complexes) -> float:
+        """Return what links cost with the handles (h,) at some places."""
+        return float(self.stiffness @ self._measured(positions)[2] ** 2)
+
+    def pull(self, positions: Complexes) -> Complexes:
+        """Return the gradient of that (h,)."""
+        directions, _, beyond = self._measured(positions)
+        return self._at_handles(2.0 * self.stiffness * beyond * directions, len(positions))
+
+    def pull_change(self, positions: Complexes, changes: Complexes) -> Complexes:
+        """Return the product (h,) of its projected Hessian with changes of the places."""
+        directions, along, across = self.bend(positions)
+        between = directions.conj() * (changes[self.ends[0]] - changes[self.ends[1]])
+        given = directions * (along * between.real + 1j * across * between.imag)
+        return self._at_handles(given, len(positions))
+
+    def bend(self, positions: Complexes) -> tuple[Complexes, Floats, Floats]:
+        """Return the direction of each link, and its stiffness along that and across it, (l,)."""
+        directions, lengths, beyond = self._measured(positions)
+        twice = 2.0 * self.stiffness
+        return directions, twice * (beyond != 0), twice * np.maximum(beyond / lengths, 0.0)
+
+    def _at_handles(self, of_links: Complexes, count: int) -> Complexes:
+        at = np.zeros(count, np.complex128)
+        np.add.at(at, self.ends[0], of_links)
+        np.subtract.at(at, self.ends[1], of_links)
+        return at

@@ -126,7 +126,7 @@ def cut_to_leash(
     turn = np.angle(np.exp(1j * wish.rotations) * jet.fz.conj())
     near = np.angle(jet.fz) + np.clip(turn, -most, most)
     leashed = bool(np.any(cut < 1.0) or np.any(np.abs(turn) > most))
-    return Wish(positions + cut * pull, near, wish.hands), leashed
+    return Wish(positions + cut * pull, near, wish.hands, wish.links), leashed
 
 
 def rigidly_aligned(

@@ -11,7 +11,7 @@ from engine.domain import Domain
 from engine.domain.material import carried_stiffness
 from engine.maps import SOFTEST, STIFFEST
 
-USUAL_STRENGTH = 30.0  # of a bone
+USUAL_STRENGTH = 10.0  # of a bone
 NEARLY = 1e-9  # so near to 1 a stiffness is the usual one
 
 

@@ -99,6 +99,8 @@ def hessian_product(objective: Objective, jet: Jet, radial: Radial, change: Jet)
     by_f = radial.aa * f.real + radial.ab * g.real - 1j * around_a * f.imag
     by_g = radial.ab * f.real + radial.bb * g.real - 1j * radial.around_b * g.imag
     pull = 2.0 * objective.handles.stiffness * objective.held_change(jet, change.positions)
+    if objective.wish.links is not None:
+        pull += objective.wish.links.pull_change(jet.positions, change.positions)
     rows, coordinates = objective.boundary.basis_derivatives, objective.handles.basis_coordinates
     by_phi = (by_f * frame_f) @ rows + pull.conj() @ coordinates
     by_psi = (by_g * frame_g) @ rows + pull @ coordinates
@@ -253,8 +255,11 @@ def _quadrature(objective: Objective, radial: Radial) -> "_Quadrature":
 
 def _held_hessian(objective: Objective, jet: Jet) -> Floats:
     """Return the Hessian of the energy of the handles' positions, (u, u)."""
-    rows, held = objective.giving_rows(jet), objective.handles.hessian
-    return held - rows.T @ rows if len(rows) else held
+    held = objective.handles.hessian
+    given, linked = objective.giving_rows(jet), objective.linking_rows(jet)
+    if len(given):
+        held = held - given.T @ given
+    return held + linked.T @ linked if len(linked) else held
 
 
 def _damping_root(objective: Objective, jet: Jet, calm: "_Quadrature") -> Complexes:

@@ -101,6 +101,8 @@ class Objective:
             if self.wish.hands is not None:
                 lacking = jet.positions - self.wish.positions
                 value += self.wish.hands.work(self.wish.hands.given(lacking))
+            if self.wish.links is not None:
+                value += self.wish.links.energy(jet.positions)
             if self.turning.any():
                 value += self.turning_stiffness @ self.turning_angles(jet) ** 2
         return np.inf if np.isnan(value) else float(value)
@@ -127,6 +129,8 @@ class Objective:
     def gradient(self, jet: Jet, radial: Radial) -> Floats:
         """Return the gradient (u,)."""
         pull = 2.0 * self.handles.stiffness * self.wish.errors(jet.positions)
+        if self.wish.links is not None:
+            pull += self.wish.links.pull(jet.positions)
         by_phi = pull.conj() @ self.handles.basis_coordinates
         by_psi = pull @ self.handles.basis_coordinates
         if self.turning.any():
@@ -161,6 +165,21 @@ class Objective:
             for turn, part in ((1.0, share if self.secant else 1.0), (1.0j, share)):
                 pull = turn * directions[hand] * np.sqrt(stiffness * part)
                 rows.append(self.by_unknowns(pull.conj() * means, pull * means))
+        return np.array(rows).reshape(-1, len(self.handles.hessian))
+
+    def linking_rows(self, jet: Jet) -> Floats:
+        """Return the rows (s, u) whose Gram matrix links add to the Hessian of the handles."""
+        links = self.wish.links
+        if links is None:
+            return np.empty((0, len(self.handles.hessian)))
+        coordinates = self.handles.basis_coordinates
+        directions, along, across = links.bend(jet.positions)
+        between = coordinates[links.ends[0]] - coordinates[links.ends[1]]
+        rows = []
+        for turn, stiffness in ((1.0, along), (1.0j, across)):
+            for link in np.flatnonzero(stiffness):
+                pull = turn * directions[link] * np.sqrt(stiffness[link])
+                rows.append(self.by_unknowns(pull.conj() * between[link], pull * between[link]))
         return np.array(rows).reshape(-1, len(self.handles.hessian))
 
     def sampled_gradient(

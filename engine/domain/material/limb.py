@@ -19,8 +19,9 @@ PLACES = 48
 # Half of a limb is on each side at least so wide as at this share of the places, and points
 # belong to it that are at most so many times as far away; from there on the share falls to 0.
 USUAL, THICKEST, BEYOND = 0.4, 1.35, 1.8
-# A joint is at each end, as long as the limb is wide on one side, but at most such a part of it.
-LONGEST_JOINT = 0.35
+# A joint is at each end, so many times as long as the limb is wide on one side, but at most such a
+# part of it. Measured: with 1 an arm turns at its shoulder by less than half as far.
+JOINT, LONGEST_JOINT = 1.6, 0.42
 
 
 def limb_around(
@@ -57,7 +58,7 @@ def limb_around(
     local = (points - start) * np.conj(end - start) / length
     along, across = local.real / length, local.imag
     widths = _widths(loops, start, end)
-    joint = min(float(widths.mean()), LONGEST_JOINT * length) / length
+    joint = min(JOINT * float(widths.mean()), LONGEST_JOINT * length) / length
     shares = _smooth(np.minimum(along, 1 - along) / joint)
     width = np.where(across > 0, widths[0], widths[1])
     shares *= np.clip((BEYOND - np.abs(across) / width) / (BEYOND - THICKEST), 0.0, 1.0)

@@ -12,6 +12,7 @@ from app.errors import LissomError
 from app.solving import pose_document
 from app.solving.drag import Drag, Rig
 from app.solving.script import parse_pose_script
+from engine.deform import Hand
 
 BAR = np.zeros((80, 480, 4), np.uint8)
 BAR[20:60, 20:460] = 255
@@ -169,3 +170,55 @@ def test_a_bone_of_a_script_that_leaves_the_drawing_is_named():
     script["stiff"] = 2 * [{"from": "start", "to": "elbow", "amount": 3}]
     with pytest.raises(LissomError, match="There is a bone from 'start' to 'elbow' already"):
         pose_document(still_document(BAR), parse_pose_script(script), lambda _: None)
+
+
+def arm():
+    """A bar whose handles are a shoulder, an elbow and a hand, with two bones between them."""
+    document = still_document(BAR)
+    for place in (30 + 40j, 240 + 40j, 450 + 40j):
+        document = handle_commands.add_handle(0, place)(document)
+    for ends in ((0, 1), (1, 2)):
+        document = material_commands.add_bone(0, ends, 30.0)(document)
+    return document.figures[0]
+
+
+def test_a_hand_that_is_pulled_too_far_draws_the_elbow_straight_and_stops():
+    figure = arm()
+    rest = figure.keys[0].pose
+    bent = pulled(figure, rest, targets_of(30 + 40j, 230 + 90j, 430 + 40j))
+    targets = targets_of(30 + 40j, 230 + 90j, 900 + 40j)
+    hands = (Hand((2,)),)
+    drag = Drag.begin(Rig.of(figure), bent)
+    for _ in range(40):
+        drag = drag.towards(targets, 10, hands)
+    assert drag.is_over
+    shoulder, elbow, hand = drag.rig.deformer.positions(drag.state).tolist()
+    longest = float(figure.bounds.stiffened(np.array(30.0)).sigma_a) * 210
+    for length in (abs(elbow - shoulder), abs(hand - elbow)):
+        assert 210 < length < 1.005 * longest
+    assert abs(shoulder - 30 - 40j) < 1
+    assert abs(elbow.imag - 40) < 3
+    # Let go, it stays: the elbow is wanted where it came to, too.
+    left = {**targets, **drag.let_go(targets, hands)}
+    assert left.keys() == targets.keys()
+    assert left[0] == targets[0]
+    after = drag.towards(left, 200)
+    assert after.is_over
+    assert np.abs(after.rig.deformer.positions(after.state)[1:] - [elbow, hand]).max() < 1
+
+
+def test_joints_hold_still_for_hands_within_reach_and_where_they_are_locked():
+    figure = arm()
+    rig, hands = Rig.of(figure), (Hand((2,)),)
+    assert [hand.handles for hand in rig.yielding(hands)] == [[1]]
+    assert rig.yielding((Hand((1,)),)) == []
+    locked = tuple(replace(handle, locked=handle.id == 1) for handle in figure.handles)
+    assert Rig.of(replace(figure, handles=locked)).yielding(hands) == []
+    assert rig.wish(targets_of(*PLACES), ()).links is None
+    near = targets_of(30 + 40j, 240 + 40j, 440 + 70j)
+    drag = Drag.begin(rig, figure.keys[0].pose)
+    for _ in range(40):
+        drag = drag.towards(near, 10, hands)
+    _, elbow, hand = drag.rig.deformer.positions(drag.state).tolist()
+    assert abs(hand - 440 - 70j) < 6
+    assert abs(elbow - 240 - 40j) < 12

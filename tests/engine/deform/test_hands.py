@@ -130,7 +130,7 @@ def test_what_a_hand_lets_go_stays_where_it_is_and_is_found_again():
     wish = deformer.handles.wish(OUT, None, (Hand([1]),))
     state = settled(deformer, wish)
     places, shape = deformer.positions(state), state.map(BOUNDARY.outline)
-    left = wish.let_go(places)
+    left = wish.let_go(places, deformer.handles.stiffness)
     assert left.hands is None
     assert_array_equal(left.positions[[0, 2, 3, 4, 5]], STAR_POINTS[[0, 2, 3, 4, 5]])
     beyond = left.positions[1] - places[1]
@@ -139,7 +139,7 @@ def test_what_a_hand_lets_go_stays_where_it_is_and_is_found_again():
     for start in (state, None):
         assert pixels(settled(deformer, left, start).map(BOUNDARY.outline), shape) < 0.5
     # A wish that nothing bounds stays as it is.
-    assert left.let_go(places) is left
+    assert left.let_go(places, deformer.handles.stiffness) is left
 
 
 def test_a_hand_that_comes_back_leaves_nothing_behind():
@@ -173,7 +173,7 @@ def test_handles_that_one_hand_pulls_keep_their_formation_and_pull_as_one():
         < 5
         < pixels(places_of_two[1] - places_of_two[2], asked)
     )
-    left = wish.let_go(places)
+    left = wish.let_go(places, deformer.handles.stiffness)
     assert_allclose(left.positions[1] - left.positions[2], asked, rtol=1e-12)
 
 

@@ -1,0 +1,93 @@
+"""Links that keep handles in reach of each other while a hand pulls."""
+
+import numpy as np
+import pytest
+from deform_shapes import BAR_POINTS, bar_boundary
+from numpy.testing import assert_allclose
+
+from engine.deform import Deformer, Hand, Handles, Link, Objective
+from engine.deform.model.hessian import hessian_product
+from engine.errors import EngineError
+from engine.maps import Bounds
+
+BOUNDARY = bar_boundary()
+HANDLES = Handles.place(BOUNDARY, BAR_POINTS)
+# One that is too short, one that is too long, and one within its range.
+LINKS = [Link(0, 1, 2.0, 2.2), Link(1, 2, 1.0, 1.1), Link(0, 2, 3.0, 5.0)]
+
+
+def objective(*links):
+    wish = HANDLES.wish(BAR_POINTS + 0.1j, None, (), links)
+    return Objective(boundary=BOUNDARY, handles=HANDLES, wish=wish)
+
+
+def bent_jet():
+    cage = BOUNDARY.cage
+    return objective().jet(cage + 0.03j * cage**2, 0.02 * cage)
+
+
+def test_links_cost_what_their_distances_are_beyond_their_range():
+    jet = bent_jet()
+    lengths = np.abs(np.diff(jet.positions))
+    cost = HANDLES.stiffness[0] * ((lengths[0] - 2.0) ** 2 + (lengths[1] - 1.1) ** 2)
+    added = objective(*LINKS).energy(jet) - objective().energy(jet)
+    assert added == pytest.approx(cost, rel=1e-9)
+
+
+def test_their_derivatives_are_those_of_their_energy():
+    rng, jet = np.random.default_rng(4), bent_jet()
+    linked, free = objective(*LINKS), objective()
+    gradient = linked.gradient(jet, linked.radial(jet))
+    for _ in range(3):
+        change = linked.change(direction := rng.normal(size=len(gradient)))
+        ahead, behind = (linked.energy(jet.advanced(by, change)) for by in (1e-6, -1e-6))
+        assert (ahead - behind) / 2e-6 == pytest.approx(gradient @ direction, rel=1e-5)
+    # The projection leaves out what is negative: across a link that is too short.
+    rows, radial = linked.linking_rows(jet), linked.radial(jet)
+    assert len(rows) == 3
+    products = [hessian_product(each, jet, radial, change) for each in (linked, free)]
+    assert_allclose(rows.T @ (rows @ direction), np.subtract(*products), rtol=1e-9, atol=1e-6)
+    # Of one that is too long it is the whole Hessian.
+    rows = objective(LINKS[1]).linking_rows(jet)
+    ends = [jet.advanced(by, change) for by in (1e-6, -1e-6)]
+    slopes = [
+        np.subtract(*(each.gradient(end, each.radial(end)) for end in ends)) / 2e-6
+        for each in (objective(LINKS[1]), free)
+    ]
+    wanted = np.subtract(*slopes)
+    assert_allclose(rows.T @ (rows @ direction), wanted, atol=1e-5 * np.abs(wanted).max())
+
+
+def pulled(links):
+    deformer = Deformer(boundary=BOUNDARY, handles=HANDLES, bounds=Bounds(k=0.6))
+    wish = HANDLES.wish(BAR_POINTS + np.array([0, 0, 2]), None, [Hand([2])], links)
+    state, _ = deformer.settle(deformer.start(), wish)
+    assert state.certificate.certified
+    return deformer, wish, state
+
+
+def test_a_link_stops_a_hand_that_pulls_too_far_and_the_pose_stays_when_it_lets_go():
+    deformer, wish, state = pulled([Link(1, 2, 0.0, 1.9)])
+    places = deformer.positions(state)
+    assert abs(places[2] - places[1]) < 1.9 * 1.01
+    _, _, usual = pulled(())
+    assert abs(np.diff(deformer.positions(usual))[1]) > 2.2
+    left = wish.let_go(places, HANDLES.stiffness)
+    assert left.hands is left.links is None
+    after, _ = deformer.settle(state, left)
+    assert_allclose(deformer.positions(after), places, atol=1e-3)
+    assert not wish.is_same(HANDLES.wish(wish.positions, None, [Hand([2])]))
+
+
+@pytest.mark.parametrize(
+    ("link", "message"),
+    [
+        ((0, 0, 1.0, 2.0), "between handles 0 and 0"),
+        ((0, 3, 1.0, 2.0), "between handles 0 and 3"),
+        ((0, 1, 2.0, 1.0), "from 2 to 1 long"),
+        ((0, 1, np.nan, 1.0), "from nan to 1 long"),
+    ],
+)
+def test_links_that_are_none_are_refused(link, message):
+    with pytest.raises(EngineError, match=message):
+        objective(Link(*link))
