@@ -221,11 +221,10 @@ class Corrections:
         self, frame: float, base: Jet, lack: Lack | None, still: FrameCorrection, wanted: Wanted
     ) -> FrameCorrection:
         """Return the correction by which handles also go their own ways."""
-        firmness = wanted.firmness
-        if lack is not None:
-            # Those beside one that goes its own way give way: held as firmly, they tear at it.
-            own = np.flatnonzero(wanted.firmness)
-            firmness = np.maximum(firmness, self._away_from(own) * lack.weights)
+        # Those beside one that goes its own way give way: held as firmly, they tear at it.
+        away = self._away_from(np.flatnonzero(wanted.firmness))
+        held = 0.0 if lack is None else lack.weights
+        firmness = np.where(wanted.firmness > 0, wanted.firmness, away * (1.0 + held) - 1.0)
         places = base.positions.copy()
         places[self._handles] = wanted.places
         pins = self._pins(places, firmness, wanted.turns, wanted.reach)
