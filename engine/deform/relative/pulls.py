@@ -18,7 +18,7 @@ from functools import cached_property
 
 import numpy as np
 
-from engine.arrays import Complexes, Floats
+from engine.arrays import Complexes, Floats, Indices
 from engine.deform.model import by_unknowns, solved
 from engine.maps import Boundary
 
@@ -80,7 +80,7 @@ class Pulls:
 
     def hessian(self, lacking: Complexes) -> Floats:
         """Return that (u, u), as firm along pulls as across."""
-        root = np.sqrt(self._firmness_of(_parts(lacking)))
+        root = np.sqrt(np.tile(self.firmness(lacking), 2))
         rows = root[:, None] * self._rows
         squared: Floats = rows.T @ rows
         return squared
@@ -97,36 +97,45 @@ class Pulls:
             Before the step.
         """
         step = -solved(factor, gradient)
-        errors, first = _parts(lacking), self._rows @ step
-        before = self._firmness_of(errors)
-        if np.array_equal(before, self._firmness_of(errors + first)):
+        # What only holds is left as firm as it is.
+        some = np.flatnonzero(self.offsets > NEAR / HOLDING * self.boundary.size)
+        rows = self._rows[np.concatenate([some, some + len(lacking)])]
+        errors, first = _parts(lacking[some]), rows @ step
+        before = self._firmness_of(errors, some)
+        if np.array_equal(before, self._firmness_of(errors + first, some)):
             return step
-        responses = np.column_stack([solved(factor, row) for row in self._rows])
-        yielding = self._rows @ responses
+        responses = np.column_stack([solved(factor, row) for row in rows])
+        yielding = rows @ responses
         stiffness = np.linalg.inv(yielding)
         alone, pushed = stiffness - np.diag(before), stiffness @ first + before * errors
-        held = 2.0 * np.tile(self.stiffness, 2)
-        moved = np.linalg.solve(alone + np.diag(held), pushed - held * errors)
-        if not np.array_equal(held, self._firmness_of(errors + moved)):
-            moved = first
+        held = 2.0 * np.tile(self.stiffness[some], 2)
+        moved: Floats = np.linalg.solve(alone + np.diag(held), pushed - held * errors)
+        if not np.array_equal(held, self._firmness_of(errors + moved, some)):
+            moved = self._followed(alone, pushed, errors, first, some)
+        better: Floats = step + responses @ np.linalg.solve(yielding, moved - first)
+        return better if gradient @ better < 0 else step
+
+    def _followed(
+        self, alone: Floats, pushed: Floats, errors: Floats, moved: Floats, some: Indices
+    ) -> Floats:
+        """Return how points move (2 q,) to the minimum, by weights that follow their pulls."""
         for _ in range(ROUNDS):
-            firm = self._firmness_of(errors + moved)
+            firm = self._firmness_of(errors + moved, some)
             model = alone + np.diag(firm)
             # The model bends down where only a pull that has given in held it.
             if np.linalg.eigvalsh(model + model.T)[0] <= 0:
                 break
-            after = np.linalg.solve(model, pushed - firm * errors)
+            after: Floats = np.linalg.solve(model, pushed - firm * errors)
             change, moved = np.abs(after - moved).max(), after
             if change <= LEFT_TO_GO * np.abs(errors + moved).max():
                 break
-        better: Floats = step + responses @ np.linalg.solve(yielding, moved - first)
-        return better if gradient @ better < 0 else step
+        return moved
 
-    def _firmness_of(self, errors: Floats) -> Floats:
-        """Return the firmness for what x and y of the points lack (2 h,)."""
+    def _firmness_of(self, errors: Floats, some: Indices) -> Floats:
+        """Return the firmness for what x and y of some points lack (2 q,)."""
         far = np.hypot(*errors.reshape(2, -1))
-        part = np.minimum(1.0, self.gives / np.maximum(far, TINY))
-        return np.tile(2.0 * self.stiffness * part, 2)
+        part = np.minimum(1.0, self.gives[some] / np.maximum(far, TINY))
+        return np.tile(2.0 * self.stiffness[some] * part, 2)
 
     @cached_property
     def _rows(self) -> Floats:

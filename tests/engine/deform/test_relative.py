@@ -143,6 +143,7 @@ def test_a_step_is_to_the_minimum_of_the_model_with_the_pulls_as_they_are():
         boundary=boundary,
         coordinates=coordinates,
         stiffness=stiffness,
+        firmer=np.ones(len(stiffness)),
         offsets=np.abs(lacking),
     )
     count = len(pulls.hessian(lacking))
