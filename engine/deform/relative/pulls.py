@@ -125,7 +125,7 @@ class Pulls:
             # The model bends down where only a pull that has given in held it.
             if np.linalg.eigvalsh(model + model.T)[0] <= 0:
                 break
-            after: Floats = np.linalg.solve(model, pushed - firm * errors)
+            after = np.linalg.solve(model, pushed - firm * errors).astype(np.float64, copy=False)
             change, moved = np.abs(after - moved).max(), after
             if change <= LEFT_TO_GO * np.abs(errors + moved).max():
                 break
