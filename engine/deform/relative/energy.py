@@ -37,7 +37,7 @@ ARM = 0.02
 HELD = 300.0
 # How much stiffer by the barrier than by the energy a sample is whose barrier enters the Hessian,
 # that does so by itself, and with all its digits.
-FELT, ALONE, HARD = 0.02, 1.0, 1e5
+FELT, ALONE, HARD = 0.3, 1.0, 1e5
 
 # By |F| and by |G|, each (m,).
 Load = tuple[Floats, Floats]

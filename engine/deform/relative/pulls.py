@@ -125,8 +125,9 @@ class Pulls:
             # The model bends down where only a pull that has given in held it.
             if np.linalg.eigvalsh(model + model.T)[0] <= 0:
                 break
-            after = np.linalg.solve(model, pushed - firm * errors).astype(np.float64, copy=False)
-            change, moved = np.abs(after - moved).max(), after
+            before = moved
+            moved = np.asarray(np.linalg.solve(model, pushed - firm * errors), dtype=np.float64)
+            change = np.abs(moved - before).max()
             if change <= LEFT_TO_GO * np.abs(errors + moved).max():
                 break
         return moved
