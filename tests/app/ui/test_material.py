@@ -136,7 +136,7 @@ def test_a_key_follows_the_new_material_when_it_is_posed_again(window, tab):
     material.add_bone(window.session, ENDS)
     window.settle()
     assert tab.figure.key(BENT).pose is before
-    posing.pull_again(window.session, {}, gesture=object())
+    material.pose_again(window.session)
     window.settle()
     after = tab.figure.key(BENT).pose
     assert after.phi is not before.phi

@@ -23,6 +23,7 @@ from app.editor.actions import (
     editing,
     exporting,
     keys,
+    material,
     playback,
     posing,
     rebuilding,
@@ -536,7 +537,30 @@ class Walk:
             frame = self.choice(figure.keys).frame
             front = self.choice((None, depth))
             self.edit(layer_commands.key_front(figure.id, frame, handle.id, front))
-        self.act(layering.tint_depth, self.chance(0.3))
+        self.act(viewing.tint, "depth" if self.chance(0.3) else None)
+
+    def change_material(self) -> None:
+        figure = self.project.figure
+        match self.choice(("tool", "paint", "bone", "amount", "clear", "mirror", "names", "again")):
+            case "tool":
+                self.act(material.take_up, self.choice(("stiff", "soft", "normal", "bone", None)))
+            case "paint" if self.session.material is not None:
+                start = complex(*self.rng.uniform(0, self.size, 2))
+                self.act(material.paint, [start, start + self.rng.uniform(0, 30)])
+            case "bone" if len(figure.handles) > 1:
+                first, second = self.rng.choice([h.id for h in figure.handles], 2, replace=False)
+                self.act(material.add_bone, (int(first), int(second)))
+            case "amount" if figure.bones:
+                bone = self.choice(figure.bones)
+                self.act(material.set_bone, bone.ends, float(self.rng.uniform(0.1, 100)))
+            case "clear":
+                self.act(material.clear)
+            case "mirror":
+                self.act(material.mirror)
+            case "names":
+                self.act(material.suggest)
+            case "again":
+                self.act(material.pose_again)
 
     def cut_out(self) -> None:
         match self.rng.integers(5):
@@ -654,6 +678,7 @@ ALL = (
     (Walk.change_layers, 3),
     (Walk.change_joints, 3),
     (Walk.change_depth, 2),
+    (Walk.change_material, 3),
     (Walk.cut_out, 0.5),
     (Walk.change_export, 1),
     (Walk.undo, 4),

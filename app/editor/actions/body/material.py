@@ -7,7 +7,7 @@ import numpy as np
 
 from app.document import brushed_stiffness, limb_of, material_commands
 from app.document.body import Bone
-from app.editor.actions import editing, playback
+from app.editor.actions import editing, playback, posing
 from app.editor.actions.body import cutting
 from app.editor.project import Project
 from app.editor.session import MaterialTool, Session, with_project
@@ -148,3 +148,8 @@ def suggest(session: Session, project: Project) -> None:
             "No handle is called after a head, hand, foot, tail or the like: name them first.",
             topic="material",
         )
+
+
+def pose_again(session: Session) -> None:
+    """Let the pose that is shown follow its wishes once more, with the material as it is now."""
+    posing.pull_again(session, {}, gesture=object())

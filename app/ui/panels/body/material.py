@@ -158,7 +158,7 @@ def _keys(session: Session, look: Look, project: Project) -> list[Action]:
     widths = beside(2)
     hint = "Pull the handles of the pose that is shown to their targets again"
     if text_button("Pose this key again", next(widths), hint, enabled=is_here):
-        actions.append(do(posing.pull_again, {}, gesture=object()))
+        actions.append(do(material.pose_again))
     hint = "Pull the handles of every key to their targets again"
     if text_button("Pose all keys again", next(widths), hint, enabled=is_possible):
         actions.append(do(rebuilding.solve_again))
