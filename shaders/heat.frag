@@ -4,6 +4,7 @@ uniform sampler2D ramp;      // colours of the quantity, one row
 uniform vec2 limits;         // quantities at the two ends of the ramp
 uniform float contours;      // lines of equal quantity between the limits; none where 0
 uniform float strength;      // 1 hides the drawing's own colours, 0 the heat map
+uniform float two_sided;     // 1 where a quantity in the middle of the limits is none: as drawn
 
 in vec2 texture_uv;
 in float vertex_heat;
@@ -30,5 +31,6 @@ void main() {
 
     float luma = dot(drawing.rgb, LUMA);
     vec3 painted = heat * mix(drawing.a, luma, 0.35);
-    colour = vec4(mix(drawing.rgb, painted, strength), drawing.a);
+    float shown = strength * mix(1.0, min(3.0 * abs(2.0 * level - 1.0), 1.0), two_sided);
+    colour = vec4(mix(drawing.rgb, painted, shown), drawing.a);
 }

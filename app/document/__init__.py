@@ -10,6 +10,7 @@ from app.document.body import (
     carried_over as carried_over,
     mirrored_name as mirrored_name,
     pairs_by_name as pairs_by_name,
+    partners_of as partners_of,
 )
 from app.document.commands import (
     Command as Command,
@@ -71,6 +72,7 @@ from app.document.queries import (
     time_of as time_of,
     track_at as track_at,
     transits as transits,
+    velocity_at as velocity_at,
 )
 from app.document.settings import (
     FRAME_NAMES as FRAME_NAMES,

@@ -176,3 +176,7 @@ class Keyframe:
         if backwards:
             return replace(self, easing=other.easing.reversed(), turns=-other.turns)
         return replace(self, easing=other.easing, turns=other.turns)
+
+    def at_pace(self, frame: int, pace: float) -> Self:  # noqa: ARG002 - a pose has no velocity
+        """Return the key at another frame of a motion that runs so many times as fast."""
+        return self if frame == self.frame else replace(self, frame=frame)

@@ -18,6 +18,7 @@ from app.editor.dialogs import (
 from app.editor.failures import sentence as sentence
 from app.editor.project import Project as Project, Puppet as Puppet, Twin as Twin
 from app.editor.session import (
+    BoneMark as BoneMark,
     BoxMark as BoxMark,
     CurveKind as CurveKind,
     CutTool as CutTool,
@@ -28,10 +29,12 @@ from app.editor.session import (
     JointMark as JointMark,
     KnifeMark as KnifeMark,
     Mark as Mark,
+    MaterialTool as MaterialTool,
     Overlays as Overlays,
     Session as Session,
     StrokeMark as StrokeMark,
     SweepMark as SweepMark,
+    Tint as Tint,
     Toast as Toast,
     with_project as with_project,
 )

@@ -22,6 +22,8 @@ from engine.arrays import Bytes
 HeatMap = Literal["none", "k", "sigma_a", "sigma_b"]
 CurveKind = Literal["relative", "absolute"]
 CutTool = Literal["keep", "remove", "knife", "pick", "holes"]
+Tint = Literal["depth", "stiffness"]
+MaterialTool = Literal["stiff", "soft", "normal", "bone"]
 Tone = Literal["info", "good", "error"]
 P = ParamSpec("P")
 
@@ -96,7 +98,7 @@ class StrokeMark:
 
     points: tuple[complex, ...]
     radius: float
-    keeps: bool
+    keeps: bool | None  # None of one that neither keeps nor removes
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -116,7 +118,19 @@ class JointMark:
     is_refused: bool
 
 
-Mark = BoxMark | SweepMark | EntryMark | StrokeMark | KnifeMark | JointMark
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BoneMark:
+    """The way from a handle to the pointer, or to another handle, between which there may be none.
+
+    Ends are in the plane.
+    """
+
+    start: complex
+    end: complex
+    is_refused: bool
+
+
+Mark = BoxMark | SweepMark | EntryMark | StrokeMark | KnifeMark | JointMark | BoneMark
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -214,6 +228,9 @@ class Session:
     last_split: Split = Split(method=Variant.LINEAR)  # as it was when it was put away
     pointer: ToolInHand | None = None
     cutting: CutTool | None = None  # what is in hand that cuts out; None poses
+    material: MaterialTool | None = None  # what is in hand that makes parts stiff or soft
+    strength: float = 10.0  # how many times as stiff, or as soft, the brush makes what it covers
+    softness: float = 0.5  # over which part of the brush's radius that becomes less
     moves: bool = False  # whether a drag, or an arrow, moves the whole figure
     records: bool = False  # whether the next drag of a handle is recorded while it plays
     recording_speed: float = 1.0  # times the animation's own
@@ -226,7 +243,7 @@ class Session:
     space_used: bool = False  # Space was held to move the view
     hovered: int | None = None  # the handle under the pointer
     hint: str = ""  # about what is under the pointer
-    tints_depth: bool = False  # whether the drawing shows what of it is in front
+    tint: Tint | None = None  # what the drawing shows by colours while that is set
     failing: set[str] = field(default_factory=set)  # what cannot be kept, as was told
     quitting: bool = False
 
@@ -234,6 +251,11 @@ class Session:
         """Take the preferences to be as they were read, and nothing to be kept yet."""
         self.saved_preferences = self.preferences
         self.autosave = Autosave(self.folder)
+
+    @property
+    def poses(self) -> bool:
+        """Whether drags pose, and nothing else is in hand."""
+        return self.cutting is None and self.material is None and not self.moves
 
     @property
     def usual_folder(self) -> Path:

@@ -32,6 +32,7 @@ from app.motion.intervals import (
 )
 from app.motion.joints import (
     Joints as Joints,
+    animation_at as animation_at,
     carried_in as carried_in,
     hung_animations as hung_animations,
     joints_source as joints_source,

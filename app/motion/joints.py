@@ -218,14 +218,8 @@ class Joints:
         return _joint(moved.positions[index], moved.fz[index])
 
     def _animation_at(self, figure: Figure, points: Complexes) -> Animation:
-        sampler = PoseSampler(
-            figure.domain,
-            anchor=figure.anchor,
-            points=points,
-            sibling=self._siblings.get(figure.id),
-        )
-        clip = clip_of(self.document, figure.id)
-        return Animation(clip, sampler=sampler, carried=partial(self.carried, figure.id))
+        carried = partial(self.carried, figure.id)
+        return animation_at(self.document, figure.id, points, self._siblings, carried)
 
     def _at(self, figure: Figure, place: complex, frame: float) -> Hinge:
         moved = self._animation_at(figure, np.array([place])).frame(frame)
@@ -284,6 +278,21 @@ def carried_in(
     if document.figure(figure).attachment is None:
         return None
     return partial(Joints(document, siblings).carried, figure)
+
+
+def animation_at(
+    document: Document,
+    identity: int,
+    points: Complexes,
+    siblings: Mapping[int, PoseSampler],
+    carried: Carried | None,
+) -> Animation:
+    """Return the motion of some points (m,) of a figure of a document, which may be carried."""
+    figure = document.figure(identity)
+    sampler = PoseSampler(
+        figure.domain, anchor=figure.anchor, points=points, sibling=siblings.get(identity)
+    )
+    return Animation(clip_of(document, identity), sampler=sampler, carried=carried)
 
 
 class HungAnimation:

@@ -90,6 +90,7 @@ class Renderer:
                 "limits": (heat.low, heat.high),
                 "contours": float(heat.contours),
                 "strength": heat.strength,
+                "two_sided": float(heat.two_sided),
             }
             mesh.draw(_HEAT, uniforms)
 

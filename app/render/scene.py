@@ -31,6 +31,9 @@ class Heat:
     high: float
     contours: int = 9  # number of lines of equal value in between
     strength: float = 0.85  # 1 shows the heat map alone, 0 the drawing alone
+    two_sided: bool = (
+        False  # whether a value in the middle is none, and leaves the drawing as it is
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

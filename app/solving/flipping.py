@@ -5,15 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.document import Figure, Handle, Pose, Target, pairs_by_name
+from app.document import Figure, Pose, Target, partners_of
 from app.solving.drag import Rig, fit_map, pins_of
 from engine.arrays import Complexes
-from engine.geometry import box_diagonal, contains
+from engine.geometry import contains
 from engine.maps import HarmonicMap, certify
 
 MOST_STEPS = 600  # for one pose
-# Of the shape's diagonal: handles that mirror each other this nearly are pairs without names.
-NEAR = 0.03
 # Of a shape that counts as symmetric, the part at least that lies on its own mirror image.
 SYMMETRIC = 0.9
 
@@ -42,11 +40,12 @@ def flipped_targets(figure: Figure, pose: Pose, axis: float) -> Mapping[int, Tar
     without either does what the shape does at its mirror image, and else it mirrors itself.
     """
     shape = figure.map_of(pose)
-    partners = _partners(figure, axis)
+    handles = {handle.id: handle for handle in figure.handles}
+    partners = partners_of(figure.handles, axis, figure.domain.outline)
     is_symmetric = _is_symmetric(figure, axis)
     targets = {}
     for handle in figure.handles:
-        partner = partners.get(handle.id)
+        partner = handles.get(partners.get(handle.id, -1))
         place, target = handle.position, pose.targets[handle.id]
         if partner is not None:
             place, target = partner.position, pose.targets[partner.id]
@@ -99,20 +98,6 @@ def _flipped_map(rig: Rig, pose: Pose, axis: float) -> HarmonicMap:
     places = _reflected(shape(points), axis)
     # (R ∘ f ∘ R)_z = conj(f_z) at R(z), and likewise for z̄.
     return fit_map(boundary, fz.conj(), fzbar.conj(), places, inside=inside)
-
-
-def _partners(figure: Figure, axis: float) -> Mapping[int, Handle]:
-    """Return the handle on the other side for each that has one, which may be itself."""
-    handles = {handle.id: handle for handle in figure.handles}
-    partners = {one: handles[other] for one, other in pairs_by_name(figure.handles).items()}
-    near = NEAR * box_diagonal(figure.domain.outline)
-    alone = [handle for handle in figure.handles if handle.id not in partners]
-    for handle in alone:
-        mirrored = _reflect(handle.position, axis)
-        nearest = min(alone, key=lambda other: abs(other.position - mirrored))
-        if abs(nearest.position - mirrored) < near:
-            partners[handle.id] = nearest
-    return partners
 
 
 def _is_symmetric(figure: Figure, axis: float) -> bool:

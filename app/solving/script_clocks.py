@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from math import radians
 from typing import Any, TypeVar
 
-from app.document import SPRINGS, Spring, Track, TrackKey
+from app.document import HOLD, SPRINGS, Passing, Spring, Track, TrackKey
 from app.errors import LissomError
 from app.solving.script_fields import (
     fields_in,
@@ -17,7 +17,7 @@ from app.solving.script_fields import (
 from app.storage import JsonObject, as_list, as_number, as_point, as_text, as_whole
 
 TRACK_FIELDS = ("handle", "handles", "with", "keys", "delay", "reach")
-TRACK_KEY_FIELDS = ("frame", "offset", "at", "turn", "ease", "passing")
+TRACK_KEY_FIELDS = ("frame", "offset", "at", "velocity", "turn", "ease", "passing")
 SPRING_FIELDS = ("handle", "preset", "frequency", "damping", "lag", "strength")
 # What the places of a track's keys are called, by what it goes with.
 PLACES = {"pose": "offset", "picture": "at"}
@@ -99,6 +99,12 @@ def _track_key(content: object, where: str, place: str) -> TrackKey:
             f"{'pose' if place == 'offset' else 'picture'}, whose keys have {place!r}"
         )
     easing, passing = passage_of(key, where)
+    velocity = as_point(key["velocity"], f"{where}.velocity") if "velocity" in key else None
+    if velocity is not None and (easing == HOLD or passing is not Passing.THROUGH):
+        raise LissomError(
+            f'{where} has a velocity, which is of keys that are passed through; give it "passing": '
+            '"through", or leave the velocity out'
+        )
     return _made(
         TrackKey,
         where,
@@ -107,6 +113,7 @@ def _track_key(content: object, where: str, place: str) -> TrackKey:
         turn=radians(as_number(key.get("turn", 0.0), f"{where}.turn")),
         easing=easing,
         passing=passing,
+        velocity=velocity,
     )
 
 

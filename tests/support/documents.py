@@ -207,6 +207,7 @@ def random_track(rng: np.random.Generator, handles: tuple[int, ...]) -> Track:
                 turn=float(rng.choice([0.0, rng.normal()])),
                 easing=rng.choice(np.array([*PRESETS.values()], object)),
                 passing=Passing(rng.choice(["through", "corner", "stop"])),
+                velocity=rng.choice([None, inside(rng) / 9]),
             )
             for frame in frames
         ),
@@ -466,6 +467,7 @@ def clocked_document() -> Document:
     keys = (
         TrackKey(frame=2, place=0j, unknown=more),
         TrackKey(frame=9, place=3 - 4j, turn=0.25, easing=PRESETS["in"], passing=Passing.STOP),
+        TrackKey(frame=12, place=0j, velocity=complex(1 / 3, -0.0)),
         TrackKey(frame=60, place=complex(1 / 3, -0.0), easing=Easing((0.1, 0.2, 1 / 3, 1.0))),
     )
     track = Track(

@@ -41,9 +41,12 @@ A track acts from its first key to its last one, both included, and changes noth
 offset is by how much the handle is beside its place in the motion of the poses, in axes that turn
 with the shape there; with "picture", at is its place on the canvas. Several handles move together
 as "handles": ["hoof", "heel"]: keys are of the first one. A key may turn the shape at the handle by
-so many degrees, counter-clockwise ("turn": 20), and has ease and passing as those above. Left out,
-with is "pose", delay 0 frames (in a loop it comes round), and reach 1: from 0 to 1, how far around
-the handle the body gives. The last key, of poses or of a track, is where the animation ends.
+so many degrees, counter-clockwise ("turn": 20), and has ease and passing as those above; through
+the first and the last one the handle comes from rest and to rest, unless they meet in a loop. One
+that is passed through may say at which velocity, in pixels a frame in the axes of its offset or of
+the canvas ("velocity": [2, -0.5]). Left out, with is "pose", delay 0 frames (in a loop it comes
+round), and reach 1: from 0 to 1, how far around the handle the body gives. The last key, of poses
+or of a track, is where the animation ends.
 
 A spring lets a handle follow the motion late and swing: frequency in Hz; damping, 1 where it comes
 back without swinging over; lag 0 frames, and strength 1. The presets are tail, ear, hair, cloth and

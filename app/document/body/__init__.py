@@ -13,4 +13,8 @@ from app.document.body.material import (
     require_amount as require_amount,
     usual_as_none as usual_as_none,
 )
-from app.document.body.pairs import mirrored_name as mirrored_name, pairs_by_name as pairs_by_name
+from app.document.body.pairs import (
+    mirrored_name as mirrored_name,
+    pairs_by_name as pairs_by_name,
+    partners_of as partners_of,
+)

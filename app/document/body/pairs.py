@@ -1,10 +1,16 @@
-"""Which handles are each other's mirror image, as their names tell."""
+"""Which handles are each other's mirror image, as their names tell, or else their places."""
 
 import re
 from collections.abc import Iterable, Mapping
 
-from app.document.keyframe import Handle
+import numpy as np
 
+from app.document.keyframe import Handle
+from engine.arrays import Complexes
+from engine.geometry import box_diagonal
+
+# Of the shape's diagonal: handles that mirror each other this nearly are pairs without names.
+NEAR = 0.03
 OTHER_SIDE = {"l": "r", "r": "l", "left": "right", "right": "left"}
 # "left" and "right" where a word begins and ends, be it in the middle of "handLeftUpper", but not
 # in "bright" or "cleft".
@@ -39,3 +45,28 @@ def pairs_by_name(handles: Iterable[Handle]) -> Mapping[int, int]:
     names = {handle.name: handle.id for handle in handles}
     pairs = {identity: names.get(mirrored_name(name) or "") for name, identity in names.items()}
     return {identity: other for identity, other in pairs.items() if other is not None}
+
+
+def partners_of(handles: Iterable[Handle], axis: float, outline: Complexes) -> Mapping[int, int]:
+    """Return the partner of each handle that has one, by name or else by place, by their ids.
+
+    A handle next to the axis is its own partner, unless its name tells of another.
+
+    Parameters
+    ----------
+    handles : iterable of Handle
+    axis : float
+        The upright line at which they mirror each other, in pixels from the left.
+    outline : complex128, shape (n,)
+        Of their figure.
+    """
+    handles = tuple(handles)
+    partners = dict(pairs_by_name(handles))
+    alone = [handle for handle in handles if handle.id not in partners]
+    places = np.array([handle.position for handle in alone])
+    for handle in alone:
+        away = np.abs(places - (2 * axis - handle.position.conjugate()))
+        nearest = int(away.argmin())
+        if away[nearest] < NEAR * box_diagonal(outline):
+            partners[handle.id] = alone[nearest].id
+    return partners

@@ -153,7 +153,7 @@ def stretched(figure: Figure, first: int, factor: float) -> Figure:
         return keys_in_time.scaled(frame, first, factor)
 
     def all_to(keys: Iterable[keys_in_time.Key]) -> tuple[keys_in_time.Key, ...]:
-        return keys_in_time.in_order(replace(key, frame=to(key.frame)) for key in keys)
+        return keys_in_time.in_order(key.at_pace(to(key.frame), 1 / factor) for key in keys)
 
     switches = {to(switch.frame): switch for switch in figure.switches}
     return replace(

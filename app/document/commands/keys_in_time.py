@@ -38,8 +38,9 @@ def in_order(keys: Iterable[Key]) -> Row[Key]:
 
 
 def exchanged(keys: Row[Key], changed: Mapping[int, Key]) -> Row[Key]:
-    """Return a row with others for the keys at some frames, itself if there are none."""
-    return in_order(changed.get(key.frame, key) for key in keys) if changed else keys
+    """Return a row with others for the keys at some frames, itself if they are the same."""
+    row = in_order(changed.get(key.frame, key) for key in keys)
+    return keys if row == keys else row
 
 
 def inserted(keys: Row[Key], new: Key) -> Row[Key]:
@@ -99,9 +100,7 @@ def backwards(
     turned = {chosen[0].frame: chosen[0].with_way(chosen[-1])}
     for before, key in pairwise(chosen):
         turned[key.frame] = key.with_way(before, backwards=True)
-    return exchanged(
-        keys, {frame: replace(key, frame=ends - frame) for frame, key in turned.items()}
-    )
+    return exchanged(keys, {frame: key.at_pace(ends - frame, -1) for frame, key in turned.items()})
 
 
 def spread(
@@ -113,11 +112,10 @@ def spread(
     if factor == 1 or not chosen:
         return keys
     first = chosen[0].frame if first is None else first
-    changed = {}
-    for key in chosen:
-        if key.frame != first:
-            changed[key.frame] = replace(key, frame=scaled(key.frame, first, factor))
-    return exchanged(keys, changed)
+    return exchanged(
+        keys,
+        {key.frame: key.at_pace(scaled(key.frame, first, factor), 1 / factor) for key in chosen},
+    )
 
 
 def eased(keys: Row[Key], frames: Collection[int], easing: Easing) -> Row[Key]:

@@ -36,6 +36,7 @@ def put_track_key(
     place: complex,
     *,
     turn: float | None = None,
+    velocity: complex | None = None,
     easing: Easing = LINEAR,
     planted: bool = False,
 ) -> Figure:
@@ -47,6 +48,8 @@ def put_track_key(
         As the track has it, beside the pose or in the picture.
     turn : float, optional
         In radians; None keeps that of the key, or is 0.
+    velocity : complex, optional
+        Of a new key, in pixels a frame; one that is there keeps its own.
     easing : Easing
         Of ways that are new, as `key_commands.insert_key` has it.
     planted : bool
@@ -57,7 +60,7 @@ def put_track_key(
         (key,) = keys_in_time.at_frames(track.keys, {frame})
         changed = replace(key, place=place, turn=key.turn if turn is None else turn)
         return _with_keys(figure, track, keys_in_time.put(track.keys, (changed,)))
-    key = TrackKey(frame=frame, place=place, turn=turn or 0.0, easing=easing)
+    key = TrackKey(frame=frame, place=place, turn=turn or 0.0, velocity=velocity, easing=easing)
     if track is not None:
         return _with_keys(figure, track, keys_in_time.inserted(track.keys, key))
     figure.handle(handle)
@@ -117,18 +120,24 @@ def scale_track_keys(
 def set_track_easing(
     figure: Figure, handle: int, frames: Collection[int], easing: Easing
 ) -> Figure:
-    """Set how time runs from the keys of a track at some frames to the next ones."""
+    """Set how time runs from the keys of a track at some frames to the next ones.
+
+    They are passed at no velocity of their own any more.
+    """
     track = _track(figure, handle)
-    return _with_keys(figure, track, keys_in_time.eased(track.keys, frames, easing))
+    return _with_keys(figure, track, keys_in_time.eased(_unled(track, frames), frames, easing))
 
 
 @figure_command("Set passing")
 def set_track_passing(
     figure: Figure, handle: int, frames: Collection[int], passing: Passing
 ) -> Figure:
-    """Set how a track passes its keys at some frames; one that held its place does no longer."""
+    """Set how a track passes its keys at some frames; one that held its place does no longer.
+
+    None of them has a velocity of its own any more.
+    """
     track = _track(figure, handle)
-    return _with_keys(figure, track, keys_in_time.passed(track.keys, frames, passing))
+    return _with_keys(figure, track, keys_in_time.passed(_unled(track, frames), frames, passing))
 
 
 @figure_command("Set delay")
@@ -156,19 +165,30 @@ def enable_track(figure: Figure, handle: int, *, enabled: bool) -> Figure:
 
 
 @figure_command("Plant track")
-def plant_track(figure: Figure, handle: int, places: Sequence[complex], *, planted: bool) -> Figure:
+def plant_track(
+    figure: Figure,
+    handle: int,
+    places: Sequence[complex],
+    velocities: Sequence[complex | None] | None = None,
+    *,
+    planted: bool,
+) -> Figure:
     """Let a track's keys be places in the picture, or beside the pose.
 
     Parameters
     ----------
-    places : sequence of complex
-        What the keys are then, in their order; `app.motion` knows it.
+    places, velocities : sequences of complex
+        What the keys have then, in their order; `app.motion` knows it. Without velocities they have
+        none of their own any more.
     """
     track = _track(figure, handle)
-    if len(places) != len(track.keys):
+    velocities = velocities or [None] * len(places)
+    if not len(places) == len(velocities) == len(track.keys):
         raise LissomError(f"The track has {len(track.keys)} keys, not {len(places)}.")
-    pairs = zip(track.keys, places, strict=True)
-    keys = tuple(replace(key, place=place) for key, place in pairs)
+    keys = tuple(
+        replace(key, place=place, velocity=velocity)
+        for key, place, velocity in zip(track.keys, places, velocities, strict=True)
+    )
     return _with(figure, handle, planted=planted, keys=keys)
 
 
@@ -215,6 +235,12 @@ def _track(figure: Figure, handle: int) -> Track:
     if track is None:
         raise LissomError(f"The handle {figure.handle(handle).name!r} has no track.")
     return track
+
+
+def _unled(track: Track, frames: Collection[int]) -> tuple[TrackKey, ...]:
+    """Return the keys of a track, those at some frames without a velocity of their own."""
+    chosen = keys_in_time.at_frames(track.keys, frames)
+    return keys_in_time.exchanged(track.keys, {key.frame: key.unled() for key in chosen})
 
 
 def _with_track(figure: Figure, track: Track, *, instead: Track | None = None) -> Figure:

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.document.body import pairs_by_name
+from app.document.body import partners_of
 from app.document.figure import Figure
 from app.document.timing import Track, TrackKey
 
@@ -34,9 +34,11 @@ def with_moved_handle(figure: Figure, identity: int, position: complex) -> Figur
 
 
 def mirrored_track(figure: Figure, track: Track) -> Track:
-    """Return a track mirrored at the figure's axis, for the partners of its handles, by name."""
-    pairs, axis = pairs_by_name(figure.handles), figure.axis
-    handles = tuple(pairs.get(handle, handle) for handle in track.handles)
+    """Return a track mirrored at the figure's axis, for the partners of its handles."""
+    axis = figure.axis
+    pairs = partners_of(figure.handles, axis, figure.domain.outline)
+    # Two that lie together may have one partner.
+    handles = tuple(dict.fromkeys(pairs.get(handle, handle) for handle in track.handles))
     old, new = (figure.handle(each[0]).position for each in (track.handles, handles))
     # A drawing is hardly its own mirror image: what the partner is beside that of the handle.
     beside = new - _reflected(old, axis)
@@ -47,6 +49,7 @@ def mirrored_track(figure: Figure, track: Track) -> Track:
             if track.planted
             else _reflected(key.place, 0.0),
             turn=0.0 - key.turn,
+            velocity=None if key.velocity is None else _reflected(key.velocity, 0.0),
         )
         for key in track.keys
     )

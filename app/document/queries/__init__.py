@@ -38,7 +38,11 @@ from app.document.queries.timeline import (
     resting_pose as resting_pose,
     time_of as time_of,
 )
-from app.document.queries.tracks import TrackPlace as TrackPlace, track_at as track_at
+from app.document.queries.tracks import (
+    TrackPlace as TrackPlace,
+    track_at as track_at,
+    velocity_at as velocity_at,
+)
 from app.document.queries.transits import (
     Transit as Transit,
     comes_round as comes_round,

@@ -49,6 +49,9 @@ class Passages(Generic[Key]):
     # again, and None where it leads nowhere.
     gap: int | None
     is_same: Callable[[Key, Key], bool]  # whether two keys have what moves alike
+    # Whether the motion comes from rest at a key that no leg leads to, and so at one without a way
+    # on, where it passes these through; else as straight as a corner.
+    ends_rest: bool = False
 
     def ends(self, index: int) -> tuple[Passed, Passed]:
         """Return how a key is reached, and how it is left."""
@@ -72,9 +75,12 @@ class Passages(Generic[Key]):
                 joint = joint._replace(end_pace=end_pace, start_pace=start_pace)
                 return joint, joint
             return 1.0, 1.0
+        resting = {Passing.STOP}
+        if self.ends_rest and None in (self.arriving(index), self.leaving(index)):
+            resting.add(Passing.THROUGH)
         return (
-            stops[0] if reached.passing is Passing.STOP else 1.0,
-            stops[1] if left.passing is Passing.STOP else 1.0,
+            stops[0] if reached.passing in resting else 1.0,
+            stops[1] if left.passing in resting else 1.0,
         )
 
     def arriving(self, index: int) -> Leg | None:

@@ -17,6 +17,7 @@ from engine.maps import Bounds, distortion
 # always gives in a little, since it pulls against the stiffness of the shape.
 LAG = 0.005
 AT_LIMIT = 0.97  # of a limit: so much of it is used where a pose cannot go on
+WORDS = {"k": "shear", "σa": "stretch", "σb": "squeeze"}
 TINY = 1e-300  # in place of a stretch that is not proven to be above 0
 
 
@@ -27,6 +28,11 @@ class Use(NamedTuple):
     value: float
     bound: float
     share: float
+
+    @property
+    def word(self) -> str:
+        """What is limited, in a word."""
+        return WORDS[self.name]
 
     @property
     def is_all(self) -> bool:
@@ -71,6 +77,14 @@ class Extremes(NamedTuple):
             sigma_a=max(self.sigma_a - other.sigma_a, 0.0),
             sigma_b=max(other.sigma_b - self.sigma_b, 0.0),
         )
+
+    def reached(self, bounds: Bounds) -> tuple[str, ...]:
+        """Return what is limited so that a shape which some limit holds back cannot go on.
+
+        In words; that of which most is used comes first.
+        """
+        first, *others = sorted(self.uses(bounds), key=lambda use: -use.share)
+        return (first.word, *(use.word for use in others if use.is_all))
 
     def uses(self, bounds: Bounds) -> tuple[Use, ...]:
         """Return how much of each limit is used; stretches count by their logarithms."""

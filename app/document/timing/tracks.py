@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Self
 
-from app.document.checks import NOTHING, Unknown, require, require_distinct, require_place
+from app.document.checks import FARTHEST, NOTHING, Unknown, require, require_distinct, require_place
 from app.document.timing.easing import HOLD, LINEAR, Easing
 from app.document.timing.passing import Passing, require_passing
 
@@ -25,6 +25,9 @@ class TrackKey:
     turn: float = 0.0
     easing: Easing = LINEAR
     passing: Passing = Passing.THROUGH
+    # With which the motion passes it where it goes through, in pixels a frame, as the place is
+    # told; None for what its neighbours and the easings make of it.
+    velocity: complex | None = None
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
@@ -33,6 +36,11 @@ class TrackKey:
             abs(self.turn) <= MOST_TURN,
             f"A track turns by at most {MOST_TURN / math.tau:g} whole turns, not by "
             f"{self.turn / math.tau:g}.",
+        )
+        require(
+            self.velocity is None or abs(self.velocity) <= FARTHEST,
+            f"A track passes a key at no more than {FARTHEST:,.0f} pixels a frame, not at "
+            f"{self.velocity}.",
         )
         require_passing(self.passing)
         object.__setattr__(self, "passing", Passing(self.passing))
@@ -45,6 +53,15 @@ class TrackKey:
     def with_way(self, other: Self, *, backwards: bool = False) -> Self:
         """Return the key with the way on from another one, or with that way run backwards."""
         return replace(self, easing=other.easing.reversed() if backwards else other.easing)
+
+    def at_pace(self, frame: int, pace: float) -> Self:
+        """Return the key at another frame of a motion that runs so many times as fast."""
+        velocity = None if self.velocity is None else pace * self.velocity
+        return replace(self, frame=frame, velocity=velocity)
+
+    def unled(self) -> Self:
+        """Return the key passed as its neighbours and the easings have it."""
+        return self if self.velocity is None else replace(self, velocity=None)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -6,17 +6,20 @@ Imports: `app.editor`, and the rooms that do the work.
 """
 
 from app.editor.actions import (
-    cutting as cutting,
     editing as editing,
     exporting as exporting,
     files as files,
     playback as playback,
     posing as posing,
-    rebuilding as rebuilding,
     saving as saving,
     tracking as tracking,
     upkeep as upkeep,
     viewing as viewing,
+)
+from app.editor.actions.body import (
+    cutting as cutting,
+    material as material,
+    rebuilding as rebuilding,
 )
 from app.editor.actions.timing import (
     keys as keys,

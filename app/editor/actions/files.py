@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 from app.document import Document, History, Meshing, clip_of
 from app.editor.action import Action, do
-from app.editor.actions import cutting, playback, saving
+from app.editor.actions import playback, saving
+from app.editor.actions.body import cutting
 from app.editor.actions.saving import PROJECT
 from app.editor.dialogs import Leftover, Question, Recovery
 from app.editor.failures import ask_worker, sentence

@@ -149,7 +149,7 @@ def hold_file(session: Session, path: Path) -> Hold | None:
 def put_project(session: Session, project: Project | None) -> None:
     """Make a project that of the window, or none; let others have the file of the one before."""
     before, session.project = session.project, project
-    session.pointer = session.cutting = None
+    session.pointer = session.cutting = session.material = None
     session.moves = False
     hold = before.hold if before is not None else None
     if hold is not None and (project is None or project.hold is not hold):

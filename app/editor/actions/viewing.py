@@ -9,7 +9,7 @@ from app.document import Baseline, Meshing, Variant
 from app.editor.action import Action
 from app.editor.dialogs import Dialog, FileDialog, ShortcutSheet
 from app.editor.project import Project, view_around
-from app.editor.session import CurveKind, HeatMap, Session, Toast, with_project
+from app.editor.session import CurveKind, HeatMap, Session, Tint, Toast, with_project
 from app.motion import Box, box_around
 from app.render import View
 from app.storage import LARGEST_GHOST_STEP, LARGEST_SCALE, MOST_GHOSTS, SMALLEST_SCALE, ThemeName
@@ -218,3 +218,8 @@ def answer(session: Session, action: Action) -> None:
 def dismiss(session: Session, toast: Toast) -> None:
     """Take a message away."""
     session.toasts = [other for other in session.toasts if other is not toast]
+
+
+def tint(session: Session, by: Tint | None) -> None:
+    """Show by colours what of the drawing is in front, or stiff; None shows it as it is."""
+    session.tint = by

@@ -20,7 +20,6 @@ from app.editor.layering.arranging import (
     rename as rename,
     show as show,
     switch_here as switch_here,
-    tint_depth as tint_depth,
     unswitch_here as unswitch_here,
 )
 from app.editor.layering.hanging import (

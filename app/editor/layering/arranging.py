@@ -135,8 +135,3 @@ def remove(session: Session, project: Project, identity: int) -> None:
     editing.edit(session, layer_commands.remove_figure(identity))
     if was_active:
         choose(session, (order[:index][-1:] or order[index + 1 :])[0])
-
-
-def tint_depth(session: Session, tints: bool) -> None:  # noqa: FBT001 - of an action
-    """Show what of the drawing is in front, and what behind."""
-    session.tints_depth = tints

@@ -55,14 +55,16 @@ class Moving(Pulling):
 def take_up(session: Session, _: Project) -> None:
     """Let drags and arrows move the whole figure, or pose it again."""
     if session.pointer is None:
-        session.moves = session.cutting is not None or not session.moves
-        session.cutting = None
+        is_other = session.cutting is not None or session.material is not None
+        session.moves = is_other or not session.moves
+        session.cutting = session.material = None
 
 
 @with_project
 def pose(session: Session, _: Project) -> None:
     """Put away whatever is in hand instead of posing."""
-    session.cutting, session.moves = None, False
+    session.cutting = session.material = None
+    session.moves = False
 
 
 @with_project

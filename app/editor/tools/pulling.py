@@ -167,9 +167,7 @@ class Pulling(Tool):
         """Take back what it did; the playhead goes back to where it was."""
         if self.records:
             tracking.give_up(session)
-        for carry in self.project.carries:
-            if carry.gesture is self:
-                self.project.pending.remove(carry)
+        tracking.forget(self.project, self)
         if self.stood is not None:
             playback.seek(session, self.stood)
         super(Pulling, self).cancel(session)

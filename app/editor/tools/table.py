@@ -4,7 +4,7 @@ from typing import Final
 
 from app.editor.session import Session
 from app.editor.tools.anchoring import Anchoring
-from app.editor.tools.cutting_tools import Brushing, Parting, Pointing
+from app.editor.tools.brushes import Boning, Brushing, Parting, Pointing, Stiffening
 from app.editor.tools.joining import Joining
 from app.editor.tools.mirroring import Mirroring
 from app.editor.tools.moving import Moving
@@ -14,6 +14,7 @@ from app.editor.tools.tool import Tool
 from app.editor.tools.turning import Turning
 
 CUTTING_TOOLS: Final[tuple[type[Tool], ...]] = (Brushing, Parting, Pointing)
+MATERIAL_TOOLS: Final[tuple[type[Tool], ...]] = (Stiffening, Boning)
 MOVING_TOOLS: Final[tuple[type[Tool], ...]] = (Mirroring, Moving, Anchoring)
 # A press is for the first that takes it; hints are told in this order.
 TOOLS: Final[tuple[type[Tool], ...]] = (
@@ -32,4 +33,6 @@ def tools_of(session: Session) -> tuple[type[Tool], ...]:
     """Return the tools of what the person does now: cut out, move, or pose."""
     if session.cutting is not None:
         return CUTTING_TOOLS
+    if session.material is not None:
+        return MATERIAL_TOOLS
     return MOVING_TOOLS if session.moves else TOOLS

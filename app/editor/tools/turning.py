@@ -1,4 +1,7 @@
-"""Turning the shape around a handle, by the ring around it or by a key."""
+"""Turning the shape around a handle, by the ring around it or by a key.
+
+A handle whose track's row is chosen is turned by that, and the pose stays.
+"""
 
 import cmath
 import math
@@ -7,7 +10,7 @@ from dataclasses import dataclass, field
 from typing import Self
 
 from app.document import Target
-from app.editor.actions import editing, posing
+from app.editor.actions import editing, playback, posing, tracking
 from app.editor.project import Project
 from app.editor.session import EntryMark, Hint, Mark, Session, SweepMark
 from app.editor.tools.entry import TypedWay
@@ -26,6 +29,7 @@ class Turning(Tool):
     centre: complex  # where the handle is
     start: complex  # where the pointer was pressed
     turn: float  # by how much the shape was turned there at the start, in radians
+    on_track: bool  # whether the handle's track takes the turn in place of the pose
     deletes: bool  # whether a click, which turns nothing, deletes the handle
     swept: float = 0.0  # by how much the pointer has turned it, in radians
     entry: TypedWay = field(default_factory=TypedWay)  # how many degrees are typed meanwhile
@@ -35,7 +39,10 @@ class Turning(Tool):
     def hints(cls, _: Session, project: Project, spot: Spot) -> tuple[Hint, ...]:
         """Tell how the shape is turned."""
         if spot.on_ring:
-            return (Hint("drag", "to turn the shape around the handle"),)
+            (handle,) = project.selected
+            is_alone = tracking.carried_track(project, handle) is not None
+            what = "to key its turn alone" if is_alone else "to turn the shape around the handle"
+            return (Hint("drag", what),)
         if spot.handle is None or project.figure.is_locked(spot.handle):
             return ()
         # Of both gestures the one that no window manager takes for itself, as many do Alt+drag.
@@ -54,12 +61,16 @@ class Turning(Tool):
         if handle is None or handle not in identities or project.figure.is_locked(handle):
             return None
         index = identities.index(handle)
+        on_track = tracking.carried_track(project, handle) is not None
+        frame = playback.current_frame(session, project)
+        wished = tracking.wished_turn(project, handle, frame) if on_track else None
         turning = cls(
             project=project,
             handle=handle,
             centre=complex(shown.handle_places[index]),
             start=spot.place,
-            turn=shown.handle_turns[index],
+            turn=shown.handle_turns[index] if wished is None else wished,
+            on_track=on_track,
             deletes=is_by_key,
         )
         editing.select(session, frozenset({handle}))
@@ -94,6 +105,9 @@ class Turning(Tool):
         handle, swept = self.handle, self.swept
         if handle not in {each.id for each in self.project.figure.handles}:
             return
+        if self.on_track:
+            tracking.turn(session, handle, self.turn + swept, gesture=self)
+            return
 
         def turned(start: Start, targets: Mapping[int, Target]) -> Mapping[int, Target]:
             if handle not in targets:
@@ -107,8 +121,13 @@ class Turning(Tool):
         """Let the shape go; delete the handle that was only clicked."""
         if self.deletes and not self.moved:
             posing.remove_handles(session, frozenset({self.handle}))
-        else:
+        elif not self.on_track:
             posing.let_go(session)
+
+    def cancel(self, session: Session) -> None:
+        """Take back what it did."""
+        tracking.forget(self.project, self)
+        super(Turning, self).cancel(session)
 
     @property
     def marks(self) -> tuple[Mark, ...]:

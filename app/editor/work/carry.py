@@ -9,7 +9,7 @@ from app.editor.work.promise import Promise
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class Carry(Promise):
-    """A handle at a frame, wanted elsewhere by its own track.
+    """A handle at a frame, wanted elsewhere or turned by its own track.
 
     It is a promise until the track has the key, which it gets once it is known what that is
     relative to.
@@ -24,6 +24,9 @@ class Carry(Promise):
         What is one step of undo together.
     place : complex
         Where the handle is wanted, on the figure by itself.
+    turn : float, optional
+        By how much the shape is to be turned there, in radians; the place is then where the handle
+        is, for a track that wants it nowhere yet.
     """
 
     label: str = "Keys of a handle"
@@ -32,6 +35,7 @@ class Carry(Promise):
     frame: int
     gesture: object
     place: complex
+    turn: float | None = None
 
 
 class Sample(NamedTuple):
@@ -65,6 +69,8 @@ class Take:
         Of the playhead before.
     place : complex
         Where the handle is wanted now, on the figure by itself.
+    scale : float
+        How many pixels of the screen one of the picture took, when it began.
     smoothing : float
         From 0 to 1.
     samples : list of Sample
@@ -82,6 +88,7 @@ class Take:
     last: int
     speed: float
     place: complex
+    scale: float
     smoothing: float
     samples: list[Sample] = field(default_factory=list)
     is_over: bool = False

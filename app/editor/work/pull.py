@@ -255,14 +255,14 @@ class Pull(Promise):
 
         def of(figure: Figure, earlier: Pose) -> Pose:
             now = {handle.id: handle.position for handle in figure.handles}
-            if now == then and earlier.targets.keys() == then.keys():
+            if now == then and earlier.targets.keys() == pose.targets.keys() == then.keys():
                 return pose
             # Handles came, went or were put elsewhere since: of those nothing is wished yet.
             start = Start.of(figure, replace(pose, targets=earlier.targets))
             targets = {}
             for identity, position in now.items():
                 here = replace(start.targets[identity], position=start.places[identity])
-                is_same = then.get(identity) == position
+                is_same = then.get(identity) == position and identity in pose.targets
                 targets[identity] = pose.targets[identity] if is_same else here
             return replace(pose, targets=targets)
 

@@ -25,8 +25,8 @@ class FrameCorrection:
         By how many pixels handles, by their ids, miss where their tracks want them.
     wishes : mapping of int to complex
         Where that is, of the same handles.
-    is_held_back : bool
-        Whether a bound is reached.
+    limits : tuple of str
+        What of it bounds hold back, in words, if one is reached; see `Extremes.reached`.
     steps : int
         Newton's, of all that was solved.
     """
@@ -36,8 +36,13 @@ class FrameCorrection:
     psi: Complexes | None = None
     misses: Mapping[int, float] = field(default_factory=dict)
     wishes: Mapping[int, complex] = field(default_factory=dict)
-    is_held_back: bool = False
+    limits: tuple[str, ...] = ()
     steps: int = 0
+
+    @property
+    def is_held_back(self) -> bool:
+        """Whether a bound is reached."""
+        return bool(self.limits)
 
     @property
     def nbytes(self) -> int:

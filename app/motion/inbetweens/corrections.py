@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.document import Clip, Variant, resting_pose, stiffened, time_of, transits
+from app.document import Clip, Extremes, Variant, resting_pose, stiffened, time_of, transits
 from app.motion.inbetweens.base_motion import BaseMotion
 from app.motion.inbetweens.correction import FrameCorrection
 from app.motion.inbetweens.own_clocks import Carried, OwnClocks, Wanted
@@ -211,7 +211,7 @@ class Corrections:
                 motion=motion,
                 phi=phi,
                 psi=psi,
-                is_held_back=found.is_held_back,
+                limits=self._limits(moved, found),
                 steps=found.steps,
             )
 
@@ -221,11 +221,10 @@ class Corrections:
         self, frame: float, base: Jet, lack: Lack | None, still: FrameCorrection, wanted: Wanted
     ) -> FrameCorrection:
         """Return the correction by which handles also go their own ways."""
-        firmness = wanted.firmness
-        if lack is not None:
-            # Those beside one that goes its own way give way: held as firmly, they tear at it.
-            own = np.flatnonzero(wanted.firmness)
-            firmness = np.maximum(firmness, self._away_from(own) * lack.weights)
+        # Those beside one that goes its own way give way: held as firmly, they tear at it.
+        away = self._away_from(np.flatnonzero(wanted.firmness))
+        held = 0.0 if lack is None else lack.weights
+        firmness = np.where(wanted.firmness > 0, wanted.firmness, away * (1.0 + held) - 1.0)
         places = base.positions.copy()
         places[self._handles] = wanted.places
         pins = self._pins(places, firmness, wanted.turns, wanted.reach)
@@ -241,12 +240,19 @@ class Corrections:
                 psi=psi if still.psi is None else psi + still.psi,
                 misses={handles[i].id: float(found.misses[i]) for i in tracked},
                 wishes={handles[i].id: complex(wanted.places[i]) for i in tracked},
-                is_held_back=found.is_held_back,
+                limits=self._limits(base, found),
                 steps=still.steps + found.steps,
             )
 
         key = (*self._whose(frame), *_content(lack or ()), *_content(wanted))
         return self._remembered(key, solve)
+
+    def _limits(self, base: Jet, found: Corrected) -> tuple[str, ...]:
+        """Return what the bounds hold back of a correction that is found of a base."""
+        if not found.is_held_back:
+            return ()
+        at = base.advanced(1.0, found.change)
+        return Extremes.measured(at.f, at.g).reached(self.clip.figure.bounds)
 
     def _pins(self, places: Complexes, firmness: Floats, turns: Floats, reach: float) -> Pins:
         """Return what is wanted of the points; what hangs is held by its anchor.

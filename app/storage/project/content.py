@@ -159,6 +159,7 @@ TRACK = record(
                 Field("turn", NUMBER, usual=0.0),
                 Field("easing", EASING),
                 Field("passing", TEXT),
+                Field("velocity", optional(POINT), usual=None),
             )
         ),
     ),

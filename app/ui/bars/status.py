@@ -11,7 +11,6 @@ from app.editor.actions import exporting, rebuilding, upkeep
 from app.errors import shown_name
 from app.ui.style import Look, shortened, tip
 
-WORDS = {"k": "Shear", "σa": "Stretch", "σb": "Squeeze"}
 LEAST_ROOM = 6.0  # em: narrower, a hint is left out
 SLOW = 0.3  # seconds after which a job is told of; shorter ones would only flicker
 ENDLESS = 5.0  # seconds after which a job can be given up
@@ -195,11 +194,11 @@ def _distortion(project: Project) -> Fact | None:
     uses = extremes.uses(project.figure.bounds)
     most = max(uses, key=lambda use: use.share)
     return Fact(
-        f"{WORDS[most.name]} {most.value:.2f}, limit {most.bound:.2f}",
+        f"{most.word.capitalize()} {most.value:.2f}, limit {most.bound:.2f}",
         "\n".join(
             ["Largest distortion of the whole shape, and its limit", ""]
             + [
-                f"{WORDS[use.name]} ({use.name}) {use.value:.3f}, limit {use.bound:.3f}"
+                f"{use.word.capitalize()} ({use.name}) {use.value:.3f}, limit {use.bound:.3f}"
                 for use in uses
             ]
         ),

@@ -6,10 +6,8 @@ Imports: `app.ui.style`, `app.ui.shortcuts`, `app.ui.viewport`.
 """
 
 from app.ui.panels import (
-    cut_out as cut_out,
     deform as deform,
     distortion as distortion,
-    domain as domain,
     export as export,
     handle as handle,
     layers as layers,

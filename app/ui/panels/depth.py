@@ -3,8 +3,8 @@
 from imgui_bundle import imgui
 
 from app.document import USUAL_EXTENT, Figure, Handle, Keyframe, layer_commands
-from app.editor import Action, Project, Session, do, layering
-from app.editor.actions import editing, playback
+from app.editor import Action, Project, Session, do
+from app.editor.actions import editing, playback, viewing
 from app.ui.style import Look, Scale, heading, label, slider, small, tip
 from engine.geometry import box_diagonal
 
@@ -25,8 +25,8 @@ def draw(session: Session, look: Look, project: Project, handle: Handle) -> list
     is_pointed = imgui.is_item_hovered(imgui.HoveredFlags_.rect_only) and imgui.is_window_hovered(
         imgui.HoveredFlags_.allow_when_blocked_by_active_item
     )
-    if is_pointed != session.tints_depth:
-        actions.append(do(layering.tint_depth, is_pointed))
+    if is_pointed != (session.tint == "depth"):
+        actions.append(do(viewing.tint, "depth" if is_pointed else None))
     return actions
 
 

@@ -15,8 +15,8 @@ from app.document import (
     find_shortfall,
     handle_commands,
 )
-from app.editor import Action, Project, Session, do, layering
-from app.editor.actions import editing, posing
+from app.editor import Action, Project, Session, do
+from app.editor.actions import editing, posing, viewing
 from app.ui.panels import depth
 from app.ui.panels.clocks import draw_spring, draw_stillness, draw_track
 from app.ui.shortcuts import BINDINGS, CTRL, bound_button, bound_text_button, with_key
@@ -65,10 +65,13 @@ def draw(session: Session, look: Look, project: Project) -> list[Action]:
         heading(look, f"{len(chosen)} handles")
         small(look, "Dragging one of them moves them all; arrows nudge them.")
         actions += _firmness(session, look, chosen)
+        track = figure.track_of(chosen[0].id)
+        if track is not None and set(track.handles) >= {handle.id for handle in chosen}:
+            actions += draw_track(session, look, project, figure.handle(track.handles[0]))
     else:
         small(look, "Select a handle to see its settings.")
-    if len(chosen) != 1 and session.tints_depth:
-        actions.append(do(layering.tint_depth, not session.tints_depth))
+    if len(chosen) != 1 and session.tint == "depth":
+        actions.append(do(viewing.tint, None))
     heading(look, "Anchor")
     return actions + _anchor(look, project, chosen)
 

@@ -13,6 +13,7 @@ from app.editor.actions import (
     exporting,
     files,
     keys,
+    material,
     playback,
     posing,
     saving,
@@ -48,7 +49,7 @@ def _all(session: Session, _: Project) -> str:
 
 def _can_deselect(session: Session, project: Project) -> bool:
     """Tell whether something is selected, and nothing is under way that Esc ends first."""
-    in_hand = session.pointer or session.cutting or session.moves or project.timing.gesture
+    in_hand = session.pointer or not session.poses or project.timing.gesture
     return not (in_hand or _records(session, project)) and bool(
         project.selected or project.chosen_of
     )
@@ -68,8 +69,7 @@ def _frees_arrows(session: Session, project: Project) -> bool:
 
 
 def _can_pose(session: Session, _: Project) -> bool:
-    is_posing = session.cutting is None and not session.moves
-    return not is_posing and session.pointer is None
+    return not session.poses and session.pointer is None
 
 
 def _grouped(_: Session, project: Project) -> bool:
@@ -91,7 +91,7 @@ def _plays(session: Session) -> bool:
 
 
 def _brushes(session: Session, _: Project) -> bool:
-    return session.cutting in {"keep", "remove"}
+    return session.cutting in {"keep", "remove"} or session.material in material.BRUSHES
 
 
 @with_project
@@ -264,6 +264,28 @@ MENUS: dict[str, dict[str, Binding]] = {
             hint="Give it a key of its own in this frame: it gets a track beside the keys of poses",
             possible=_selected,
             parted=True,
+        ),
+        "stiffen": Binding(
+            "Make parts stiff",
+            do(material.take_up, "stiff"),
+            "G",
+            icon=icons.ICON_FA_CUBE,
+            hint="Brush over what is to bend and stretch less than the rest",
+            active=lambda session: session.material in material.BRUSHES,
+            parted=True,
+        ),
+        "bone": Binding(
+            "Draw bones",
+            do(material.take_up, "bone"),
+            "Shift+B",
+            icon=icons.ICON_FA_BONE,
+            hint="Drag from a handle to another one: the limb between them is stiff",
+            active=lambda session: session.material == "bone",
+        ),
+        "bone between": Binding(
+            "Bone between two handles",
+            do(material.bone_between),
+            possible=lambda _, project: len(project.selected) == 2,
         ),
         "group": Binding(
             "Group",

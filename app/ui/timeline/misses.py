@@ -25,6 +25,9 @@ def told(project: Project, figure: Figure, track: Track, frame: int) -> str:
         return ""
     corrected = project.puppets[figure.id].corrected
     correction = corrected.at(corrected.clip, frame) if corrected else None
-    is_held = correction is not None and correction.is_held_back
-    why = "the limits hold" if is_held else "the shape's stiffness holds"
+    limits = correction.limits if correction else ()
+    if len(limits) > 1:
+        why = f"the limits of {', '.join(limits[:-1])} and {limits[-1]} hold"
+    else:
+        why = f"the limit of {limits[0]} holds" if limits else "the shape's stiffness holds"
     return f"Misses its track by {miss:.0f} px at frame {frame}: {why} it back"

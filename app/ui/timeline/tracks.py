@@ -213,5 +213,7 @@ def _tell(bands: Bands, lane: TrackLane, key: TrackKey) -> None:
         imgui.text_disabled(f"{track.delay} frames late, {in_seconds(track.delay, document.fps)}")
     name, hint = PASSINGS[key.shown_passing]
     imgui.text_unformatted(f"{name}: {hint[0].lower()}{hint[1:]}")
+    if key.velocity is not None:
+        imgui.text_disabled("At a velocity of its own, until a passing or an easing is chosen")
     imgui.text_disabled(f"Drag to move, {with_key(CTRL, 'drag')} to copy, right click for more")
     imgui.end_tooltip()

@@ -4,7 +4,9 @@ from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 
-from app.document import is_visible, time_of
+import numpy as np
+
+from app.document import Figure, is_visible, time_of
 from app.editor import HeatMap, Project, Puppet, Session
 from app.motion import PosableMesh, Shown
 from app.render import Ghost, Heat, Renderer, Scene, Wireframe
@@ -14,7 +16,9 @@ from app.ui.viewport.backdrop import background
 from app.ui.viewport.cut_view import mark_holes
 from app.ui.viewport.drawing import Drawing
 from app.ui.viewport.marks import forget_places, mark_all, pixel_scale, plain
+from app.ui.viewport.material_view import tint_of
 from app.ui.viewport.pose_pictures import PosePictures
+from engine.arrays import Floats
 
 GHOST_BEFORE, GHOST_AFTER = (0.93, 0.36, 0.36), (0.30, 0.62, 0.98)
 GHOST_OPACITY = 0.38
@@ -123,7 +127,7 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
         session.hovered,
         session.cutting,
         project.figure.cut_out if session.cutting else None,
-        session.tints_depth,
+        session.tint,
         project.document.figures,
         session.overlays,
         session.export_frame,
@@ -159,8 +163,8 @@ def _scene(session: Session, project: Project, shown: Shown, drawing: Drawing) -
         )
     shows = {figure: puppet.shown for figure, puppet in project.puppets.items()}
     heat = None
-    if session.tints_depth:
-        heat = Heat(low=-1.0, high=1.0, contours=0, strength=0.5)
+    if session.tint is not None:
+        heat = Heat(low=-1.0, high=1.0, contours=0, strength=0.6, two_sided=True)
     elif overlays.heat_map != "none":
         low, high = heat_limits(project, overlays.heat_map)
         heat = Heat(low=low, high=high)
@@ -208,12 +212,20 @@ def _posed(
             shown.vertices, placement=shown.placement, opacity=figure.opacity
         )
         poses.append(pose)
-        if session.tints_depth:
-            depths = shown.mesh.order.depths(shown.clip, shown.frame)
-            drawing.tint(pose, depths if figure.id == project.active else 0 * depths)
+        if session.tint is not None:
+            drawing.tint(pose, _tinted(session, project, figure, shown))
         elif heat_map != "none":
             drawing.heat(pose, shown, heat_map)
     return tuple(poses)
+
+
+def _tinted(session: Session, project: Project, figure: Figure, shown: Shown) -> Floats:
+    """Return by what the vertices of a figure are coloured, (v,), −1 to 1."""
+    if figure.id != project.active:
+        return np.zeros(len(shown.positions))
+    if session.tint == "stiffness":
+        return tint_of(project.figure, shown)
+    return shown.mesh.order.depths(shown.clip, shown.frame)
 
 
 def _meshes(puppet: Puppet) -> set[PosableMesh]:

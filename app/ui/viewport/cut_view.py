@@ -7,10 +7,10 @@ that colour nobody would see it.
 import math
 
 import numpy as np
-from imgui_bundle import ImVec2, imgui
+from imgui_bundle import ImVec2, ImVec4, imgui
 
 from app.editor import Project, Session
-from app.editor.actions import cutting
+from app.editor.actions import cutting, material
 from app.render import Disc, Renderer
 from app.render.gpu import GpuMesh, GpuPicture, PosedMesh, PositionBuffer, singles
 from app.storage import Cut
@@ -104,18 +104,33 @@ def mark_holes(project: Project, palette: Palette, scale: float) -> tuple[Disc, 
 
 def draw_brush(session: Session, look: Look, at: ImVec2, scale: float) -> None:
     """Draw the ring of the brush around a place; a pixel of the picture takes `scale` pixels."""
-    if session.project is None or session.cutting not in {"keep", "remove"}:
+    keeps: bool | None
+    if session.project is None:
         return
-    keeps = (session.cutting == "keep") != imgui.get_io().key_alt
+    if session.cutting in {"keep", "remove"}:
+        keeps = (session.cutting == "keep") != imgui.get_io().key_alt
+    elif session.material in material.BRUSHES:
+        keeps = material.BRUSHES[session.material]
+    else:
+        return
     radius = cutting.brush_radius(session.project) * scale
     draw_list = imgui.get_window_draw_list()
-    colour = ink(look.palette.good if keeps else look.palette.danger)
+    colour = ink(stroke_colour(look, keeps=keeps))
     for tone, width in outlined(look, colour, 0.1):
         draw_list.add_circle(at, radius, tone, 64, width)
+    if keeps is None:
+        return
     sign, width = 0.35 * look.em, 0.12 * look.em
     draw_list.add_line(ImVec2(at.x - sign, at.y), ImVec2(at.x + sign, at.y), colour, width)
     if keeps:
         draw_list.add_line(ImVec2(at.x, at.y - sign), ImVec2(at.x, at.y + sign), colour, width)
+
+
+def stroke_colour(look: Look, *, keeps: bool | None) -> ImVec4:
+    """Return the colour of a brush that keeps, or stiffens; that does the opposite; or neither."""
+    if keeps is None:
+        return look.palette.accent
+    return look.palette.good if keeps else look.palette.danger
 
 
 def _corners(width: float, height: float) -> Complexes:

@@ -9,6 +9,7 @@ from app.document import HOLDS, Handle, handle_commands
 from app.editor import Action, Project, Session, do
 from app.editor.actions import editing, posing, viewing
 from app.editor.tools import pointing
+from app.ui.panel import is_in_front
 from app.ui.shortcuts import ALT, CTRL, bound_item, with_key
 from app.ui.style import Look, density, in_hand, is_pressed
 from app.ui.viewport.cut_view import draw_brush
@@ -27,6 +28,7 @@ from app.ui.viewport.hand import (
     lay_track_keys,
 )
 from app.ui.viewport.marks import unreached
+from app.ui.viewport.material_view import draw_bones
 from app.ui.viewport.screen import GRIP, Screen
 from app.ui.viewport.split_view import SplitTextures, divide, draw_divider, draw_pictures
 
@@ -87,6 +89,11 @@ def draw(session: Session, look: Look, project: Project, pictures: SplitTextures
     hint = hint_at(session, screen, spot) if is_over else ""
     if hint != session.hint:
         actions.append(do(pointing.explain, hint))
+    if session.tint == "stiffness" and not is_in_front("Material"):
+        actions.append(do(viewing.tint, None))
+    draw_bones(look, screen)
+    if session.material is not None and (on_canvas or session.pointer is not None):
+        draw_brush(session, look, imgui.get_mouse_pos(), screen.scale)
     if session.cutting is None:
         return actions + draw_badges(session, look, project, corner, parts.room)
     draw_coming_strokes(look, screen)

@@ -26,7 +26,8 @@ from app.render import LayerPictures, Renderer, Thumbnail, Thumbnails
 from app.render.gpu import is_software
 from app.storage import app_icon, sample_images
 from app.ui.panel import Panel
-from app.ui.panels import cut_out, deform, distortion, domain, export, handle, layers, poses
+from app.ui.panels import deform, distortion, export, handle, layers, poses
+from app.ui.panels.body import cut_out, domain, material
 from app.ui.style import Look
 from app.ui.timeline import timeline
 from app.ui.viewport import Canvas, SplitTextures, viewport
@@ -230,6 +231,7 @@ class Window:
             Panel("Layers", icons.ICON_FA_LAYER_GROUP, draw_layers),
             Panel("Poses", icons.ICON_FA_PERSON_RUNNING, draw_poses),
             Panel("Deform", icons.ICON_FA_SLIDERS, deform.draw),
+            Panel("Material", icons.ICON_FA_CUBE, material.draw),
             Panel("Distortion", icons.ICON_FA_CHART_LINE, distortion.draw),
             Panel("Mesh", icons.ICON_FA_SHAPES, domain.draw),
             Panel("Cut-out", icons.ICON_FA_SCISSORS, cut_out.draw),

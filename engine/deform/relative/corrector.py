@@ -18,19 +18,25 @@ from engine.deform.model import (
     factor_of,
     factor_shifted,
     in_basis,
-    solved,
 )
-from engine.deform.relative.energy import TINY, RelativeEnergy, Rows
+from engine.deform.relative.between import Middles
+from engine.deform.relative.energy import RelativeEnergy
 from engine.deform.relative.pins import Pins
+from engine.deform.relative.pulls import TINY
+from engine.deform.relative.rows import Rows
 from engine.maps import Boundary, Limits
 
 MOST_STEPS = 60
-# Weight of the barrier at rest. After a short step it grows, to a part of what is left of the value
+# Weight of the barrier at rest. After a short step it grows, to a part of what the step was to gain
 # at least, and after a long one it falls: pins that are wanted far beyond a wall pull at it with a
 # force that the least weight stands against only next to it.
-LEAST_WEIGHT = 1e-3
-SHORT, LONG = 0.1, 0.5
-GROWTH, OF_VALUE, FALL = 2.0, 1e-3, 0.1
+LEAST_WEIGHT = 2e-2
+SHORT, LONG = 0.2, 0.5
+GROWTH, OF_GAIN, FALL = 2.0, 0.05, 0.5
+# Parts of what the projection removes from the Hessian that are tried to be left out of it, and the
+# size of steps beyond which that is of no use.
+REMOVED = (1.0, 0.3)
+FARTHEST = 1.0
 # Walls are inside the bounds by this part of the way to the identity: between two samples a map is
 # beyond what it is at them by less. A base near that keeps half of what it has left.
 MARGIN = 1e-2
@@ -40,7 +46,7 @@ LEFT = 1e-4
 ENOUGH = 1e-5
 SHORTEST = 1e-7
 SUFFICIENT = 1e-4
-TO_THE_WALL = 0.95
+TO_THE_WALL = 0.9
 HALVINGS = 10
 
 
@@ -89,6 +95,10 @@ class Corrector:
         """What does not depend on the base."""
         return Rows.of(self.boundary, self.points)
 
+    @cached_property
+    def _middles(self) -> Middles:
+        return Middles.of(self.boundary)
+
     def measured(self, phi: Complexes, psi: Complexes) -> Jet:
         """Return a map of the span, by its coefficients (n,), at the samples and the points."""
         boundary, points = self.boundary, self._of_points
@@ -131,10 +141,8 @@ class Corrector:
             load = energy.load(barrier)
             value = energy.value(at, unknowns, barrier, load)
             gradient, hessian, removed = energy.model(at, unknowns, barrier, load)
-            factor = factor_of(hessian - removed, SHIFT)
-            step = -solved(factor_shifted(hessian) if factor is None else factor, gradient)
-            change, slope = self.rows.change(step), float(gradient @ step)
-            length = _longest(barrier, at, change)
+            step, change = self._step(energy, at, gradient, hessian, removed)
+            length, slope = _longest(barrier, at, change), float(gradient @ step)
             while length > SHORTEST:
                 tried = at.advanced(length, change)
                 there = energy.value(tried, unknowns + length * step, barrier, load)
@@ -150,10 +158,33 @@ class Corrector:
                 break
             last = size
             if length < SHORT:
-                weight = max(GROWTH * weight, OF_VALUE * there)
+                weight = max(GROWTH * weight, -OF_GAIN * slope)
             elif length > LONG:
                 weight = max(FALL * weight, LEAST_WEIGHT)
+        change = self.rows.change(unknowns)
+        share = self._middles.share_within(base, change, limits, self.boundary)
+        if share < 1.0:
+            unknowns, change = share * unknowns, change.scaled(share)
+            at = base.advanced(1.0, change)
         return self._corrected(unknowns, pins, at, walls, steps)
+
+    def _step(
+        self, energy: RelativeEnergy, at: Jet, gradient: Floats, hessian: Floats, removed: Floats
+    ) -> tuple[Floats, Jet]:
+        """Return Newton's step (u,), and what it changes.
+
+        That of a Hessian with less of what bends down, where one with more leads anywhere.
+        """
+        lacking = at.positions - energy.pins.places
+        for part in REMOVED:
+            factor = factor_of(hessian - part * removed, SHIFT)
+            if factor is not None:
+                step = energy.pulls.step(factor, gradient, lacking)
+                change = self.rows.change(step)
+                if self._size(change) < FARTHEST:
+                    return step, change
+        step = energy.pulls.step(factor_shifted(hessian), gradient, lacking)
+        return step, self.rows.change(step)
 
     def _nothing(self, base: Jet, pins: Pins) -> Corrected:
         """Return the correction of a base that none can be added to."""
@@ -189,9 +220,14 @@ class Corrector:
 
 
 def _next_duals(barrier: Barrier, at: Jet, change: Jet) -> Floats:
-    """Return the dual variables (3, m) of the barrier after a whole step."""
+    """Return the dual variables (3, m) of the barrier after a whole step.
+
+    To first order: where a map goes along a curved wall they would keep it there.
+    """
     a, b = at.a, at.b
-    return barrier.next_duals(a, b, np.abs(at.f + change.f) - a, np.abs(at.g + change.g) - b)
+    da = (at.f.conj() * change.f).real / a
+    db = (at.g.conj() * change.g).real / np.maximum(b, TINY)
+    return barrier.next_duals(a, b, da, db)
 
 
 def _longest(barrier: Barrier, at: Jet, change: Jet) -> float:

@@ -14,100 +14,35 @@ is convex in these two, so that what is left of it is nowhere negative, however 
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices, Singles
-from engine.deform.handles import hold_constants, squared_places
+from engine.deform.handles import hold_constants
 from engine.deform.model import (
     Barrier,
     Jet,
     Radial,
     by_unknowns,
-    in_basis,
     symmetric_dirichlet,
     symmetric_dirichlet_derivatives,
 )
 from engine.deform.relative.pins import Pins
-from engine.maps import Boundary
+from engine.deform.relative.pulls import TINY, Pulls
+from engine.deform.relative.rows import Rows
 
 # A prescribed turn is as stiff as two points this far (of L) on either side.
 ARM = 0.02
 # κ: how strongly the outline is held where the base has it, times (1 − reach)², over L².
 HELD = 300.0
-# Samples of the Hessian of the energy for each function of the span; and how much stiffer by the
-# barrier than by the energy a sample is that enters it by itself.
-SAMPLES_PER_FUNCTION = 6
-FELT = 0.02
-TINY = 1e-300
+# How much stiffer by the barrier than by the energy a sample is whose barrier enters the Hessian,
+# that does so by itself, and with all its digits.
+FELT, ALONE, HARD = 0.3, 1.0, 1e5
 
 # By |F| and by |G|, each (m,).
 Load = tuple[Floats, Floats]
 # Rows by φ and ψ (k,), and of which of some samples.
 Block = tuple[Complexes, Complexes, Indices]
-
-
-class Rows(NamedTuple):
-    """What does not depend on the base, of a boundary and points in its domain.
-
-    Parameters
-    ----------
-    boundary : Boundary
-        With its own samples only.
-    coordinates, derivatives : complex128, shape (h, r)
-        Of the functions of the basis, at the points.
-    firmer : float64, shape (h,)
-        By which factor points are held more firmly, as handles are (`Handles`).
-    held : float64, shape (u, u)
-        The Hessian of the mean over the outline's vertices of |δ|² / L².
-    some : intp, shape (s,)
-        The samples of the Hessian of the energy.
-    some_weights : float64, shape (s,)
-    some_rows : complex64, shape (s, r)
-        The derivatives of the basis there.
-    """
-
-    boundary: Boundary
-    coordinates: Complexes
-    derivatives: Complexes
-    firmer: Floats
-    held: Floats
-    some: Indices
-    some_weights: Floats
-    some_rows: Complexes
-
-    @classmethod
-    def of(cls, boundary: Boundary, points: Complexes) -> "Rows":
-        """Prepare them."""
-        span, basis = boundary.span, boundary.basis
-        count = len(boundary.points)
-        stride = max(1, count // (SAMPLES_PER_FUNCTION * len(span)))
-        starts = np.arange(0, count, stride)
-        some = np.minimum(starts + stride // 2, count - 1)
-        vertices = boundary.vertex_coordinates @ basis / boundary.size
-        held = squared_places(boundary, vertices / np.sqrt(len(vertices)))
-        return cls(
-            boundary=boundary,
-            coordinates=span.coordinates(points) @ basis,
-            derivatives=span.derivatives(points) @ basis,
-            firmer=boundary.stiffness_around(points)[1],
-            held=held,
-            some=some,
-            some_weights=np.add.reduceat(boundary.weights, starts),
-            some_rows=boundary.basis_derivatives[some].astype(np.complex64),
-        )
-
-    def change(self, unknowns: Floats) -> Jet:
-        """Return the map of the span that unknowns (u,) stand for."""
-        phi, psi = in_basis(self.boundary, unknowns)
-        rows = self.boundary.basis_derivatives
-        return Jet(
-            f=rows @ phi,
-            g=rows @ psi,
-            positions=self.coordinates @ phi + (self.coordinates @ psi).conj(),
-            fz=self.derivatives @ phi,
-        )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -120,8 +55,8 @@ class RelativeEnergy:
     base : Jet
     pins : Pins
     fixed : float64, shape (u, u)
-        The Hessian of the places of the pins and of what holds the outline, which does not change
-        in a solve.
+        The Hessian of what holds the outline, which does not change in a solve.
+    pulls : Pulls
     """
 
     rows: Rows
@@ -130,18 +65,24 @@ class RelativeEnergy:
     alpha: Complexes = field(init=False)
     beta: Complexes = field(init=False)
     fixed: Floats = field(init=False)
+    pulls: Pulls = field(init=False)
 
     def __post_init__(self) -> None:
         f, g, boundary = self.base.f, self.base.g, self.rows.boundary
         area = np.abs(f) ** 2 - np.abs(g) ** 2
         object.__setattr__(self, "alpha", f.conj() / area)
         object.__setattr__(self, "beta", -g / area)
-        root = np.sqrt(2.0 * self.stiffness)[:, None]
-        fixed = squared_places(boundary, root * self.rows.coordinates)
-        if self.held:
-            fixed += 2.0 * self.held * self.rows.held
+        pulls = Pulls(
+            boundary=boundary,
+            coordinates=self.rows.coordinates,
+            stiffness=self.stiffness,
+            firmer=self.rows.firmer,
+            offsets=np.abs(self.base.positions - self.pins.places),
+        )
+        fixed = 2.0 * self.held * self.rows.held
         hold_constants(boundary, fixed)
         object.__setattr__(self, "fixed", fixed)
+        object.__setattr__(self, "pulls", pulls)
 
     @cached_property
     def stiffness(self) -> Floats:
@@ -181,7 +122,7 @@ class RelativeEnergy:
         density -= load[0] * (a - self.base.a)
         density -= load[1] * (b - self.base.b)
         value = self.rows.boundary.weights @ density
-        value += self.stiffness @ np.abs(at.positions - self.pins.places) ** 2
+        value += self.pulls.value(at.positions - self.pins.places)
         if self.held:
             value += self.held * (unknowns @ (self.rows.held @ unknowns))
         if len(self.turning):
@@ -193,7 +134,8 @@ class RelativeEnergy:
     ) -> tuple[Floats, Floats, Floats]:
         """Return the gradient (u,), the projected Hessian (u, u), and what the projection removed.
 
-        With that taken off again the Hessian is the exact one, which need not be positive.
+        With that taken off again the Hessian is the exact one, which need not be positive, but for
+        pulls that give in: along them it has nothing (`Pulls.step`).
         """
         boundary, weights = self.rows.boundary, self.rows.boundary.weights
         a, b = at.a, at.b
@@ -206,10 +148,11 @@ class RelativeEnergy:
         by_g = (by_p * self.beta).conj() + by_q * self.alpha
         by_f += weights * bar.a * at.f.conj() / a
         by_g += weights * bar.b_per_b * at.g.conj()
-        pull = 2.0 * self.stiffness * (at.positions - self.pins.places)
+        lacking = at.positions - self.pins.places
+        pull = self.pulls.firmness(lacking) * lacking
         by_phi = by_f @ boundary.basis_derivatives + pull.conj() @ self.rows.coordinates
         by_psi = by_g @ boundary.basis_derivatives + pull @ self.rows.coordinates
-        hessian = self.fixed.copy()
+        hessian = self.fixed + self.pulls.hessian(lacking)
         if len(self.turning):
             slope = 2.0 * self._turning_stiffness * self._turned(at)
             frames = -1j / at.fz[self.turning]
@@ -250,22 +193,25 @@ class RelativeEnergy:
                 x, y = by_p.astype(np.complex64), by_q.astype(np.complex64)
                 a, b = alpha[which], beta[which]
                 blocks.append((x * a + (y * b).conj(), (x * b).conj() + y * a, which))
-            self._add(into, blocks, self.rows.some_rows)
+            self._add(into, blocks, self.rows.single[some])
 
     def _add_barrier(
         self, hessian: Floats, removed: Floats, at: Jet, barrier: Radial, energy: Radial
     ) -> None:
-        felt = np.flatnonzero(barrier.aa + barrier.bb > FELT * (energy.aa + energy.bb))
-        if not len(felt):
-            return
-        boundary = self.rows.boundary
-        rows = boundary.basis_derivatives[felt]
-        for into, roots in zip(
-            (hessian, removed),
-            _roots((at.f, at.g), barrier, felt, boundary.weights[felt]),
-            strict=True,
+        stiffer = (barrier.aa + barrier.bb) / (energy.aa + energy.bb)
+        boundary, some = self.rows.boundary, self.rows.some
+        calm = (stiffer[some] > FELT) & (stiffer[some] <= ALONE)
+        alone = np.flatnonzero((stiffer > ALONE) & (stiffer <= HARD))
+        hard = np.flatnonzero(stiffer > HARD)
+        for which, weights, rows in (
+            (some[calm], self.rows.some_weights[calm], self.rows.single[some[calm]]),
+            (alone, boundary.weights[alone], self.rows.single[alone]),
+            (hard, boundary.weights[hard], boundary.basis_derivatives[hard]),
         ):
-            self._add(into, roots, rows)
+            if len(which):
+                both = _roots((at.f, at.g), barrier, which, weights)
+                for into, roots in zip((hessian, removed), both, strict=True):
+                    self._add(into, roots, rows)
 
     def _add(self, hessian: Floats, blocks: list[Block], rows: Complexes) -> None:
         """Add the squares of rows by φ and ψ to a Hessian, in the rows' own precision."""

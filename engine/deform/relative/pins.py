@@ -16,7 +16,7 @@ class Pins(NamedTuple):
     ----------
     places : complex128, shape (h,)
     firmness : float64, shape (h,)
-        From 0, as softly as what is only held, to 1.
+        From −1, hardly at all, over 0, as softly as what is only held, to 1.
     turns : float64, shape (h,)
         arg f_z in radians; NaN where it is free. Whole turns do not matter.
     reach : float

@@ -8,6 +8,8 @@ import shapely
 from engine.arrays import Complexes, Floats
 from engine.geometry import ON_OUTLINE, box_diagonal, loop_ends, next_on_loop, region
 
+TINY = 1e-9
+
 
 def brushed(
     loops: Sequence[Complexes], places: Complexes, radius: float, softness: float
@@ -42,9 +44,12 @@ def brushed(
     following = next_on_loop(starts, len(corners))
     for place in places.tolist():
         along = np.clip(((place - corners) / sides).real, 0.0, 1.0)
+        # The nearest outline has all of it, however deep inside the brush is.
+        depth = min(float(np.abs(corners + along * sides - place).min()), radius)
         for part in (along, np.zeros(len(corners))):
             at = corners + part * sides
-            strength = _falloff(np.abs(at - place) / radius, softness)
+            away = (np.abs(at - place) - depth) / max(radius - depth, TINY * radius)
+            strength = _falloff(away, softness)
             reached = np.flatnonzero(strength > 0)
             if shapely.intersects_xy(area, place.real, place.imag):
                 lines = np.column_stack([np.full(len(reached), place), at[reached]])

@@ -5,5 +5,5 @@ Out: how a spring swings about it, at any time; few keys for what was recorded.
 Imports: `engine.arrays`, `engine.errors`.
 """
 
-from engine.geometry.kinematics.recordings import fit_keys as fit_keys
+from engine.geometry.kinematics.recordings import FittedKeys as FittedKeys, fit_keys as fit_keys
 from engine.geometry.kinematics.springs import Swing as Swing, swing as swing

@@ -1,14 +1,15 @@
 """Recorded drags: few keys whose motion stays near what a hand did."""
 
+from collections.abc import Collection, Sequence
+from typing import NamedTuple
+
 import numpy as np
 import numpy.typing as npt
 from scipy.linalg import solveh_banded
 
-from engine.arrays import Booleans, Complexes, Floats, Indices, as_points
+from engine.arrays import Complexes, Floats, Indices, as_points
 from engine.errors import EngineError
 
-# Neighbours that are nearer, in pixels, are meant to be one place: a motion stops at both.
-SAME = 0.01
 # Frames between two places beyond which the way from one to the other counts as recorded.
 GAP = 1.0
 EARLY = 0.1  # frames that the first key may be before the recording, and the last one after it
@@ -20,9 +21,21 @@ SLACK = 1.05  # by what factor more may be missed where the tolerance cannot be 
 REACH = 3  # intervals on either side of a key that is dropped in which much changes
 
 
+class FittedKeys(NamedTuple):
+    """Keys (k,), k ≥ 1, that a motion passes at velocities of their own."""
+
+    frames: Indices
+    places: Complexes
+    velocities: Complexes  # pixels a frame
+
+
 def fit_keys(
-    times: npt.ArrayLike, places: npt.ArrayLike, tolerance: float
-) -> tuple[Indices, Complexes]:
+    times: npt.ArrayLike,
+    places: npt.ArrayLike,
+    tolerance: float,
+    *,
+    required: Collection[int] = (),
+) -> FittedKeys:
     """Return few keys on whole frames whose motion stays near recorded places; none could go.
 
     Parameters
@@ -35,14 +48,14 @@ def fit_keys(
     tolerance : float
         Pixels, 0 or more, that a recorded place may be beside the motion; 0 for a key in each
         frame, unless fewer miss nothing.
+    required : collection of int
+        Frames that have a key in any case, if they are between the first and the last.
 
     Returns
     -------
-    frames : intp, shape (k,)
-        Those of the keys, from the first whole frame of the recording to its last one; one key
-        where there are not two.
-    values : complex128, shape (k,)
-        Their places. The tolerance is kept where keys in all frames around can keep it.
+    FittedKeys
+        From the first whole frame of the recording to its last one; one key, at rest, where there
+        are not two. The tolerance is kept where keys in all frames around can keep it.
 
     Raises
     ------
@@ -51,12 +64,10 @@ def fit_keys(
 
     Notes
     -----
-    The motion is that of keys which are passed through: cubic Hermite polynomials between them,
-    with the slope of the parabola through a key and its neighbours, straight at both ends, and with
-    a stop at each of two neighbours at one place. It is linear in the keys' places, which are found
-    all at once by least squares. Keys are put where the motion misses most, until it is within the
-    tolerance; then the one that is least needed goes, again and again, far from each other many at
-    once.
+    The motion is a cubic Hermite polynomial between two keys. It is linear in the places and the
+    velocities of the keys, which are found all at once by least squares. Keys are put where the
+    motion misses most, until it is within the tolerance; then the one that is least needed goes,
+    again and again, far from each other many at once.
     """
     when, where = np.asarray(times, dtype=np.float64), as_points(places, "Recorded places")
     if when.shape != where.shape or not len(where):
@@ -76,18 +87,19 @@ def fit_keys(
     if first >= last:
         middle = round((when[0] + when[-1]) / 2)
         nearest = np.array([first if first == last else middle], dtype=np.intp)
-        return nearest, _along(nearest, when, where)
+        return FittedKeys(nearest, _along(nearest, when, where), np.zeros(1, dtype=np.complex128))
     recording = _Recording(when, where, first, last, tolerance)
-    keys = recording.split(np.array([first, last], dtype=np.intp))
+    fixed = sorted({first, last, *(frame for frame in required if first < frame < last)})
+    frames = recording.split(np.array(fixed, dtype=np.intp))
     if tolerance:
-        keys = recording.thin(keys)
-    return keys, recording.fitted(keys)[0]
+        frames = recording.thin(frames, fixed)
+    return recording.fitted(frames)[0]
 
 
-def key_motion(frames: Indices, values: Complexes, times: Floats) -> Complexes:
-    """Return where the motion through keys (k,), k ≥ 2, is at times (t,) from first to last."""
-    interval, rows = _rows(frames, _stops(values), times)
-    return _motion(rows, values, interval)
+def key_motion(keys: FittedKeys, times: Floats) -> Complexes:
+    """Return where the motion through two keys or more is at times (t,) from first to last."""
+    interval, rows = _rows(keys.frames, times)
+    return _motion(rows, keys.places, keys.velocities, interval)
 
 
 class _Recording:
@@ -97,44 +109,41 @@ class _Recording:
         self, times: Floats, places: Complexes, first: int, last: int, tolerance: float
     ) -> None:
         self.at_frames = _along(np.arange(first, last + 1), times, places)
+        self.ways = np.gradient(self.at_frames)
         inside = (times >= first) & (times <= last)
         self.times, self.places = times[inside], places[inside]
         self.tolerance = tolerance
 
-    def fitted(self, keys: Indices) -> tuple[Complexes, Floats]:
-        """Return the best places of keys, and by how much each recorded place is missed."""
-        values, motion = self._solved(keys, np.zeros(len(keys), dtype=bool))
-        stops = _stops(values)
-        if stops.any():
-            values, _ = self._solved(keys, stops)
-            motion = key_motion(keys, values, self.times)
-        return values, np.abs(motion - self.places)
+    def fitted(self, frames: Indices) -> tuple[FittedKeys, Floats]:
+        """Return the best keys at some frames, and by how much each recorded place is missed.
 
-    def _solved(self, keys: Indices, stops: Booleans) -> tuple[Complexes, Complexes]:
-        """Solve the normal equations, in bands; also return the motion at the recorded times."""
-        interval, rows = _rows(keys, stops, self.times)
+        The normal equations are solved in bands: a key knows of its neighbours only.
+        """
+        interval, rows = _rows(frames, self.times)
         # The unknowns are how far keys are beside the recording, where nothing else holds them.
-        near = self.at_frames[keys - keys[0]]
-        rest = self.places - _motion(rows, near, interval)
-        count = len(keys) - 1
-        starts = np.searchsorted(self.times, keys[:-1])
+        at = frames - frames[0]
+        near, ways = self.at_frames[at], self.ways[at]
+        rest = self.places - _motion(rows, near, ways, interval)
+        starts = np.searchsorted(self.times, frames[:-1])
+        end = 2 * len(frames) - 2
 
         def of_intervals(products: Floats) -> Floats:
             # None of them is empty.
             sums: Floats = np.add.reduceat(products, starts)
             return sums
 
-        # Before the first key and after the last one is one more, of which no row knows.
-        bands, right = np.zeros((4, count + 3)), np.zeros((count + 3, 2))
+        # Of each key its place, and then its velocity.
+        bands, right = np.zeros((4, end + 2)), np.zeros((end + 2, 2))
         for i in range(4):
-            right[i : i + count, 0] += of_intervals(rows[i] * rest.real)
-            right[i : i + count, 1] += of_intervals(rows[i] * rest.imag)
+            right[i : i + end : 2, 0] += of_intervals(rows[i] * rest.real)
+            right[i : i + end : 2, 1] += of_intervals(rows[i] * rest.imag)
             for j in range(i + 1):
-                bands[3 - i + j, i : i + count] += of_intervals(rows[i] * rows[j])
+                bands[3 - i + j, i : i + end : 2] += of_intervals(rows[i] * rows[j])
         bands[3] += TIE
-        beside = solveh_banded(bands, right, check_finite=False)[1:-1]
-        values: Complexes = near + beside[:, 0] + 1j * beside[:, 1]
-        return values, _motion(rows, values, interval)
+        beside = solveh_banded(bands, right, check_finite=False) @ [1, 1j]
+        keys = FittedKeys(frames, near + beside[::2], ways + beside[1::2])
+        motion = _motion(rows, keys.places, keys.velocities, interval)
+        return keys, np.abs(motion - self.places)
 
     def split(self, keys: Indices) -> Indices:
         """Put keys where the motion misses most, half way between two, until it is near."""
@@ -150,9 +159,9 @@ class _Recording:
                 return keys
             keys = np.sort(np.append(keys, (keys[worst] + keys[worst + 1]) // 2))
 
-    def thin(self, keys: Indices) -> Indices:
+    def thin(self, keys: Indices, fixed: Sequence[int]) -> Indices:
         """Drop keys that need not be there, the one first without which it misses least."""
-        needed: list[int] = []  # frames of keys without which too much is missed far from them
+        needed = [*fixed]  # and those without which too much is missed far from them
         missed = self.fitted(keys)[1]
         allowed = np.where(missed > self.tolerance, SLACK * missed, self.tolerance)
         while True:
@@ -184,7 +193,7 @@ class _Recording:
         return np.array(dropped, dtype=np.intp)
 
     def _excesses(self, keys: Indices, allowed: Floats) -> Floats:
-        """Return by how much too much is missed around each key without it; ends cannot go."""
+        """Return by how much too much is missed around each key without it, the ends aside."""
         excesses = np.full(len(keys), np.inf)
         for start in range(1, min(APART, len(keys) - 2) + 1):
             without = np.arange(start, len(keys) - 1, APART)
@@ -224,36 +233,29 @@ def _around(values: Floats) -> Floats:
     return largest
 
 
-def _stops(values: Complexes) -> Booleans:
-    """Return at which keys the motion stops: those with a neighbour at the same place."""
-    same: Booleans = np.abs(np.diff(values)) <= SAME
-    stops: Booleans = np.append(same, False) | np.append(False, same)
-    return stops
+def _rows(keys: Indices, times: Floats) -> tuple[Indices, Floats]:
+    """Return in which intervals times are, and the weights (4, t) there of the keys around them.
 
-
-def _rows(keys: Indices, stops: Booleans, times: Floats) -> tuple[Indices, Floats]:
-    """Return in which intervals times are, and the weights (4, t) there of the keys around them."""
-    lengths, interval = np.diff(keys).astype(float), _intervals(keys, times)
-    # The weights (3, k) of the key before, each one and the next one in its velocity.
-    slopes = np.zeros((3, len(keys)))
-    before, after = lengths[:-1], lengths[1:]
-    slopes[0, 1:-1] = -after / (before * (before + after))
-    slopes[2, 1:-1] = before / (after * (before + after))
-    slopes[:, 1:-1][:, stops[1:-1]] = 0
-    slopes[2, 0], slopes[0, -1] = 1 / lengths[0], -1 / lengths[-1]
-    slopes[1] = -slopes[0] - slopes[2]
-    length = lengths[interval]
+    They are those of the place and of the velocity of the key before, and of the key after.
+    """
+    interval = _intervals(keys, times)
+    length = np.diff(keys)[interval].astype(float)
     share = (times - keys[interval]) / length
     rest = 1 - share
-    rows = np.zeros((4, len(times)))
-    rows[1], rows[2] = (1 + 2 * share) * rest**2, (3 - 2 * share) * share**2
-    rows[:3] += (length * share * rest**2) * slopes.take(interval, axis=1)
-    rows[1:] -= (length * share**2 * rest) * slopes.take(interval + 1, axis=1)
+    rows = np.array(
+        [
+            (1 + 2 * share) * rest**2,
+            length * share * rest**2,
+            (3 - 2 * share) * share**2,
+            -length * share**2 * rest,
+        ]
+    )
     return interval, rows
 
 
-def _motion(rows: Floats, values: Complexes, interval: Indices) -> Complexes:
-    """Return the motion (t,) of values by the weights of the keys around intervals."""
-    padded = np.pad(values, 1)
-    motion: Complexes = sum(rows[i] * padded[interval + i] for i in range(4))
+def _motion(rows: Floats, places: Complexes, velocities: Complexes, interval: Indices) -> Complexes:
+    """Return the motion (t,) of keys by the weights of those around intervals."""
+    after = interval + 1
+    numbers = places[interval], velocities[interval], places[after], velocities[after]
+    motion: Complexes = sum(row * number for row, number in zip(rows, numbers, strict=True))
     return motion

@@ -126,6 +126,73 @@ def test_how_time_runs_between_keys_of_a_track_and_how_they_are_passed():
     assert only(stopped).keys[1].easing == LINEAR
 
 
+def led(*, planted=False):
+    """Return a document with a track whose key at frame t is passed at (1, t), but the last."""
+    keys = tuple(replace(key, velocity=complex(1, key.frame)) for key in row(4, 10, 20).keys[:2])
+    made = row(4, 10, 20, planted=planted)
+    return tracked(replace(made, keys=(*keys, made.keys[2])), mirror=AXIS)
+
+
+def velocities(document, handle=0):
+    return [key.velocity for key in document.figures[0].track_of(handle).keys]
+
+
+def test_keys_keep_their_velocities_wherever_they_go():
+    document = led()
+    own = [1 + 4j, 1 + 10j, None]
+    assert velocities(tracks.move_track_keys(0, 0, {4, 10, 20}, 3)(document)) == own
+    assert velocities(tracks.copy_track_keys(0, 0, {4, 10}, 30)(document)) == [*own, *own[:2]]
+    assert velocities(tracks.copy_track(0, 0, 2)(document), 2) == own
+    assert velocities(tracks.set_delay(0, 0, 5)(document)) == own
+    assert velocities(tracks.put_track_key(0, 0, 10, 99)(document)) == own
+    assert velocities(handle_commands.move_handle(0, 0, CENTRE)(led(planted=True))) == own
+    for planted in (False, True):
+        mirrored = tracks.mirror_track(0, 0)(led(planted=planted))
+        assert velocities(mirrored, 1) == [-1 + 4j, -1 + 10j, None]
+    new = tracks.put_track_key(0, 0, 15, 7j, velocity=2j)(document)
+    assert velocities(new) == [*own[:2], 2j, None]
+
+
+def test_velocities_follow_the_time_that_is_scaled_and_run_backwards():
+    document = led()
+    assert velocities(tracks.scale_track_keys(0, 0, {4, 10, 20}, 2)(document)) == [
+        0.5 + 2j,
+        0.5 + 5j,
+        None,
+    ]
+    assert velocities(tracks.scale_track_keys(0, 0, {10, 20}, 0.5, 4)(document)) == [
+        1 + 4j,
+        2 + 20j,
+        None,
+    ]
+    assert velocities(scene_commands.scale_time(0.5)(document)) == [2 + 8j, 2 + 20j, None]
+    assert velocities(scene_commands.set_fps(12.0)(document)) == [1 + 4j, 1 + 10j, None]
+    back = tracks.reverse_track_keys(0, 0, {4, 10, 20})(document)
+    assert velocities(back) == [None, -1 - 10j, -1 - 4j]
+    assert only(tracks.reverse_track_keys(0, 0, {4, 14, 20})(back)) == only(document)
+    # What stays as it is stays the same.
+    assert tracks.scale_track_keys(0, 0, {20}, 3)(document) is document
+    assert key_commands.scale_keys(0, {20}, 3)(document) is document
+
+
+def test_who_sets_a_passing_or_an_easing_sets_the_velocity_free():
+    document = led()
+    for command in (
+        tracks.set_track_passing(0, 0, {10}, Passing.THROUGH),
+        tracks.set_track_passing(0, 0, {10}, Passing.STOP),
+        tracks.set_track_easing(0, 0, {10, 20}, LINEAR),
+        tracks.set_track_easing(0, 0, {10}, PRESETS["in-out"]),
+    ):
+        assert velocities(command(document)) == [1 + 4j, None, None]
+    assert tracks.set_track_passing(0, 0, {20}, Passing.THROUGH)(document) is document
+
+
+@pytest.mark.parametrize("velocity", [complex(np.nan, 0), complex(0, np.inf), 1e8])
+def test_a_velocity_that_is_none_is_refused_in_words(velocity):
+    with pytest.raises(LissomError, match="no more than 10,000,000 pixels a frame, not at"):
+        TrackKey(frame=0, place=0, velocity=velocity)
+
+
 def test_what_a_track_is_like_is_set():
     document = tracked(row(4, 10))
     for command, name, value in (
@@ -144,6 +211,8 @@ def test_what_a_track_is_like_is_set():
         assert history.document is document
     planted = tracks.plant_track(0, 0, [1, 2j], planted=True)(document)
     assert [key.place for key in only(planted).keys] == [1, 2j]
+    passed = tracks.plant_track(0, 0, [1, 2j], [3j, None], planted=True)(document)
+    assert velocities(passed) == [3j, None]
     with pytest.raises(LissomError, match="The track has 2 keys, not 1"):
         tracks.plant_track(0, 0, [1], planted=True)(document)
     with pytest.raises(LissomError, match="at least one handle"):
@@ -227,6 +296,17 @@ def test_a_mirrored_track_is_that_of_the_other_side(planted):
         rtol=0,
         atol=1e-12,
     )
+
+
+def test_a_track_is_mirrored_to_the_handle_on_the_other_side_if_names_tell_nothing():
+    document = tracked(row(4, 10, handles=(2,)), mirror=AXIS)
+    for beside in (30 + 40j, -29 + 41j, -30 + 38j):
+        document = handle_commands.add_handle(0, CENTRE + beside)(document)
+    ids = [handle.id for handle in document.figures[0].handles][-3:]
+    document = altered(document, tracks=(row(4, 10, handles=(ids[1], ids[2])),))
+    figure = tracks.mirror_track(0, ids[1])(document).figures[0]
+    assert [track.handles for track in figure.tracks] == [(ids[1], ids[2]), (ids[0],)]
+    assert [key.place for key in figure.tracks[1].keys] == [-4 + 8j, -10 + 20j]
 
 
 def test_a_handle_without_a_partner_does_its_own_mirror_image():

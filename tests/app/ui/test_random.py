@@ -17,7 +17,7 @@ from app.document.commands import figure_commands, handle_commands, key_commands
 from app.document.keyframe import Target
 from app.document.settings import VARIANTS, ExportSettings, FrameRange, Meshing
 from app.document.timing import PRESETS, Easing
-from app.editor import layering
+from app.editor import layering, promises
 from app.editor.actions import (
     cutting,
     editing,
@@ -717,6 +717,7 @@ def test_random_walk_ends_where_it_began(small_window, workers, tmp_path, seed, 
     walk.act(posing.let_go)
     # What is still on its way, such as a rebuilt domain, would come where undo leads back to.
     workers.allow(math.inf)
+    window.until(lambda: promises.is_settled(project) and not project.afterwards)
     window.settle()
     last = project.document, project.history.unkeyed
     steps = 0

@@ -8,7 +8,7 @@ from bars import BENT
 from harness import MOST_FRAMES
 from numpy.testing import assert_allclose
 
-from app.document import Target
+from app.document import Target, track_at
 from app.document.commands import scene_commands, track_commands
 from app.document.settings import FrameRange
 from app.document.timing import Track, TrackKey
@@ -134,6 +134,84 @@ def test_what_is_out_of_reach_is_wished_all_the_same(window, keyed):
     assert unreached(keyed, shown)[END] == wishes[END], "a dashed line leads there"
 
 
+def turn_by(window, project, angle, *, then=lambda robot: robot.mouse_up(0)):
+    """Turn the selected handle by its ring."""
+    editing.select(window.session, frozenset({END}))
+    window.settle()
+    centre, arm = place_of(project), 1j * window.ring(project)
+
+    def act(robot):
+        robot.mouse_move_to_pos(window.point(centre + arm))
+        robot.mouse_down(0)
+        for share in (0.3, 0.6, 1.0):
+            robot.mouse_move_to_pos(window.point(centre + arm * np.exp(1j * share * angle)))
+        then(robot)
+
+    window.run(act)
+    window.settle()
+
+
+def turned(project):
+    index = [each.id for each in project.figure.handles].index(END)
+    return project.puppet.shown.handle_turns[index]
+
+
+def test_the_ring_turns_the_track_of_a_chosen_row_and_not_the_pose(window, keyed):
+    keys = tuple(TrackKey(frame=f, place=p) for f, p in ((6, 0), (12, 8j), (20, 0)))
+    keyed.history.do(track_commands.put_track(keyed.active, Track(handles=(END,), keys=keys)))
+    window.settle()
+    before, poses, shown_before = keyed.document, keyed.figure.keys, turned(keyed)
+    turn_by(window, keyed, 0.5)
+    (track,) = keyed.figure.tracks
+    assert keyed.figure.keys == poses, "the pose stays"
+    assert track.turns, "what turned nothing does from now on"
+    assert any(toast.topic == "turning" for toast in window.session.toasts)
+    assert [(key.frame, key.place) for key in track.keys] == [(6, 0), (12, 8j), (20, 0)]
+    assert [key.turn for key in track.keys[::2]] == [0, 0]
+    still = np.angle(ground(keyed, 12)[1])
+    assert abs(track.keys[1].turn + still - (shown_before + 0.5)) < 0.05
+    assert abs(turned(keyed) - (shown_before + 0.5)) < 0.05
+    keyed.history.undo()
+    assert keyed.document is before, "one drag is one step"
+
+
+def test_the_ring_inserts_a_key_that_moves_nothing_and_turns_on_from_there(window, keyed):
+    keys = tuple(TrackKey(frame=f, place=p, turn=0.3) for f, p in ((6, 0), (20, 8j)))
+    track = Track(handles=(END,), keys=keys, turns=True)
+    keyed.history.do(track_commands.put_track(keyed.active, track))
+    window.settle()
+    at = track_at(track, keyed.clip, 12)
+    turn_by(window, keyed, -0.4)
+    (track,) = keyed.figure.tracks
+    assert [key.frame for key in track.keys] == [6, 12, 20]
+    assert track.keys[1].place == at.place
+    assert abs(track.keys[1].turn - (at.turn - 0.4)) < 0.03
+    assert window.session.toasts == [] or window.session.toasts[-1].topic != "turning"
+
+
+def test_escape_takes_a_turn_of_a_track_back(window, keyed):
+    before = keyed.document
+
+    def then(robot):
+        robot.key_press(int(window.Key.escape))
+        robot.mouse_up(0)
+
+    turn_by(window, keyed, 0.5, then=then)
+    assert keyed.document is before
+    assert not keyed.pending
+
+
+def test_the_ring_turns_the_pose_where_no_row_of_a_track_is_chosen(window, keyed):
+    tracks.choose(window.session, None)
+    window.settle()
+    tracked, poses = keyed.figure.tracks, keyed.figure.keys
+    playback.scrub(window.session, BENT)
+    window.settle()
+    turn_by(window, keyed, 0.4)
+    assert keyed.figure.tracks == tracked
+    assert keyed.figure.keys != poses
+
+
 def offset_by(window, project, offset, frames=(6, 12, 18)):
     """Give the handle at the end a track with an offset, whose row is not chosen."""
     keys = tuple(TrackKey(frame=frame, place=offset) for frame in frames)
@@ -235,6 +313,21 @@ def test_a_drag_is_recorded_while_it_plays_and_fitted_by_few_keys(window, bent):
     assert bent.chosen_track == END
     bent.history.undo()
     assert bent.document is before, "one take is one step"
+
+
+def test_a_recording_is_as_smooth_as_the_hand_was_on_the_screen(window, bent):
+    """A picture that is seen at a quarter of the size trembles by four times as many pixels."""
+    playback.scrub(window.session, 0)
+    window.settle()
+    record(window, bent, CIRCLE)
+    take, scale = bent.take, bent.view(window.session.screen).scale
+    assert take.scale == scale
+    keys = {}
+    for factor in (0.1, 1.0, 10.0):
+        take.scale = factor * scale
+        tracking.smooth(window.session, 0.5)
+        keys[factor] = len(bent.figure.track_of(END).keys)
+    assert keys[0.1] < keys[1.0] < keys[10.0]
 
 
 def test_a_take_is_done_again_or_given_up(window, bent):

@@ -453,7 +453,7 @@ FAILURES = {
         "app.motion.intervals.build_series",
         lambda session: keys.set_variant(session, "nu"),
     ),
-    "Solving the keys": ("app.editor.actions.rebuilding.go_on", rebuilding.solve_again),
+    "Solving the keys": ("app.editor.actions.body.rebuilding.go_on", rebuilding.solve_again),
     "Rebuilding": (
         "app.solving.renewal.build_domain",
         lambda session: (
@@ -551,7 +551,7 @@ WAITING = {
             upkeep.maintain(session),
         ),
     ),
-    "Solving the keys": ("app.editor.actions.rebuilding.go_on", rebuilding.solve_again),
+    "Solving the keys": ("app.editor.actions.body.rebuilding.go_on", rebuilding.solve_again),
     "Posing": (
         "app.solving.drag.certify",
         lambda session: posing.wish(session, {1: Target(position=900 + 50j)}),

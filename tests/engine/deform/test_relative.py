@@ -8,9 +8,19 @@ from deform_shapes import BAR_POINTS, STAR_POINTS, bar_boundary, star_boundary
 from holed_shapes import ring
 from numpy.testing import assert_allclose, assert_array_equal
 
-from engine.deform.model import Barrier, Jet, Walls
-from engine.deform.relative import Corrector, Pins, best_rigid, energy as energy_module
-from engine.deform.relative.energy import RelativeEnergy, Rows
+from engine.deform.model import Barrier, Jet, Walls, factor_of, factor_shifted
+from engine.deform.relative import (
+    Corrector,
+    Pins,
+    best_rigid,
+    energy as energy_module,
+    rows as rows_module,
+)
+from engine.deform.relative.between import Middles
+from engine.deform.relative.corrector import LEAST_WEIGHT, MOST_STEPS, _walls
+from engine.deform.relative.energy import RelativeEnergy
+from engine.deform.relative.pulls import Pulls
+from engine.deform.relative.rows import Rows
 from engine.geometry import HERE, RigidMotion
 from engine.maps import Boundary, Bounds
 
@@ -73,12 +83,13 @@ def value_of(energy, barrier, load, unknowns):
 
 @pytest.mark.parametrize("make", [star, holed])
 def test_gradient_and_hessian_are_those_of_the_value(make, monkeypatch):
-    monkeypatch.setattr(energy_module, "SAMPLES_PER_FUNCTION", 10_000)
+    monkeypatch.setattr(rows_module, "SAMPLES_PER_FUNCTION", 10_000)
     monkeypatch.setattr(energy_module, "FELT", 0.0)
     corrector = make()
     base = bent(corrector, 0.05)
     rng = np.random.default_rng(3)
-    moves = 0.1 * rng.normal(size=len(base.positions))
+    # Some give in, where the Hessian has what Newton's step starts from.
+    moves = 0.1 * rng.normal(size=len(base.positions)) * (np.arange(len(base.positions)) % 2)
     turns = np.full(len(moves), np.nan)
     turns[0] = np.angle(base.fz[0]) + 0.02
     wish = pins(base, moves, turns=turns, reach=0.4)
@@ -108,8 +119,56 @@ def test_gradient_and_hessian_are_those_of_the_value(make, monkeypatch):
             for s in (1, -1)
         ]
         bend = direction @ (found[0] - found[1]) / (2 * e)
+        pulled = bend + along_pulls(energy, there, rows.change(direction))
         # The turn's own projection apart, and single precision.
-        assert direction @ (hessian - removed) @ direction == pytest.approx(bend, rel=2e-2)
+        assert direction @ (hessian - removed) @ direction == pytest.approx(pulled, rel=2e-2)
+
+
+def along_pulls(energy, at, change):
+    """What a Hessian has more than the exact one, along pulls that give in."""
+    lacking = at.positions - energy.pins.places
+    gives = np.abs(lacking) > energy.pulls.gives
+    along = (lacking.conj() * change.positions).real / np.abs(lacking)
+    return float((energy.pulls.firmness(lacking) * gives) @ along**2)
+
+
+def test_a_step_is_to_the_minimum_of_the_model_with_the_pulls_as_they_are():
+    """All modes at once: pulls that give in, one that comes near its place, one that is held."""
+    boundary = star_boundary()
+    rng = np.random.default_rng(5)
+    coordinates = boundary.span.coordinates(STAR_POINTS) @ boundary.basis
+    stiffness = np.full(len(STAR_POINTS), 1e6 / boundary.size**2)
+    lacking = np.array([0.0, 0.5, -0.8j, 1e-7, 2.0 + 1j, 0.01j])
+    pulls = Pulls(
+        boundary=boundary,
+        coordinates=coordinates,
+        stiffness=stiffness,
+        firmer=np.ones(len(stiffness)),
+        offsets=np.abs(lacking),
+    )
+    count = len(pulls.hessian(lacking))
+    root = rng.normal(size=(count, count))
+    alone = root @ root.T / len(root) + 120.0 * np.eye(len(root))
+    elsewhere = rng.normal(size=len(alone))
+
+    def pulled(unknowns):
+        return Rows.of(boundary, STAR_POINTS).change(unknowns).positions
+
+    def slope_of(step):
+        """The gradient of the model, by each direction."""
+        after = lacking + pulled(step)
+        force = pulls.firmness(after) * after
+        moves = np.array([pulled(each) for each in np.eye(len(alone))])
+        by_pulls = (moves.conj() @ force).real
+        return alone @ step + elsewhere + by_pulls
+
+    nothing = np.zeros(len(alone))
+    factor = factor_of(alone + pulls.hessian(lacking), 0.0)
+    step = pulls.step(factor, slope_of(nothing), lacking)
+    assert np.abs(slope_of(step)).max() < 1e-3 * np.abs(slope_of(nothing)).max()
+    after = np.abs(lacking + pulled(step))
+    assert (after[1:] > pulls.gives[1:]).any()
+    assert (after[1:] < pulls.gives[1:]).any()
 
 
 def test_nothing_is_the_minimum_where_nothing_is_asked():
@@ -179,6 +238,48 @@ def test_bounds_are_kept_however_far_pins_are_wanted(seed):
     assert (a - b).min() > bounds.sigma_b
     assert found.is_held_back
     assert found.steps > 2
+
+
+TIGHT = Bounds(k=0.35, sigma_a=1.5, sigma_b=0.6)
+
+
+@pytest.mark.parametrize("bounds", [Bounds(), TIGHT])
+@pytest.mark.parametrize("by", [1.5, 3.0j, -30.0, 1000.0 - 500.0j])
+def test_a_pin_wanted_far_out_of_reach_comes_to_rest_and_tears_at_nothing(by, bounds):
+    corrector = star()
+    base = bent(corrector, 0.08)
+    moves, firm = one_arm(by)
+    wish = pins(base, moves, firm=firm)
+    found = corrector.correct(base, wish, bounds)
+    assert found.steps < MOST_STEPS
+    assert found.is_held_back
+    assert found.misses[np.arange(len(moves)) != 2].max() < 0.04
+    # Nothing leads on: what is minimised rises in all directions alike.
+    energy = RelativeEnergy(rows=corrector.rows, base=base, pins=wish)
+    barrier = Barrier(walls=_walls(base, bounds), weight=LEAST_WEIGHT)
+    unknowns = np.linalg.lstsq(corrector.boundary.basis, found.phi, rcond=None)[0]
+    psi = np.linalg.lstsq(corrector.boundary.basis, found.psi, rcond=None)[0]
+    at = np.concatenate([unknowns, psi[1:]]).conj().view(np.float64)
+    there = base.advanced(1.0, found.change)
+    gradient, hessian, _ = energy.model(there, at, barrier, energy.load(barrier))
+    step = energy.pulls.step(factor_shifted(hessian), gradient, there.positions - wish.places)
+    assert np.abs(corrector.rows.change(step).positions).max() < 1e-3
+    assert -gradient @ step < 1e-5
+
+
+@pytest.mark.parametrize("bounds", [Bounds(), TIGHT])
+def test_corrections_are_continuous_in_wishes_out_of_reach(bounds):
+    corrector = star()
+    base = bent(corrector, 0.08)
+
+    def found(wish):
+        moves, firm = one_arm(wish)
+        return corrector.correct(base, pins(base, moves, firm=firm), bounds).change.positions
+
+    places = np.array([found(3.0 * np.exp(1j * angle)) for angle in 2.8 + 0.01 * np.arange(6)])
+    jumps = np.abs(np.diff(places, axis=0)).max(axis=1)
+    assert jumps.max() < 0.03
+    assert jumps.max() < 2.0 * jumps.min()
 
 
 def test_a_base_beyond_its_bounds_gets_no_worse():
@@ -292,3 +393,22 @@ class TestBestRigid:
         found = best_rigid(self.places, 0j * self.places, np.ones(3))
         assert_allclose(found.on(self.places), self.places, rtol=0, atol=1e-15)
         assert best_rigid(self.places, self.places, np.zeros(3)) is HERE
+
+
+def test_between_samples_a_correction_keeps_what_is_allowed_or_as_much_of_it_as_does():
+    boundary, count = star_boundary(), len(star_boundary().points)
+    corrector = Corrector(boundary=boundary, points=STAR_POINTS[:2])
+    middles = Middles.of(boundary)
+    base, still = bent(corrector), rest(corrector)
+    between = (boundary.points + boundary.points[boundary.following]) / 2
+    exact = bent(replace(corrector, boundary=replace(boundary, points=between)))
+    assert_allclose(middles.along(base.f)[count:], exact.f, rtol=1e-5)
+    assert_allclose(middles.along(base.g)[count:], exact.g, atol=1e-5)
+    change = still.scaled(-1.0).advanced(1.0, base)
+    assert middles.share_within(still, change, WIDE, boundary) == 1.0
+    largest = (np.abs(exact.f) + np.abs(exact.g)).max()
+    tight = Bounds(k=0.9, sigma_a=(1 + largest) / 2, sigma_b=0.1)
+    share = middles.share_within(still, change, tight, boundary)
+    assert 0.3 < share < 1.0
+    f, g = (middles.along(a + share * b) for a, b in ((still.f, change.f), (still.g, change.g)))
+    assert_allclose((np.abs(f) + np.abs(g)).max(), tight.sigma_a, rtol=1e-6)

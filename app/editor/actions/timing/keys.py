@@ -113,7 +113,10 @@ def reverse(session: Session, project: Project) -> None:
 
 @with_project
 def scale(session: Session, project: Project, factor: float) -> None:
-    """Stretch the time of the chosen keys, or of everything if fewer than two are chosen."""
+    """Stretch the time of the chosen keys, or of everything if fewer than two are chosen.
+
+    Tracks whose keys are not chosen have their own time, and keep it.
+    """
     command = scene_commands.scale_time(factor)
     if project.count_chosen >= 2:
         first, _ = _span(project.chosen_of)

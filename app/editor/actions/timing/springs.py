@@ -1,22 +1,24 @@
 """What is done with springs: their swing becomes keys of a track."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
-from app.document import Document, Spring, Track, TrackKey, clip_of, track_commands
+from app.document import Document, Spring, Track, TrackKey, track_commands
 from app.editor import promises
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work import Kind
-from app.motion import Animation, PoseSampler, carried_in
+from app.motion import PoseSampler, animation_at, carried_in
 from engine.arrays import Complexes, Indices
+from engine.geometry import box_diagonal
 from engine.geometry.kinematics import fit_keys
 
 KEYING = Kind("Making keys of a spring", "The swing could not be made into keys")
-NEAR = 0.5  # pixels that the keys' motion may be beside the swing
+NEAR = 4e-4  # of the figure's diagonal: that the keys' motion may be beside the swing
 AT_REST = 0.01  # pixels
 
 
@@ -46,19 +48,9 @@ def _measure(
 ) -> _Swing:
     """Measure how a handle swings beside the pose that it has without its spring."""
     without = track_commands.remove_springs(identity, (handle,))(document)
-    figure = document.figure(identity)
-    sampler = PoseSampler(
-        figure.domain,
-        anchor=figure.anchor,
-        points=np.array([figure.handle(handle).position]),
-        sibling=siblings.get(identity),
-    )
+    point = np.array([document.figure(identity).handle(handle).position])
     swinging, resting = (
-        Animation(
-            clip_of(each, identity),
-            sampler=sampler,
-            carried=carried_in(each, identity, siblings),
-        )
+        animation_at(each, identity, point, siblings, carried_in(each, identity, siblings))
         for each in (document, without)
     )
     frames = np.arange(document.frames.first, document.frames.last + 1)
@@ -84,16 +76,16 @@ def _put(session: Session, project: Project, identity: int, spring: Spring, swin
     # It begins and ends at rest, where there is room for that.
     first, last = max(moves[0] - 1, 0), min(moves[-1] + 1, len(swing.frames) - 1)
     part = slice(first, last + 1)
-    frames, places = fit_keys(swing.frames[part], swing.offsets[part], NEAR)
-    is_round = project.document.loop and last - first == len(swing.frames) - 1
-    if is_round:
-        places[-1] = places[0]
-    keys = tuple(
-        TrackKey(frame=frame, place=place)
-        for frame, place in zip(frames.tolist(), places.tolist(), strict=True)
-    )
+    near = NEAR * box_diagonal(figure.domain.outline)
+    fitted = fit_keys(swing.frames[part], swing.offsets[part], near)
+    keys = [
+        TrackKey(frame=frame, place=place, velocity=velocity)
+        for frame, place, velocity in zip(*(each.tolist() for each in fitted), strict=True)
+    ]
+    if project.document.loop and last - first == len(swing.frames) - 1:
+        keys[-1] = replace(keys[0], frame=keys[-1].frame)
     gesture = object()
-    track = Track(handles=(spring.handle,), keys=keys)
+    track = Track(handles=(spring.handle,), keys=tuple(keys))
     for command in (
         track_commands.remove_springs(identity, (spring.handle,)),
         track_commands.put_track(identity, track),

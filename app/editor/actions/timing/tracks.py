@@ -1,6 +1,7 @@
 """What is done with tracks: choosing their rows, and keys of single handles."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
@@ -12,19 +13,20 @@ from app.document import (
     Figure,
     Track,
     TrackKey,
-    clip_of,
     track_at,
     track_commands,
+    velocity_at,
 )
 from app.editor import promises
-from app.editor.actions import editing, playback, posing
+from app.editor.actions import editing, playback, posing, tracking
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.timeline_view import own_frame, seen_at
+from app.editor.timeline_view import seen_at
 from app.editor.work import Kind
-from app.motion import Animation, PoseSampler, carried_in
+from app.motion import PoseSampler, animation_at, carried_in
 from engine.geometry import HERE, RigidMotion
 
+AROUND = 1 / 64  # frames beside a key, between which its velocity is measured
 PLACING = Kind("Placing keys of a track", "The places of the track's keys could not be found")
 
 
@@ -66,18 +68,25 @@ def key_here(session: Session, project: Project, handles: Sequence[int]) -> None
 def _key(session: Session, project: Project, track: Track, gesture: object) -> None:
     """Insert a key into a track at the present frame that changes nothing there."""
     frame, figure = playback.current_frame(session, project), project.figure
-    own = _own_frame(session, project, track, frame)
+    own = tracking.key_frame(session, project.document, track, frame)
     if own is None or own in track.key_frames:
         return
-    easing = session.preferences.easing
+    easing, clip = session.preferences.easing, project.clip
 
     def put(place: complex, turn: float | None = None) -> None:
-        put_key = track_commands.put_track_key
-        command = put_key(figure.id, track.handles[0], own, place, turn=turn, easing=easing)
+        command = track_commands.put_track_key(
+            figure.id,
+            track.handles[0],
+            own,
+            place,
+            turn=turn,
+            velocity=velocity_at(track, clip, frame),
+            easing=easing,
+        )
         if figure.id in project.puppets and project.document.figure(figure.id).tracks:
             project.history.do(command, gesture=gesture)
 
-    at = track_at(track, project.clip, frame)
+    at = track_at(track, clip, frame)
     if at is not None:
         put(at.place, at.turn if track.turns else None)
     elif not track.planted:
@@ -99,20 +108,14 @@ def put(
     track = project.figure.track_of(handle)
     if track is None:
         return
-    own = _own_frame(session, project, track, playback.current_frame(session, project))
+    frame = playback.current_frame(session, project)
+    own = tracking.key_frame(session, project.document, track, frame)
     if own is not None:
         key, easing = track_commands.put_track_key, session.preferences.easing
-        editing.edit_figure(session, key, handle, own, place, turn=turn, easing=easing)
-
-
-def _own_frame(session: Session, project: Project, track: Track, frame: int) -> int | None:
-    """Return the frame of the key that is seen at a frame; where there can be none, it is told."""
-    own = own_frame(project.document, track, frame)
-    if own is None:
-        session.tell(
-            f"The track is {track.delay} frames late: no key of it can be seen at frame {frame}."
+        velocity = velocity_at(track, project.clip, frame)
+        editing.edit_figure(
+            session, key, handle, own, place, turn=turn, velocity=velocity, easing=easing
         )
-    return own
 
 
 class _Beside(NamedTuple):
@@ -136,19 +139,13 @@ def _beside(
     document: Document,
     figure: Figure,
     track: Track,
-    frames: Sequence[int],
+    frames: Sequence[float],
     siblings: Mapping[int, PoseSampler],
 ) -> list[_Beside]:
     """Return where the first handle of a track is in some frames without it."""
-    clip, point = clip_of(document, figure.id), figure.handle(track.handles[0]).position
+    point = np.array([figure.handle(track.handles[0]).position])
     carried = carried_in(document, figure.id, siblings)
-    sampler = PoseSampler(
-        figure.domain,
-        anchor=figure.anchor,
-        points=np.array([point]),
-        sibling=siblings.get(figure.id),
-    )
-    animation = Animation(clip, sampler=sampler, carried=carried)
+    animation = animation_at(document, figure.id, point, siblings, carried)
     found = []
     for frame in frames:
         still = animation.still_frame(frame)
@@ -164,7 +161,8 @@ def plant(session: Session, project: Project, handle: int, planted: bool) -> Non
     figure, track = project.figure, project.figure.track_of(handle)
     if track is None or track.planted == planted:
         return
-    frames = [seen_at(project.document, track, key.frame) for key in track.keys]
+    around = [_frames_around(project.document, track, key) for key in track.keys]
+    frames = [frame for each in around for frame in each]
     work = partial(_beside, project.document, figure, track, frames, project.samplers)
 
     def take(found: list[_Beside]) -> None:
@@ -172,10 +170,38 @@ def plant(session: Session, project: Project, handle: int, planted: bool) -> Non
         if now is None or track not in now.tracks:
             # It became another one meanwhile.
             return
-        pairs = zip(found, track.keys, strict=True)
-        places = [
-            each.planted(key.place) if planted else each.offset(key.place) for each, key in pairs
+        beside = dict(zip(frames, found, strict=True))
+        keys = [
+            _replaced(key, [beside[frame] for frame in each], each, planted=planted)
+            for key, each in zip(track.keys, around, strict=True)
         ]
-        project.history.do(track_commands.plant_track(figure.id, handle, places, planted=planted))
+        places, velocities = [key.place for key in keys], [key.velocity for key in keys]
+        command = track_commands.plant_track
+        project.history.do(command(figure.id, handle, places, velocities, planted=planted))
 
     promises.begin(session, project, PLACING, work, take)
+
+
+def _frames_around(document: Document, track: Track, key: TrackKey) -> list[float]:
+    """Return the frame of the scene at which a key is seen, and two that tell its velocity.
+
+    They are just before it and just after, if it has a velocity of its own.
+    """
+    seen, frames = seen_at(document, track, key.frame), document.frames
+    if key.velocity is None:
+        return [seen]
+    return [seen, max(seen - AROUND, frames.first), min(seen + AROUND, frames.last)]
+
+
+def _replaced(
+    key: TrackKey, beside: Sequence[_Beside], frames: Sequence[float], *, planted: bool
+) -> TrackKey:
+    """Return a key with a place in the picture, or beside the pose, that is where it was."""
+    there = []
+    for frame, each in zip(frames, beside, strict=True):
+        place = key.place + (frame - frames[0]) * (key.velocity or 0j)
+        there.append(each.planted(place) if planted else each.offset(place))
+    if key.velocity is None:
+        return replace(key, place=there[0])
+    here, before, after = there
+    return replace(key, place=here, velocity=(after - before) / (frames[2] - frames[1]))

@@ -5,8 +5,17 @@ Out: keys of the handle's track.
 Imports: `app.editor`, `app.document`, `app.motion`.
 """
 
-from app.editor.actions.tracking.carrying import carried_track as carried_track, carry as carry
-from app.editor.actions.tracking.places import wished as wished
+from app.editor.actions.tracking.carrying import (
+    carried_track as carried_track,
+    carry as carry,
+    forget as forget,
+    turn as turn,
+)
+from app.editor.actions.tracking.places import (
+    key_frame as key_frame,
+    wished as wished,
+    wished_turn as wished_turn,
+)
 from app.editor.actions.tracking.recording import (
     RECORDING_SPEEDS as RECORDING_SPEEDS,
     again as again,

@@ -4,12 +4,11 @@ The document has the key at once. What is shown follows as fast as corrections a
 the newest place.
 """
 
-from app.document import Track, track_at, track_commands
+from app.document import Track, track_at, track_commands, velocity_at
 from app.editor.actions import playback
-from app.editor.actions.tracking.places import kept
+from app.editor.actions.tracking.places import index_of, kept, key_frame, turn_beside
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.timeline_view import own_frame
 from app.editor.work import Carry
 
 
@@ -45,45 +44,82 @@ def carry(
     project.pending.append(begun)
 
 
+@with_project
+def turn(session: Session, project: Project, handle: int, angle: float, *, gesture: object) -> None:
+    """Want the shape turned by an angle at a handle, in radians, by the handle's own track.
+
+    A track that has turned nothing so far turns the shape from then on, as the pose does at its
+    other keys.
+    """
+    held = next((each for each in project.carries if each.gesture is gesture), None)
+    track, shown = project.figure.track_of(handle), project.puppet.shown
+    if track is None or shown is None:
+        return
+    if not track.turns:
+        command = track_commands.set_turning(project.active, handle, turns=True)
+        project.history.do(command, gesture=gesture)
+        session.tell("The keys of its track turn the shape now, too.", topic="turning")
+    if held is not None:
+        held.turn = angle
+        return
+    playback.halt(session)
+    frame, place = playback.current_frame(session, project), shown.handle_places
+    begun = Carry(
+        figure=project.active,
+        handle=handle,
+        frame=frame,
+        gesture=gesture,
+        place=complex(place[index_of(project, handle)]),
+        turn=angle,
+    )
+    project.pending.append(begun)
+
+
+def forget(project: Project, gesture: object) -> None:
+    """Take back what a gesture has wanted of a track and did not get yet."""
+    for held in project.carries:
+        if held.gesture is gesture:
+            project.pending.remove(held)
+
+
 def go_on(session: Session, project: Project) -> None:
     """Let tracks have the keys that hands want, as far as these are known; once a frame."""
     for held in project.carries:
         is_there = held.figure == project.active and held.handle in [
             handle.id for handle in project.figure.handles
         ]
-        if not is_there or put_key(
-            session, project, held.handle, held.frame, held.place, held.gesture
-        ):
+        if not is_there or put_key(session, project, held):
             project.pending.remove(held)
 
 
-def put_key(
-    session: Session,
-    project: Project,
-    handle: int,
-    frame: int,
-    place: complex,
-    gesture: object,
-) -> bool:
-    """Give a handle's track a key at a frame of the scene; tell whether nothing is awaited."""
-    figure, clip = project.figure, project.clip
-    track = figure.track_of(handle)
-    own = frame if track is None else own_frame(project.document, track, frame)
+def put_key(session: Session, project: Project, held: Carry) -> bool:
+    """Give a handle's track the key that a hand wants; tell whether nothing is awaited."""
+    handle, frame = held.handle, held.frame
+    track = project.figure.track_of(handle)
+    own = frame if track is None else key_frame(session, project.document, track, frame)
     if own is None:
-        late = 0 if track is None else track.delay
-        session.tell(
-            f"The track is {late} frames late: no key of it can be seen at frame {frame}.",
-            topic="late",
-        )
         return True
-    value = kept(project, handle, frame, place)
-    if value is None:
+    at = None if track is None else track_at(track, project.clip, frame)
+    velocity = None if track is None else velocity_at(track, project.clip, frame)
+    if held.turn is None:
+        place = kept(project, handle, frame, held.place)
+        is_new = track is not None and own not in track.key_frames
+        turn = at.turn if at is not None and is_new else None
+    else:
+        place = kept(project, handle, frame, held.place) if at is None else at.place
+        turn = turn_beside(project, handle, frame, held.turn)
+        if turn is None:
+            return False
+    if place is None:
         return False
-    at = None if track is None else track_at(track, clip, frame)
-    is_new = track is not None and own not in track.key_frames
-    turn = at.turn if at is not None and is_new else None
     command = track_commands.put_track_key(
-        figure.id, handle, own, value, turn=turn, easing=session.preferences.easing
+        held.figure,
+        handle,
+        own,
+        place,
+        turn=turn,
+        velocity=velocity,
+        easing=session.preferences.easing,
     )
-    project.history.do(command, gesture=gesture)
+    project.history.do(command, gesture=held.gesture)
     return True

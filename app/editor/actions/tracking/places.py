@@ -1,8 +1,24 @@
 """What tracks' keys are on the figure that is posed: places, and back."""
 
-from app.document import Track, track_at
+import cmath
+import math
+
+from app.document import Document, Track, track_at
 from app.editor.project import Project
+from app.editor.session import Session
+from app.editor.timeline_view import own_frame
 from app.motion import Ground
+
+
+def key_frame(session: Session, document: Document, track: Track, frame: int) -> int | None:
+    """Return the frame of the key that is seen at a frame; where there can be none, it is told."""
+    own = own_frame(document, track, frame)
+    if own is None:
+        session.tell(
+            f"The track is {track.delay} frames late: no key of it can be seen at frame {frame}.",
+            topic="late",
+        )
+    return own
 
 
 def ground_at(project: Project, frame: int) -> Ground | None:
@@ -31,6 +47,33 @@ def wished(project: Project, track: Track, frame: int) -> complex | None:
         return None
     index = index_of(project, track.handles[0])
     return complex(ground.places[index] + at.place * ground.turns[index])
+
+
+def wished_turn(project: Project, handle: int, frame: int) -> float | None:
+    """Return by how much a handle's track wants the shape turned there, in radians.
+
+    None where it turns nothing, or where that is not known yet.
+    """
+    track, ground = project.figure.track_of(handle), ground_at(project, frame)
+    at = None if track is None or not track.turns else track_at(track, project.clip, frame)
+    if at is None or ground is None:
+        return None
+    return at.turn + cmath.phase(ground.turns[index_of(project, handle)])
+
+
+def turn_beside(project: Project, handle: int, frame: int, turn: float) -> float | None:
+    """Return what a key of a handle's track has there for a turn of the shape, in radians.
+
+    Of all that are whole turns apart it is the nearest to what the track has there. None where it
+    is not known yet.
+    """
+    track, ground = project.figure.track_of(handle), ground_at(project, frame)
+    if ground is None:
+        return None
+    at = None if track is None else track_at(track, project.clip, frame)
+    near = 0.0 if at is None else at.turn
+    beside = turn - cmath.phase(ground.turns[index_of(project, handle)])
+    return beside + math.tau * round((near - beside) / math.tau)
 
 
 def kept(project: Project, handle: int, frame: int, place: complex) -> complex | None:

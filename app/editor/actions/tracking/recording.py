@@ -9,14 +9,14 @@ from app.editor.actions.tracking.places import ground_at, index_of
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.timeline_view import own_frame
-from app.editor.work import Sample, Take
+from app.editor.work import Carry, Sample, Take
 from app.motion import Ground, corrected_clip
 from engine.geometry.kinematics import fit_keys
 
 RECORDING_SPEEDS = (1.0, 0.5, 0.25)
-# Pixels of the picture that a fitted motion may be beside what was recorded, at no smoothing and
-# at all of it.
-CLOSEST, SMOOTHEST = 0.5, 20.0
+# How far a fitted motion may be from what was recorded, in pixels of the screen, on which hands
+# tremble: at no smoothing and at all of it.
+CLOSEST, SMOOTHEST = 0.3, 12.0
 SMOOTHING = 0.5  # at first
 
 
@@ -60,6 +60,7 @@ def begin_take(
         last=running.frame + frames.last - frames.first if goes_round else played.last,
         speed=standing.speed,
         place=place,
+        scale=project.view(session.screen).scale,
         smoothing=SMOOTHING,
     )
 
@@ -154,7 +155,14 @@ def _record(session: Session, project: Project, take: Take) -> None:
         take.samples[-1] = sample
     else:
         take.samples.append(sample)
-    put_key(session, project, take.handle, frame, take.place, take.gesture)
+    held = Carry(
+        figure=take.figure,
+        handle=take.handle,
+        frame=frame,
+        gesture=take.gesture,
+        place=take.place,
+    )
+    put_key(session, project, held)
     if project.playhead is not take.playhead or time == take.last:
         end_take(session)
 
@@ -171,16 +179,17 @@ def _write(project: Project, take: Take) -> None:
     def own(frame: int) -> int | None:
         return own_frame(project.document, fresh, _wrapped(project, frame))
 
-    recorded = {own(frame) for frame in range(min(fitted), max(fitted) + 1)}
+    start, end = fitted[0][0], fitted[-1][0]
+    recorded = {own(frame) for frame in range(start, end + 1)}
     keys = {} if before is None else {k.frame: k for k in before.keys if k.frame not in recorded}
     # After a whole round of a loop, where it began counts and not where it ended.
-    for frame, place in reversed(fitted.items()):
+    for frame, place, velocity in reversed(fitted):
         at, number = track_at(fresh, clip, _wrapped(project, frame)), own(frame)
         if number is not None:
             turn = 0.0 if before is None or at is None else at.turn
-            keys[number] = TrackKey(frame=number, place=place, turn=turn)
+            keys[number] = TrackKey(frame=number, place=place, turn=turn, velocity=velocity)
     seam, first = own(clip.frames.last), own(clip.frames.first)
-    if max(fitted) > clip.frames.last and seam in keys and first is not None:
+    if end > clip.frames.last and seam in keys and first is not None:
         keys[first] = replace(keys[seam], frame=first)
     row = tuple(keys[frame] for frame in sorted(keys))
     command = track_commands.put_track(take.figure, replace(fresh, keys=row))
@@ -188,27 +197,18 @@ def _write(project: Project, take: Take) -> None:
     take.after = project.document
 
 
-def _fitted(project: Project, take: Take, values: list[complex]) -> dict[int, complex]:
-    """Return the places of as few keys as will do, by frames, which go on over a loop's seam.
+def _fitted(
+    project: Project, take: Take, values: list[complex]
+) -> list[tuple[int, complex, complex]]:
+    """Return frames, places and velocities of as few keys as will do.
 
-    There is one at the seam: the last frame of a loop is its first one again.
+    They go on over a loop's seam. There is one at the seam: the last frame of a loop is its first
+    one again.
     """
-    tolerance = CLOSEST * (SMOOTHEST / CLOSEST) ** take.smoothing
+    tolerance = CLOSEST * (SMOOTHEST / CLOSEST) ** take.smoothing / take.scale
     times, seam = [sample.time for sample in take.samples], project.document.frames.last
-    reached = sum(time <= seam for time in times)
-    if reached == len(times):
-        frames, places = fit_keys(times, values, tolerance)
-        return dict(zip(frames.tolist(), places.tolist(), strict=True))
-    (one, other), (start, end) = times[reached - 1 : reached + 1], values[reached - 1 : reached + 1]
-    there = start + (seam - one) / (other - one) * (end - start)
-    found = dict[int, complex]()
-    for when, where in (
-        ([*times[:reached], float(seam)], [*values[:reached], there]),
-        ([float(seam), *times[reached:]], [there, *values[reached:]]),
-    ):
-        frames, places = fit_keys(when, where, tolerance)
-        found |= dict(zip(frames.tolist(), places.tolist(), strict=True))
-    return found
+    fitted = fit_keys(times, values, tolerance, required=(seam,))
+    return list(zip(*(each.tolist() for each in fitted), strict=True))
 
 
 def _values(project: Project, take: Take) -> list[complex] | None:

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from imgui_bundle import icons_fontawesome_6 as icons, imgui
 
-from app.document import Handle, Track, falls_short, pairs_by_name, track_at, track_commands
+from app.document import Handle, Track, falls_short, partners_of, track_at, track_commands
 from app.editor import Action, Project, Session, do
 from app.editor.actions import editing, playback, tracks
 from app.ui.style import (
@@ -153,11 +153,12 @@ def _copies(project: Project, handle: Handle) -> list[Action]:
                 actions.append(do(editing.edit_figure, command, handle.id, other.id))
         imgui.end_combo()
     tip("Give another handle the same track, in place of its own")
-    is_pair = handle.id in pairs_by_name(figure.handles)
+    partners = partners_of(figure.handles, figure.axis, figure.domain.outline)
+    is_pair = partners.get(handle.id, handle.id) != handle.id
     hint = (
         "Give its partner on the other side the mirrored track"
         if is_pair
-        else "Mirror its track: no partner on the other side was found by name"
+        else "Mirror its track: no partner on the other side was found by name or place"
     )
     if text_button("Mirror track" if not is_pair else "Copy mirrored", next(widths), hint):
         actions.append(do(editing.edit_figure, track_commands.mirror_track, handle.id))

@@ -6,6 +6,7 @@ from imgui_bundle import ImVec2, imgui
 
 from app.editor import (
     Action,
+    BoneMark,
     BoxMark,
     EntryMark,
     JointMark,
@@ -18,7 +19,9 @@ from app.editor import (
 )
 from app.editor.tools import ERASE, pointing
 from app.ui.style import Look, ink, outlined, tag_size, write_tag
+from app.ui.viewport.cut_view import stroke_colour
 from app.ui.viewport.marks import moved_loops
+from app.ui.viewport.material_view import draw_bone
 from app.ui.viewport.screen import Screen
 from engine.domain import SLIT_WIDTH
 from engine.geometry import box_diagonal
@@ -73,6 +76,9 @@ def draw_marks(look: Look, screen: Screen, marks: Iterable[Mark]) -> None:
                 _draw_joint(look, screen, mark)
             case EntryMark():
                 _draw_entry(look, screen, mark)
+            case BoneMark():
+                colour = look.palette.danger if mark.is_refused else look.palette.accent
+                draw_bone(look, screen.point(mark.start), screen.point(mark.end), colour)
 
 
 def draw_coming_strokes(look: Look, screen: Screen) -> None:
@@ -127,7 +133,7 @@ def _draw_entry(look: Look, screen: Screen, mark: EntryMark) -> None:
 
 
 def _draw_stroke(look: Look, screen: Screen, mark: StrokeMark) -> None:
-    colour = ink(look.palette.good if mark.keeps else look.palette.danger, STROKE)
+    colour = ink(stroke_colour(look, keeps=mark.keeps), STROKE)
     points, radius = [screen.point(place) for place in mark.points], mark.radius * screen.scale
     draw_list = imgui.get_window_draw_list()
     if len(points) > 1:

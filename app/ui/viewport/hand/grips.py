@@ -45,9 +45,7 @@ def find_ring(session: Session, screen: Screen) -> Ring | None:
     """Return the ring around the one handle that is selected, where it can be turned."""
     project, gesture = screen.project, session.pointer
     held = next((m for m in gesture.marks if isinstance(m, SweepMark)), None) if gesture else None
-    is_posing = not (
-        session.cutting or session.moves or session.records or project.playhead.since is not None
-    )
+    is_posing = session.poses and not session.records and project.playhead.since is None
     if not (is_posing and session.overlays.handles):
         return None
     if any(project.figure.is_locked(handle) for handle in project.selected):

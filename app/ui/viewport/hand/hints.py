@@ -28,12 +28,12 @@ def hint_at(session: Session, screen: Screen, spot: Spot) -> str:
         return _sentence([*map(_in_words, session.pointer.ways), "Esc takes it back"])
     if session.cutting is None and project.playhead.since is not None:
         return "Space stops"
-    if not (session.cutting or session.moves or session.overlays.handles):
+    if session.poses and not session.overlays.handles:
         return "The handles are hidden: H shows them"
     told = [
         _in_words(hint) for tool in tools_of(session) for hint in tool.hints(session, project, spot)
     ]
-    if session.cutting is not None or session.moves:
+    if not session.poses:
         return _sentence([*told, "Esc goes back"])
     if spot.handle is not None:
         if spot.handle in staying(screen.shown):
@@ -42,6 +42,14 @@ def hint_at(session: Session, screen: Screen, spot: Spot) -> str:
     if not (spot.on_shape or spot.on_ring):
         told += ["wheel to zoom", "middle drag to move the view"]
     return _sentence(told)
+
+
+MODES = {
+    "stiff": "Making parts stiff",
+    "soft": "Making parts soft",
+    "normal": "Making parts as usual again",
+    "bone": "Bones from handle to handle",
+}
 
 
 def _sentence(parts: list[str]) -> str:
@@ -63,6 +71,8 @@ def draw_badges(
         return _pill(look, "Unkeyed pose", top, BINDINGS["insert key"])
     if session.moves:
         return draw_mode(look, "Moving the whole figure", corner, room)
+    if session.material is not None:
+        return draw_mode(look, MODES[session.material], corner, room)
     if session.records:
         return draw_mode(look, "Recording the next drag of a handle", corner, room)
     step = first_step(project)

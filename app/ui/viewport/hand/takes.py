@@ -23,7 +23,7 @@ def lay_track_keys(session: Session, look: Look, screen: Screen) -> tuple[int | 
         Whether one was pressed.
     """
     hovered, pressed = None, False
-    if session.cutting or session.moves or screen.project.playhead.since is not None:
+    if not session.poses or screen.project.playhead.since is not None:
         return hovered, pressed
     radius = ImVec2(KEY_GRIP * look.em, KEY_GRIP * look.em)
     for frame, place in keys_on_path(screen.project):

@@ -54,6 +54,20 @@ def test_what_follows_by_a_spring_never_falls_short():
     assert find_shortfall(replace(figure, springs=(still,)), pose).lags.keys() == {0}
 
 
+@pytest.mark.parametrize(
+    ("extremes", "words"),
+    [
+        (Extremes(k=0.1, sigma_a=3.9, sigma_b=0.9), ("stretch",)),
+        (Extremes(k=0.495, sigma_a=1.1, sigma_b=0.9), ("shear",)),
+        (Extremes(k=0.497, sigma_a=2.0, sigma_b=0.2505), ("squeeze", "shear")),
+        # Walls stand a little inside: what is nearest to its limit holds.
+        (Extremes(k=0.2, sigma_a=1.1, sigma_b=0.29), ("squeeze",)),
+    ],
+)
+def test_what_a_limit_holds_back_has_a_word(extremes, words):
+    assert extremes.reached(Bounds(k=0.5, sigma_a=4.0, sigma_b=0.25)) == words
+
+
 def test_shares_count_from_no_distortion_to_the_limit():
     bounds = Bounds(k=0.5, sigma_a=4.0, sigma_b=0.25)
     none, half, full, folded = (

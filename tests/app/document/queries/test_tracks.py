@@ -7,9 +7,10 @@ import pytest
 from documents import altered, disc_document
 from hypothesis import given, strategies as st
 from numpy.testing import assert_allclose
+from scipy.interpolate import CubicHermiteSpline
 
 from app.document.queries.clips import clip_of
-from app.document.queries.tracks import track_at
+from app.document.queries.tracks import track_at, velocity_at
 from app.document.settings import FrameRange
 from app.document.timing import HOLD, LINEAR, PRESETS, Easing, Passing, Track, TrackKey
 
@@ -90,9 +91,6 @@ def test_a_key_between_two_others_is_passed_at_the_slope_of_the_parabola_through
         parabola = np.polyfit(frames - frames[1], PLACES[one : three + 1], 2)
         for slope in slopes(track, frames[1]):
             assert_allclose(slope, parabola[1], rtol=0, atol=1e-3)
-    # Before the first key and after the last one there is no motion to go on with: they are left
-    # and reached as straight as the other end of their interval lets them.
-    assert_allclose(slopes(track, STEP)[1], (PLACES[1] - PLACES[0]) / 10, rtol=0, atol=1e-3)
 
 
 @pytest.mark.parametrize(
@@ -110,6 +108,102 @@ def test_easings_beside_a_key_agree_on_its_velocity(before, after, passes):
     coming, going = slopes(track, 10)
     assert_allclose(coming, going, rtol=0, atol=1e-3)
     assert (abs(going) > 0.1) == (passes and before != "in-out")
+
+
+@pytest.mark.parametrize("loop", [False, True])
+@pytest.mark.parametrize("easing", [LINEAR, PRESETS["in"], PRESETS["in-out"]])
+def test_a_track_begins_and_ends_at_rest_beside_what_is_not_moved(easing, loop):
+    track, shown = track_of(4, 14, 34, easing=[easing] * 3, delay=3), clip(loop=loop)
+    ends = (places(track, [7 + STEP], shown)[0] - PLACES[0]) / STEP
+    assert_allclose(ends, 0, rtol=0, atol=1e-3)
+    ends = (PLACES[2] - places(track, [37 - STEP], shown)[0]) / STEP
+    assert abs(ends) < 1e-3 or easing == PRESETS["in"]
+    # A person who wants otherwise says so.
+    straight = track_of(4, 14, 34, passing=[Passing.CORNER] * 3, delay=3)
+    begin = (places(straight, [7 + STEP], shown)[0] - PLACES[0]) / STEP
+    assert_allclose(begin, (PLACES[1] - PLACES[0]) / 10, rtol=0, atol=1e-3)
+
+
+def test_a_turn_begins_and_ends_at_rest():
+    track = track_of(0, 10, places=[5, 5], turns=(0.0, 2.0))
+    turns = [track_at(track, clip(), frame).turn for frame in (STEP, 10 - STEP)]
+    assert_allclose(turns, [0, 2], rtol=0, atol=1e-6)
+
+
+VELOCITIES = [0.5 - 2j, 3j, -1 + 0.25j, 4 + 0j]
+
+
+def test_keys_with_velocities_are_passed_at_those():
+    frames = [0, 10, 16, 40]
+    track = track_of(*frames, velocity=VELOCITIES)
+    spline = CubicHermiteSpline(frames, PLACES[:4], VELOCITIES)
+    between = np.linspace(0, 40, 97)
+    assert_allclose(places(track, between), spline(between), rtol=0, atol=1e-12)
+    # One of them leaves its neighbours as they were but for the slope there.
+    mixed = track_of(*frames, velocity=[None, VELOCITIES[1], None, None])
+    assert_allclose(slopes(mixed, 10), [VELOCITIES[1]] * 2, rtol=0, atol=1e-3)
+    assert_allclose(*slopes(mixed, 16), rtol=0, atol=1e-3)
+    assert_allclose(slopes(mixed, STEP)[1], 0, rtol=0, atol=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "is_led"),
+    [
+        (LINEAR, Easing((0.1, 0.2, 0.6, 0.7)), True),
+        (PRESETS["in"], PRESETS["out"], True),
+        (PRESETS["in"], PRESETS["in"], False),
+        (LINEAR, HOLD, False),
+        (Easing((0.2, 0.0, 1.0, 0.4)), LINEAR, False),
+    ],
+)
+def test_easings_that_stand_still_or_jump_at_a_key_leave_no_velocity_there(before, after, is_led):
+    track = track_of(
+        0, 10, 30, easing=[before, after, LINEAR], velocity=[None, VELOCITIES[1], None]
+    )
+    without = track_of(0, 10, 30, easing=[before, after, LINEAR])
+    for slope, other in zip(slopes(track, 10), slopes(without, 10), strict=True):
+        assert_allclose(slope, VELOCITIES[1] if is_led else other, rtol=0, atol=2e-3)
+
+
+@pytest.mark.parametrize("passing", [Passing.CORNER, Passing.STOP])
+def test_a_velocity_is_of_keys_that_are_passed_through(passing):
+    passings = [Passing.THROUGH, passing, Passing.THROUGH]
+    led = track_of(0, 10, 30, passing=passings, velocity=[None, 99j, None])
+    frames = np.linspace(0, 30, 61)
+    assert (places(led, frames) == places(track_of(0, 10, 30, passing=passings), frames)).all()
+
+
+def test_the_seam_of_a_loop_has_one_velocity_or_none():
+    there, shown = [*PLACES[:3], PLACES[0]], clip(loop=True)
+
+    def seam(first, last):
+        track = track_of(0, 10, 30, 48, places=there, velocity=[first, None, None, last])
+        coming, going = places(track, [48 - STEP, STEP], shown)
+        return (there[0] - coming) / STEP, (going - there[0]) / STEP
+
+    assert_allclose(seam(2 - 1j, 2 - 1j), 2 - 1j, rtol=0, atol=1e-3)
+    for velocities in ((2 - 1j, None), (None, 2 - 1j), (2 - 1j, 1j)):
+        assert_allclose(seam(*velocities), seam(None, None), rtol=0, atol=1e-9)
+
+
+@given(st.floats(0.01, 39.99), st.integers(0, 5))
+def test_a_key_at_the_velocity_of_the_moment_changes_nothing(frame, delay):
+    track = track_of(0, 10, 16, 40, velocity=VELOCITIES, delay=delay)
+    at, velocity = track_at(track, clip(), frame + delay), velocity_at(track, clip(), frame + delay)
+    if frame in {0.0, 10.0, 16.0}:
+        return
+    keys = [*track.keys, TrackKey(frame=frame, place=at.place, velocity=velocity)]
+    more = replace(track, keys=tuple(sorted(keys, key=lambda key: key.frame)))
+    between = np.linspace(delay, 40 + delay, 81)
+    assert_allclose(places(more, between), places(track, between), rtol=0, atol=1e-7)
+
+
+def test_where_no_key_tells_a_velocity_a_new_one_has_none():
+    plain, eased = track_of(0, 10, 30), track_of(0, 10, 30, easing=[PRESETS["in"]] * 3)
+    led = track_of(0, 10, 30, 40, velocity=[None, None, None, 1j])
+    for track, frame in ((plain, 5), (eased, 5), (led, 5), (led, 40), (led, 41), (led, -1)):
+        assert velocity_at(track, clip(), frame) is None
+    assert velocity_at(led, clip(), 35) is not None
 
 
 def test_a_corner_comes_and_goes_straight():
@@ -186,7 +280,7 @@ def test_a_track_over_all_of_a_loop_passes_its_seam_as_it_passes_its_keys(delay)
         PLACES[0],
         PLACES[3],
     ]
-    assert_allclose(slopes(open_ended, STEP, shown)[1], 0.3 + 0.1j, rtol=0, atol=1e-3)
+    assert_allclose(slopes(open_ended, STEP, shown)[1], 0, rtol=0, atol=1e-3)
 
 
 @given(

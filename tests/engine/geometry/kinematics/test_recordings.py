@@ -7,7 +7,7 @@ from scipy.interpolate import CubicHermiteSpline
 
 from engine.errors import EngineError
 from engine.geometry.kinematics import fit_keys
-from engine.geometry.kinematics.recordings import key_motion
+from engine.geometry.kinematics.recordings import FittedKeys, key_motion
 
 
 def moves(times, targets, seconds=0.9):
@@ -26,131 +26,131 @@ def recorded(seconds, *, rate=80, noise=1.0, seed=0):
     return 24 * times, moves(times, targets) + jitter
 
 
-def missed(frames, values, times, places):
-    inside = (times >= frames[0]) & (times <= frames[-1])
-    return np.abs(key_motion(frames, values, times[inside]) - places[inside]).max()
+def missed(keys, times, places):
+    inside = (times >= keys.frames[0]) & (times <= keys.frames[-1])
+    return np.abs(key_motion(keys, times[inside]) - places[inside]).max()
 
 
-def test_the_motion_is_that_of_the_parabolas_through_keys():
-    rng = np.random.default_rng(0)
-    frames = np.array([3, 4, 9, 11, 30])
-    values = rng.normal(0, 50, (5, 2)) @ [1, 1j]
-    inner = [
-        np.polyfit(frames[i - 1 : i + 2] - frames[i], values[i - 1 : i + 2], 2)[1]
-        for i in (1, 2, 3)
-    ]
-    chords = np.diff(values) / np.diff(frames)
-    expected = CubicHermiteSpline(frames, values, [chords[0], *inner, chords[-1]])
-    times = rng.uniform(3, 30, 300)
-    assert_allclose(key_motion(frames, values, times), expected(times), rtol=0, atol=1e-10)
-    # C¹ at keys, and through them.
-    for side in (-1e-7, 1e-7):
-        at = frames[1:-1] + side
-        slopes = (
-            key_motion(frames, values, at + 1e-7) - key_motion(frames, values, at - 1e-7)
-        ) / 2e-7
-        assert_allclose(slopes, inner, rtol=0, atol=1e-4)
-    assert_allclose(key_motion(frames, values, frames.astype(float)), values, rtol=0, atol=1e-12)
+def drawn(*frames, seed=0):
+    """Return keys at frames, of any places and velocities."""
+    rng = np.random.default_rng(seed)
+    places, velocities = rng.normal(0, [[[100]], [[10]]], (2, len(frames), 2)) @ [1, 1j]
+    return FittedKeys(np.array(frames), places, velocities)
 
 
-def test_a_motion_stops_at_keys_that_are_at_one_place():
-    frames, values = np.array([0, 10, 20, 30]), np.array([0, 50, 50.001, 100])
-    still = key_motion(frames, values, np.linspace(10, 20, 50))
-    assert np.ptp(still.real) < 0.0011
-    assert_allclose(key_motion(frames, values, np.array([9.999])), 50, rtol=0, atol=1e-5)
+def test_the_motion_is_the_hermite_spline_of_places_and_velocities():
+    keys = drawn(3, 4, 9, 11, 30)
+    times = np.random.default_rng(0).uniform(3, 30, 300)
+    expected = CubicHermiteSpline(*keys)(times)
+    assert_allclose(key_motion(keys, times), expected, rtol=0, atol=1e-10)
 
 
-@pytest.mark.parametrize(("tolerance", "most"), [(3.0, 13), (5.0, 11), (30.0, 7)])
+@pytest.mark.parametrize(("tolerance", "most"), [(3.0, 8), (5.0, 7), (30.0, 4)])
 @pytest.mark.parametrize("seed", range(5))
 def test_three_seconds_are_a_few_keys(tolerance, most, seed):
     times, places = recorded(3, seed=seed)
-    frames, values = fit_keys(times, places, tolerance)
+    keys = fit_keys(times, places, tolerance)
+    frames = keys.frames
     assert len(frames) <= most
     assert frames.dtype == np.intp
     assert (frames[0], frames[-1]) == (0, 72)
     assert (np.diff(frames) > 0).all()
-    assert missed(frames, values, times, places) <= tolerance
+    assert missed(keys, times, places) <= tolerance
     # It is the hand's way, and not its tremor.
     _, steady = recorded(3, seed=seed, noise=0)
-    assert missed(frames, values, times, steady) <= tolerance + 1
-    again = fit_keys(times, places, tolerance)
-    assert_array_equal(again[0], frames)
-    assert_array_equal(again[1], values)
+    assert missed(keys, times, steady) <= tolerance + 1
+    for one, other in zip(fit_keys(times, places, tolerance), keys, strict=True):
+        assert_array_equal(one, other)
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_no_key_could_be_left_out(seed):
     times, places = recorded(3, seed=seed)
-    frames, _ = fit_keys(times, places, 3.0)
+    frames = fit_keys(times, places, 3.0).frames
     for key in range(1, len(frames) - 1):
         rest = np.delete(frames, key)
-        # All places at once, by a dense matrix: the motion of one key at 1 and all others at 0.
-        columns = [key_motion(rest, column, times) for column in np.eye(len(rest))]
-        matrix = np.array(columns).real.T
+        # All at once, by a dense matrix: the motion of one number at 1 and all others at 0.
+        columns = [
+            key_motion(FittedKeys(rest, *column), times)
+            for column in np.eye(2 * len(rest)).reshape(-1, 2, len(rest))
+        ]
+        matrix = np.array(columns).T
         best = np.linalg.lstsq(matrix, places, rcond=None)[0]
         assert np.abs(matrix @ best - places).max() > 3.0
 
 
 def test_what_keys_made_is_found_again():
-    frames = np.array([0, 7, 20, 31, 36, 48])
-    values = np.random.default_rng(1).normal(0, 100, (6, 2)) @ [1, 1j]
+    made = drawn(0, 6, 12, 24, 36, 48)
     times = np.linspace(0, 48, 400)
-    places = key_motion(frames, values, times)
-    found, best = fit_keys(times, places, 0.5)
-    assert missed(found, best, times, places) <= 0.5
-    found, best = fit_keys(times, places, 0.0)
-    assert_array_equal(found, np.arange(49))
-    # The motion of keys in every frame is nearly that of fewer keys.
-    assert missed(found, best, times, places) < 0.3
+    places = key_motion(made, times)
+    found = fit_keys(times, places, 1e-3)
+    assert len(found.frames) <= len(made.frames) + 2
+    assert missed(found, times, places) <= 1e-3
+    every = fit_keys(times, places, 0.0)
+    assert_array_equal(every.frames, np.arange(49))
+    # What is tied to the recording where places are few gives way to them where they are not.
+    assert missed(every, times, places) < 1e-3
+    assert_allclose(every.velocities[0], made.velocities[0], rtol=0, atol=0.01)
+
+
+def test_frames_that_are_required_have_a_key():
+    times, places = recorded(3)
+    usual = fit_keys(times, places, 3.0).frames
+    wanted = next(frame for frame in range(20, 60) if frame not in usual)
+    keys = fit_keys(times, places, 3.0, required=(wanted, -5, 0, 90))
+    assert wanted in keys.frames
+    assert (keys.frames[0], keys.frames[-1]) == (0, 72)
+    assert len(keys.frames) <= len(usual) + 1
+    assert missed(keys, times, places) <= 3.0
 
 
 def test_a_straight_way_at_one_pace_has_two_keys():
     times = np.sort(np.random.default_rng(2).uniform(3.2, 60.4, 300))
     times[[0, -1]] = 3.2, 60.4
-    frames, values = fit_keys(times, 5 + (2 + 1j) * times, 1e-6)
-    assert_array_equal(frames, [4, 60])
-    assert_allclose(values, 5 + (2 + 1j) * frames, rtol=0, atol=1e-3)
+    keys = fit_keys(times, 5 + (2 + 1j) * times, 1e-6)
+    assert_array_equal(keys.frames, [4, 60])
+    assert_allclose(keys.places, 5 + (2 + 1j) * keys.frames, rtol=0, atol=1e-3)
+    assert_allclose(keys.velocities, 2 + 1j, rtol=0, atol=1e-6)
 
 
 def test_a_hand_that_rests_leaves_the_handle_where_it_is():
     times = np.arange(0, 120, 0.4)
     there, back = 30 * np.clip((times - 20) / 15, 0, 1), 30 * np.clip((times - 80) / 15, 0, 1)
     places = np.round(there - back) + 7j
-    frames, values = fit_keys(times, places, 1.5)
-    rests = key_motion(frames, values, np.linspace(45, 70, 200))
+    rests = key_motion(fit_keys(times, places, 1.5), np.linspace(45, 70, 200))
     assert np.abs(rests - (30 + 7j)).max() < 1.5
-    frames, values = fit_keys(times, np.full(len(times), 3 + 4j), 1.5)
-    assert_array_equal(frames, [0, 119])
-    assert_array_equal(values, [3 + 4j, 3 + 4j])
+    keys = fit_keys(times, np.full(len(times), 3 + 4j), 1.5)
+    assert_array_equal(keys.frames, [0, 119])
+    assert_array_equal(keys.places, [3 + 4j, 3 + 4j])
+    assert_allclose(keys.velocities, [0, 0], rtol=0, atol=1e-15)
 
 
 def test_a_long_recording_is_fitted_as_well_as_a_short_one():
     times, places = recorded(60, rate=120)
-    frames, values = fit_keys(times, places, 3.0)
-    assert missed(frames, values, times, places) <= 3.0
-    assert len(frames) <= 60 * 4
+    keys = fit_keys(times, places, 3.0)
+    assert missed(keys, times, places) <= 3.0
+    assert len(keys.frames) <= 60 * 2.2
     # Far away one does not know of the other end.
     short = times <= 24 * 20
-    first, _ = fit_keys(times[short], places[short], 3.0)
-    assert abs(len(first) - np.count_nonzero(frames <= 24 * 20)) <= 8
+    first = fit_keys(times[short], places[short], 3.0).frames
+    assert abs(len(first) - np.count_nonzero(keys.frames <= 24 * 20)) <= 4
 
 
 def test_a_tremor_beyond_the_tolerance_costs_no_key_in_each_frame():
     times, places = recorded(20, noise=1.2)
-    frames, values = fit_keys(times, places, 2.0)
-    closest = fit_keys(times, places, 0.0)
-    assert missed(frames, values, times, places) < 1.05 * missed(*closest, times, places)
-    assert len(frames) < len(closest[0]) / 2
+    keys, closest = (fit_keys(times, places, tolerance) for tolerance in (2.0, 0.0))
+    assert missed(keys, times, places) < 1.05 * max(missed(closest, times, places), 2.0)
+    assert len(keys.frames) < len(closest.frames) / 2
 
 
 def test_a_spike_costs_keys_around_it_only():
     times, places = recorded(6)
-    usual = len(fit_keys(times, places, 3.0)[0])
+    usual = len(fit_keys(times, places, 3.0).frames)
     places[200] += 200
-    frames, values = fit_keys(times, places, 3.0)
+    keys = fit_keys(times, places, 3.0)
     away = np.abs(times - times[200]) > 4
-    assert np.abs(key_motion(frames, values, times[away]) - places[away]).max() <= 3.0
-    assert len(frames) <= usual + 16
+    assert np.abs(key_motion(keys, times[away]) - places[away]).max() <= 3.0
+    assert len(keys.frames) <= usual + 16
 
 
 @pytest.mark.parametrize("late", [0.0, 0.5, 0.95])
@@ -158,20 +158,24 @@ def test_a_place_in_each_frame_is_enough(late):
     """Hardly enough: the keys' places are decided by as many recorded ones, between them."""
     times = np.arange(0, 50) + late
     places = np.random.default_rng(3).normal(0, 30, (50, 2)) @ [1, 1j]
-    frames, values = fit_keys(times, places, 0.0)
-    assert_array_equal(frames, np.arange(late > 0, 50 + (late > 0.9)))
-    assert np.abs(values).max() < 6 * np.abs(places).max()
+    keys = fit_keys(times, places, 0.0)
+    assert_array_equal(keys.frames, np.arange(late > 0, 50 + (late > 0.9)))
+    for numbers in (keys.places, keys.velocities):
+        assert np.abs(numbers).max() < 6 * np.abs(places).max()
     if not late:
-        assert_allclose(values, places, rtol=0, atol=0.01)
+        assert_allclose(keys.places, places, rtol=0, atol=0.01)
+        # Nothing else tells of them: those of the parabola through three places.
+        slopes = (places[2:] - places[:-2]) / 2
+        assert_allclose(keys.velocities[1:-1], slopes, rtol=0, atol=0.01)
 
 
 def test_in_a_gap_of_the_recording_the_way_is_straight():
     times = np.append(np.arange(0, 10, 0.3), np.arange(60, 70, 0.3))
     places = np.where(times < 30, 12 * times, 1000 - 12 * times)
-    frames, values = fit_keys(times, places, 2.0)
+    keys = fit_keys(times, places, 2.0)
     gap = np.linspace(times[33], times[34], 100)
     straight = np.interp(gap, times[33:35], places[33:35])
-    assert np.abs(key_motion(frames, values, gap) - straight).max() < 3.0
+    assert np.abs(key_motion(keys, gap) - straight).max() < 3.0
 
 
 @pytest.mark.parametrize(
@@ -187,17 +191,18 @@ def test_in_a_gap_of_the_recording_the_way_is_straight():
     ],
 )
 def test_the_shortest_recordings_have_a_key_or_two(times, places, frames, values):
-    found, best = fit_keys(times, places, 0.5)
-    assert_array_equal(found, frames)
-    assert_allclose(best, values, rtol=0, atol=0.51)
+    keys = fit_keys(times, places, 0.5)
+    assert_array_equal(keys.frames, frames)
+    assert_allclose(keys.places, values, rtol=0, atol=0.51)
+    assert len(keys.velocities) == len(frames)
 
 
 def test_of_places_at_one_time_the_last_one_counts():
     times = np.repeat(np.arange(0.0, 25), 2)
     places = np.column_stack([np.full(25, 1000), np.arange(25) * 3]).ravel()
-    frames, values = fit_keys(times, places, 0.1)
-    assert_array_equal(frames, [0, 24])
-    assert_allclose(values, [0, 72], rtol=0, atol=1e-3)
+    keys = fit_keys(times, places, 0.1)
+    assert_array_equal(keys.frames, [0, 24])
+    assert_allclose(keys.places, [0, 72], rtol=0, atol=1e-3)
 
 
 @pytest.mark.parametrize(

@@ -38,6 +38,7 @@ def take_up(session: Session, _: Project, tool: CutTool | None) -> None:
     """Take a tool in hand that cuts out; None, or the same one again, goes back to posing."""
     if session.pointer is None:
         session.cutting = None if tool == session.cutting else tool
+        session.material = None
 
 
 def begin_or_swap(session: Session) -> None:

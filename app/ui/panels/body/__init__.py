@@ -1,0 +1,8 @@
+"""What a figure is made of: its cut-out, its mesh, its material.
+
+In: the figure that is posed.
+Out: actions on these.
+Imports: `app.ui.style`, `app.ui.shortcuts`.
+"""
+
+from app.ui.panels.body import cut_out as cut_out, domain as domain, material as material

@@ -1,0 +1,74 @@
+"""What of a figure is stiff or soft, over its picture: colours, bones, and the brush."""
+
+from contextlib import suppress
+from math import log
+
+import numpy as np
+from imgui_bundle import ImVec2, ImVec4, imgui
+from scipy.spatial import cKDTree
+
+from app.document import Figure, limb_of
+from app.document.body import joined_stiffness
+from app.editor.actions import material
+from app.motion import Shown
+from app.ui.style import Look, ink, outlined
+from app.ui.viewport.screen import Screen
+from engine.arrays import Floats
+from engine.errors import EngineError
+
+EXTENT = log(material.STRONGEST)  # what is so stiff has the last of the colours
+WIDEST, AT = 0.09, 0.2  # of a bone's length: how wide it is, and where
+AROUND, TINY = 48, 1e-6  # vertices of the outline that colour a place inside
+MOST = 0.7  # em: how wide a bone is at most, to either side
+
+
+def stiffness_along(figure: Figure) -> Floats:
+    """Return how stiff a figure is at the vertices of its outline and of its holes', (p,)."""
+    points = np.concatenate(figure.domain.loops)
+    parts = [np.ones(len(points)) if figure.stiffness is None else figure.stiffness]
+    for bone in figure.bones:
+        # One that has come to leave the drawing does nothing.
+        with suppress(EngineError):
+            parts.append(bone.amount ** limb_of(figure, bone, points))
+    return joined_stiffness(parts)
+
+
+def tint_of(figure: Figure, shown: Shown) -> Floats:
+    """Return how stiff the vertices of the mesh are, (v,): −1 to 1, as the outline around them."""
+    domain = shown.mesh.domain
+    along = np.concatenate(figure.domain.loops)
+    values = np.log(stiffness_along(figure)) / EXTENT
+    tree = cKDTree(np.column_stack([along.real, along.imag]))
+    vertices = domain.mesh.vertices
+    away, nearest = tree.query(
+        np.column_stack([vertices.real, vertices.imag]), k=range(1, min(AROUND, len(along)) + 1)
+    )
+    weights = 1.0 / np.maximum(away, TINY * np.max(away)) ** 3
+    tinted: Floats = (weights * values[nearest]).sum(axis=1) / weights.sum(axis=1)
+    return tinted
+
+
+def draw_bones(look: Look, screen: Screen) -> None:
+    """Draw the bones that are shown, as thin diamonds from handle to handle."""
+    shown = screen.shown
+    handles = [handle.id for handle in shown.clip.figure.handles]
+    places = dict(zip(handles, shown.handle_places.tolist(), strict=True))
+    for bone in screen.project.figure.bones:
+        if bone.is_shown and places.keys() >= set(bone.ends):
+            start, end = (screen.point(places[identity]) for identity in bone.ends)
+            draw_bone(look, start, end, look.palette.text)
+
+
+def draw_bone(look: Look, start: ImVec2, end: ImVec2, colour: ImVec4) -> None:
+    """Draw a bone between two points of the screen."""
+    way = complex(end.x - start.x, end.y - start.y)
+    if not way:
+        return
+    aside = 1j * way / abs(way) * min(WIDEST * abs(way), MOST * look.em)
+    middle = complex(start.x, start.y) + AT * way
+    left, right = (ImVec2(at.real, at.imag) for at in (middle + aside, middle - aside))
+    diamond = start, left, end, right
+    draw_list = imgui.get_window_draw_list()
+    draw_list.add_convex_poly_filled(list(diamond), ink(colour, 0.3))
+    for tone, width in outlined(look, ink(colour), 0.08):
+        draw_list.add_polyline(list(diamond), tone, width, imgui.ImDrawFlags_.closed)
