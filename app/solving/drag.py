@@ -321,7 +321,7 @@ def fit_map(
         Which samples they are for, by default all.
     """
     chosen = slice(None) if inside is None else inside
-    weights = boundary.weights[chosen]
+    weights = boundary.lengths[chosen]
     root = np.sqrt(weights)[:, None]
     # Constants have no derivative: they are left to the places of the outline.
     matrix = root * boundary.derivatives[chosen, 1:]

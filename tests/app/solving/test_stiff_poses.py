@@ -7,12 +7,22 @@ import numpy as np
 import pytest
 from animations import still_document
 
-from app.document import Target, find_shortfall, handle_commands, material_commands
+from app.document import (
+    Meshing,
+    Target,
+    find_shortfall,
+    handle_commands,
+    material_commands,
+    stiff_outline,
+)
 from app.errors import LissomError
 from app.solving import pose_document
 from app.solving.drag import Drag, Rig
+from app.solving.renewal import Renewal, go_on
+from app.solving.replacing import begin_replacing
 from app.solving.script import parse_pose_script
 from engine.deform import Hand
+from engine.domain import CutOut, Slit
 
 BAR = np.zeros((80, 480, 4), np.uint8)
 BAR[20:60, 20:460] = 255
@@ -222,3 +232,42 @@ def test_joints_hold_still_for_hands_within_reach_and_where_they_are_locked():
     _, elbow, hand = drag.rig.deformer.positions(drag.state).tolist()
     assert abs(hand - 440 - 70j) < 6
     assert abs(elbow - 240 - 40j) < 12
+
+
+def stiffness_near(figure, *places):
+    points, stiffness = stiff_outline(figure)
+    return [float(stiffness[np.abs(points - place).argmin()]) for place in places]
+
+
+@pytest.mark.parametrize("detail", ["coarse", "fine"])
+def test_what_is_stiff_stays_in_its_place_on_another_domain_and_beside_a_cut(detail):
+    document = material_commands.paint(0, [450 + 40j], radius=70, amount=20.0)(still_with(bar()))
+    figure = document.figures[0]
+    slit = Slit(points=np.array([330 + 0j, 331 + 45j]))
+    for cut_out in (figure.cut_out, CutOut(slits=(slit,))):
+        before = replace(figure, cut_out=cut_out)
+        meshing = Meshing(detail=detail, triangles=1_000)
+        renewal = Renewal(before=before, bounds=before.bounds, meshing=meshing)
+        while not renewal.is_over:
+            renewal = go_on(renewal, BAR)
+        after = renewal.command(document.with_figure(before)).figures[0]
+        assert after.domain is not before.domain
+        assert after.bones == before.bones
+        places = (130 + 20j, 130 + 60j, 240 + 20j, 460 + 40j, 330 + 60j)
+        old, new = (stiffness_near(each, *places) for each in (before, after))
+        assert np.abs(np.log(new) - np.log(old)).max() < 0.25
+        assert old[0] == pytest.approx(40)
+
+
+def test_another_picture_takes_over_what_is_stiff():
+    document = material_commands.paint(0, [450 + 40j], radius=70, amount=20.0)(still_with(bar()))
+    larger = np.zeros((80, 500, 4), np.uint8)
+    larger[16:64, 20:480] = 255
+    made = still_document(larger).figures[0]
+    renewal = begin_replacing(document.figures[0], made, (480, 80))
+    while not renewal.is_over:
+        renewal = go_on(renewal, larger)
+    after = renewal.command(document).figures[0]
+    assert after.stiffness.max() > 5
+    assert stiffness_near(after, 240 + 15j)[0] < 1.1
+    assert after.bones == document.figures[0].bones

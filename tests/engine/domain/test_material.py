@@ -96,3 +96,11 @@ def test_stiffness_is_carried_over_by_place():
     near = carried_stiffness(loops, stiffness, every + 0.01)
     assert_allclose(np.log(near), np.log(stiffness), atol=0.5)
     assert_array_equal(carried_stiffness(loops, stiffness, np.array([20 + 3j, -5.0])), 1.0)
+
+
+def test_a_limb_ends_at_a_gap_however_narrow_it_is():
+    corners = np.array([0, 4.35, 4.35 + 5j, 4.4 + 5j, 4.4 + 1j, 5.4 + 1j, 5.4 + 6j, 6j])
+    points = subdivided(corners, 0.25)
+    share = limb_around([points], *ARM, points)
+    assert (share[(points.real <= 4.35) & (points.imag < 4.9)] == 0).all()
+    assert (share[(points.real >= 4.4) & (points.imag > 2.5) & (points.imag < 4.2)] == 1).all()
