@@ -7,7 +7,7 @@ from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 from app.document import ExportSettings, FrameRange, exported_frames
 from app.editor import Action, Project, Session, do
 from app.editor.actions import exporting
-from app.errors import shown_name
+from app.errors import LissomError, shown_name
 from app.export import frame_view, missing, shown_box
 from app.export_formats import EXPORT_FORMATS
 from app.motion import Box, box_around, extent_source
@@ -122,7 +122,13 @@ def _names(look: Look, settings: ExportSettings) -> ExportSettings:
     _, names = imgui.input_text("##names", settings.names)
     done = imgui.is_item_deactivated_after_edit()
     tip("One # for each digit of a frame's number; {name} is the project's name")
-    return replace(settings, names=names) if done and names else settings
+    try:
+        entered = replace(settings, names=names) if names else settings
+    except LissomError as error:
+        # It is told while it is typed; then the field shows again what holds.
+        small(look, str(error), look.palette.danger)
+        return settings
+    return entered if done else settings
 
 
 def _with_format(settings: ExportSettings, name: str) -> ExportSettings:
