@@ -458,3 +458,15 @@ def test_handles_that_come_before_a_drag_knows_where_it_begins_are_held_by_it(
         assert pull.start is None
     window.settle()
     assert bent.figure.key(12).pose.targets.keys() == {0, 1, added}
+
+
+def test_a_drag_of_a_layer_that_stands_still_since_comes_to_rest(window, bent):
+    drag_bar(window, bent)
+    (pull,) = bent.pulls
+    window.until(lambda: pull.kept is not None)
+    playback.scrub(window.session, 7)
+    window.frames(1)
+    layering.stand_still(window.session, 0)
+    copying.copy(window.session)
+    window.until(lambda: not bent.pending)
+    assert pull.kept is pull.newest

@@ -55,10 +55,13 @@ def _bring(session: Session, project: Project, pull: Pull, *, is_here: bool) -> 
         pull.ready, pull.tried = pull.tried, None
     if pull.tried is None and newest not in (pull.ready, pull.kept if not is_here else None):
         pull.tried = newest
-    if not is_here and pull.ready is not None:
-        adopt(session, project, pull, pull.ready)
-    elif not is_here and pull.is_at_rest and project.afterwards:
+    # In-betweens of what stands still are never prepared.
+    figures = project.document.figures
+    is_still = any(figure.id == pull.figure and figure.still for figure in figures)
+    if not is_here and pull.is_at_rest and (is_still or project.afterwards):
         adopt(session, project, pull, newest)
+    elif not is_here and pull.ready is not None:
+        adopt(session, project, pull, pull.ready)
 
 
 def tried_clips(project: Project) -> Sequence[Clip]:
