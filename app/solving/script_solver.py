@@ -237,10 +237,13 @@ def _solve(rig: Rig, start: Pose, key: PoseKey) -> tuple[Pose, list[str]]:
     shortfall = find_shortfall(figure, drag.pose(targets))
     left = {**targets, **drag.let_go(targets, hands)}
     pose = (drag if left == targets else _at_rest(drag, left)).pose(left)
+    # Joints of bones give way: nobody asked them to stay.
+    joints = {identity for hand in rig.yielding(hands) for identity in hand.handles}
     notices += [
         f"frame {key.frame}: {figure.handle(identity).name!r} is {lag:.1f} px short of "
         f"its target, {shortfall.reason}"
         for identity, lag in shortfall.lags.items()
+        if identity not in joints
     ]
     return pose, notices
 

@@ -1,45 +1,29 @@
 """What of a figure is stiff or soft, over its picture: colours, bones, and the brush."""
 
-from contextlib import suppress
 from math import log
 
 import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui
 from scipy.spatial import cKDTree
 
-from app.document import Figure, limb_of
-from app.document.body import joined_stiffness
+from app.document import Figure, stiff_outline
 from app.editor.actions import material
 from app.motion import Shown
 from app.ui.style import Look, ink, outlined
 from app.ui.viewport.screen import Screen
 from engine.arrays import Floats
-from engine.errors import EngineError
 
 EXTENT = log(material.STRONGEST)  # what is so stiff has the last of the colours
 WIDEST, AT = 0.09, 0.2  # of a bone's length: how wide it is, and where
-AROUND, TINY = 48, 1e-6  # vertices of the outline that colour a place inside
+AROUND, TINY = 128, 1e-6  # points of the outline that colour a place inside
 MOST = 0.7  # em: how wide a bone is at most, to either side
-
-
-def stiffness_along(figure: Figure) -> Floats:
-    """Return how stiff a figure is at the vertices of its outline and of its holes', (p,)."""
-    points = np.concatenate(figure.domain.loops)
-    parts = [np.ones(len(points)) if figure.stiffness is None else figure.stiffness]
-    for bone in figure.bones:
-        # One that has come to leave the drawing does nothing.
-        with suppress(EngineError):
-            parts.append(bone.amount ** limb_of(figure, bone, points))
-    return joined_stiffness(parts)
 
 
 def tint_of(figure: Figure, shown: Shown) -> Floats:
     """Return how stiff the vertices of the mesh are, (v,): −1 to 1, as the outline around them."""
-    domain = shown.mesh.domain
-    along = np.concatenate(figure.domain.loops)
-    values = np.log(stiffness_along(figure)) / EXTENT
+    along, stiffness = stiff_outline(figure)
+    values, vertices = np.log(stiffness) / EXTENT, shown.mesh.domain.mesh.vertices
     tree = cKDTree(np.column_stack([along.real, along.imag]))
-    vertices = domain.mesh.vertices
     away, nearest = tree.query(
         np.column_stack([vertices.real, vertices.imag]), k=range(1, min(AROUND, len(along)) + 1)
     )
