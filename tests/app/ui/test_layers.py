@@ -418,7 +418,7 @@ def test_depth_is_set_at_a_handle_and_shown_as_a_tint(window, scene):
         for item in ("##depth", "##name"):
             robot.mouse_move(f"Handle/{item}")
             robot.yield_(3)
-            tinted.append(window.session.tints_depth)
+            tinted.append(window.session.tint == "depth")
 
     window.run(point)
     assert tinted == [True, False]

@@ -462,7 +462,7 @@ FAILURES = {
         ),
     ),
     "Posing": (
-        "app.solving.drag.certify",
+        "app.editor.actions.posing.solving._take_steps",
         lambda session: posing.wish(session, {1: Target(position=900 + 50j)}),
     ),
     "Inserting a key": (
@@ -553,7 +553,7 @@ WAITING = {
     ),
     "Solving the keys": ("app.editor.actions.body.rebuilding.go_on", rebuilding.solve_again),
     "Posing": (
-        "app.solving.drag.certify",
+        "app.editor.actions.posing.solving._take_steps",
         lambda session: posing.wish(session, {1: Target(position=900 + 50j)}),
     ),
     "Inserting a key": (
