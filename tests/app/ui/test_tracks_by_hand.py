@@ -16,6 +16,7 @@ from app.editor.actions import editing, playback, posing, tracking
 from app.editor.actions.timing import tracks
 from app.ui.bars.status import limit_of_pose
 from app.ui.viewport.marks import unreached
+from engine.errors import EngineError
 
 END = 1  # the handle near the right end
 NEAR = 0.3  # pixels that a tracked handle may miss
@@ -461,3 +462,21 @@ def test_a_hand_sees_its_track_while_a_pose_elsewhere_waits_for_what_is_shown(wi
     drag(window, start, start + 10j, then=then)
     assert seen == [True]
     assert not keyed.pending
+
+
+def test_a_pose_elsewhere_comes_to_rest_where_frames_cannot_be_corrected(
+    window, keyed, monkeypatch
+):
+    def broken(*_):
+        raise EngineError("no way")
+
+    for name in ("_begin", "_find"):
+        monkeypatch.setattr(f"app.motion.corrected_frames.{name}", broken)
+    keyed.chosen_track = None
+    playback.scrub(window.session, BENT)
+    place = complex(keyed.figure.key(BENT).pose.targets[END].position)
+    posing.wish(window.session, {END: Target(position=place - 15j)})
+    posing.let_go(window.session)
+    playback.scrub(window.session, 6)
+    window.until(lambda: not keyed.pending)
+    assert any("held still, or on their tracks" in toast.text for toast in window.session.toasts)

@@ -69,8 +69,9 @@ def is_here(session: Session, project: Project, pull: Pull) -> bool:
 
 def is_there(session: Session, project: Project) -> bool:
     """Tell whether what belongs at the playhead is shown, or is known never to be."""
-    shown = project.puppet.shown
-    if project.unkeyed is not None or project.puppet.store.has_failed(project.clip):
+    shown, store = project.puppet.shown, project.puppet.store
+    has_failed = store.has_failed(project.clip) or store.has_failed(project.clip, "correction")
+    if project.unkeyed is not None or has_failed:
         return True
     if shown is None or not shown.is_current:
         return False
