@@ -52,6 +52,7 @@ from app.document.queries import (
     Shortfall as Shortfall,
     TrackPlace as TrackPlace,
     Transit as Transit,
+    are_as_stiff as are_as_stiff,
     brushed_stiffness as brushed_stiffness,
     changed_stretches as changed_stretches,
     clip_of as clip_of,

@@ -6,7 +6,17 @@ from typing import Self
 
 import numpy as np
 
-from app.document import Clip, Figure, Handle, Pose, Target, resting_pose, stiffened, time_of
+from app.document import (
+    Clip,
+    Figure,
+    Handle,
+    Pose,
+    Target,
+    are_as_stiff,
+    resting_pose,
+    stiffened,
+    time_of,
+)
 from app.motion import Animation, PoseSampler
 from engine.arrays import Booleans, Complexes
 from engine.deform import Deformer, Hand, Handles, Link, State, Wish
@@ -56,7 +66,7 @@ class Rig:
         held = tuple(handle for handle in figure.handles if handle.id not in carried)
         if earlier is not None and earlier.figure.domain is domain:
             boundary = earlier.deformer.boundary
-            is_same = _are_alike(earlier.figure, figure)
+            is_same = are_as_stiff(earlier.figure, figure)
         else:
             boundary, is_same = Boundary.sample(domain.outline, domain.cage, domain.holes), False
         if not is_same:
@@ -238,15 +248,6 @@ def pins_of(figure: Figure, pose: Pose) -> tuple[Target, ...]:
     """Return where a pose has what a drag holds still: the anchor of a figure that hangs."""
     places = figure.map_of(pose)(np.array(_pins(figure), dtype=np.complex128))
     return tuple(Target(position=complex(place)) for place in places)
-
-
-def _are_alike(figure: Figure, other: Figure) -> bool:
-    """Tell whether two figures of one domain are stiff in the same places."""
-    own, others = (
-        [(bone.amount, *(each.handle(end).position for end in bone.ends)) for bone in each.bones]
-        for each in (figure, other)
-    )
-    return figure.stiffness is other.stiffness and own == others
 
 
 def _pins(figure: Figure) -> tuple[complex, ...]:

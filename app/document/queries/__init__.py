@@ -18,6 +18,7 @@ from app.document.queries.fronts import (
     is_visible as is_visible,
 )
 from app.document.queries.material import (
+    are_as_stiff as are_as_stiff,
     brushed_stiffness as brushed_stiffness,
     limb_of as limb_of,
     stiff_outline as stiff_outline,

@@ -41,6 +41,15 @@ def stiff_outline(figure: Figure) -> StiffOutline:
     return StiffOutline(np.concatenate(points), _stiffness_at(figure, points))
 
 
+def are_as_stiff(figure: Figure, other: Figure) -> bool:
+    """Tell whether two figures of one domain are stiff in the same places."""
+    own, others = (
+        [(bone.amount, *(each.handle(end).position for end in bone.ends)) for bone in each.bones]
+        for each in (figure, other)
+    )
+    return figure.stiffness is other.stiffness and own == others
+
+
 def spends_local_limits(figure: Figure, pose: Pose, share: float) -> bool:
     """Tell whether a pose spends such a share of the tighter limits where its figure is stiff."""
     points, stiffness = stiff_outline(figure)

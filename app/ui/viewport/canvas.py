@@ -16,7 +16,6 @@ from app.ui.viewport.backdrop import background
 from app.ui.viewport.cut_view import mark_holes
 from app.ui.viewport.drawing import Drawing
 from app.ui.viewport.marks import forget_places, mark_all, pixel_scale, plain
-from app.ui.viewport.material_view import tint_of
 from app.ui.viewport.pose_pictures import PosePictures
 from engine.arrays import Floats
 
@@ -213,18 +212,20 @@ def _posed(
         )
         poses.append(pose)
         if session.tint is not None:
-            drawing.tint(pose, _tinted(session, project, figure, shown))
+            drawing.tint(pose, _tinted(session, project, drawing, figure, shown))
         elif heat_map != "none":
             drawing.heat(pose, shown, heat_map)
     return tuple(poses)
 
 
-def _tinted(session: Session, project: Project, figure: Figure, shown: Shown) -> Floats:
+def _tinted(
+    session: Session, project: Project, drawing: Drawing, figure: Figure, shown: Shown
+) -> Floats:
     """Return by what the vertices of a figure are coloured, (v,), −1 to 1."""
     if figure.id != project.active:
         return np.zeros(len(shown.positions))
     if session.tint == "stiffness":
-        return tint_of(project.figure, shown)
+        return drawing.stiffness(figure, shown.mesh)
     return shown.mesh.order.depths(shown.clip, shown.frame)
 
 

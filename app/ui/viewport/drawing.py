@@ -4,6 +4,7 @@ from collections.abc import Collection
 
 import numpy as np
 
+from app.document import Figure, are_as_stiff
 from app.editor import HeatMap, Project
 from app.motion import PosableMesh, Shown, Vertices
 from app.render import DrawnMesh, Renderer, shader_is_faster
@@ -11,6 +12,7 @@ from app.render.gpu import GpuMesh, GpuPicture, PosedMesh
 from app.storage import Picture
 from app.ui.viewport.backdrop import measure_brightness
 from app.ui.viewport.cut_view import CutView
+from app.ui.viewport.material_view import tint_of
 from engine.arrays import Bytes, Floats
 from engine.domain import find_seam
 from engine.maps import distortion
@@ -42,6 +44,7 @@ class Drawing:
         self._heated: dict[PosedMesh, tuple[Vertices, HeatMap]] = {}
         self._cut_view: CutView | None = None
         self._measured: tuple[Bytes, Floats] | None = None
+        self._stiff: tuple[Figure, PosableMesh, Floats] | None = None
 
     @property
     def brightness(self) -> Floats:
@@ -82,6 +85,21 @@ class Drawing:
         """Colour a pose by values of its vertices, (v,), that are no distortion."""
         pose.write_heat(values.astype(np.float32))
         self._heated.pop(pose, None)
+
+    def stiffness(self, figure: Figure, mesh: PosableMesh) -> Floats:
+        """Return by what the vertices of a figure's mesh are coloured, (v,), where it is stiff.
+
+        It is worked out anew only where that has changed: the picture changes in every frame.
+        """
+        known = self._stiff
+        if (
+            known is None
+            or known[1] is not mesh
+            or known[0].domain is not figure.domain
+            or not are_as_stiff(known[0], figure)
+        ):
+            known = self._stiff = figure, mesh, tint_of(figure, mesh)
+        return known[2]
 
     def release_but(self, meshes: Collection[PosableMesh]) -> None:
         """Let the buffers of other meshes go."""

@@ -8,7 +8,7 @@ from scipy.spatial import cKDTree
 
 from app.document import Figure, stiff_outline
 from app.editor.actions import material
-from app.motion import Shown
+from app.motion import PosableMesh
 from app.ui.style import Look, ink, outlined
 from app.ui.viewport.screen import Screen
 from engine.arrays import Floats
@@ -19,10 +19,10 @@ AROUND, TINY = 128, 1e-6  # points of the outline that colour a place inside
 MOST = 0.7  # em: how wide a bone is at most, to either side
 
 
-def tint_of(figure: Figure, shown: Shown) -> Floats:
-    """Return how stiff the vertices of the mesh are, (v,): −1 to 1, as the outline around them."""
+def tint_of(figure: Figure, mesh: PosableMesh) -> Floats:
+    """Return how stiff the vertices of a mesh are, (v,): −1 to 1, as the outline around them."""
     along, stiffness = stiff_outline(figure)
-    values, vertices = np.log(stiffness) / EXTENT, shown.mesh.domain.mesh.vertices
+    values, vertices = np.log(stiffness) / EXTENT, mesh.domain.mesh.vertices
     tree = cKDTree(np.column_stack([along.real, along.imag]))
     away, nearest = tree.query(
         np.column_stack([vertices.real, vertices.imag]), k=range(1, min(AROUND, len(along)) + 1)

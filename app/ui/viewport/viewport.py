@@ -91,7 +91,8 @@ def draw(session: Session, look: Look, project: Project, pictures: SplitTextures
         actions.append(do(pointing.explain, hint))
     if session.tint == "stiffness" and not is_in_front("Material"):
         actions.append(do(viewing.tint, None))
-    draw_bones(look, screen)
+    if _shows_handles(session, project):
+        draw_bones(look, screen)
     if session.material is not None and (on_canvas or session.pointer is not None):
         draw_brush(session, look, imgui.get_mouse_pos(), screen.scale)
     if session.cutting is None:
@@ -139,11 +140,16 @@ class _Handles(NamedTuple):
     actions: list[Action]
 
 
+def _shows_handles(session: Session, project: Project) -> bool:
+    """Tell whether handles and bones are seen: not while it plays, nor over the picture at rest."""
+    is_playing = project.playhead.since is not None
+    return session.overlays.handles and session.cutting is None and not is_playing
+
+
 def _lay_handles(session: Session, look: Look, screen: Screen) -> _Handles:
     """Lay a button over each handle, and over where it is wanted if it has not arrived there."""
     hovered, at_target, pressed, actions = None, False, False, list[Action]()
-    is_hidden = not session.overlays.handles or session.cutting is not None
-    if is_hidden or screen.project.playhead.since is not None:
+    if not _shows_handles(session, screen.project):
         return _Handles(hovered, at_target, pressed, actions)
     radius, shown = ImVec2(GRIP * look.em, GRIP * look.em), screen.shown
     identities = [handle.id for handle in shown.clip.figure.handles]

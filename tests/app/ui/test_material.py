@@ -117,7 +117,7 @@ def test_the_drawing_is_tinted_as_long_as_the_tab_is_in_front(window, tab):
     assert window.session.tint == "stiffness"
     material.take_up(window.session, "stiff")
     drag(window, [middle(tab) - 10, middle(tab) + 10])
-    values = tint_of(tab.figure, tab.puppet.shown)
+    values = tint_of(tab.figure, tab.puppet.shown.mesh)
     vertices = tab.puppet.shown.mesh.domain.mesh.vertices
     assert values[np.abs(vertices - middle(tab)).argmin()] > 0.2
     assert abs(values[np.abs(vertices - vertices.real.min()).argmin()]) < 0.05
@@ -179,3 +179,25 @@ def test_dragging_goes_on_where_a_part_is_stiff(window, tab):
     window.settle()
     assert abs(place_of(tab, ENDS[1]) - place - 12j) < 2
     assert tab.figure.key(BENT).pose.certificate.certified
+
+
+@pytest.mark.usefixtures("tab")
+def test_colours_are_worked_out_anew_only_where_something_is_stiff_otherwise(window, monkeypatch):
+    calls = []
+
+    def counted(*arguments):
+        calls.append(arguments)
+        return tint_of(*arguments)
+
+    monkeypatch.setattr("app.ui.viewport.drawing.tint_of", counted)
+    material.add_bone(window.session, ENDS)
+    window.settle()
+    assert len(calls) == 1
+    playback.scrub(window.session, BENT // 2)
+    window.settle()
+    playback.scrub(window.session, 3)
+    window.settle()
+    assert len(calls) == 1
+    material.set_bone(window.session, ENDS, 20.0)
+    window.settle()
+    assert len(calls) == 2

@@ -18,9 +18,9 @@ from engine.geometry import distance_to_boundary
 # The brushes, and whether they make parts stiffer or softer; None takes that back.
 BRUSHES: Mapping[str | None, bool | None] = {"stiff": True, "soft": False, "normal": None}
 WEAKEST, STRONGEST, SOFTEST = 1.5, 100.0, 30.0  # of the brush and of bones
-# What parts are made by the words in their handles' names, and by how much.
 FIRST_BRUSH = 0.1  # of the picture's longer side: it is to reach the edge of a limb
 AROUND = 2.0  # times as far around a handle as it is away from the outline
+# By which factor the words in handles' names make the parts around them stiff.
 SUGGESTED = (
     ({"head", "face", "skull", "hand", "fist", "shoe", "boot", "foot", "hoof", "paw"}, 10.0),
     ({"tail", "trunk", "tentacle", "hair", "scarf", "ribbon", "cape"}, 0.2),
