@@ -12,6 +12,7 @@ from app.document import (
     FRAME_NAMES,
     Attachment,
     Bone,
+    Choice,
     Document,
     Easing,
     ExportSettings,
@@ -30,6 +31,7 @@ from app.document import (
     Target,
     Track,
     TrackKey,
+    Turn,
 )
 from app.errors import LissomError
 from app.export_formats import FormatOptions, FormatSettings
@@ -249,6 +251,12 @@ FIGURE = record(
     Field("opacity", NUMBER, usual=1.0),
     Field("attachment", optional(ATTACHMENT), usual=None),
 )
+CHOICE = record(
+    Choice,
+    Field("name", TEXT),
+    Field("figures", several(WHOLE)),
+    Field("turns", several(pair(WHOLE, WHOLE, "a frame and a figure", make=Turn, of=tuple))),
+)
 DOCUMENT = record(
     dict,
     Field("schema", WHOLE, lambda _: SCHEMA),
@@ -261,6 +269,7 @@ DOCUMENT = record(
     Field("loop", FLAG),
     Field("export", EXPORT),
     Field("size", optional(SIZE), usual=None),
+    Field("choices", several(CHOICE), usual=()),
 )
 
 
