@@ -17,6 +17,7 @@ from app.document.commands import (
     Settled as Settled,
     exchanged as exchanged,
     figure_commands as figure_commands,
+    group_commands as group_commands,
     handle_commands as handle_commands,
     key_commands as key_commands,
     layer_commands as layer_commands,
@@ -40,12 +41,23 @@ from app.document.keyframe import (
     Pose as Pose,
     Target as Target,
 )
-from app.document.layering import Attachment as Attachment, Switch as Switch
+from app.document.layering import (
+    BLENDS as BLENDS,
+    DEEPEST as DEEPEST,
+    GROUP_BLENDS as GROUP_BLENDS,
+    Attachment as Attachment,
+    BlendMode as BlendMode,
+    Group as Group,
+    GroupBlend as GroupBlend,
+    Switch as Switch,
+    paths_to as paths_to,
+)
 from app.document.model import Document as Document
 from app.document.playhead import Playhead as Playhead
 from app.document.queries import (
     USUAL_EXTENT as USUAL_EXTENT,
     Clip as Clip,
+    Composite as Composite,
     Extremes as Extremes,
     Front as Front,
     Moment as Moment,
@@ -58,6 +70,7 @@ from app.document.queries import (
     clip_of as clip_of,
     closes as closes,
     comes_round as comes_round,
+    composed as composed,
     exported_frames as exported_frames,
     falls_short as falls_short,
     find_shortfall as find_shortfall,

@@ -19,7 +19,7 @@ from app.document.checks import (
     require_size,
 )
 from app.document.keyframe import Handle, KeptPose, Keyframe, Pose
-from app.document.layering import Attachment, Switch, require_in_order
+from app.document.layering import BLENDS, Attachment, BlendMode, Switch, require_in_order
 from app.document.settings import NATURAL, VARIANTS, Meshing
 from app.document.timing import Spring, Track
 from app.errors import LissomError
@@ -96,6 +96,8 @@ class Figure:
     # says. Always seen without any.
     switches: tuple[Switch, ...] = ()
     opacity: float = 1.0  # in [0, 1]
+    blend: BlendMode = "normal"
+    group: str = ""  # the path of the innermost group that it is in; "" outside of all groups
     # The joint by which it hangs on another figure. Its anchor is then given.
     attachment: Attachment | None = None
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
@@ -105,6 +107,10 @@ class Figure:
         require(bool(self.name.strip()), "A figure needs a name.")
         require_place(self.corner, f"The corner of {self.name!r}")
         require(0 <= self.opacity <= 1, f"Opacity is between 0 and 1, not {self.opacity:g}.")
+        require(
+            self.blend in BLENDS,
+            f"The blend of {self.name!r} is one of {', '.join(BLENDS)}, not {self.blend!r}.",
+        )
         require_in_order(self.switches)
         require(
             self.attachment is None or self.anchor is not None,

@@ -12,6 +12,7 @@ from itertools import pairwise
 
 from app.document.checks import NOTHING, Unknown, require, require_distinct, require_size
 from app.document.figure import Figure
+from app.document.layering import Group, paths_to
 from app.document.settings import FASTEST, ExportSettings, FrameRange, Marker
 from app.errors import LissomError
 
@@ -38,6 +39,8 @@ class Document:
     )
     # Width and height of the canvas; None takes those of the picture behind all others.
     size: tuple[int, int] | None = None
+    # Each after the one that it is in.
+    groups: tuple[Group, ...] = ()
 
     def __post_init__(self) -> None:
         self._check_figures()
@@ -68,7 +71,24 @@ class Document:
     @property
     def exported(self) -> tuple[Figure, ...]:
         """The figures that exports show, from back to front."""
-        return tuple(each for each in self.figures if not (each.reference or each.hidden))
+        return tuple(
+            each for each in self.figures if not (each.reference or self.is_put_away(each))
+        )
+
+    def is_put_away(self, figure: Figure) -> bool:
+        """Tell whether a figure, or a group that it is in, is hidden at all times."""
+        return figure.hidden or any(group.hidden for group in self.groups_around(figure.group))
+
+    def group(self, path: str) -> Group:
+        """Return the group with this path."""
+        for group in self.groups:
+            if group.name == path:
+                return group
+        raise LissomError(f"There is no group {path!r}.")
+
+    def groups_around(self, path: str) -> tuple[Group, ...]:
+        """Return the group with this path after those that it is in, the outermost first."""
+        return tuple(self.group(each) for each in paths_to(path))
 
     def figure(self, identity: int) -> Figure:
         """Return the figure with this id."""
@@ -110,6 +130,7 @@ class Document:
             require_size(self.size, "canvas")
         require_distinct((figure.id for figure in self.figures), "Two figures have the id {!r}.")
         require_distinct((figure.name for figure in self.figures), "Two figures are called {!r}.")
+        self._check_groups()
         for figure in self.figures:
             for frame in figure.ends:
                 require(
@@ -120,6 +141,21 @@ class Document:
         for figure in self.figures:
             self.carriers(figure.id)
             self._check_clocks(figure)
+
+    def _check_groups(self) -> None:
+        known: set[str] = set()
+        for group in self.groups:
+            require(group.name not in known, f"Two groups are called {group.name!r}.")
+            require(
+                known.issuperset(paths_to(group.name)[:-1]),
+                f"The group {group.name!r} comes before the one that it is in.",
+            )
+            known.add(group.name)
+        for figure in self.figures:
+            require(
+                not figure.group or figure.group in known,
+                f"{figure.name!r} is in the group {figure.group!r}, which is not there.",
+            )
 
     def _check_clocks(self, figure: Figure) -> None:
         """Refuse what does not come round in a loop."""

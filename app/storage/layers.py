@@ -5,15 +5,17 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from PIL import Image
+from PIL import Image, ImageChops
 
 from app.document import (
+    Composite,
     Document,
     ExportSettings,
     Figure,
     Framing,
     Meshing,
     PictureFile,
+    composed,
     is_visible,
     layer_commands,
     new_figure,
@@ -104,18 +106,38 @@ def flattened(document: Document, textures: Mapping[int, Bytes]) -> Bytes:
     factor = max(1, max(document.canvas) // LARGEST_FLAT)
     if len(document.figures) == 1:
         return np.asarray(_reduced(textures[document.figures[0].id], factor))
-    flat = Image.new("RGBA", [-(-side // factor) for side in document.canvas])
-    for figure in document.exported:
-        if not is_visible(figure, document.frames.first):
-            continue
-        layer = _reduced(textures[figure.id], factor)
-        layer.putalpha(layer.getchannel("A").point(lambda a, o=figure.opacity: round(o * a)))
-        corner = figure.corner / factor
-        place = round(corner.real), round(flat.height - corner.imag - layer.height)
-        moved = Image.new("RGBA", flat.size)
-        moved.paste(layer, place)
-        flat = Image.alpha_composite(flat, moved)
-    return readonly(np.asarray(flat))
+    size = -(-document.canvas[0] // factor), -(-document.canvas[1] // factor)
+
+    def drawn(figure: Figure) -> Image.Image:
+        layer, corner = _reduced(textures[figure.id], factor), figure.corner / factor
+        moved = Image.new("RGBA", size)
+        moved.paste(layer, (round(corner.real), round(size[1] - corner.imag - layer.height)))
+        return moved
+
+    def painted(parts: Sequence[Figure | Composite[Figure]]) -> Image.Image:
+        flat = Image.new("RGBA", size)
+        for part in parts:
+            if isinstance(part, Composite):
+                flat = _blended(flat, painted(part.parts), part)
+            else:
+                flat = Image.alpha_composite(flat, drawn(part))
+        return flat
+
+    first = document.frames.first
+    seen = [(each, each) for each in document.exported if is_visible(document, each, first)]
+    return readonly(np.asarray(painted(composed(document, seen))))
+
+
+def _blended(below: Image.Image, layer: Image.Image, how: Composite[Figure]) -> Image.Image:
+    """Return a layer over what lies below it ("Compositing and Blending Level 1", Section 10)."""
+    alpha = layer.getchannel("A").point(lambda a: round(how.opacity * a))
+    if how.blend != "normal":
+        mix = ImageChops.multiply if how.blend == "multiply" else ImageChops.screen
+        own, lower = layer.convert("RGB"), below.convert("RGB")
+        # Where there is nothing below, it keeps its colours.
+        layer = Image.composite(mix(lower, own), own, below.getchannel("A")).convert("RGBA")
+    layer.putalpha(alpha)
+    return Image.alpha_composite(below, layer)
 
 
 def _reduced(rgba: Bytes, factor: int) -> Image.Image:
@@ -162,6 +184,8 @@ def layer_figure(
         still=still,
         hidden=not layer.visible,
         opacity=layer.opacity,
+        blend=layer.blend,
+        group=layer.group,
     )
     return figure, tuple(f"{layer.name}: {notice}" for notice in notices)
 
@@ -187,6 +211,8 @@ def still_figure(figure: Figure) -> Figure:
         hidden=figure.hidden,
         switches=figure.switches,
         opacity=figure.opacity,
+        blend=figure.blend,
+        group=figure.group,
     )
 
 
@@ -205,5 +231,10 @@ def _scene(drawing: LayeredPicture, meshing: Meshing, *, is_cut_out: bool) -> Op
     notices = [*drawing.notices, *(notice for _, told in made for notice in told)]
     # A drawing with a background has a frame of its own.
     framing: Framing = "canvas" if figures[0].still else "fit"
-    document = Document(figures=figures, size=drawing.size, export=ExportSettings(framing=framing))
+    document = Document(
+        figures=figures,
+        size=drawing.size,
+        export=ExportSettings(framing=framing),
+        groups=drawing.groups,
+    )
     return OpenedScene(document, pictures, tuple(notices))

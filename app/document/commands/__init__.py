@@ -7,6 +7,7 @@ Imports: the values of `app.document`.
 
 from app.document.commands import (
     figure_commands as figure_commands,
+    group_commands as group_commands,
     handle_commands as handle_commands,
     key_commands as key_commands,
     layer_commands as layer_commands,

@@ -11,6 +11,7 @@ from app.document.queries.clips import (
     closes as closes,
     intervals as intervals,
 )
+from app.document.queries.compositing import Composite as Composite, composed as composed
 from app.document.queries.fronts import (
     USUAL_EXTENT as USUAL_EXTENT,
     Front as Front,

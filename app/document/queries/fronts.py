@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 from app.document.figure import Figure
+from app.document.model import Document
 from app.document.queries.clips import Clip
 from engine.geometry import box_diagonal
 
@@ -40,9 +41,9 @@ def fronts_at(clip: Clip, frame: float) -> tuple[Front, ...]:
     )
 
 
-def is_visible(figure: Figure, frame: float) -> bool:
+def is_visible(document: Document, figure: Figure, frame: float) -> bool:
     """Tell whether a figure is seen at a frame."""
-    if figure.hidden:
+    if document.is_put_away(figure):
         return False
     shown = figure.switches[0].visible if figure.switches else True
     for switch in figure.switches:

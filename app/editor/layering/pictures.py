@@ -5,7 +5,15 @@ from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
-from app.document import Figure, Meshing, clip_of, layer_commands
+from app.document import (
+    Document,
+    Figure,
+    Group,
+    Meshing,
+    clip_of,
+    group_commands,
+    layer_commands,
+)
 from app.editor import promises
 from app.editor.action import Action, do
 from app.editor.actions import editing, files, rebuilding
@@ -62,6 +70,8 @@ def stand_up(session: Session, project: Project, identity: int) -> None:
         corner=figure.corner,
         visible=not figure.hidden,
         opacity=figure.opacity,
+        blend=figure.blend,
+        group=figure.group,
     )
     meshing = session.meshing
 
@@ -131,12 +141,13 @@ def add(session: Session, project: Project, paths: Sequence[Path]) -> None:
     meshing, before = session.meshing, project.document
     canvas = before.canvas
 
-    def work() -> tuple[list[_Made], list[str]]:
+    def work() -> tuple[list[_Made], list[str], Sequence[Group]]:
         document = before
         made: list[_Made] = []
         told: list[str] = []
         for path in paths:
-            drawing = _drawing(path)
+            drawing = _with_free_groups(_drawing(path), document)
+            document = group_commands.add_groups(drawing.groups)(document)
             told += drawing.notices
             across, up = ((ours - its) // 2 for ours, its in zip(canvas, drawing.size, strict=True))
             for layer in drawing.layers:
@@ -150,12 +161,13 @@ def add(session: Session, project: Project, paths: Sequence[Path]) -> None:
                 puppet = Puppet.of(clip_of(document, identity), layer.picture)
                 notices = layer.picture.notices + notices
                 made.append(_Made(figure, layer.picture, notices, puppet))
-        return made, told
+        return made, told, document.groups[len(before.groups) :]
 
-    def done(read: tuple[list[_Made], list[str]]) -> None:
-        made, told = read
+    def done(read: tuple[list[_Made], list[str], Sequence[Group]]) -> None:
+        made, told, groups = read
         project.drawings.update(paths)
         gesture = object()
+        project.history.do(group_commands.add_groups(groups), gesture=gesture)
         for figure, picture, _, puppet in made:
             identity = layer_commands.free_identity(project.document)
             project.pictures[figure.picture] = picture
@@ -169,6 +181,21 @@ def add(session: Session, project: Project, paths: Sequence[Path]) -> None:
             session.tell(sentence(notice))
 
     promises.begin(session, project, ADDING, work, done)
+
+
+def _with_free_groups(drawing: LayeredPicture, document: Document) -> LayeredPicture:
+    """Return a drawing with names of groups that a document does not have."""
+    taken = {group.name for group in document.groups}
+
+    def free(path: str) -> str:
+        outermost, slash, inner = path.partition("/")
+        return path and layer_commands.numbered_name(outermost, taken) + slash + inner
+
+    return replace(
+        drawing,
+        layers=tuple(replace(layer, group=free(layer.group)) for layer in drawing.layers),
+        groups=tuple(replace(group, name=free(group.name)) for group in drawing.groups),
+    )
 
 
 def _drawing(path: Path) -> LayeredPicture:

@@ -4,14 +4,12 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from app.document import layer_commands
-from app.errors import LissomError
+from app.document import DEEPEST, BlendMode, Group, layer_commands, paths_to
+from app.errors import LissomError, shown_name
 from app.storage.pictures.cores import require_memory
 from app.storage.pictures.picture import Picture
 
 MOST_LAYERS = 200
-# Groups in each other.
-DEEPEST = 50
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -29,8 +27,12 @@ class Layer:
     corner : complex
         Where its lower left corner is on the canvas, in pixels, y up.
     visible : bool
+        By itself, whatever its groups.
     opacity : float
         In [0, 1].
+    blend : BlendMode
+    group : str
+        The path of the group that it is in, "" where there is none.
     """
 
     name: str
@@ -39,6 +41,8 @@ class Layer:
     corner: complex = 0j
     visible: bool = True
     opacity: float = 1.0
+    blend: BlendMode = "normal"
+    group: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -53,43 +57,78 @@ class LayeredPicture:
         From the one behind all others to the one in front; there is always one.
     notices : tuple of str
         What could not be kept, in words.
+    groups : tuple of Group
+        Those of the layers, each after the one that it is in.
     """
 
     size: tuple[int, int]
     layers: tuple[Layer, ...]
     notices: tuple[str, ...]
+    groups: tuple[Group, ...] = ()
+
+
+class Groups:
+    """The groups of a drawing as they are found, each with a path of its own."""
+
+    def __init__(self) -> None:
+        self._found: dict[str, Group] = {}
+
+    def add(self, around: str, group: Group) -> str:
+        """Take in a group by its name, that is in the one with the path `around`; return its path.
+
+        Raises
+        ------
+        LissomError
+            If it lies too deep in others.
+        """
+        if around.count("/") + bool(around) >= DEEPEST:
+            raise LissomError(f"its groups lie more than {DEEPEST} deep in each other")
+        # A slash stands between groups.
+        name = shown_name(group.name).replace("/", "-").strip() or "group"
+        path = layer_commands.numbered_name(f"{around}/{name}" if around else name, self._found)
+        self._found[path] = replace(group, name=path)
+        return path
+
+    def of(self, layers: Sequence[Layer]) -> tuple[Group, ...]:
+        """Return the groups that these layers are in."""
+        filled = {path for layer in layers for path in paths_to(layer.group)}
+        return tuple(group for path, group in self._found.items() if path in filled)
 
 
 def layered_picture(
-    size: tuple[int, int], found: Sequence[tuple[str, Layer]], notices: Sequence[str]
+    size: tuple[int, int], found: Sequence[Layer], groups: Groups, notices: Sequence[str]
 ) -> LayeredPicture:
     """Return the drawing of the layers that were found, each with a name of its own.
 
     Parameters
     ----------
     size : tuple of int
-    found : sequence of (str, Layer)
-        From back to front, each with the names of the groups that it is in, as "limbs/left"; layers
-        of which nothing is to be seen are left out.
+    found : sequence of Layer
+        From back to front; those of which nothing is to be seen are left out.
+    groups : Groups
+        All of them.
     notices : sequence of str
     """
     notices, kept = list(notices), []
-    for group, layer in found:
+    for layer in found:
         if layer.picture.rgba[..., 3].any():
-            kept.append((group, layer))
+            kept.append(layer)
         else:
             notices.append(f"left out the empty layer {layer.name!r}")
     if not kept:
         raise LissomError("it has no layer on which anything is drawn")
-    own = Counter(layer.name for _, layer in kept)
+    own = Counter(layer.name for layer in kept)
     taken: set[str] = set()
     layers = []
-    for group, layer in kept:
-        name = f"{group}/{layer.name}" if group and own[layer.name] > 1 else layer.name
+    for layer in kept:
+        has_twin = layer.group and own[layer.name] > 1
+        name = f"{layer.group}/{layer.name}" if has_twin else layer.name
         free = layer_commands.numbered_name(name, taken)
         taken.add(free)
         layers.append(replace(layer, name=free))
-    return LayeredPicture(size=size, layers=tuple(layers), notices=tuple(notices))
+    return LayeredPicture(
+        size=size, layers=tuple(layers), notices=tuple(notices), groups=groups.of(layers)
+    )
 
 
 def require_few(count: int) -> None:

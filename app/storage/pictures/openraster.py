@@ -1,7 +1,6 @@
 """Reading OpenRaster files: a zip of `stack.xml` and one PNG a layer.
 
-Krita, MyPaint and GIMP write them. Groups are flattened: what lies in them stays in its order, with
-the group's visibility and opacity.
+Krita, MyPaint and GIMP write them.
 """
 
 import io
@@ -11,10 +10,11 @@ from dataclasses import dataclass, replace
 from math import isfinite
 from xml.etree import ElementTree as ET
 
+from app.document import BlendMode, Group
 from app.errors import LissomError
 from app.storage.files import DAMAGED_ZIP, opened_zip
 from app.storage.pictures.layered import (
-    DEEPEST,
+    Groups,
     Layer,
     LayeredPicture,
     corner_from_top,
@@ -29,19 +29,22 @@ LARGEST_XML = 4 * 1024 * 1024
 # By which all pictures together may outgrow twice the file; they are packed already.
 MOST_UNPACKED = 16 * 1024 * 1024
 LARGEST_SIDE = 65_535
-NORMAL = {"", "svg:src-over"}
+MODES: dict[str, BlendMode] = {
+    "": "normal",
+    "svg:src-over": "normal",
+    "svg:multiply": "multiply",
+    "svg:screen": "screen",
+}
 DAMAGE = (*DAMAGED_ZIP, OSError)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Place:
-    """Where an element of the stack is, with all that the groups around it do to it."""
+    """Where an element of the stack is."""
 
     group: str = ""
     x: float = 0.0
     y: float = 0.0
-    visible: bool = True
-    opacity: float = 1.0
 
 
 def read_openraster(data: bytes) -> LayeredPicture:
@@ -62,8 +65,9 @@ def _read(archive: zipfile.ZipFile) -> LayeredPicture:
     if image.tag != "image" or stack is None:
         raise LissomError("its stack.xml holds no stack of layers")
     notices: list[str] = []
+    groups = Groups()
     # The stack counts from the front.
-    elements = list(_layers(stack, _Place(), notices, 0))[::-1]
+    elements = list(_layers(stack, _Place(), groups, notices))[::-1]
     require_few(len(elements))
     sources = []
     for element, _ in elements:
@@ -82,44 +86,67 @@ def _read(archive: zipfile.ZipFile) -> LayeredPicture:
     found = []
     for (element, place), source in zip(elements, sources, strict=True):
         member, picture = members[source], pictures[source]
-        name = element.get("name", "").strip() or "layer"
         layer = Layer(
-            name=name,
+            name=element.get("name", "").strip() or "layer",
             data=member,
             picture=picture,
             corner=corner_from_top(place.x, place.y, picture.size, size[1]),
-            visible=place.visible,
-            opacity=place.opacity,
+            visible=_is_visible(element),
+            opacity=_opacity(element),
+            blend=_blend(element, notices),
+            group=place.group,
         )
-        found.append((place.group, layer))
-    return layered_picture(size, found, notices)
+        found.append(layer)
+    return layered_picture(size, found, groups, notices)
 
 
 def _layers(
-    stack: ET.Element, around: _Place, notices: list[str], depth: int
+    stack: ET.Element, around: _Place, groups: Groups, notices: list[str]
 ) -> Iterator[tuple[ET.Element, _Place]]:
     """Go through the layers of a stack and of the groups in it, from the front."""
-    if depth > DEEPEST:
-        raise LissomError(f"its groups lie more than {DEEPEST} deep in each other")
     for element in stack:
-        name = element.get("name", "").strip()
-        place = _Place(
-            group=around.group,
+        place = replace(
+            around,
             x=around.x + _number(element, "x", 0.0),
             y=around.y + _number(element, "y", 0.0),
-            visible=around.visible and element.get("visibility", "visible") != "hidden",
-            opacity=around.opacity * min(max(_number(element, "opacity", 1.0), 0.0), 1.0),
         )
-        if element.tag in {"layer", "stack"} and element.get("composite-op", "") not in NORMAL:
-            mode = element.get("composite-op", "").removeprefix("svg:")
-            notices.append(f"{name!r} is drawn normally, not in the mode {mode!r}")
+        name = element.get("name", "").strip()
         if element.tag == "layer":
             yield element, place
         elif element.tag == "stack":
-            group = "/".join(part for part in (around.group, name) if part)
-            yield from _layers(element, replace(place, group=group), notices, depth + 1)
+            blend = _blend(element, notices)
+            group = Group(
+                name=name or "group",
+                opacity=_opacity(element),
+                hidden=not _is_visible(element),
+                blend="pass-through" if blend == "normal" and _passes(element) else blend,
+            )
+            inner = replace(place, group=groups.add(around.group, group))
+            yield from _layers(element, inner, groups, notices)
         else:
             notices.append(f"left out {name or element.tag!r}: Lissom takes drawn layers only")
+
+
+def _is_visible(element: ET.Element) -> bool:
+    return element.get("visibility", "visible") != "hidden"
+
+
+def _opacity(element: ET.Element) -> float:
+    return min(max(_number(element, "opacity", 1.0), 0.0), 1.0)
+
+
+def _passes(element: ET.Element) -> bool:
+    """Tell whether a group of this element is painted as if there were none, if it can be."""
+    return element.get("isolation", "auto") == "auto"
+
+
+def _blend(element: ET.Element, notices: list[str]) -> BlendMode:
+    """Return how an element is blended; a mode that is not taken over is told."""
+    mode = element.get("composite-op", "")
+    if mode not in MODES:
+        name = element.get("name", "").strip()
+        notices.append(f"{name!r} is drawn normally, not in the mode {mode.removeprefix('svg:')!r}")
+    return MODES.get(mode, "normal")
 
 
 def _parse(content: bytes) -> ET.Element:

@@ -5,15 +5,15 @@ import struct
 import warnings
 import zlib
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
 from PIL import Image, ImageChops
 
+from app.document import BlendMode, Group
 from app.errors import LissomError
 from app.storage.pictures.layered import (
-    DEEPEST,
+    Groups,
     Layer,
     LayeredPicture,
     corner_from_top,
@@ -31,7 +31,11 @@ SKIPPED: Final = {"type": "text"}
 COLOURS: Final = {"GRAYSCALE": 1, "RGB": 3, "CMYK": 4, "LAB": 3}
 TRANSPARENCY: Final = -1
 PADDING: Final = 3  # bytes that may follow the picture of all layers
-NORMAL: Final = {"NORMAL", "PASS_THROUGH"}
+MODES: Final[dict[str, BlendMode]] = {
+    "NORMAL": "normal",
+    "MULTIPLY": "multiply",
+    "SCREEN": "screen",
+}
 DAMAGE = (
     OSError,
     ValueError,
@@ -50,21 +54,10 @@ DAMAGE = (
 )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Group:
-    """What the groups around a layer do to it."""
-
-    path: str = ""
-    visible: bool = True
-    opacity: float = 1.0
-    depth: int = 0
-
-
 def read_photoshop(data: bytes) -> LayeredPicture:
     """Read the layers of a Photoshop file.
 
-    Groups are flattened: what lies in them stays in its order, with the group's visibility and
-    opacity. Masks are taken into the pixels.
+    Masks are taken into the pixels.
 
     Raises
     ------
@@ -92,7 +85,8 @@ def read_photoshop(data: bytes) -> LayeredPicture:
 
 def _read(drawing: Any) -> LayeredPicture:
     notices: list[str] = []
-    found = list(_drawn_layers(drawing, _Group(), notices))
+    groups = Groups()
+    found = list(_drawn_layers(drawing, "", groups, notices))
     require_room([(layer.width, layer.height) for _, layer in found])
     layers = []
     for group, layer in found:
@@ -108,10 +102,12 @@ def _read(drawing: Any) -> LayeredPicture:
             data=file,
             picture=picture,
             corner=corner_from_top(layer.left, layer.top, picture.size, drawing.height),
-            visible=group.visible and layer.visible,
-            opacity=group.opacity * layer.opacity / 255,
+            visible=layer.visible,
+            opacity=layer.opacity / 255,
+            blend=_blend(layer, notices),
+            group=group,
         )
-        layers.append((group.path, read))
+        layers.append(read)
     if not found and not notices:
         # Saved without layers: the picture that all programs see.
         whole = drawing._record.image_data  # noqa: SLF001 - as of channels
@@ -119,32 +115,39 @@ def _read(drawing: Any) -> LayeredPicture:
         _require_all_rows(whole, rows, drawing.version, padding=PADDING)
         file = _png(drawing.topil().convert("RGBA"))
         flat = decode_picture(file, "the picture")
-        layers = [("", Layer(name="picture", data=file, picture=flat))]
-    return layered_picture((drawing.width, drawing.height), layers, notices)
+        layers = [Layer(name="picture", data=file, picture=flat)]
+    return layered_picture((drawing.width, drawing.height), layers, groups, notices)
 
 
-def _drawn_layers(around: Any, group: _Group, notices: list[str]) -> Iterator[tuple[_Group, Any]]:
-    """Go through what is drawn, from the back, with what the groups do to it."""
-    if group.depth > DEEPEST:
-        raise LissomError(f"its groups lie more than {DEEPEST} deep in each other")
+def _drawn_layers(
+    around: Any, path: str, groups: Groups, notices: list[str]
+) -> Iterator[tuple[str, Any]]:
+    """Go through what is drawn, from the back, each with the path of its group."""
     for layer in around:
         name = layer.name.strip()
-        if layer.blend_mode.name not in NORMAL:
-            mode = layer.blend_mode.name.lower().replace("_", " ")
-            notices.append(f"{name!r} is drawn normally, not in the mode {mode!r}")
         if layer.is_group():
-            inner = _Group(
-                path="/".join(part for part in (group.path, name) if part),
-                visible=group.visible and layer.visible,
-                opacity=group.opacity * layer.opacity / 255,
-                depth=group.depth + 1,
+            passes = layer.blend_mode.name == "PASS_THROUGH"
+            group = Group(
+                name=name or "group",
+                opacity=layer.opacity / 255,
+                hidden=not layer.visible,
+                blend="pass-through" if passes else _blend(layer, notices),
             )
-            yield from _drawn_layers(layer, inner, notices)
+            yield from _drawn_layers(layer, groups.add(path, group), groups, notices)
         elif layer.kind in DRAWN:
-            yield group, layer
+            yield path, layer
         else:
             kind = SKIPPED.get(layer.kind, "adjustment")
             notices.append(f"left out the {kind} layer {name!r}: Lissom takes drawn layers only")
+
+
+def _blend(layer: Any, notices: list[str]) -> BlendMode:
+    """Return how a layer is blended; a mode that is not taken over is told."""
+    mode = layer.blend_mode.name
+    if mode not in MODES:
+        told = mode.lower().replace("_", " ")
+        notices.append(f"{layer.name.strip()!r} is drawn normally, not in the mode {told!r}")
+    return MODES.get(mode, "normal")
 
 
 def _require_channels(layer: Any, drawing: Any) -> None:

@@ -18,6 +18,7 @@ from app.document import (
     Figure,
     FormatPictures,
     FrameRange,
+    Group,
     Handle,
     KeptPose,
     Keyframe,
@@ -219,6 +220,13 @@ ATTACHMENT = part(
     Field("turns", FLAG),
     Field("rest", NUMBER),
 )
+GROUP = record(
+    Group,
+    Field("name", TEXT),
+    Field("opacity", NUMBER, usual=1.0),
+    Field("hidden", FLAG, usual=False),
+    Field("blend", TEXT, usual="pass-through"),
+)
 FIGURE = record(
     dict,
     Field("id", WHOLE),
@@ -247,6 +255,8 @@ FIGURE = record(
     Field("hidden", FLAG, usual=False),
     Field("switches", several(SWITCH), usual=()),
     Field("opacity", NUMBER, usual=1.0),
+    Field("blend", TEXT, usual="normal"),
+    Field("group", TEXT, usual=""),
     Field("attachment", optional(ATTACHMENT), usual=None),
 )
 DOCUMENT = record(
@@ -261,6 +271,7 @@ DOCUMENT = record(
     Field("loop", FLAG),
     Field("export", EXPORT),
     Field("size", optional(SIZE), usual=None),
+    Field("groups", several(GROUP), usual=()),
 )
 
 

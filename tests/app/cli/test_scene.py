@@ -80,7 +80,7 @@ def test_a_script_poses_the_layers_that_it_names(project):
     assert (wall.still, body.still) == (True, False)
     assert document.canvas == (WIDTH, HEIGHT)
     assert (arm.attachment.to, arm.attachment.at, arm.anchor) == (body.id, 95 + 120j, 95 + 120j)
-    assert [is_visible(patch, frame) for frame in (3, 4)] == [True, False]
+    assert [is_visible(document, patch, frame) for frame in (3, 4)] == [True, False]
     head = body.handles[1]
     assert (head.front, head.extent, dict(body.keys[1].fronts)) == (0.5, 30.0, {head.id: -1.0})
     # The joint of a joint is closed, and the patch keeps its own turn.
