@@ -97,6 +97,8 @@ class Figure:
     switches: tuple[Switch, ...] = ()
     opacity: float = 1.0  # in [0, 1]
     blend: BlendMode = "normal"
+    # Whether it is seen only where that is which lies below it in its group: a figure, or a group.
+    clipped: bool = False
     group: str = ""  # the path of the innermost group that it is in; "" outside of all groups
     # The joint by which it hangs on another figure. Its anchor is then given.
     attachment: Attachment | None = None

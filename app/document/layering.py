@@ -67,6 +67,7 @@ class Group:
     opacity: float = 1.0  # in [0, 1]
     hidden: bool = False  # whether none of its figures is seen at any time
     blend: GroupBlend = "pass-through"
+    clipped: bool = False  # as of a figure
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:

@@ -173,11 +173,11 @@ class Painter:
         """
         try:
             drawn = zip(self._drawn, posed.vertices, self._clips, strict=True)
-            seen = [
-                (clip.figure, mesh.pose(vertices))
+            seen = {
+                clip.figure.id: mesh.pose(vertices)
                 for mesh, vertices, clip in drawn
                 if is_visible(self._document, clip.figure, posed.frame)
-            ]
+            }
             meshes = composed(self._document, seen)
             scene = Scene(background=self._background, meshes=meshes)
             pixels = _filled(self._plan.view.size, self._background.colour)

@@ -23,18 +23,27 @@ _BORDER: Final = replace(_WIRE, geometry="border.geom")
 _GHOST: Final = ShaderFiles(vertex=("screen.vert",), fragment=("ghost.frag",))
 _PICTURE_UNIT, _RAMP_UNIT, _LAYER_UNIT = 0, 1, 0
 # "Compositing and Blending Level 1" of the W3C, Sections 9.1.4, 10.1.2 and 10.1.3, of premultiplied
-# colours: factors of the source and of the backdrop, for the colours and for alpha. What is
-# multiplied comes in two passes, since its factor 1 − α + c of both backdrops is no one's alone:
-# first s·b + (1 − α_s)·b with the backdrop's alpha as it was, then (1 − α_b)·s added to it.
+# colours: factors of the source s and of the backdrop b, for the colours and for alpha. What is
+# multiplied comes in two passes, since its factor 1 − α_b + b is none of OpenGL's: first
+# s·b + (1 − α_s)·b with the backdrop's alpha as it was, then (1 − α_b)·s added to it.
 _OVER: Final = (moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA)
 _BESIDE: Final = (moderngl.ONE_MINUS_DST_ALPHA, moderngl.ONE)
+_STAYS: Final = (moderngl.ZERO, moderngl.ONE)
+_WITHIN: Final = (moderngl.DST_COLOR, moderngl.ONE_MINUS_SRC_ALPHA, *_STAYS)
 _BLENDS: Final[Mapping[BlendMode, tuple[tuple[int, int, int, int], ...]]] = {
     "normal": ((*_OVER, *_OVER),),
-    "multiply": (
-        (moderngl.DST_COLOR, moderngl.ONE_MINUS_SRC_ALPHA, moderngl.ZERO, moderngl.ONE),
-        (*_BESIDE, *_BESIDE),
-    ),
+    "multiply": (_WITHIN, (*_BESIDE, *_BESIDE)),
     "screen": ((moderngl.ONE, moderngl.ONE_MINUS_SRC_COLOR, *_OVER),),
+}
+# What is clipped meets its backdrop as if that were opaque, and leaves its alpha: α_b times the
+# blend of the straight colours by α_s, as if painted first and then cut out.
+_CLIPPED: Final[Mapping[BlendMode, tuple[tuple[int, int, int, int], ...]]] = {
+    "normal": ((moderngl.DST_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA, *_STAYS),),
+    "multiply": (_WITHIN,),
+    "screen": (
+        (moderngl.ZERO, moderngl.ONE_MINUS_SRC_COLOR, *_STAYS),
+        (moderngl.DST_ALPHA, moderngl.ONE, *_STAYS),
+    ),
 }
 
 
@@ -60,7 +69,7 @@ class Renderer:
         target.framebuffer.use()
         self._draw_background(scene.background, view, target.oversampling)
         for ghost in scene.ghosts:
-            self._draw_layer(ghost.meshes, target, view, opacity=ghost.opacity, tint=ghost.tint)
+            self._draw_layer(Composite(ghost.meshes, ghost.opacity), target, view, tint=ghost.tint)
         self._draw_parts(scene.meshes, target, view, scene.heat)
         if scene.wireframe is not None:
             self._blend_over()
@@ -124,27 +133,17 @@ class Renderer:
         self._blend_over()
         for part in parts:
             if isinstance(part, Composite):
-                self._draw_layer(
-                    part.parts,
-                    target,
-                    view,
-                    opacity=part.opacity,
-                    blend=part.blend,
-                    heat=heat,
-                    depth=depth,
-                )
+                self._draw_layer(part, target, view, heat=heat, depth=depth)
                 self._blend_over()
             else:
                 self._draw_mesh(part, view, heat)
 
     def _draw_layer(
         self,
-        parts: Sequence[Painted],
+        whole: Composite[PosedMesh],
         target: RenderTarget,
         view: View,
         *,
-        opacity: float,
-        blend: BlendMode = "normal",
         tint: tuple[float, float, float] | None = None,
         heat: Heat | None = None,
         depth: int = 0,
@@ -156,16 +155,16 @@ class Renderer:
         layer = self._layer_at(depth, target)
         layer.framebuffer.use()
         layer.framebuffer.clear()
-        self._draw_parts(parts, layer, view, heat, depth + 1)
+        self._draw_parts(whole.parts, layer, view, heat, depth + 1)
         target.framebuffer.use()
         layer.texture.use(_LAYER_UNIT)
         uniforms = {
             "frame": _LAYER_UNIT,
             "tint": tint or (0.0, 0.0, 0.0),
             "strength": 0.0 if tint is None else 1.0,
-            "opacity": opacity,
+            "opacity": whole.opacity,
         }
-        for factors in _BLENDS[blend]:
+        for factors in (_CLIPPED if whole.clipped else _BLENDS)[whole.blend]:
             self._context.blend_func = factors  # type: ignore[assignment]
             self.programs.draw_screen(_GHOST, uniforms)
 

@@ -124,7 +124,7 @@ def flattened(document: Document, textures: Mapping[int, Bytes]) -> Bytes:
         return flat
 
     first = document.frames.first
-    seen = [(each, each) for each in document.exported if is_visible(document, each, first)]
+    seen = {each.id: each for each in document.exported if is_visible(document, each, first)}
     return readonly(np.asarray(painted(composed(document, seen))))
 
 

@@ -491,11 +491,12 @@ def clocked_document() -> Document:
         stiffness=painted,
         bones=(Bone(ends=(4, 1), amount=1 / 3, is_shown=False, unknown=more),),
         blend="multiply",
+        clipped=True,
         group="limbs/left",
     )
     groups = (
         Group(name="limbs", hidden=True, unknown=more),
-        Group(name="limbs/left", opacity=1 / 3, blend="screen"),
+        Group(name="limbs/left", opacity=1 / 3, blend="screen", clipped=True),
     )
     return dataclasses.replace(full, figures=(child, parent), groups=groups)
 

@@ -120,6 +120,12 @@ def set_blend(document: Document, identity: int, blend: BlendMode) -> Document:
     return _with(document, identity, blend=blend)
 
 
+@command("Clip layer")
+def set_clipped(document: Document, identity: int, *, clipped: bool) -> Document:
+    """Let a figure be seen only where what lies below it in its group is, or everywhere again."""
+    return _with(document, identity, clipped=clipped)
+
+
 @command("Show or hide layer")
 def set_hidden(document: Document, identity: int, *, hidden: bool) -> Document:
     """Hide a figure at all times, or show it again."""

@@ -226,6 +226,7 @@ GROUP = record(
     Field("opacity", NUMBER, usual=1.0),
     Field("hidden", FLAG, usual=False),
     Field("blend", TEXT, usual="pass-through"),
+    Field("clipped", FLAG, usual=False),
 )
 FIGURE = record(
     dict,
@@ -256,6 +257,7 @@ FIGURE = record(
     Field("switches", several(SWITCH), usual=()),
     Field("opacity", NUMBER, usual=1.0),
     Field("blend", TEXT, usual="normal"),
+    Field("clipped", FLAG, usual=False),
     Field("group", TEXT, usual=""),
     Field("attachment", optional(ATTACHMENT), usual=None),
 )

@@ -203,7 +203,7 @@ def _posed(
 ) -> tuple[Painted, ...]:
     """Return what is seen of the figures, in the order of the document: the last is in front."""
     heat_map = session.overlays.heat_map
-    poses = []
+    poses = {}
     document = project.document
     for figure in document.figures:
         shown = shows[figure.id]
@@ -212,7 +212,7 @@ def _posed(
         pose = drawing.drawn_mesh(figure.id, shown.mesh, number).pose(
             shown.vertices, placement=shown.placement
         )
-        poses.append((figure, pose))
+        poses[figure.id] = pose
         if session.tint is not None:
             drawing.tint(pose, _tinted(session, project, drawing, figure, shown))
         elif heat_map != "none":

@@ -38,10 +38,15 @@ def laid(easel: Easel, pixels: Bytes) -> PosedMesh:
     return easel.pose(easel.mesh(pixels, corners, triangles), corners)
 
 
-def over(below: Floats, layer: Floats, opacity: float, blend: str) -> Floats:
+def over(
+    below: Floats, layer: Floats, opacity: float, blend: str, *, clipped: bool = False
+) -> Floats:
     """One straight colour over another."""
     backdrop, source = below[..., :3], layer[..., :3]
     alpha_b, alpha_s = below[..., 3:], layer[..., 3:] * opacity
+    if clipped:
+        painted = (1 - alpha_s) * backdrop + alpha_s * BLENDS[blend](backdrop, source)
+        return np.concatenate([painted, alpha_b], axis=-1)
     mixed = (1 - alpha_b) * source + alpha_b * BLENDS[blend](backdrop, source)
     alpha = alpha_s + alpha_b - alpha_s * alpha_b
     colour = alpha_s * mixed + (1 - alpha_s) * alpha_b * backdrop
@@ -52,7 +57,8 @@ def composited(parts: tuple, pictures: dict, below: Floats | None = None) -> Flo
     flat = np.zeros((SIDE, SIDE, 4)) if below is None else below
     for part in parts:
         if isinstance(part, Composite):
-            flat = over(flat, composited(part.parts, pictures), part.opacity, part.blend)
+            layer = composited(part.parts, pictures)
+            flat = over(flat, layer, part.opacity, part.blend, clipped=part.clipped)
         else:
             flat = over(flat, pictures[part] / 255, 1, "normal")
     return flat
@@ -94,3 +100,11 @@ def test_what_overlaps_in_a_faded_group_does_not_shine_through(easel):
     red, blue = (laid(easel, pixels) for pixels in opaque)
     frame = easel.frame(canvas_view((SIDE, SIDE)), Scene(meshes=(Composite((red, blue), 0.5),)))
     assert (frame == (0, 0, 255, 128)).all()
+
+
+@pytest.mark.parametrize("blend", BLENDS)
+def test_what_is_clipped_is_seen_within_what_is_below_it_alone(easel, blend):
+    pictures = {laid(easel, pixels): pixels for pixels in map(colours, range(3))}
+    sky, base, above = pictures
+    cut = Composite((above,), 0.6, blend, clipped=True)
+    check(easel, (sky, Composite((base, cut), 0.8)), pictures)
