@@ -20,7 +20,7 @@ from app.document import (
     layer_commands,
     new_figure,
 )
-from app.errors import LissomError, shown_name
+from app.errors import LissomError, Told, shown_name
 from app.storage.files import read_file
 from app.storage.opening import OpenedScene
 from app.storage.pictures import (
@@ -73,7 +73,7 @@ def open_pictures(paths: Sequence[Path], meshing: Meshing) -> OpenedScene:
     """
     layers: list[Layer] = []
     taken: set[str] = set()
-    notices: list[str] = []
+    told = Told()
     files = [(read_file(path), str(path)) for path in paths]
     pictures = decode_pictures(files)
     size = (
@@ -85,8 +85,9 @@ def open_pictures(paths: Sequence[Path], meshing: Meshing) -> OpenedScene:
         taken.add(name)
         corner = complex((size[0] - picture.size[0]) // 2, (size[1] - picture.size[1]) // 2)
         layers.append(Layer(name=name, data=data, picture=picture, corner=corner))
-        notices += [f"{name}: {notice}" for notice in picture.notices]
-    drawing = LayeredPicture(size=size, layers=tuple(layers), notices=tuple(notices))
+        for notice in picture.notices:
+            told.note(name, notice)
+    drawing = LayeredPicture(size=size, layers=tuple(layers), summary=told.summary)
     return _scene(drawing, meshing, is_cut_out=False)
 
 
@@ -164,7 +165,7 @@ def layer_figure(
     file = PictureFile(data=layer.data, suffix=picture.suffix, size=picture.size)
     cut_out = WHOLE if is_cut_out else CutOut()
     domain, still = rectangle_domain(*picture.size), True
-    notices: tuple[str, ...] = ("it is opaque all over, and stands still",)
+    notices: tuple[str, ...] = ("opaque all over, so that it stands still",)
     if not (is_cut_out and picture.is_opaque):
         try:
             domain, notices = build_domain(
@@ -175,7 +176,7 @@ def layer_figure(
             )
             still = False
         except EngineError as error:
-            notices = (f"it stands still: {error}",)
+            notices = (f"stands still: {error}",)
     figure = replace(
         new_figure(file, domain.moved(layer.corner), meshing, WHOLE if still else cut_out),
         id=identity,
@@ -185,9 +186,10 @@ def layer_figure(
         hidden=not layer.visible,
         opacity=layer.opacity,
         blend=layer.blend,
+        clipped=layer.clipped,
         group=layer.group,
     )
-    return figure, tuple(f"{layer.name}: {notice}" for notice in notices)
+    return figure, notices
 
 
 def still_picture(data: bytes, picture: Picture) -> Figure:
@@ -212,6 +214,7 @@ def still_figure(figure: Figure) -> Figure:
         switches=figure.switches,
         opacity=figure.opacity,
         blend=figure.blend,
+        clipped=figure.clipped,
         group=figure.group,
     )
 
@@ -228,7 +231,10 @@ def _scene(drawing: LayeredPicture, meshing: Meshing, *, is_cut_out: bool) -> Op
     if all(figure.still for figure in figures):
         raise LissomError("none of its layers can be posed: there is no shape on any of them")
     pictures = {index: layer.picture for index, layer in enumerate(drawing.layers)}
-    notices = [*drawing.notices, *(notice for _, told in made for notice in told)]
+    told = Told()
+    for figure, notices in made:
+        for notice in notices:
+            told.note(figure.name, notice)
     # A drawing with a background has a frame of its own.
     framing: Framing = "canvas" if figures[0].still else "fit"
     document = Document(
@@ -237,4 +243,4 @@ def _scene(drawing: LayeredPicture, meshing: Meshing, *, is_cut_out: bool) -> Op
         export=ExportSettings(framing=framing),
         groups=drawing.groups,
     )
-    return OpenedScene(document, pictures, tuple(notices))
+    return OpenedScene(document, pictures, summary=drawing.summary + told.summary)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from app.document import is_visible, layer_commands
+from app.document import BlendMode, group_commands, is_visible, layer_commands
 from app.editor.actions import editing, playback, posing
 from app.editor.project import Project
 from app.editor.session import Session, with_project
@@ -93,6 +93,30 @@ def refer(session: Session, project: Project, identity: int) -> None:
 def fade(session: Session, identity: int, opacity: float) -> None:
     """Set how opaque a layer is."""
     editing.edit(session, layer_commands.set_opacity(identity, opacity))
+
+
+def blend(session: Session, identity: int, mode: BlendMode) -> None:
+    """Set how a layer's colours meet those behind it."""
+    editing.edit(session, layer_commands.set_blend(identity, mode))
+
+
+@with_project
+def clip(session: Session, project: Project, identity: int) -> None:
+    """Let a layer be seen only where what lies below it is, or everywhere again."""
+    clipped = project.document.figure(identity).clipped
+    editing.edit(session, layer_commands.set_clipped(identity, clipped=not clipped))
+
+
+def fade_group(session: Session, path: str, opacity: float) -> None:
+    """Set how opaque a group is."""
+    editing.edit(session, group_commands.set_group_opacity(path, opacity))
+
+
+@with_project
+def show_group(session: Session, project: Project, path: str) -> None:
+    """Hide a group, or show it again."""
+    hidden = project.document.group(path).hidden
+    editing.edit(session, group_commands.set_group_hidden(path, hidden=not hidden))
 
 
 @with_project

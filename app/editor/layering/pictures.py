@@ -23,7 +23,7 @@ from app.editor.layering.arranging import choose
 from app.editor.project import Project, Puppet
 from app.editor.session import Session, with_project
 from app.editor.work import Kind
-from app.errors import LissomError, shown_name
+from app.errors import NOTHING_TOLD, ImportSummary, LissomError, Told, shown_name
 from app.solving import Renewal, begin_replacing
 from app.storage import (
     Layer,
@@ -71,6 +71,7 @@ def stand_up(session: Session, project: Project, identity: int) -> None:
         visible=not figure.hidden,
         opacity=figure.opacity,
         blend=figure.blend,
+        clipped=figure.clipped,
         group=figure.group,
     )
     meshing = session.meshing
@@ -141,14 +142,13 @@ def add(session: Session, project: Project, paths: Sequence[Path]) -> None:
     meshing, before = session.meshing, project.document
     canvas = before.canvas
 
-    def work() -> tuple[list[_Made], list[str], Sequence[Group]]:
-        document = before
+    def work() -> tuple[list[_Made], ImportSummary, Sequence[Group]]:
+        document, summary, told = before, NOTHING_TOLD, Told()
         made: list[_Made] = []
-        told: list[str] = []
         for path in paths:
             drawing = _with_free_groups(_drawing(path), document)
             document = group_commands.add_groups(drawing.groups)(document)
-            told += drawing.notices
+            summary += drawing.summary
             across, up = ((ours - its) // 2 for ours, its in zip(canvas, drawing.size, strict=True))
             for layer in drawing.layers:
                 moved = replace(layer, corner=layer.corner + complex(across, up))
@@ -159,12 +159,13 @@ def add(session: Session, project: Project, paths: Sequence[Path]) -> None:
                 document = layer_commands.add_figure(figure)(document)
                 # Here, and not while the window waits: it takes a tenth of a second.
                 puppet = Puppet.of(clip_of(document, identity), layer.picture)
-                notices = layer.picture.notices + notices
-                made.append(_Made(figure, layer.picture, notices, puppet))
-        return made, told, document.groups[len(before.groups) :]
+                for notice in layer.picture.notices + notices:
+                    told.note(document.figures[-1].name, notice)
+                made.append(_Made(figure, layer.picture, (), puppet))
+        return made, summary + told.summary, document.groups[len(before.groups) :]
 
-    def done(read: tuple[list[_Made], list[str], Sequence[Group]]) -> None:
-        made, told, groups = read
+    def done(read: tuple[list[_Made], ImportSummary, Sequence[Group]]) -> None:
+        made, summary, groups = read
         project.drawings.update(paths)
         gesture = object()
         project.history.do(group_commands.add_groups(groups), gesture=gesture)
@@ -177,8 +178,7 @@ def add(session: Session, project: Project, paths: Sequence[Path]) -> None:
                 project.puppets[identity] = puppet
         editing.follow_figures(project)
         choose(session, identity)
-        for notice in (*told, *(notice for each in made for notice in each.notices)):
-            session.tell(sentence(notice))
+        files.tell_of_import(session, project, summary)
 
     promises.begin(session, project, ADDING, work, done)
 
@@ -205,7 +205,7 @@ def _drawing(path: Path) -> LayeredPicture:
     data = read_file(path)
     picture = decode_picture(data, path.name)
     layer = Layer(name=shown_name(path.stem).strip() or "layer", data=data, picture=picture)
-    return LayeredPicture(size=picture.size, layers=(layer,), notices=())
+    return LayeredPicture(size=picture.size, layers=(layer,))
 
 
 def ask(session: Session) -> None:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from app.document import DEEPEST, BlendMode, Group, layer_commands, paths_to
-from app.errors import LissomError, shown_name
+from app.errors import NOTHING_TOLD, ImportSummary, LissomError, Told, shown_name
 from app.storage.pictures.cores import require_memory
 from app.storage.pictures.picture import Picture
 
@@ -31,6 +31,8 @@ class Layer:
     opacity : float
         In [0, 1].
     blend : BlendMode
+    clipped : bool
+        Whether it is seen only where what lies below it in its group is.
     group : str
         The path of the group that it is in, "" where there is none.
     """
@@ -42,6 +44,7 @@ class Layer:
     visible: bool = True
     opacity: float = 1.0
     blend: BlendMode = "normal"
+    clipped: bool = False
     group: str = ""
 
 
@@ -55,15 +58,14 @@ class LayeredPicture:
         Width and height of the canvas in pixels.
     layers : tuple of Layer
         From the one behind all others to the one in front; there is always one.
-    notices : tuple of str
-        What could not be kept, in words.
+    summary : ImportSummary
     groups : tuple of Group
         Those of the layers, each after the one that it is in.
     """
 
     size: tuple[int, int]
     layers: tuple[Layer, ...]
-    notices: tuple[str, ...]
+    summary: ImportSummary = NOTHING_TOLD
     groups: tuple[Group, ...] = ()
 
 
@@ -96,7 +98,7 @@ class Groups:
 
 
 def layered_picture(
-    size: tuple[int, int], found: Sequence[Layer], groups: Groups, notices: Sequence[str]
+    size: tuple[int, int], found: Sequence[Layer], groups: Groups, told: Told
 ) -> LayeredPicture:
     """Return the drawing of the layers that were found, each with a name of its own.
 
@@ -107,14 +109,27 @@ def layered_picture(
         From back to front; those of which nothing is to be seen are left out.
     groups : Groups
         All of them.
-    notices : sequence of str
+    told : Told
+        About the layers, and added to.
     """
-    notices, kept = list(notices), []
+    kept: list[Layer] = []
+    empty: dict[str, str] = {}  # the names of layers that clip others in the groups, by their paths
     for layer in found:
-        if layer.picture.rgba[..., 3].any():
-            kept.append(layer)
+        base = empty.get(layer.group) if layer.clipped else None
+        if base is not None:
+            told.note(layer.name, f"left out, since it is clipped by the empty layer {base}")
+            continue
+        is_empty = not layer.picture.rgba[..., 3].any()
+        if is_empty:
+            told.note(layer.name, "left out, since it is empty")
         else:
-            notices.append(f"left out the empty layer {layer.name!r}")
+            kept.append(layer)
+        if not layer.clipped:
+            # A layer of an inner group is part of what clips in those around it.
+            for path in ("", *paths_to(layer.group)):
+                empty.pop(path, None)
+            if is_empty:
+                empty[layer.group] = layer.name
     if not kept:
         raise LissomError("it has no layer on which anything is drawn")
     own = Counter(layer.name for layer in kept)
@@ -127,7 +142,7 @@ def layered_picture(
         taken.add(free)
         layers.append(replace(layer, name=free))
     return LayeredPicture(
-        size=size, layers=tuple(layers), notices=tuple(notices), groups=groups.of(layers)
+        size=size, layers=tuple(layers), summary=told.summary, groups=groups.of(layers)
     )
 
 

@@ -37,7 +37,7 @@ def test_layers_come_from_back_to_front_where_they_are_on_the_canvas():
     assert (head.visible, head.opacity) == (True, 1.0)
     assert (body.visible, body.opacity) == (False, 0.5)
     assert_array_equal(head.picture.rgba, np.asarray(blob(30, 20)))
-    assert read.notices == ()
+    assert not read.summary
 
 
 def test_groups_are_kept_as_they_lie_in_each_other():
@@ -74,7 +74,7 @@ def test_groups_are_kept_as_they_lie_in_each_other():
         Group(name="a-b/group"),
         Group(name="limbs 2", blend="screen"),
     )
-    assert read.notices == ()
+    assert not read.summary
 
 
 def test_layers_of_one_name_are_told_apart():
@@ -90,11 +90,11 @@ def test_what_cannot_be_kept_is_told():
     empty = Image.new("RGBA", (4, 4))
     read = read_openraster(openraster((100, 100), stack, [blob(9, 9), blob(9, 9), empty]))
     assert [layer.name for layer in read.layers] == ["head"]
-    assert sorted(read.notices) == [
-        "'head' is drawn normally, not in the mode 'overlay'",
-        "left out 'title': Lissom takes drawn layers only",
-        "left out the empty layer 'nothing'",
+    assert sorted(read.summary.losses) == [
+        "head: drawn normally, not in the mode 'overlay'",
+        "title: left out, since Lissom takes drawn layers only",
     ]
+    assert read.summary.matters == ("nothing: left out, since it is empty",)
 
 
 @pytest.mark.parametrize(
@@ -162,7 +162,7 @@ def test_layers_of_a_photoshop_file():
     assert (head.opacity, head.blend, head.group) == (1.0, "multiply", "face")
     assert read.groups == (Group(name="face", opacity=128 / 255, blend="normal"),)
     assert_array_equal(body.picture.rgba, np.asarray(blob(50, 60)))
-    assert read.notices == ()
+    assert not read.summary
 
 
 def test_a_mask_is_taken_into_the_pixels():
@@ -222,7 +222,7 @@ def test_one_byte_that_costs_a_photoshop_layer_a_colour_is_told(mode):
                 refused += 1
                 continue
             after = read.layers[0].picture.rgba
-            assert ((after == 0).all((0, 1)) <= (before == 0).all((0, 1))).all() or read.notices
+            assert ((after == 0).all((0, 1)) <= (before == 0).all((0, 1))).all() or read.summary
     assert refused > len(places)
 
 
