@@ -145,7 +145,7 @@ def _drawn_layers(
                 opacity=layer.opacity / 255,
                 hidden=not layer.visible,
                 blend="pass-through" if passes else _blend(layer, told),
-                clipped=layer.clipping and clips,
+                clipped=_is_clipping(layer) and clips,
             )
             masks = place.masks
             if _is_masked(layer, told):
@@ -161,13 +161,18 @@ def _drawn_layers(
                 told.lose(name, f"drawn without effects ({', '.join(effects)})")
             if layer.kind == "type":
                 told.note(name, "text, drawn as a picture")
-            yield place, layer, layer.clipping and clips
+            yield place, layer, _is_clipping(layer) and clips
         else:
             kind = "a fill" if layer.kind.endswith("fill") else "an adjustment"
             told.lose(name, f"left out, since it is {kind} layer")
-            clips = clips and layer.clipping
+            clips = clips and _is_clipping(layer)
             continue
-        clips = clips or not layer.clipping
+        clips = clips or not _is_clipping(layer)
+
+
+def _is_clipping(layer: Any) -> bool:
+    """Tell whether a layer or a group, of which psd-tools does not tell, is to be clipped."""
+    return bool(layer._record.clipping.name == "NON_BASE")  # noqa: SLF001 - as of channels
 
 
 def _in_words(name: str) -> str:
