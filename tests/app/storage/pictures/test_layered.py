@@ -77,6 +77,31 @@ def test_groups_are_kept_as_they_lie_in_each_other():
     assert not read.summary
 
 
+def test_layers_that_inherit_alpha_are_clipped():
+    base, other = HEAD.replace("head", "base"), HEAD.replace("head", "other")
+    atop = HEAD.replace("/>", ' composite-op="svg:src-atop"/>')
+    kept = HEAD.replace("head", "kept").replace(
+        "/>", ' composite-op="svg:multiply" alpha-preserve="true"/>'
+    )
+
+    def clipped(stack, *more):
+        pictures = (*more, blob(30, 20), blob(50, 60))
+        read = read_openraster(openraster((100, 120), stack, pictures))
+        return [layer.name for layer in read.layers if layer.clipped], read.summary.losses
+
+    assert clipped(kept + atop + base) == (["head", "kept"], ())
+    assert clipped(atop) == ([], ())
+    # All that lies below in the group clips it there.
+    told = ("head: clipped by what lies right below it, not by all that does in its group",)
+    assert clipped(atop + base + other) == (["head"], told)
+    assert clipped(f"<stack>{atop}{base}</stack>{other}") == (["head"], ())
+    assert clipped(f"{atop}<stack>{base}{other}</stack>") == (["head"], ())
+    assert clipped(f"{atop}{base}<stack>{other}</stack>") == (["head"], told)
+    paper = '<layer name="paper" src="data/0.png"/>'
+    whole = Image.new("RGBA", (100, 120), (255, 255, 255, 255))
+    assert clipped(atop.replace("0.png", "1.png") + paper, whole) == ([], ())
+
+
 def test_layers_of_one_name_are_told_apart():
     assert sorted(layers_of(drawing(HEAD * 3))) == ["head", "head 2", "head 3"]
 
