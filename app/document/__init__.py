@@ -18,6 +18,7 @@ from app.document.commands import (
     choice_commands as choice_commands,
     exchanged as exchanged,
     figure_commands as figure_commands,
+    group_commands as group_commands,
     handle_commands as handle_commands,
     key_commands as key_commands,
     layer_commands as layer_commands,
@@ -42,16 +43,24 @@ from app.document.keyframe import (
     Target as Target,
 )
 from app.document.layering import (
+    BLENDS as BLENDS,
+    DEEPEST as DEEPEST,
+    GROUP_BLENDS as GROUP_BLENDS,
     Attachment as Attachment,
+    BlendMode as BlendMode,
     Choice as Choice,
+    Group as Group,
+    GroupBlend as GroupBlend,
     Switch as Switch,
     Turn as Turn,
+    paths_to as paths_to,
 )
 from app.document.model import Document as Document
 from app.document.playhead import Playhead as Playhead
 from app.document.queries import (
     USUAL_EXTENT as USUAL_EXTENT,
     Clip as Clip,
+    Composite as Composite,
     Extremes as Extremes,
     Front as Front,
     Moment as Moment,
@@ -64,6 +73,7 @@ from app.document.queries import (
     clip_of as clip_of,
     closes as closes,
     comes_round as comes_round,
+    composed as composed,
     exported_frames as exported_frames,
     falls_short as falls_short,
     find_shortfall as find_shortfall,
@@ -74,6 +84,7 @@ from app.document.queries import (
     is_visible as is_visible,
     limb_of as limb_of,
     resting_pose as resting_pose,
+    sights_of as sights_of,
     stiff_outline as stiff_outline,
     stiffened as stiffened,
     time_of as time_of,

@@ -19,7 +19,14 @@ from app.document.checks import (
     require_size,
 )
 from app.document.keyframe import Handle, KeptPose, Keyframe, Pose
-from app.document.layering import Attachment, Switch, require_in_order, require_joints
+from app.document.layering import (
+    BLENDS,
+    Attachment,
+    BlendMode,
+    Switch,
+    require_in_order,
+    require_joints,
+)
 from app.document.settings import NATURAL, VARIANTS, Meshing
 from app.document.timing import Spring, Track
 from app.errors import LissomError
@@ -96,6 +103,10 @@ class Figure:
     # says. Always seen without any.
     switches: tuple[Switch, ...] = ()
     opacity: float = 1.0  # in [0, 1]
+    blend: BlendMode = "normal"
+    # Whether it is seen only where that is which lies below it in its group: a figure, or a group.
+    clipped: bool = False
+    group: str = ""  # the path of the innermost group that it is in; "" outside of all groups
     # The joints by which it hangs on others, each from its frame on; its anchor is then given.
     joints: tuple[Attachment, ...] = ()
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
@@ -105,6 +116,10 @@ class Figure:
         require(bool(self.name.strip()), "A figure needs a name.")
         require_place(self.corner, f"The corner of {self.name!r}")
         require(0 <= self.opacity <= 1, f"Opacity is between 0 and 1, not {self.opacity:g}.")
+        require(
+            self.blend in BLENDS,
+            f"The blend of {self.name!r} is one of {', '.join(BLENDS)}, not {self.blend!r}.",
+        )
         require_in_order(self.switches)
         require(
             not self.joints or self.anchor is not None,

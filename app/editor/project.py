@@ -24,6 +24,7 @@ from app.document import (
 )
 from app.editor.timeline_view import KeyRow, KeysOf, Timing, TrackRow, row_of
 from app.editor.work import Afterwards, Carry, Derived, Promise, Pull, Take
+from app.errors import NOTHING_TOLD, ImportSummary
 from app.motion import (
     Box,
     CorrectedFrames,
@@ -130,6 +131,9 @@ class Project:
     path: Path | None  # of the project file; None for a new one
     # The files that its pictures were read from, which nothing is written over.
     drawings: set[Path] = field(default_factory=set)
+    # What opening a drawing told, and whether the panel of layers shows it.
+    summary: ImportSummary = NOTHING_TOLD
+    shows_summary: bool = False
     hold: Hold | None = None  # by which other windows see that the file is open here
     # What the file held when it was opened or saved here last; None for a new one.
     read_as: str | None = None

@@ -11,6 +11,7 @@ from app.document.queries.clips import (
     closes as closes,
     intervals as intervals,
 )
+from app.document.queries.compositing import Composite as Composite, composed as composed
 from app.document.queries.fronts import (
     USUAL_EXTENT as USUAL_EXTENT,
     Front as Front,
@@ -29,7 +30,7 @@ from app.document.queries.shortfall import (
     falls_short as falls_short,
     find_shortfall as find_shortfall,
 )
-from app.document.queries.sight import is_visible as is_visible
+from app.document.queries.sight import is_visible as is_visible, sights_of as sights_of
 from app.document.queries.timeline import (
     Moment as Moment,
     changed_stretches as changed_stretches,

@@ -19,6 +19,7 @@ from app.document import (
     Figure,
     FormatPictures,
     FrameRange,
+    Group,
     Handle,
     KeptPose,
     Keyframe,
@@ -224,6 +225,14 @@ ATTACHMENT = record(
     Field("offset", POINT, usual=0j),
     Field("keeps", FLAG, usual=False),
 )
+GROUP = record(
+    Group,
+    Field("name", TEXT),
+    Field("opacity", NUMBER, usual=1.0),
+    Field("hidden", FLAG, usual=False),
+    Field("blend", TEXT, usual="pass-through"),
+    Field("clipped", FLAG, usual=False),
+)
 FIGURE = record(
     dict,
     Field("id", WHOLE),
@@ -252,10 +261,11 @@ FIGURE = record(
     Field("hidden", FLAG, usual=False),
     Field("switches", several(SWITCH), usual=()),
     Field("opacity", NUMBER, usual=1.0),
+    Field("blend", TEXT, usual="normal"),
+    Field("clipped", FLAG, usual=False),
+    Field("group", TEXT, usual=""),
     # Its joints: the first one, and those that come later.
-    Field(
-        "attachment", optional(ATTACHMENT), lambda each: next(iter(each.joints), None), usual=None
-    ),
+    Field("attachment", optional(ATTACHMENT), lambda each: (*each.joints, None)[0], usual=None),
     Field("handovers", several(ATTACHMENT), lambda each: each.joints[1:], usual=()),
 )
 CHOICE = record(
@@ -277,6 +287,7 @@ DOCUMENT = record(
     Field("export", EXPORT),
     Field("size", optional(SIZE), usual=None),
     Field("choices", several(CHOICE), usual=()),
+    Field("groups", several(GROUP), usual=()),
 )
 
 

@@ -24,7 +24,7 @@ from app.editor.actions import (
 )
 from app.editor.poses import copying, flipping, library
 from app.editor.tools import moving
-from app.ui.panel import is_in_front
+from app.ui.panel import bring_to_front
 from app.ui.shortcuts.binding import Binding
 
 
@@ -82,6 +82,10 @@ def _all_locked(session: Session) -> bool:
     return bool(project and selected and all(map(project.figure.is_locked, selected)))
 
 
+def _has_summary(_: Session, project: Project) -> bool:
+    return bool(project.summary)
+
+
 def _loops(session: Session) -> bool:
     return session.project is not None and session.project.document.loop
 
@@ -97,22 +101,14 @@ def _brushes(session: Session, _: Project) -> bool:
 @with_project
 def _rename_layer(session: Session, project: Project) -> None:
     """Ask for the name of the layer that is posed, in the list of layers."""
-    _bring_to_front("Layers")
+    bring_to_front("Layers")
     layering.ask_name(session, project.active)
 
 
 def _export(session: Session) -> None:
     """Show what the export makes; where that is seen already, ask where to and begin."""
-    if _bring_to_front("Export"):
+    if bring_to_front("Export"):
         exporting.ask(session)
-
-
-def _bring_to_front(title: str) -> bool:
-    """Show a panel; return whether it was in front already."""
-    for panel in hello_imgui.get_runner_params().docking_params.dockable_windows:
-        if panel.label.endswith(f"###{title}"):
-            panel.focus_window_at_next_frame = True
-    return is_in_front(title)
 
 
 def _overlay(label: str, name: OverlayName, keys: str, **more: Any) -> Binding:
@@ -516,6 +512,7 @@ MENUS: dict[str, dict[str, Binding]] = {
         "shortcuts": Binding(
             "Keys and mouse", do(viewing.show_shortcuts), "F1", needs_project=False
         ),
+        "import": Binding("What opening it told", do(files.show_summary), possible=_has_summary),
     },
 }
 BINDINGS = {name: binding for menu in MENUS.values() for name, binding in menu.items()}
