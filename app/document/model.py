@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
+from app.document.body import PAIRS, Pairs, require_pairs
 from app.document.checks import NOTHING, Unknown, require, require_distinct, require_size
 from app.document.figure import Figure
 from app.document.settings import FASTEST, ExportSettings, FrameRange, Marker
@@ -30,6 +31,8 @@ class Document:
     # Whether the last frame leads back to the first one: both are the same moment.
     loop: bool = False
     export: ExportSettings = ExportSettings()
+    # Words in the names of layers and handles, or whole names, of which each is the other's side.
+    pairs: Pairs = PAIRS
     # Fields of the project file that this version does not know and hands on.
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
     # Likewise its members, by their names.
@@ -41,6 +44,7 @@ class Document:
 
     def __post_init__(self) -> None:
         self._check_figures()
+        require_pairs(self.pairs)
         require(
             self.preview is None
             or (self.preview.first in self.frames and self.preview.last in self.frames),
