@@ -83,7 +83,14 @@ class Likeness:
         """Return by what the image of a shape turns that turns by this."""
         return turn.conjugate() if self.mirrors else turn
 
-    def moved(self, shape: HarmonicMap, place: complex, wished: complex, point: complex) -> complex:
+    def moved(
+        self,
+        shape: HarmonicMap,
+        place: complex,
+        wished: complex,
+        point: complex,
+        turn: complex | None = None,
+    ) -> complex:
         """Return where a point goes if it moves as the image of a place with a target.
 
         The image of the motion f is S ∘ f ∘ S⁻¹. A place p comes to one beside the point; what f
@@ -91,12 +98,14 @@ class Likeness:
 
             S(f(p)) + u (point − S(p)),  u the turn of the image at p
 
-        So the drawing at rest stays at rest whatever the places are, a shape that is turned as a
-        whole is turned alike, and the way back changes nothing.
+        or by another `turn` of f than that at the place. So the drawing at rest stays at rest
+        whatever the places are, a shape that is turned as a whole is turned alike, and the way back
+        changes nothing.
         """
-        (fz,), _ = shape.derivatives(np.array([place]))
-        turn = self.turned(complex(fz / abs(fz)))
-        return self.to(wished) + turn * (point - self.to(place))
+        if turn is None:
+            (fz,), _ = shape.derivatives(np.array([place]))
+            turn = complex(fz / abs(fz))
+        return self.to(wished) + self.turned(turn) * (point - self.to(place))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -115,16 +124,19 @@ class Carriage:
     source: Figure
     pairs: Mapping[int, int]
     likeness: Likeness
+    # Whether sides exchange within one figure: what is far apart turns only as the whole does.
+    is_within: bool = False
 
     def targets(self, figure: Figure, pose: Pose) -> dict[int, Target]:
         """Return where a figure's handles are wanted by a pose of the source, by their ids."""
         shape, carried = self.source.map_of(pose), {}
+        whole = whole_turn(self.source, shape) if self.is_within else None
         for identity, other in self.pairs.items():
             target, place = pose.targets[other], self.source.handle(other).position
             point = figure.handle(identity).position
             turn = target.rotation
             carried[identity] = Target(
-                position=self.likeness.moved(shape, place, target.position, point),
+                position=self.likeness.moved(shape, place, target.position, point, whole),
                 rotation=-turn if turn is not None and self.likeness.mirrors else turn,
             )
         return carried
@@ -186,13 +198,19 @@ def begin_like(
     shape = source.map_of(pose)
     if is_alike(rig.figure, source, likeness):
         return _image(rig, source, shape, likeness)
-    fz, _ = shape.derivatives(_some(source.domain.mesh.vertices))
-    turn = likeness.turned(complex(fz.sum() / abs(fz.sum()))) if fz.sum() else 1.0 + 0j
+    turn = likeness.turned(whole_turn(source, shape))
     apart = [
         target.position - turn * rig.figure.handle(identity).position
         for identity, target in targets.items()
     ]
     return rig.deformer.at_rest.moved(turn, complex(np.mean(apart)) if apart else 0j)
+
+
+def whole_turn(figure: Figure, shape: HarmonicMap) -> complex:
+    """Return by what a figure is turned as a whole, of modulus 1."""
+    fz, _ = shape.derivatives(_some(figure.domain.mesh.vertices))
+    turn = complex(fz.sum())
+    return turn / abs(turn) if turn else 1.0 + 0j
 
 
 def is_alike(figure: Figure, source: Figure, likeness: Likeness) -> bool:

@@ -76,6 +76,10 @@ def _paste(session: Session, project: Project, frame: int, way: Way) -> None:
             _paste_track(session, project, row, each, by, gesture)
         for reason in told:
             session.tell(reason)
+        names = [each.figure.name for each in found]
+        if any(each.figure.id != project.active for each in found):
+            whose = f"{len(names)} layers" if len(names) > 1 else names[0]
+            session.tell(f"Pasted onto {whose}.", topic="paste")
 
     project.chosen_of = {}
     if found:

@@ -68,7 +68,7 @@ class Landing:
             places = np.array([source.handle(other).position for _, other in handles])
             images = np.array([self.figure.handle(identity).position for identity, _ in handles])
             likeness = Likeness.of(places, images, mirrors=True if way == "flipped" else None)
-        return Carriage(source=source, pairs=self.pairs, likeness=likeness)
+        return Carriage(source=source, pairs=self.pairs, likeness=likeness, is_within=self.is_own)
 
 
 def landings(session: Session, project: Project, way: Way) -> list[Landing]:
@@ -164,9 +164,9 @@ def _receivers(
 ) -> Iterator[Figure]:
     """Yield the figure that takes over what was copied of another one, if there is one."""
     names = {figure.name: figure for figure in document.figures}
-    own = next((each for each in document.figures if each.domain is source.domain), None)
-    own = next((each for each in document.figures if each.id == source.id and each is own), own)
-    own = names.get(source.name, own)
+    # A layer may have been given another name since.
+    kin = (each for each in document.figures if each.id == source.id)
+    own = names.get(source.name) or next((f for f in kin if f.domain is source.domain), None)
     if is_alone and (own is None or own.id != active):
         yield document.figure(active)
     elif own is not None:
