@@ -75,7 +75,7 @@ def copy_keys(session: Session, project: Project) -> None:
         figure, track = project.document.figure(figure_of(row)), project.track_in(row)
         if isinstance(row, TrackRow) and track is not None:
             taken = tuple(key for key in track.keys if key.frame in at)
-            tracks.append(CopiedTrack(row, track, taken))
+            tracks.append(CopiedTrack(figure, track, taken))
         else:
             keys.append(CopiedKeys(figure, tuple(map(figure.key, sorted(at)))))
     _take(session, keys, tracks)

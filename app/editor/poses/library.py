@@ -32,14 +32,14 @@ def _keep(session: Session, project: Project, figure: Figure, pose: Pose) -> Non
     project.picked_pose = project.figure.library[-1].name
 
 
-class Offer(NamedTuple):
+class PoseOffer(NamedTuple):
     """A pose of a library that the figure that is posed can take, and whose it is."""
 
     owner: Figure
     kept: KeptPose
 
 
-def offers(project: Project) -> list[Offer]:
+def offers(project: Project) -> list[PoseOffer]:
     """Return the poses of the figure's own library, then those of others with its handles' names.
 
     They come to it as they do by pasting.
@@ -47,10 +47,10 @@ def offers(project: Project) -> list[Offer]:
     own = project.figure
     figures = [own, *(each for each in project.document.figures if each is not own)]
     return [
-        Offer(each, kept)
+        PoseOffer(each, kept)
         for each in figures
         for kept in each.library
-        if not _landing(project, Offer(each, kept)).hindrance
+        if not _landing(project, PoseOffer(each, kept)).hindrance
     ]
 
 
@@ -70,17 +70,17 @@ def apply_at(
     playback.seek(session, frame)
 
 
-def _offer(project: Project, name: str, owner: int | None) -> Offer:
+def _offer(project: Project, name: str, owner: int | None) -> PoseOffer:
     figure = project.figure if owner is None else project.document.figure(owner)
-    return Offer(figure, figure.kept_pose(name))
+    return PoseOffer(figure, figure.kept_pose(name))
 
 
-def _landing(project: Project, offer: Offer) -> Landing:
+def _landing(project: Project, offer: PoseOffer) -> Landing:
     copied = CopiedKeys(offer.owner, (Keyframe(frame=0, pose=offer.kept.pose),))
     return landing_on(project.document, copied, project.figure, "as it is")
 
 
-def _put(session: Session, project: Project, offer: Offer, frame: int) -> None:
+def _put(session: Session, project: Project, offer: PoseOffer, frame: int) -> None:
     landing = _landing(project, offer)
     if landing.hindrance:
         session.tell(landing.hindrance)

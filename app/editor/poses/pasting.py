@@ -39,7 +39,7 @@ FLIPPING = Kind("Flipping", "The pose could not be flipped", "hand")
 
 def why_not(session: Session, project: Project, way: Way) -> str:
     """Return in a sentence why nothing that was copied can be pasted; empty where it can."""
-    tracks = _tracks_here(session, project) if way == "as it is" else {}
+    tracks = tracks_here(session, project, way)
     return "" if tracks else hindrance(session, project, way)
 
 
@@ -64,12 +64,12 @@ def paste(session: Session, project: Project, way: Way = "as it is") -> None:
 def _paste(session: Session, project: Project, frame: int, way: Way) -> None:
     if why_not(session, project, way):
         return
-    found = landings(session, project, way)
-    tracks = _tracks_here(session, project) if way == "as it is" else {}
+    tracks = tracks_here(session, project, way)
+    found = [each for each in landings(session, project, way) if each.copied.keys]
     starts = [key.frame for each in found for key in each.copied.keys]
     starts += [seen_at(project.document, c.track, k.frame) for c in tracks.values() for k in c.keys]
     by, gesture = frame - min(starts), object()
-    told = left_out(session, project, way) if found else []
+    told = left_out(session, project, way)
 
     def then() -> None:
         for row, each in tracks.items():
@@ -246,22 +246,46 @@ def _note_flip(project: Project, landing: Landing, flipped: Sequence[Keyframe]) 
     )
 
 
-def _tracks_here(session: Session, project: Project) -> Mapping[TrackRow, CopiedTrack]:
+def tracks_here(session: Session, project: Project, way: Way) -> Mapping[TrackRow, CopiedTrack]:
     """Return what was copied of each track, by the row on which it can be pasted.
 
-    Keys of several tracks go to those that they are of, keys of one to that which is chosen.
+    Keys of one track go to that which is chosen; else they go with those of poses, by names.
     """
-    copied = session.copied_tracks
-    chosen = project.chosen_track
-    if len(copied) == 1 and chosen is not None:
+    copied, chosen = session.copied_tracks, project.chosen_track
+    if way == "as it is" and len(copied) == 1 and chosen is not None:
         return {TrackRow(project.active, chosen): copied[0]}
-    figures = {figure.id: figure for figure in project.document.figures}
-    return {
-        each.row: each
-        for each in copied
-        if each.row.figure in figures
-        and any(handle.id == each.row.handle for handle in figures[each.row.figure].handles)
-    }
+    carried = {}
+    for landing in landings(session, project, way):
+        ours = {other: identity for identity, other in landing.pairs.items()}
+        for each in copied:
+            handles = tuple(ours[each_id] for each_id in each.track.handles if each_id in ours)
+            if each.figure.id == landing.copied.figure.id and each.track.handles[0] in ours:
+                track = _carried_track(landing, each, way, handles)
+                carried[TrackRow(landing.figure.id, handles[0])] = track
+    return carried
+
+
+def _carried_track(
+    landing: Landing, copied: CopiedTrack, way: Way, handles: tuple[int, ...]
+) -> CopiedTrack:
+    """Return a track that was copied as one of a figure's handles."""
+    likeness = landing.carriage(way).likeness
+    old = landing.copied.figure.handle(copied.track.handles[0]).position
+    new = landing.figure.handle(handles[0]).position
+    # Beside the pose ways count, and in the picture places, with what the handle is beside them.
+    start = -likeness.shift if not copied.track.planted else new - likeness.to(old)
+    keys = tuple(
+        replace(
+            key,
+            place=likeness.to(key.place) + start,
+            turn=-key.turn if likeness.mirrors else key.turn,
+            velocity=None if key.velocity is None else likeness.to(key.velocity) - likeness.shift,
+        )
+        for key in copied.keys
+    )
+    if landing.is_direct(way):
+        keys = copied.keys
+    return replace(copied, track=replace(copied.track, handles=handles), keys=keys)
 
 
 def _paste_track(
@@ -282,7 +306,8 @@ def _paste_track(
         session.tell(f"The track of {name} is too late for a key at this frame.")
         return
     if track is None:
-        track = replace(copied.track, handles=(row.handle,), keys=keys)
+        handles = copied.track.handles if copied.track.handles[0] == row.handle else (row.handle,)
+        track = replace(copied.track, handles=handles, keys=keys)
         command = track_commands.put_track(row.figure, track)
     else:
         command = track_commands.put_track_keys(*row, keys)

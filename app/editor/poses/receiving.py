@@ -1,6 +1,6 @@
 """Where what was copied goes: onto which layers, by which handles, and why it cannot."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Literal
 
@@ -63,7 +63,9 @@ class Landing:
     def carriage(self, way: Way) -> Carriage:
         """Return the way from the poses that were copied to this figure's."""
         source, likeness = self.copied.figure, Likeness()
-        if not self.is_own:
+        if self.is_own and way == "flipped":
+            likeness = Likeness.reflection(self.figure.axis)
+        elif not self.is_own:
             handles = self.pairs.items()
             places = np.array([source.handle(other).position for _, other in handles])
             images = np.array([self.figure.handle(identity).position for identity, _ in handles])
@@ -77,25 +79,27 @@ def landings(session: Session, project: Project, way: Way) -> list[Landing]:
     Keys of several figures go to those that they are of, by their names, or to the partners of
     these. Keys of one go to that which is posed; it gives its own to its partner.
     """
-    found = _landings(project.document, session.copied, project.active, way)
+    found = _landings(session, project, way)
     return [each for each in found if not each.hindrance]
 
 
 def landing_here(session: Session, project: Project, way: Way) -> Landing | None:
     """Return how the figure that is posed takes over what was copied; None where it is not to."""
-    if len(session.copied) == 1:
-        return landing_on(project.document, session.copied[0], project.figure, way)
-    found = _landings(project.document, session.copied, project.active, way)
-    return next((each for each in found if each.figure.id == project.active), None)
+    copied = session.copied
+    if len(copied) == 1:
+        return landing_on(project.document, copied[0], project.figure, way)
+    found = _landings(session, project, way)
+    return next((e for e in found if e.figure.id == project.active and e.copied.keys), None)
 
 
 def hindrance(session: Session, project: Project, way: Way) -> str:
     """Return in a sentence why the keys that were copied cannot be pasted; empty where they can."""
-    if not session.copied:
+    copied = _copied(session)
+    if not copied:
         return "Copy a pose or keys first."
-    found = _landings(project.document, session.copied, project.active, way)
+    found = _landings(session, project, way)
     if not found:
-        names = ", ".join(f"“{copied.figure.name}”" for copied in session.copied[:MOST_NAMED])
+        names = ", ".join(f"“{each.figure.name}”" for each in copied[:MOST_NAMED])
         return f"No layer of this drawing is called {names}, as those that were copied are."
     reasons = [landing.hindrance for landing in found]
     if all(reasons):
@@ -112,7 +116,7 @@ def hindrance(session: Session, project: Project, way: Way) -> str:
 
 def left_out(session: Session, project: Project, way: Way) -> list[str]:
     """Return in sentences which of several layers take nothing over, and why."""
-    found = _landings(project.document, session.copied, project.active, way)
+    found = _landings(session, project, way)
     return [landing.hindrance for landing in found if landing.hindrance]
 
 
@@ -149,14 +153,22 @@ def common_handles(source: Figure, figure: Figure, pairs: Pairs, way: Way) -> Ma
     return found
 
 
-def _landings(
-    document: Document, copied: Sequence[CopiedKeys], active: int, way: Way
-) -> list[Landing]:
+def _landings(session: Session, project: Project, way: Way) -> list[Landing]:
     found: dict[int, Landing] = {}
+    document, copied = project.document, _copied(session)
     for each in copied:
-        for figure in _receivers(document, each.figure, active, way, is_alone=len(copied) == 1):
+        is_alone = len(copied) == 1
+        for figure in _receivers(document, each.figure, project.active, way, is_alone=is_alone):
             found.setdefault(figure.id, landing_on(document, each, figure, way))
     return list(found.values())
+
+
+def _copied(session: Session) -> list[CopiedKeys]:
+    """Return the keys that were copied of each figure; none where only those of tracks were."""
+    copied = {each.figure.id: each for each in session.copied}
+    for each in session.copied_tracks:
+        copied.setdefault(each.figure.id, CopiedKeys(each.figure, ()))
+    return list(copied.values())
 
 
 def _receivers(

@@ -58,7 +58,7 @@ def draw(session: Session, look: Look, project: Project, pictures: Pictures) -> 
 
 
 def _libraries(
-    look: Look, project: Project, offers: Sequence[library.Offer], pictures: Pictures
+    look: Look, project: Project, offers: Sequence[library.PoseOffer], pictures: Pictures
 ) -> list[Action]:
     """Draw the figure's own poses, then those of each other layer below its name."""
     actions: list[Action] = []
@@ -78,7 +78,10 @@ def _libraries(
 
 
 def _tiles(
-    look: Look, project: Project, offers: Sequence[tuple[int, library.Offer]], pictures: Pictures
+    look: Look,
+    project: Project,
+    offers: Sequence[tuple[int, library.PoseOffer]],
+    pictures: Pictures,
 ) -> list[Action]:
     actions: list[Action] = []
     room, em = imgui.get_content_region_avail().x, look.em
@@ -92,8 +95,8 @@ def _tiles(
         imgui.begin_group()
         imgui.push_id(kept.name)
         texture = pictures(owner.id, kept.pose, round(TILE * em * density()))
-        actions += _tile(look, project, library.Offer(owner, kept), index, texture)
-        actions += _blend(look, project, library.Offer(owner, kept), side)
+        actions += _tile(look, project, library.PoseOffer(owner, kept), index, texture)
+        actions += _blend(look, project, library.PoseOffer(owner, kept), side)
         if owner.id == project.active:
             taken = (other.name for other in owner.library if other is not kept)
             name = name_popup(look, "name", kept.name, taken, "pose")
@@ -105,7 +108,7 @@ def _tiles(
 
 
 def _tile(
-    look: Look, project: Project, offer: library.Offer, index: int, texture: int | None
+    look: Look, project: Project, offer: library.PoseOffer, index: int, texture: int | None
 ) -> list[Action]:
     owner, kept = offer
     palette, draw_list, em = look.palette, imgui.get_window_draw_list(), look.em
@@ -150,7 +153,7 @@ def _show(texture: int, low: ImVec2, high: ImVec2, rounding: float) -> None:
     )
 
 
-def _blend(look: Look, project: Project, offer: library.Offer, width: float) -> list[Action]:
+def _blend(look: Look, project: Project, offer: library.PoseOffer, width: float) -> list[Action]:
     begun, name, owner = project.blend, offer.kept.name, offer.owner.id
     is_this = begun is not None and (begun.name, begun.owner) == (name, owner)
     share = begun.share if begun is not None and is_this else 0.0

@@ -16,12 +16,14 @@ from app.document import (
     handle_commands,
     key_commands,
     layer_commands,
+    track_commands,
 )
 from app.editor import layering
 from app.editor.actions import editing, playback, posing
 from app.editor.actions.upkeep import maintain
 from app.editor.poses import copying, library, pasting, receiving
 from app.editor.session import CopiedKeys
+from app.editor.timeline_view import TrackRow
 
 SWAPPED, FLIPPED, PLAIN = "swapped", "flipped", "as it is"
 
@@ -370,3 +372,31 @@ def test_what_is_turned_as_a_whole_stays_turned_where_its_sides_are_swapped():
     wished = landing.carriage(SWAPPED).targets(body, pose)
     for handle in body.handles:
         assert wished[handle.id].position == pytest.approx(targets[handle.id].position, abs=1e-9)
+
+
+@pytest.mark.parametrize(("way", "mirrors"), [(SWAPPED, False), (FLIPPED, True)])
+def test_keys_of_tracks_go_to_the_handles_of_the_partner(session, way, mirrors):
+    near, far = identity(session, "near leg"), identity(session, "far leg")
+    foot = 2
+    for frame, place in ((0, 4 + 2j), (6, -3 + 5j)):
+        command = track_commands.put_track_key(near, foot, frame, place, velocity=1 + 2j)
+        editing.edit(session, command)
+    settle(session)
+    editing.choose_keys_of(session, {TrackRow(near, foot): frozenset({0, 6})})
+    copying.copy_keys(session)
+    go(session, 12)
+    before = session.project.document
+    pasting.paste(session, way)
+    settle(session)
+    track = figure(session, "far leg").track_of(foot)
+    assert [key.frame for key in track.keys] == [12, 18]
+    for key, place in zip(track.keys, (4 + 2j, -3 + 5j), strict=True):
+        ways = [place, 1 + 2j]
+        wanted = [-each.conjugate() for each in ways] if mirrors else ways
+        # The mirror at which an oblique leg takes over is oblique; it turns no length into another.
+        assert abs(key.place) == pytest.approx(abs(wanted[0]))
+        if not mirrors:
+            assert [key.place, key.velocity] == pytest.approx(wanted)
+    assert session.project.chosen_of == {TrackRow(far, foot): frozenset({12, 18})}
+    editing.undo(session)
+    assert session.project.document is before
