@@ -19,6 +19,7 @@ from app.document.body import (
 from app.document.commands import (
     Command as Command,
     Settled as Settled,
+    choice_commands as choice_commands,
     exchanged as exchanged,
     figure_commands as figure_commands,
     handle_commands as handle_commands,
@@ -44,7 +45,12 @@ from app.document.keyframe import (
     Pose as Pose,
     Target as Target,
 )
-from app.document.layering import Attachment as Attachment, Switch as Switch
+from app.document.layering import (
+    Attachment as Attachment,
+    Choice as Choice,
+    Switch as Switch,
+    Turn as Turn,
+)
 from app.document.model import Document as Document
 from app.document.playhead import Playhead as Playhead
 from app.document.queries import (

@@ -13,6 +13,7 @@ from itertools import pairwise
 from app.document.body import PAIRS, Pairs, require_pairs
 from app.document.checks import NOTHING, Unknown, require, require_distinct, require_size
 from app.document.figure import Figure
+from app.document.layering import Choice
 from app.document.settings import FASTEST, ExportSettings, FrameRange, Marker
 from app.errors import LissomError
 
@@ -26,6 +27,7 @@ class Document:
     frames: FrameRange = FrameRange(0, 48)  # all frames of the animation; every key lies in it
     # The part of them that plays, to look at it; None plays everything. Exports do not heed it.
     preview: FrameRange | None = None
+    choices: tuple[Choice, ...] = ()  # between figures that take turns; none is in two of them
     markers: tuple[Marker, ...] = ()  # in the order of their frames, of which each has one at most
     fps: float = 24.0  # frames per second
     # Whether the last frame leads back to the first one: both are the same moment.
@@ -71,8 +73,13 @@ class Document:
 
     @property
     def exported(self) -> tuple[Figure, ...]:
-        """The figures that exports show, from back to front."""
-        return tuple(each for each in self.figures if not (each.reference or each.hidden))
+        """The figures that exports show at some time, from back to front."""
+        chosen = {identity for choice in self.choices for identity in choice.figures}
+        return tuple(
+            each
+            for each in self.figures
+            if not each.reference and (each.id in chosen or not each.hidden)
+        )
 
     def figure(self, identity: int) -> Figure:
         """Return the figure with this id."""
@@ -80,6 +87,17 @@ class Document:
             if figure.id == identity:
                 return figure
         raise LissomError(f"There is no figure with the id {identity}.")
+
+    def choice(self, name: str) -> Choice:
+        """Return the choice with this name."""
+        for choice in self.choices:
+            if choice.name == name:
+                return choice
+        raise LissomError(f"There is no choice {name!r}.")
+
+    def choice_of(self, identity: int) -> Choice | None:
+        """Return the choice that decides when the figure with this id is seen, if there is one."""
+        return next((choice for choice in self.choices if identity in choice.figures), None)
 
     def marker(self, frame: int) -> Marker:
         """Return the marker at this frame."""
@@ -124,6 +142,25 @@ class Document:
         for figure in self.figures:
             self.carriers(figure.id)
             self._check_clocks(figure)
+        self._check_choices()
+
+    def _check_choices(self) -> None:
+        require_distinct((choice.name for choice in self.choices), "Two choices are called {!r}.")
+        taken: dict[int, str] = {}
+        for choice in self.choices:
+            for identity in choice.figures:
+                figure = self.figure(identity)
+                require(
+                    identity not in taken,
+                    f"The layer {figure.name!r} is in two choices, {taken.get(identity)!r} and "
+                    f"{choice.name!r}; take it out of one.",
+                )
+                require(
+                    not figure.switches,
+                    f"The layer {figure.name!r} is shown and hidden at frames of its own, and is "
+                    f"in the choice {choice.name!r}, which alone decides that; leave out one.",
+                )
+                taken[identity] = choice.name
 
     def _check_clocks(self, figure: Figure) -> None:
         """Refuse what does not come round in a loop."""

@@ -84,7 +84,7 @@ class Painter:
         plan: ExportPlan,
     ) -> None:
         self._context, self._plan = context, plan
-        figures = document.exported
+        self._document, figures = document, document.exported
         self._clips = [clip_of(document, figure.id) for figure in figures]
         self._poses = [poses[figure.id] for figure in figures]
         self._background = Backdrop(colour=_colour(plan))
@@ -176,7 +176,7 @@ class Painter:
             meshes = tuple(
                 mesh.pose(vertices, opacity=clip.figure.opacity)
                 for mesh, vertices, clip in drawn
-                if is_visible(clip.figure, posed.frame)
+                if is_visible(self._document, clip.figure, posed.frame)
             )
             scene = Scene(background=self._background, meshes=meshes)
             pixels = _filled(self._plan.view.size, self._background.colour)

@@ -106,7 +106,7 @@ def flattened(document: Document, textures: Mapping[int, Bytes]) -> Bytes:
         return np.asarray(_reduced(textures[document.figures[0].id], factor))
     flat = Image.new("RGBA", [-(-side // factor) for side in document.canvas])
     for figure in document.exported:
-        if not is_visible(figure, document.frames.first):
+        if not is_visible(document, figure, document.frames.first):
             continue
         layer = _reduced(textures[figure.id], factor)
         layer.putalpha(layer.getchannel("A").point(lambda a, o=figure.opacity: round(o * a)))

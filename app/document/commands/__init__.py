@@ -17,3 +17,4 @@ from app.document.commands import (
 )
 from app.document.commands.command import Command as Command
 from app.document.commands.pose_commands import Settled as Settled, exchanged as exchanged
+from app.document.commands.staging import choice_commands as choice_commands

@@ -8,6 +8,7 @@ import numpy as np
 from app.document.commands.command import command, figure_command, numbered
 from app.document.commands.handle_commands import with_handles
 from app.document.commands.key_commands import exchange
+from app.document.commands.staging import choice_commands
 from app.document.figure import Figure
 from app.document.keyframe import Pose, Target
 from app.document.layering import Attachment, Switch
@@ -56,28 +57,35 @@ def keep_joints(document: Document, identity: int) -> Document:
 
 @command("Duplicate layer")
 def duplicate_figure(document: Document, identity: int) -> Document:
-    """Put a copy of a figure in front of it."""
+    """Put a copy of a figure in front of it, which takes turns with it where it takes turns."""
     figure = document.figure(identity)
     index = document.figures.index(figure)
     copy = replace(
         figure, id=free_identity(document), name=free_name(document, f"{figure.name} copy")
     )
     figures = (*document.figures[: index + 1], copy, *document.figures[index + 1 :])
-    return replace(document, figures=figures, size=document.canvas)
+    choices = tuple(
+        replace(choice, figures=(*choice.figures, copy.id))
+        if identity in choice.figures
+        else choice
+        for choice in document.choices
+    )
+    return replace(document, figures=figures, choices=choices, size=document.canvas)
 
 
 @command("Delete layer")
 def remove_figure(document: Document, identity: int) -> Document:
     """Remove a figure. What hung on it hangs on nothing any more, and stays as it is by itself."""
-    gone = document.figure(identity)
+    document.figure(identity)
     if len(document.figures) == 1:
         raise LissomError("A document has at least one layer; add another one first.")
+    document = choice_commands.let_go(document, identity)
     figures = tuple(
         replace(figure, attachment=None)
         if figure.attachment is not None and figure.attachment.to == identity
         else figure
         for figure in document.figures
-        if figure is not gone
+        if figure.id != identity
     )
     return replace(document, figures=figures, size=document.canvas)
 
@@ -127,7 +135,13 @@ def set_reference(document: Document, identity: int, *, reference: bool) -> Docu
 
 @figure_command("Show or hide from here on")
 def switch_at(figure: Figure, frame: int, *, visible: bool | None) -> Figure:
-    """Show or hide a figure from a frame on; None takes back what was said at that frame."""
+    """Show or hide a figure from a frame on; None takes back what was said at that frame.
+
+    One that was hidden at all times is shown there, and hidden until then.
+    """
+    if figure.hidden and visible:
+        switches = figure.switches or (Switch(0, visible=False),)
+        figure = replace(figure, hidden=False, switches=switches)
     others = [switch for switch in figure.switches if switch.frame != frame]
     if visible is not None:
         if not others and not figure.switches and frame > 0:

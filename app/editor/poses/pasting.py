@@ -20,7 +20,7 @@ from app.editor.actions import editing, playback, posing
 from app.editor.poses import putting
 from app.editor.poses.receiving import (
     Landing,
-    Way,
+    PasteWay,
     hindrance,
     landing_here,
     landings,
@@ -32,18 +32,18 @@ from app.editor.timeline_view import TrackRow, seen_at
 from app.editor.work import Kind
 from app.solving import Rig, flip_poses, flipped_targets, pose_at
 
-LABELS: Mapping[Way, str] = {"swapped": "Paste swapped", "flipped": "Paste flipped"}
+LABELS: Mapping[PasteWay, str] = {"swapped": "Paste swapped", "flipped": "Paste flipped"}
 CARRYING = Kind("Pasting", "The poses could not be pasted", "hand")
 FLIPPING = Kind("Flipping", "The pose could not be flipped", "hand")
 
 
-def why_not(session: Session, project: Project, way: Way) -> str:
+def why_not(session: Session, project: Project, way: PasteWay) -> str:
     """Return in a sentence why nothing that was copied can be pasted; empty where it can."""
     tracks = tracks_here(session, project, way)
     return "" if tracks else hindrance(session, project, way)
 
 
-def why_not_on_selected(session: Session, project: Project, way: Way) -> str:
+def why_not_on_selected(session: Session, project: Project, way: PasteWay) -> str:
     """Return in a sentence why the selected handles can take nothing over; empty where they can."""
     landing = landing_here(session, project, way)
     if landing is None:
@@ -54,14 +54,14 @@ def why_not_on_selected(session: Session, project: Project, way: Way) -> str:
 
 
 @with_project
-def paste(session: Session, project: Project, way: Way = "as it is") -> None:
+def paste(session: Session, project: Project, way: PasteWay = "as it is") -> None:
     """Put what was copied into a key at the present frame: of several keys, the first one."""
     frame = putting.stand_at_frame(session, project)
     promises.once_settled(session, do(_paste, frame, way), LABELS.get(way, "Paste"))
 
 
 @with_project
-def _paste(session: Session, project: Project, frame: int, way: Way) -> None:
+def _paste(session: Session, project: Project, frame: int, way: PasteWay) -> None:
     if why_not(session, project, way):
         return
     tracks = tracks_here(session, project, way)
@@ -92,7 +92,7 @@ def bring(
     session: Session,
     project: Project,
     found: Sequence[Landing],
-    way: Way,
+    way: PasteWay,
     by: int,
     *,
     label: str | None = None,
@@ -156,7 +156,7 @@ def set_pairs(session: Session, text: str) -> None:
 
 
 @with_project
-def paste_on_selected(session: Session, project: Project, way: Way = "as it is") -> None:
+def paste_on_selected(session: Session, project: Project, way: PasteWay = "as it is") -> None:
     """Let the selected handles go where they, or their partners, were, and the shape follow."""
     if not why_not_on_selected(session, project, way):
         landing = landing_here(session, project, way)
@@ -165,7 +165,7 @@ def paste_on_selected(session: Session, project: Project, way: Way = "as it is")
             posing.wish(session, {i: wishes[i] for i in project.selected if i in wishes})
 
 
-def wishes_of(project: Project, landing: Landing, way: Way) -> Mapping[int, Target]:
+def wishes_of(project: Project, landing: Landing, way: PasteWay) -> Mapping[int, Target]:
     """Return where a figure's handles are wanted by the first of some keys, by their ids."""
     if landing.is_own:
         pose, figure = _fitted(project, landing)[0].pose, landing.figure
@@ -191,7 +191,7 @@ def _fitted(project: Project, landing: Landing) -> list[Keyframe]:
 
 
 def _solving(
-    project: Project, landing: Landing, way: Way, by: int
+    project: Project, landing: Landing, way: PasteWay, by: int
 ) -> Callable[[], Sequence[Keyframe]]:
     """Return what solves the poses for a figure, on the worker's thread."""
     figure, puppet = landing.figure, project.puppets[landing.figure.id]
@@ -246,7 +246,9 @@ def _note_flip(project: Project, landing: Landing, flipped: Sequence[Keyframe]) 
     )
 
 
-def tracks_here(session: Session, project: Project, way: Way) -> Mapping[TrackRow, CopiedTrack]:
+def tracks_here(
+    session: Session, project: Project, way: PasteWay
+) -> Mapping[TrackRow, CopiedTrack]:
     """Return what was copied of each track, by the row on which it can be pasted.
 
     Keys of one track go to that which is chosen; else they go with those of poses, by names.
@@ -266,7 +268,7 @@ def tracks_here(session: Session, project: Project, way: Way) -> Mapping[TrackRo
 
 
 def _carried_track(
-    landing: Landing, copied: CopiedTrack, way: Way, handles: tuple[int, ...]
+    landing: Landing, copied: CopiedTrack, way: PasteWay, handles: tuple[int, ...]
 ) -> CopiedTrack:
     """Return a track that was copied as one of a figure's handles."""
     likeness = landing.carriage(way).likeness

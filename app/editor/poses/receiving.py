@@ -12,7 +12,7 @@ from app.editor.session import CopiedKeys, Session
 from app.solving import Carriage, Likeness
 
 # As it is; with pairs of layers and of handles exchanged; or with all of it mirrored, too.
-Way = Literal["as it is", "swapped", "flipped"]
+PasteWay = Literal["as it is", "swapped", "flipped"]
 MOST_NAMED = 3  # handles in a sentence
 
 
@@ -55,12 +55,12 @@ class Landing:
         listed = f"{', '.join(some)} or {last}" if some else last
         return f"“{figure.name}” has no handle called {listed}."
 
-    def is_direct(self, way: Way) -> bool:
+    def is_direct(self, way: PasteWay) -> bool:
         """Tell whether the poses are taken as they are."""
         stays = all(identity == other for identity, other in self.pairs.items())
         return self.is_own and (way == "as it is" or (way == "swapped" and stays))
 
-    def carriage(self, way: Way) -> Carriage:
+    def carriage(self, way: PasteWay) -> Carriage:
         """Return the way from the poses that were copied to this figure's."""
         source, likeness = self.copied.figure, Likeness()
         if self.is_own and way == "flipped":
@@ -73,7 +73,7 @@ class Landing:
         return Carriage(source=source, pairs=self.pairs, likeness=likeness, is_within=self.is_own)
 
 
-def landings(session: Session, project: Project, way: Way) -> list[Landing]:
+def landings(session: Session, project: Project, way: PasteWay) -> list[Landing]:
     """Return which figures take over what was copied, each of them once.
 
     Keys of several figures go to those that they are of, by their names, or to the partners of
@@ -83,7 +83,7 @@ def landings(session: Session, project: Project, way: Way) -> list[Landing]:
     return [each for each in found if not each.hindrance]
 
 
-def landing_here(session: Session, project: Project, way: Way) -> Landing | None:
+def landing_here(session: Session, project: Project, way: PasteWay) -> Landing | None:
     """Return how the figure that is posed takes over what was copied; None where it is not to."""
     copied = session.copied
     if len(copied) == 1:
@@ -92,7 +92,7 @@ def landing_here(session: Session, project: Project, way: Way) -> Landing | None
     return next((e for e in found if e.figure.id == project.active and e.copied.keys), None)
 
 
-def hindrance(session: Session, project: Project, way: Way) -> str:
+def hindrance(session: Session, project: Project, way: PasteWay) -> str:
     """Return in a sentence why the keys that were copied cannot be pasted; empty where they can."""
     copied = _copied(session)
     if not copied:
@@ -114,13 +114,13 @@ def hindrance(session: Session, project: Project, way: Way) -> str:
     return ""
 
 
-def left_out(session: Session, project: Project, way: Way) -> list[str]:
+def left_out(session: Session, project: Project, way: PasteWay) -> list[str]:
     """Return in sentences which of several layers take nothing over, and why."""
     found = _landings(session, project, way)
     return [landing.hindrance for landing in found if landing.hindrance]
 
 
-def landing_on(document: Document, copied: CopiedKeys, figure: Figure, way: Way) -> Landing:
+def landing_on(document: Document, copied: CopiedKeys, figure: Figure, way: PasteWay) -> Landing:
     """Return how a figure takes keys over."""
     source = copied.figure
     names = {handle.id: handle.name for handle in source.handles}
@@ -132,7 +132,9 @@ def landing_on(document: Document, copied: CopiedKeys, figure: Figure, way: Way)
     return Landing(figure=figure, copied=copied, pairs=pairs, is_own=is_own)
 
 
-def common_handles(source: Figure, figure: Figure, pairs: Pairs, way: Way) -> Mapping[int, int]:
+def common_handles(
+    source: Figure, figure: Figure, pairs: Pairs, way: PasteWay
+) -> Mapping[int, int]:
     """Return which of a figure's handles take over from which of another's, by their names.
 
     Where sides are exchanged, a handle takes over from its partner on the other side. Between
@@ -153,7 +155,7 @@ def common_handles(source: Figure, figure: Figure, pairs: Pairs, way: Way) -> Ma
     return found
 
 
-def _landings(session: Session, project: Project, way: Way) -> list[Landing]:
+def _landings(session: Session, project: Project, way: PasteWay) -> list[Landing]:
     found: dict[int, Landing] = {}
     document, copied = project.document, _copied(session)
     for each in copied:
@@ -172,7 +174,7 @@ def _copied(session: Session) -> list[CopiedKeys]:
 
 
 def _receivers(
-    document: Document, source: Figure, active: int, way: Way, *, is_alone: bool
+    document: Document, source: Figure, active: int, way: PasteWay, *, is_alone: bool
 ) -> Iterator[Figure]:
     """Yield the figure that takes over what was copied of another one, if there is one."""
     names = {figure.name: figure for figure in document.figures}

@@ -13,6 +13,7 @@ from app.document import (
     PAIRS,
     Attachment,
     Bone,
+    Choice,
     Document,
     Easing,
     ExportSettings,
@@ -31,6 +32,7 @@ from app.document import (
     Target,
     Track,
     TrackKey,
+    Turn,
 )
 from app.errors import LissomError
 from app.export_formats import FormatOptions, FormatSettings
@@ -250,6 +252,12 @@ FIGURE = record(
     Field("opacity", NUMBER, usual=1.0),
     Field("attachment", optional(ATTACHMENT), usual=None),
 )
+CHOICE = record(
+    Choice,
+    Field("name", TEXT),
+    Field("figures", several(WHOLE)),
+    Field("turns", several(pair(WHOLE, WHOLE, "a frame and a figure", make=Turn, of=tuple))),
+)
 DOCUMENT = record(
     dict,
     Field("schema", WHOLE, lambda _: SCHEMA),
@@ -263,6 +271,7 @@ DOCUMENT = record(
     Field("export", EXPORT),
     Field("size", optional(SIZE), usual=None),
     Field("pairs", several(pair(TEXT, TEXT, "two words")), usual=PAIRS),
+    Field("choices", several(CHOICE), usual=()),
 )
 
 

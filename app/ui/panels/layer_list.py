@@ -45,7 +45,7 @@ def draw_list(
     imgui.begin_child("list", ImVec2(0, shown * pitch))
     frame = playback.current_frame(session, project)
     for figure in reversed(figures):
-        is_seen = is_visible(figure, frame)
+        is_seen = is_visible(project.document, figure, frame)
         actions += _row(session, look, figure, pictures, is_seen=is_seen)
     # An item: placing the cursor alone gives the list no height.
     imgui.dummy(ImVec2(0, 0))

@@ -2,7 +2,7 @@
 
 from imgui_bundle import ImVec2, imgui
 
-from app.document import Figure, is_visible
+from app.document import Document, Figure, is_visible
 from app.editor import Action, Project, Session, do, layering
 from app.editor.actions import playback, rebuilding
 from app.ui.panels.layer_list import SmallPictures, draw_list
@@ -55,7 +55,7 @@ def _settings(project: Project, look: Look, figure: Figure, frame: int) -> list[
     tip("Seen while you work, left out of exports")
     if changed:
         actions.append(do(layering.refer, identity))
-    actions += _switch(look, figure, frame)
+    actions += _switch(project.document, look, figure, frame)
     actions += _joint(project, look, figure)
     if figure.still:
         small(look, "A still picture: it is shown as it was drawn.")
@@ -66,10 +66,10 @@ def _settings(project: Project, look: Look, figure: Figure, frame: int) -> list[
     return actions
 
 
-def _switch(look: Look, figure: Figure, frame: int) -> list[Action]:
+def _switch(document: Document, look: Look, figure: Figure, frame: int) -> list[Action]:
     """Draw what shows or hides a layer from the present frame on."""
     actions = []
-    is_seen = is_visible(figure, frame)
+    is_seen = is_visible(document, figure, frame)
     text = f"{'Hide' if is_seen else 'Show'} from frame {frame} on"
     hint = "For mouths, blinks and props: layers that take turns"
     if text_button(text, FILL, hint, enabled=not figure.hidden):

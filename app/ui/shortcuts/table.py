@@ -44,7 +44,7 @@ def _copied(session: Session, project: Project) -> str:
     return f"{count} keys" if count > 1 else "pose"
 
 
-def _onto(session: Session, project: Project, way: receiving.Way) -> str:
+def _onto(session: Session, project: Project, way: receiving.PasteWay) -> str:
     """Tell onto which layers is pasted, where that is not the one that is posed alone."""
     onto = [each.figure for each in receiving.landings(session, project, way)]
     if len(onto) > 1:

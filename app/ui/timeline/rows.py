@@ -60,7 +60,9 @@ def _draw_names(bands: Bands, frame: int) -> list[Action]:
             colour = ink(palette.accent, CHOSEN) if row.is_active else ink(palette.hovered)
             draw_list.add_rect_filled(*box, colour, 0.2 * em)
         icon = icons.ICON_FA_IMAGE if row.figure.still else icons.ICON_FA_PERSON
-        colour = ink(palette.text if is_visible(row.figure, frame) else palette.dim)
+        colour = ink(
+            palette.text if is_visible(bands.project.document, row.figure, frame) else palette.dim
+        )
         with sized(SMALL):
             left = low.x + (FOLD * em if row.figure.tracks else 0.0)
             text = shortened(row.figure.name, box[1].x - left - 2.6 * em)

@@ -205,7 +205,7 @@ def _posed(
     poses = []
     for figure in project.document.figures:
         shown = shows[figure.id]
-        if shown is None or not is_visible(figure, shown.frame):
+        if shown is None or not is_visible(project.document, figure, shown.frame):
             continue
         pose = drawing.drawn_mesh(figure.id, shown.mesh, number).pose(
             shown.vertices, placement=shown.placement, opacity=figure.opacity

@@ -12,7 +12,8 @@ from app.document import (
 )
 from app.document.layering import Attachment, Switch
 from app.document.queries.clips import clip_of
-from app.document.queries.fronts import fronts_at, is_visible
+from app.document.queries.fronts import fronts_at
+from app.document.queries.sight import is_visible
 from app.errors import LissomError
 
 
@@ -99,15 +100,16 @@ def test_a_layer_is_seen_as_its_switches_say():
     document = layers.switch_at(0, 12, visible=False)(disc_document())
     assert document.figures[0].switches == (Switch(0, visible=True), Switch(12, visible=False))
     document = layers.switch_at(0, 20, visible=True)(document)
-    seen = [is_visible(document.figures[0], frame) for frame in (0, 11.9, 12, 19, 20, 50)]
+    seen = [is_visible(document, document.figures[0], frame) for frame in (0, 11.9, 12, 19, 20, 50)]
     assert seen == [True, True, False, False, True, True]
     hidden = layers.set_hidden(0, hidden=True)(document)
-    assert not is_visible(hidden.figures[0], 0)
+    assert not is_visible(hidden, hidden.figures[0], 0)
     assert layers.switch_at(0, 12, visible=None)(document).figures[0].switches == (
         Switch(0, visible=True),
         Switch(20, visible=True),
     )
-    assert is_visible(disc_document().figures[0], 5)
+    document = disc_document()
+    assert is_visible(document, document.figures[0], 5)
 
 
 def test_what_is_seen_when_moves_and_is_stretched_with_all_time():

@@ -1,8 +1,7 @@
-"""How a figure stands among the others: what it hangs on, and when it is seen."""
+"""What a figure hangs on."""
 
 import math
 from dataclasses import dataclass
-from itertools import pairwise
 
 from app.document.checks import require, require_place
 
@@ -25,20 +24,3 @@ class Attachment:
         require(self.to >= 0, f"A figure's id is not negative, unlike {self.to}.")
         require_place(self.at, "A joint")
         require(math.isfinite(self.rest), f"A turn must be finite, not {self.rest}.")
-
-
-@dataclass(frozen=True, slots=True)
-class Switch:
-    """From a frame on a figure is seen, or is not."""
-
-    frame: int
-    visible: bool
-
-
-def require_in_order(switches: tuple[Switch, ...]) -> None:
-    """Raise a `LissomError` unless each switch comes after the one before."""
-    for before, after in pairwise(switches):
-        require(
-            before.frame < after.frame,
-            f"The figure is shown or hidden at frame {after.frame} after frame {before.frame}.",
-        )

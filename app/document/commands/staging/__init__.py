@@ -1,0 +1,8 @@
+"""Commands on what is seen when.
+
+In: a document, and ids of its figures.
+Out: the changed document.
+Imports: the values of `app.document`, `app.document.commands.command`.
+"""
+
+from app.document.commands.staging import choice_commands as choice_commands
