@@ -8,7 +8,7 @@ Imports: `engine`, `app.errors`, `app.export_formats`; no pictures, graphics, wi
 from app.document.body import (
     PAIRS as PAIRS,
     Bone as Bone,
-    Pairs as Pairs,
+    SidePairs as SidePairs,
     carried_over as carried_over,
     mirrored_name as mirrored_name,
     pairs_by_name as pairs_by_name,

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
-from app.document.body import PAIRS, Pairs, require_pairs
+from app.document.body import PAIRS, SidePairs, require_pairs
 from app.document.checks import NOTHING, Unknown, require, require_distinct, require_size
 from app.document.figure import Figure
 from app.document.layering import Choice
@@ -34,7 +34,7 @@ class Document:
     loop: bool = False
     export: ExportSettings = ExportSettings()
     # Words in the names of layers and handles, or whole names, of which each is the other's side.
-    pairs: Pairs = PAIRS
+    pairs: SidePairs = PAIRS
     # Fields of the project file that this version does not know and hands on.
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
     # Likewise its members, by their names.

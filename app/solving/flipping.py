@@ -5,12 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.document import PAIRS, Figure, Pairs, Pose, Target, partners_of
+from app.document import PAIRS, Figure, Pose, SidePairs, Target, partners_of
 from app.solving.carrying import Likeness, begin_like, is_alike, solve_from
 from app.solving.drag import Rig, pins_of
 
 
-def flip_poses(rig: Rig, poses: Sequence[Pose], axis: float, pairs: Pairs = PAIRS) -> list[Pose]:
+def flip_poses(
+    rig: Rig, poses: Sequence[Pose], axis: float, pairs: SidePairs = PAIRS
+) -> list[Pose]:
     """Return poses of a rig's figure mirrored at an upright axis, solved within its bounds.
 
     The axis is told in pixels from the left.
@@ -19,7 +21,7 @@ def flip_poses(rig: Rig, poses: Sequence[Pose], axis: float, pairs: Pairs = PAIR
 
 
 def flipped_targets(
-    figure: Figure, pose: Pose, axis: float, pairs: Pairs = PAIRS
+    figure: Figure, pose: Pose, axis: float, pairs: SidePairs = PAIRS
 ) -> Mapping[int, Target]:
     """Return where a flipped pose wants each handle.
 
@@ -52,7 +54,7 @@ def flipped_targets(
     return targets
 
 
-def _flip(rig: Rig, pose: Pose, axis: float, pairs: Pairs) -> Pose:
+def _flip(rig: Rig, pose: Pose, axis: float, pairs: SidePairs) -> Pose:
     likeness = Likeness.reflection(axis)
     targets = flipped_targets(rig.figure, pose, axis, pairs)
     shape = rig.figure.map_of(pose)

@@ -16,7 +16,7 @@ from app.document.body.material import (
 from app.document.body.pairs import (
     PAIRS as PAIRS,
     SIDES as SIDES,
-    Pairs as Pairs,
+    SidePairs as SidePairs,
     mirrored_name as mirrored_name,
     pairs_by_name as pairs_by_name,
     partners_of as partners_of,

@@ -13,12 +13,12 @@ from engine.geometry import box_diagonal
 # Of the shape's diagonal: handles that mirror each other this nearly are pairs without names.
 NEAR = 0.03
 # Words, or whole names, that tell of one side and of the other.
-Pairs = tuple[tuple[str, str], ...]
-SIDES: Pairs = (("L", "R"), ("left", "right"))
-PAIRS: Pairs = (*SIDES, ("near", "far"))
+SidePairs = tuple[tuple[str, str], ...]
+SIDES: SidePairs = (("L", "R"), ("left", "right"))
+PAIRS: SidePairs = (*SIDES, ("near", "far"))
 
 
-def mirrored_name(name: str, pairs: Pairs = PAIRS) -> str | None:
+def mirrored_name(name: str, pairs: SidePairs = PAIRS) -> str | None:
     """Return the name of a handle or a layer on the other side; None where it tells of no side.
 
     A pair of whole names comes first. Else a word counts where it begins and ends, be it in the
@@ -65,7 +65,7 @@ def _places(name: str, form: str) -> Iterator[int]:
         start = name.find(form, start + 1)
 
 
-def require_pairs(pairs: Pairs) -> None:
+def require_pairs(pairs: SidePairs) -> None:
     """Raise a `LissomError` unless each of some words has one partner."""
     words = [word.casefold() for pair in pairs for word in pair]
     require(all(word.strip() for word in words), "A pair is of two words, such as near and far.")
@@ -76,7 +76,7 @@ def require_pairs(pairs: Pairs) -> None:
         )
 
 
-def read_pairs(text: str) -> Pairs:
+def read_pairs(text: str) -> SidePairs:
     """Return the pairs that a text tells, such as "L/R, near/far".
 
     Raises
@@ -97,12 +97,12 @@ def read_pairs(text: str) -> Pairs:
     return tuple(pairs)
 
 
-def written_pairs(pairs: Pairs) -> str:
+def written_pairs(pairs: SidePairs) -> str:
     """Return pairs as `read_pairs` reads them."""
     return ", ".join("/".join(pair) for pair in pairs)
 
 
-def pairs_by_name(handles: Iterable[Handle], pairs: Pairs = PAIRS) -> Mapping[int, int]:
+def pairs_by_name(handles: Iterable[Handle], pairs: SidePairs = PAIRS) -> Mapping[int, int]:
     """Return the partner of each handle that has one by name; both by their ids, both ways."""
     names = {handle.name: handle.id for handle in handles}
     others = {
@@ -112,7 +112,7 @@ def pairs_by_name(handles: Iterable[Handle], pairs: Pairs = PAIRS) -> Mapping[in
 
 
 def partners_of(
-    handles: Iterable[Handle], axis: float, outline: Complexes, pairs: Pairs = PAIRS
+    handles: Iterable[Handle], axis: float, outline: Complexes, pairs: SidePairs = PAIRS
 ) -> Mapping[int, int]:
     """Return the partner of each handle that has one, by name or else by place, by their ids.
 

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from itertools import pairwise
 
-from app.document.body import Pairs
+from app.document.body import SidePairs
 from app.document.commands.command import command, numbered
 from app.document.commands.key_commands import stretched
 from app.document.commands.keys_in_time import require_factor, scaled
@@ -58,7 +58,7 @@ def set_export(document: Document, export: ExportSettings) -> Document:
 
 
 @command("Set pairs of names")
-def set_pairs(document: Document, pairs: Pairs) -> Document:
+def set_pairs(document: Document, pairs: SidePairs) -> Document:
     """Set which words, or whole names, tell layers and handles of the two sides apart."""
     return document if pairs == document.pairs else replace(document, pairs=pairs)
 

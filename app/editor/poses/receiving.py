@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from app.document import Document, Figure, Pairs, mirrored_name
+from app.document import Document, Figure, SidePairs, mirrored_name
 from app.editor.project import Project
 from app.editor.session import CopiedKeys, Session
 from app.solving import Carriage, Likeness
@@ -133,7 +133,7 @@ def landing_on(document: Document, copied: CopiedKeys, figure: Figure, way: Past
 
 
 def common_handles(
-    source: Figure, figure: Figure, pairs: Pairs, way: PasteWay
+    source: Figure, figure: Figure, pairs: SidePairs, way: PasteWay
 ) -> Mapping[int, int]:
     """Return which of a figure's handles take over from which of another's, by their names.
 
