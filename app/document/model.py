@@ -119,11 +119,14 @@ class Document:
         """Return the figure with this id, the one that it hangs on, and so on."""
         chain = [self.figure(identity)]
         while (joint := chain[-1].attachment) is not None:
-            chain.append(self.figure(joint.to))
-            require(
-                len(chain) <= len(self.figures),
-                f"{chain[0].name!r} would hang on itself; detach one of the figures between first.",
-            )
+            carrier = self.figure(joint.to)
+            if carrier in chain:
+                circle = [*chain[chain.index(carrier) :], carrier]
+                raise LissomError(
+                    f"{' hangs on '.join(repr(each.name) for each in circle)}: that is a circle; "
+                    "let one of them hang on nothing, or on another one."
+                )
+            chain.append(carrier)
         return tuple(chain)
 
     def _check_figures(self) -> None:

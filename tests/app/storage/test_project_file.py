@@ -486,7 +486,7 @@ def test_a_newer_schema_need_have_nothing_else_in_common(tmp_path):
         (["figures", 0, "switches"], [[12, True], [12, False]], "shown or hidden at frame 12"),
         (["figures", 0, "switches"], [[12]], "a frame and true or false"),
         (["figures", 0, "attachment", "to"], 7, "no figure with the id 7"),
-        (["figures", 0, "attachment", "to"], 0, "would hang on itself"),
+        (["figures", 0, "attachment", "to"], 0, "that is a circle"),
         (["figures", 0, "attachment", "at"], [1e9, 0], "A joint must be within"),
         (["figures", 0, "anchor"], None, "attached, but has no anchor"),
         (["size"], [0, 5], "size of the canvas"),
