@@ -165,7 +165,7 @@ class Carriage:
         """Return where the joints of a rig's figure are held, as is done next to them."""
         shape = self.source.map_of(pose)
         held = [self.source.handle(other).position for other in self.pairs.values()]
-        if self.source.attachment is not None and self.source.anchor is not None:
+        if self.source.joints and self.source.anchor is not None:
             held.append(self.source.anchor)
         pins = []
         for joint in rig.pins:

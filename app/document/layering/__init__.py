@@ -5,7 +5,10 @@ Out: joints, switches and choices.
 Imports: the values of `app.document`.
 """
 
-from app.document.layering.attachment import Attachment as Attachment
+from app.document.layering.attachment import (
+    Attachment as Attachment,
+    require_joints as require_joints,
+)
 from app.document.layering.sight import (
     Choice as Choice,
     Switch as Switch,
