@@ -6,11 +6,15 @@ Imports: `engine`, `app.errors`, `app.export_formats`; no pictures, graphics, wi
 """
 
 from app.document.body import (
+    PAIRS as PAIRS,
     Bone as Bone,
+    SidePairs as SidePairs,
     carried_over as carried_over,
     mirrored_name as mirrored_name,
     pairs_by_name as pairs_by_name,
     partners_of as partners_of,
+    read_pairs as read_pairs,
+    written_pairs as written_pairs,
 )
 from app.document.commands import (
     Command as Command,

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from app.document.body import Bone, pairs_by_name
+from app.document.body import SIDES, Bone, pairs_by_name
 from app.document.checks import (
     NOTHING,
     Unknown,
@@ -172,7 +172,7 @@ class Figure:
         """Where the upright axis crosses the picture at which flipped poses are mirrored."""
         if self.mirror is not None:
             return self.mirror
-        paired = pairs_by_name(self.handles)
+        paired = pairs_by_name(self.handles, SIDES)
         places = [self.handle(identity).position.real for identity in paired]
         if not places:
             places = [float(self.domain.outline.real.min()), float(self.domain.outline.real.max())]

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import NoReturn
 
+from app.document.body import PAIRS, SidePairs, require_pairs
 from app.document.checks import NOTHING, Unknown, require, require_distinct, require_size
 from app.document.figure import Figure
 from app.document.layering import Choice, Group, paths_to
@@ -33,6 +34,8 @@ class Document:
     # Whether the last frame leads back to the first one: both are the same moment.
     loop: bool = False
     export: ExportSettings = ExportSettings()
+    # Words in the names of layers and handles, or whole names, of which each is the other's side.
+    pairs: SidePairs = PAIRS
     # Fields of the project file that this version does not know and hands on.
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
     # Likewise its members, by their names.
@@ -46,6 +49,7 @@ class Document:
 
     def __post_init__(self) -> None:
         self._check_figures()
+        require_pairs(self.pairs)
         require(
             self.preview is None
             or (self.preview.first in self.frames and self.preview.last in self.frames),

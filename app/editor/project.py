@@ -64,12 +64,13 @@ class Flip:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PoseBlend:
-    """A pose of the library, by its name, that is mixed into the one at a frame.
+    """A pose of a figure's library, by its name, that is mixed into the one at a frame.
 
     Its `share` goes from 0 to 1; all that is mixed in one gesture is one step of undo.
     """
 
     name: str
+    owner: int
     gesture: object
     share: float = 0.0
 

@@ -1,8 +1,11 @@
 """From a new document and a pose script to an animation, solved as the window would solve it."""
 
+import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+
+import numpy as np
 
 from app.document import (
     Document,
@@ -73,7 +76,8 @@ def pose_document(
     )
     for identity, part in named.items():
         with _whose(part):
-            document = _prepared(document, identity, part)
+            with _among(document, identity, part):
+                document = _prepared(document, identity, part)
             document, told = _with_material(document, identity, part)
         notices += told
     if script.figures[0].layer is not None:
@@ -98,6 +102,27 @@ def _whose(part: FigureScript) -> Iterator[None]:
         if part.layer is None:
             raise
         raise LissomError(f"layer {part.layer!r}: {error}") from error
+
+
+@contextmanager
+def _among(document: Document, identity: int, part: FigureScript) -> Iterator[None]:
+    """Tell in errors which layer a script took that names none, and how it names them."""
+    try:
+        yield
+    except (LissomError, EngineError) as error:
+        figure = document.figure(identity)
+        names = [repr(each.name) for each in document.figures if each is not figure]
+        places = [handle.at for handle in part.handles.values()]
+        places += [] if part.anchor is None else [part.anchor]
+        are_on_it = figure.covers(np.array(places, dtype=np.complex128)).all()
+        if part.layer is not None or not names or are_on_it:
+            raise
+        own = figure.name
+        raise LissomError(
+            f"{error} The script names no layer, so that its handles are on {own!r}, the one in "
+            f"front. The drawing has also {', '.join(names)}: say which layer is meant in "
+            f'"figures": [{{"layer": {json.dumps(own, ensure_ascii=False)}, ...}}].'
+        ) from error
 
 
 def _by_figure(document: Document, script: PoseScript) -> dict[int, FigureScript]:

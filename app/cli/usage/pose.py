@@ -78,9 +78,11 @@ tracks, springs and stiff:
    "choices": [{"name": "mouth", "layers": ["closed", "ah"], "keys": [[0, "closed"], [8, "ah"]]}]
 
 Each may have a variant, bounds, an anchor, tracks, springs and stiff of its own. What is attached
-hangs by its anchor, or where none is given by that point, and is posed as if its parent were at
-rest. A list lets it change hands, each entry from its frame on: with "keep" nothing jumps then, and
-at may be left out; "to": null lets go:
+is moved as a whole, in every frame, so that its anchor comes to where the point "at" of its parent
+has come; with turn, which is true where left out, it turns with the parent there. "at" is a point
+of the parent as it is drawn; where no anchor is given it is the anchor, too, and is on both layers.
+Handles and targets are told as if it hung on nothing. A list lets it change hands, each entry from
+its frame on: with "keep" nothing jumps then, and at may be left out; "to": null lets go:
 
    "attach": [{"to": "hand A", "at": [310, 240]}, {"frame": 80, "to": "hand B", "keep": true}]
 

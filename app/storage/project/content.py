@@ -10,6 +10,7 @@ import numpy as np
 
 from app.document import (
     FRAME_NAMES,
+    PAIRS,
     Attachment,
     Bone,
     Choice,
@@ -286,6 +287,7 @@ DOCUMENT = record(
     Field("loop", FLAG),
     Field("export", EXPORT),
     Field("size", optional(SIZE), usual=None),
+    Field("pairs", several(pair(TEXT, TEXT, "two words")), usual=PAIRS),
     Field("choices", several(CHOICE), usual=()),
     Field("groups", several(GROUP), usual=()),
 )

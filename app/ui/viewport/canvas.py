@@ -66,7 +66,7 @@ class Canvas:
         self._fit_targets(session.screen, 1 + is_split)
         if self._drawing is None:
             self._drawing = Drawing(self._renderer, project)
-        posable = partial(self._drawing.drawn_mesh, project.active, number=SMALL_PICTURE)
+        posable = partial(self._drawing.drawn_mesh, number=SMALL_PICTURE)
         self.pose_pictures.draw(session, project, posable)
         inputs = _inputs(session, project)
         if inputs != self._drawn:
