@@ -24,6 +24,7 @@ from app.document.commands import (
     figure_commands as figure_commands,
     group_commands as group_commands,
     handle_commands as handle_commands,
+    in_turn as in_turn,
     key_commands as key_commands,
     layer_commands as layer_commands,
     material_commands as material_commands,
@@ -58,6 +59,7 @@ from app.document.layering import (
     Switch as Switch,
     Turn as Turn,
     paths_to as paths_to,
+    shared_path as shared_path,
 )
 from app.document.model import Document as Document
 from app.document.playhead import Playhead as Playhead
@@ -71,6 +73,7 @@ from app.document.queries import (
     Shortfall as Shortfall,
     TrackPlace as TrackPlace,
     Transit as Transit,
+    TreeRow as TreeRow,
     are_as_stiff as are_as_stiff,
     brushed_stiffness as brushed_stiffness,
     changed_stretches as changed_stretches,
@@ -86,6 +89,7 @@ from app.document.queries import (
     fronts_at as fronts_at,
     intervals as intervals,
     is_visible as is_visible,
+    layer_tree as layer_tree,
     limb_of as limb_of,
     resting_pose as resting_pose,
     sights_of as sights_of,

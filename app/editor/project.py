@@ -18,9 +18,11 @@ from app.document import (
     Playhead,
     Pose,
     Track,
+    TreeRow,
     UnkeyedPose,
     Variant,
     clip_of,
+    layer_tree,
 )
 from app.editor.timeline_view import KeyRow, KeysOf, Timing, TrackRow, row_of
 from app.editor.work import Afterwards, Carry, Derived, Promise, Pull, Take
@@ -196,6 +198,11 @@ class Project:
     flip: Flip | None = None
     blend: PoseBlend | None = None
     picked_pose: str | None = None  # of the library
+    # The ids of layers that are chosen beside the one that is posed, and of those that alone are
+    # looked at, if any.
+    beside: frozenset[int] = frozenset()
+    solo: frozenset[int] = frozenset()
+    toggled: frozenset[str] = frozenset()  # rows of the tree of layers, open or closed by hand
     listed: int | None = None  # the figure that the list of layers was scrolled to
 
     @property
@@ -214,10 +221,21 @@ class Project:
         return self.document.figure(self.active)
 
     @property
+    def tree(self) -> tuple[TreeRow, ...]:
+        """The rows of the layers that are listed, the one in front on top."""
+        return layer_tree(self.document, self.toggled, self.active)
+
+    @property
+    def layers(self) -> tuple[int, ...]:
+        """The ids of the chosen layers, from front to back; the one that is posed is among them."""
+        chosen = self.beside | {self.active}
+        return tuple(each.id for each in reversed(self.document.figures) if each.id in chosen)
+
+    @property
     def rows(self) -> list[KeyRow]:
         """The rows of the timeline from top to bottom: the figure in front comes first."""
         rows: list[KeyRow] = []
-        for figure in reversed(self.document.figures):
+        for figure in (row.figure for row in self.tree if row.figure):
             rows.append(figure.id)
             if figure.id in self.timing.unfolded:
                 rows += [row_of(figure, track) for track in figure.tracks]

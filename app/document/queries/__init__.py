@@ -17,6 +17,7 @@ from app.document.queries.fronts import (
     Front as Front,
     fronts_at as fronts_at,
 )
+from app.document.queries.layer_tree import TreeRow as TreeRow, layer_tree as layer_tree
 from app.document.queries.material import (
     are_as_stiff as are_as_stiff,
     brushed_stiffness as brushed_stiffness,
