@@ -8,8 +8,6 @@ Imports: the values of `app.document`.
 from app.document.queries.clips import (
     Clip as Clip,
     clip_of as clip_of,
-    closes as closes,
-    intervals as intervals,
 )
 from app.document.queries.fronts import (
     USUAL_EXTENT as USUAL_EXTENT,
@@ -30,6 +28,13 @@ from app.document.queries.shortfall import (
     falls_short as falls_short,
     find_shortfall as find_shortfall,
 )
+from app.document.queries.spans import (
+    KeySpan as KeySpan,
+    closing_span as closing_span,
+    intervals as intervals,
+    place_at as place_at,
+    spans as spans,
+)
 from app.document.queries.timeline import (
     Moment as Moment,
     changed_stretches as changed_stretches,
@@ -46,6 +51,6 @@ from app.document.queries.tracks import (
 )
 from app.document.queries.transits import (
     Transit as Transit,
-    comes_round as comes_round,
+    passings_of as passings_of,
     transits as transits,
 )

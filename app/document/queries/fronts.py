@@ -22,7 +22,8 @@ def fronts_at(clip: Clip, frame: float) -> tuple[Front, ...]:
     """Return what is in front, or behind, at a frame; what is neither is left out.
 
     A key's depths hold from its frame on until another key gives others; before the first one the
-    handles' own do, or in a loop what the last one left.
+    handles' own do, or in a loop what the last one left. In a cycle each repeat begins with what
+    was in front before the first one.
     """
     figure = clip.figure
     depths = {handle.id: handle.front for handle in figure.handles}
@@ -30,7 +31,7 @@ def fronts_at(clip: Clip, frame: float) -> tuple[Front, ...]:
         frame = clip.frames.first + (frame - clip.frames.first) % clip.period
     is_before_all = clip.loop and frame < clip.keys[0].frame
     for key in clip.keys:
-        if key.frame <= frame or is_before_all:
+        if is_before_all or _has_been(figure, key.frame, frame):
             depths.update(key.fronts)
     usual = USUAL_EXTENT * box_diagonal(figure.domain.outline)
     return tuple(
@@ -46,6 +47,18 @@ def is_visible(figure: Figure, frame: float) -> bool:
         return False
     shown = figure.switches[0].visible if figure.switches else True
     for switch in figure.switches:
-        if switch.frame <= frame:
+        if _has_been(figure, switch.frame, frame):
             shown = switch.visible
     return shown
+
+
+def _has_been(figure: Figure, event: int, frame: float) -> bool:
+    """Tell whether an event of a figure's keys holds at a frame, as far as no later one does.
+
+    Those of a cycle hold until a repeat, or all of them, are over, and begin anew.
+    """
+    for cycle in figure.cycles:
+        if cycle.has(event):
+            end = frame if cycle.until is None else min(frame, cycle.until)
+            return event <= frame and event <= cycle.source(end)
+    return event <= frame

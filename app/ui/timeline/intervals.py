@@ -1,11 +1,10 @@
 """The way from key to key: a bar with its easing curve, which opens the easing's editor."""
 
 from dataclasses import dataclass
-from itertools import pairwise
 
 from imgui_bundle import ImVec2, imgui
 
-from app.document import HOLD, LINEAR, Keyframe, Transit, closes, transits
+from app.document import HOLD, LINEAR, Keyframe, Transit, closing_span, spans, transits
 from app.editor import Action, do
 from app.editor.actions import tracks
 from app.ui.style import SMALL, in_hand, ink, is_pressed, sized, tip
@@ -53,38 +52,28 @@ def draw_intervals(bands: Bands) -> list[Action]:
 
 
 def _bars(bands: Bands) -> list[_Bar]:
-    clip = bands.project.clip
-    keys, ways = clip.keys, transits(clip)
-    bars = [
-        _Bar(
-            name=f"interval {key.frame}",
-            key=key,
-            begin=key.frame,
-            end=following.frame,
-            low=key.frame,
-            high=following.frame,
-            way=way,
-        )
-        for (key, following), way in zip(pairwise(keys), ways, strict=False)
-    ]
-    if closes(clip):
-        frames, last, period = clip.frames, keys[-1], clip.period
-        end = keys[0].frame + period
-        for name, shift, low, high in (
-            ("", 0, last.frame, frames.last),
-            (" again", -period, frames.first, keys[0].frame),
-        ):
-            bars.append(
-                _Bar(
-                    name=f"interval {last.frame}{name}",
-                    key=last,
-                    begin=last.frame + shift,
-                    end=end + shift,
-                    low=low,
-                    high=high,
-                    way=ways[-1],
-                )
+    clip, bars = bands.project.clip, list[_Bar]()
+    for span, way in zip(spans(clip), transits(clip), strict=True):
+        if span.first == span.last:
+            continue
+        key, end = clip.keys[span.first], span.start + span.frames
+        # What goes on from a cycle begins elsewhere than at its key.
+        name = f"interval {key.frame}" + " on" * (span.start != key.frame)
+        parts = [(name, 0, span.start, min(end, clip.frames.last))]
+        if span == closing_span(clip):
+            parts.append((f"{name} again", -clip.period, clip.frames.first, clip.keys[0].frame))
+        bars += [
+            _Bar(
+                name=part,
+                key=key,
+                begin=span.start + shift,
+                end=end + shift,
+                low=low,
+                high=high,
+                way=way,
             )
+            for part, shift, low, high in parts
+        ]
     return bars
 
 
@@ -92,7 +81,7 @@ def _draw_still(bands: Bands) -> None:
     """Draw a line where a pose stands still: before the first key and after the last one."""
     clip = bands.project.clip
     ends = [(clip.frames.first, clip.frames.last)]
-    if not closes(clip):
+    if closing_span(clip) is None:
         first, last = clip.keys[0].frame, clip.keys[-1].frame
         ends = [(clip.frames.first, first), (last, clip.frames.last)]
         colour = ink(bands.look.palette.dim, 0.35)
@@ -121,7 +110,7 @@ def _interval(bands: Bands, bar: _Bar, left: float, right: float) -> list[Action
         tip(f"{bar.told.capitalize()}: click to change how time runs here")
     _draw_bar(bands, bar, low, high, hot=hot)
     _label(bands, bar.told, bar.key.turns, low, high)
-    if not bar.name.endswith("again"):
+    if bar.name.split()[-1].isdecimal():
         actions += easing_popup(popup, bands.look, bands.project, bar.key)
     return actions
 
