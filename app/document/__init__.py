@@ -15,6 +15,7 @@ from app.document.body import (
 from app.document.commands import (
     Command as Command,
     Settled as Settled,
+    cycle_commands as cycle_commands,
     exchanged as exchanged,
     figure_commands as figure_commands,
     handle_commands as handle_commands,

@@ -153,6 +153,11 @@ class Figure:
         """Return the cycle that a frame is in, be it in its stretch or in its repeats."""
         return next((cycle for cycle in self.cycles if cycle.covers(frame)), None)
 
+    def source_of(self, frame: int) -> int:
+        """Return the frame at which what a frame shows is keyed: another one where it repeats."""
+        cycle = self.cycle_at(frame)
+        return frame if cycle is None or frame in self.key_frames else int(cycle.source(frame))
+
     @property
     def poses(self) -> tuple[Pose, ...]:
         """Those of the keys, then those of the library."""

@@ -51,6 +51,7 @@ from app.document.queries.tracks import (
 )
 from app.document.queries.transits import (
     Transit as Transit,
+    are_alike as are_alike,
     passings_of as passings_of,
     transits as transits,
 )

@@ -135,7 +135,7 @@ def passings_of(clip: Clip) -> list[tuple[KeyPassing, KeyPassing]]:
     known = {index: KeyPassing(ends.get(index), ways.get(index)) for index in range(len(clip.keys))}
     last = len(clip.keys) - 1
     is_whole = clip.loop and clip.keys[last].frame - clip.keys[0].frame == clip.period
-    if is_whole and _is_same(clip.keys[0], clip.keys[last]):
+    if is_whole and are_alike(clip.keys[0], clip.keys[last]):
         known[0] = known[last] = KeyPassing(ends.get(last), ways.get(0))
     for ring in rings:
         for place, (index, number) in enumerate(zip(ring.keys, ring.spans, strict=False)):
@@ -159,7 +159,7 @@ def _go_on(clip: Clip, ring: Ring, known: dict[int, KeyPassing]) -> None:
         return
     source = ring.cycle.source(ring.end)
     shown = next((index for index in ring.keys if keys[index].frame == source), None)
-    if shown is None or not ring.spans or not _is_same(keys[shown], keys[following]):
+    if shown is None or not ring.spans or not are_alike(keys[shown], keys[following]):
         return
     if known[following].before is None:
         after = known[following].after
@@ -172,7 +172,7 @@ def _end(clip: Clip, number: int, at: KeyPassing, *, side: int) -> Passed:
     keys, found = clip.keys, spans(clip)
     span, index = found[number], found[number][1 - side]
     legs = [None if each is None else _leg(found[each]) for each in at]
-    end = passed(keys, index, legs[0], legs[1], _is_same)[side]
+    end = passed(keys, index, legs[0], legs[1], are_alike)[side]
     own, other = _leg(span), legs[side]
     if other is None or at[side] == number:
         return end
@@ -190,7 +190,7 @@ def _leg(span: KeySpan) -> Leg:
     return Leg(span.first, span.last, span.frames)
 
 
-def _is_same(key: Keyframe, other_key: Keyframe) -> bool:
+def are_alike(key: Keyframe, other_key: Keyframe) -> bool:
     """Tell whether two keys' poses have the same map."""
     pose, other = key.pose, other_key.pose
     if pose is other or pose.phi is other.phi:

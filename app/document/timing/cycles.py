@@ -1,8 +1,9 @@
 """Cycles: stretches of time that repeat."""
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
+from typing import Self
 
 from app.document.checks import NOTHING, Unknown, require
 from app.document.timing.tracks import Track
@@ -50,6 +51,11 @@ class Cycle:
     def takes(self, track: Track) -> bool:
         """Tell whether a track repeats with it: one that goes on beyond it has its own time."""
         return self.has(track.keys[0].frame) and track.keys[-1].frame <= self.last
+
+    def moved(self, to: Callable[[int], int]) -> Self:
+        """Return the cycle with its frames where a function has them."""
+        until = None if self.until is None else to(self.until)
+        return replace(self, first=to(self.first), last=to(self.last), until=until)
 
     def source(self, frame: float) -> float:
         """Return the frame of the stretch that a frame shows while it repeats."""
