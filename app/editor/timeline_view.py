@@ -191,6 +191,14 @@ class SwitchDrag(TimeDrag):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class CycleDrag(TimeDrag):
+    """The pointer moves the end of what repeats from a frame on."""
+
+    figure: int
+    first: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class KeyBox:
     """The pointer spans a stretch of time and rows to choose the keys there."""
 

@@ -124,6 +124,23 @@ def end_of_repeats(figure: Figure, first: int, last: int) -> int | None:
     return whole if whole > last else max(ends)
 
 
+def nearest_end(figure: Figure, cycle: Cycle, frame: int, end: int) -> int | None:
+    """Return the frame next to another one until which a cycle can repeat; None is for ever.
+
+    It is one at which a key of the stretch is shown, or the end of the scene.
+    """
+    after = [each for each in figure.key_frames if each >= cycle.last]
+    after += [other.first for other in figure.cycles if other.first > cycle.first]
+    limit = min(after, default=end)
+    if not after and frame >= end:
+        return None
+    own = {each for each in figure.key_frames if cycle.has(each)} | {cycle.first}
+    rounds = range(1, (limit - cycle.first) // cycle.period + 1)
+    shown = {each + count * cycle.period for count in rounds for each in own}
+    fitting = {each for each in shown if cycle.last <= each <= limit} | {cycle.last}
+    return min(fitting, key=lambda each: abs(each - frame))
+
+
 def cycle_from(figure: Figure, first: int) -> Cycle:
     """Return the cycle of a figure that begins at a frame."""
     for cycle in figure.cycles:

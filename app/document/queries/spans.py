@@ -29,7 +29,7 @@ class KeySpan(NamedTuple):
         return (frame - self.start) / self.frames
 
 
-class Ring(NamedTuple):
+class PlacedCycle(NamedTuple):
     """A cycle in a clip: its keys by their indices, and the spans that lead around."""
 
     cycle: Cycle
@@ -47,7 +47,7 @@ class Layout(NamedTuple):
     """The spans of a clip, in the order of their frames, and its cycles."""
 
     spans: tuple[KeySpan, ...]
-    rings: tuple[Ring, ...]
+    rings: tuple[PlacedCycle, ...]
 
 
 def spans(clip: Clip) -> tuple[KeySpan, ...]:
@@ -106,14 +106,14 @@ def _layout(
     )
 
 
-def _ring(cycle: Cycle, at: list[int], frames: FrameRange) -> Ring:
+def _ring(cycle: Cycle, at: list[int], frames: FrameRange) -> PlacedCycle:
     keys = range(bisect_left(at, cycle.first), bisect_left(at, cycle.last))
     end = max(cycle.last, frames.last if cycle.until is None else cycle.until)
     follows = keys.stop < len(at) and at[keys.stop] == end
-    return Ring(cycle=cycle, keys=keys, end=end, shows_end=not follows, spans=())
+    return PlacedCycle(cycle=cycle, keys=keys, end=end, shows_end=not follows, spans=())
 
 
-def _around(ring: Ring, at: list[int]) -> list[KeySpan]:
+def _around(ring: PlacedCycle, at: list[int]) -> list[KeySpan]:
     """Return the spans of a cycle, none where it has a single key."""
     if len(ring.keys) < 2:
         return []
@@ -122,7 +122,7 @@ def _around(ring: Ring, at: list[int]) -> list[KeySpan]:
     return [*pairs, KeySpan(last, first, at[last], at[first] + ring.cycle.period - at[last])]
 
 
-def _on(ring: Ring | None, at: list[int], first: int, last: int, to: int) -> list[KeySpan]:
+def _on(ring: PlacedCycle | None, at: list[int], first: int, last: int, to: int) -> list[KeySpan]:
     """Return the span that leads on from a key, or from the cycle that it is in, if there is one.
 
     It ends at the key `last`, at the frame `to`.

@@ -11,7 +11,7 @@ from app.document.keyframe import Keyframe
 from app.document.queries.clips import Clip
 from app.document.queries.passages import Leg, Passed, passed, rest
 from app.document.queries.remembered import remembered
-from app.document.queries.spans import KeySpan, Ring, layout, spans
+from app.document.queries.spans import KeySpan, PlacedCycle, layout, spans
 from app.document.settings import FrameRange
 from app.document.timing import Passing
 from engine.interpolation import Joint, windows_of
@@ -152,7 +152,7 @@ def passings_of(clip: Clip) -> list[tuple[KeyPassing, KeyPassing]]:
     ]
 
 
-def _go_on(clip: Clip, ring: Ring, known: dict[int, KeyPassing]) -> None:
+def _go_on(clip: Clip, ring: PlacedCycle, known: dict[int, KeyPassing]) -> None:
     """Let a key at the end of a cycle that has the pose shown there go on from the cycle."""
     keys, following = clip.keys, ring.keys.stop
     if ring.shows_end or following in ring.keys:
