@@ -6,18 +6,24 @@ Imports: `engine`, `app.errors`, `app.export_formats`; no pictures, graphics, wi
 """
 
 from app.document.body import (
+    PAIRS as PAIRS,
     Bone as Bone,
+    SidePairs as SidePairs,
     carried_over as carried_over,
     mirrored_name as mirrored_name,
     pairs_by_name as pairs_by_name,
     partners_of as partners_of,
+    read_pairs as read_pairs,
+    written_pairs as written_pairs,
 )
 from app.document.commands import (
     Command as Command,
     Settled as Settled,
+    choice_commands as choice_commands,
     cycle_commands as cycle_commands,
     exchanged as exchanged,
     figure_commands as figure_commands,
+    group_commands as group_commands,
     handle_commands as handle_commands,
     key_commands as key_commands,
     layer_commands as layer_commands,
@@ -41,12 +47,25 @@ from app.document.keyframe import (
     Pose as Pose,
     Target as Target,
 )
-from app.document.layering import Attachment as Attachment, Switch as Switch
+from app.document.layering import (
+    BLENDS as BLENDS,
+    DEEPEST as DEEPEST,
+    GROUP_BLENDS as GROUP_BLENDS,
+    Attachment as Attachment,
+    BlendMode as BlendMode,
+    Choice as Choice,
+    Group as Group,
+    GroupBlend as GroupBlend,
+    Switch as Switch,
+    Turn as Turn,
+    paths_to as paths_to,
+)
 from app.document.model import Document as Document
 from app.document.playhead import Playhead as Playhead
 from app.document.queries import (
     USUAL_EXTENT as USUAL_EXTENT,
     Clip as Clip,
+    Composite as Composite,
     Extremes as Extremes,
     Front as Front,
     KeySpan as KeySpan,
@@ -59,6 +78,7 @@ from app.document.queries import (
     changed_stretches as changed_stretches,
     clip_of as clip_of,
     closing_span as closing_span,
+    composed as composed,
     exported_frames as exported_frames,
     falls_short as falls_short,
     find_shortfall as find_shortfall,
@@ -71,6 +91,7 @@ from app.document.queries import (
     passings_of as passings_of,
     place_at as place_at,
     resting_pose as resting_pose,
+    sights_of as sights_of,
     spans as spans,
     stiff_outline as stiff_outline,
     stiffened as stiffened,

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from app.document.body import Bone, pairs_by_name
+from app.document.body import SIDES, Bone, pairs_by_name
 from app.document.checks import (
     NOTHING,
     Unknown,
@@ -19,7 +19,14 @@ from app.document.checks import (
     require_size,
 )
 from app.document.keyframe import Handle, KeptPose, Keyframe, Pose
-from app.document.layering import Attachment, Switch, require_in_order
+from app.document.layering import (
+    BLENDS,
+    Attachment,
+    BlendMode,
+    Switch,
+    require_in_order,
+    require_joints,
+)
 from app.document.settings import NATURAL, VARIANTS, Meshing
 from app.document.timing import Cycle, Spring, Track, require_apart, require_repeatable
 from app.errors import LissomError
@@ -97,8 +104,12 @@ class Figure:
     # says. Always seen without any.
     switches: tuple[Switch, ...] = ()
     opacity: float = 1.0  # in [0, 1]
-    # The joint by which it hangs on another figure. Its anchor is then given.
-    attachment: Attachment | None = None
+    blend: BlendMode = "normal"
+    # Whether it is seen only where that is which lies below it in its group: a figure, or a group.
+    clipped: bool = False
+    group: str = ""  # the path of the innermost group that it is in; "" outside of all groups
+    # The joints by which it hangs on others, each from its frame on; its anchor is then given.
+    joints: tuple[Attachment, ...] = ()
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
@@ -106,11 +117,16 @@ class Figure:
         require(bool(self.name.strip()), "A figure needs a name.")
         require_place(self.corner, f"The corner of {self.name!r}")
         require(0 <= self.opacity <= 1, f"Opacity is between 0 and 1, not {self.opacity:g}.")
+        require(
+            self.blend in BLENDS,
+            f"The blend of {self.name!r} is one of {', '.join(BLENDS)}, not {self.blend!r}.",
+        )
         require_in_order(self.switches)
         require(
-            self.attachment is None or self.anchor is not None,
+            not self.joints or self.anchor is not None,
             f"{self.name!r} is attached, but has no anchor.",
         )
+        require_joints(self.joints)
         require(
             not self.still or (len(self.keys) == 1 and not self.handles),
             f"{self.name!r} is a still picture: it has neither handles nor a second key.",
@@ -168,7 +184,7 @@ class Figure:
         """Where the upright axis crosses the picture at which flipped poses are mirrored."""
         if self.mirror is not None:
             return self.mirror
-        paired = pairs_by_name(self.handles)
+        paired = pairs_by_name(self.handles, SIDES)
         places = [self.handle(identity).position.real for identity in paired]
         if not places:
             places = [float(self.domain.outline.real.min()), float(self.domain.outline.real.max())]
@@ -218,12 +234,25 @@ class Figure:
         return next((spring for spring in self.springs if spring.handle == identity), None)
 
     @property
+    def hangs(self) -> bool:
+        """Whether it hangs on another figure at some time."""
+        return any(joint.to is not None for joint in self.joints)
+
+    def joint_at(self, frame: float, *, before: bool = False) -> Attachment | None:
+        """Return the joint that holds at a frame, or until just before; None before the first."""
+        held = None
+        for joint in self.joints:
+            if joint.frame < frame or (joint.frame == frame and not before):
+                held = joint
+        return held
+
+    @property
     def followers(self) -> frozenset[int]:
         """The ids of the handles that follow by springs, which poses are not held by.
 
         A track of a handle comes first, and so does the joint where it sits.
         """
-        joint = None if self.attachment is None else self.anchor
+        joint = self.anchor if self.hangs else None
         held = {handle.id for handle in self.handles if handle.position == joint}
         held |= {i for track in self.tracks if track.enabled for i in track.handles}
         return frozenset(each.handle for each in self.springs if each.enabled) - held

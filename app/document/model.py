@@ -6,12 +6,15 @@ where it comes in: a domain is built by the engine or tested by it, a picture is
 and a certificate is proven of its map, never read.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
+from typing import NoReturn
 
+from app.document.body import PAIRS, SidePairs, require_pairs
 from app.document.checks import NOTHING, Unknown, require, require_distinct, require_size
 from app.document.figure import Figure
+from app.document.layering import Choice, Group, paths_to
 from app.document.settings import FASTEST, ExportSettings, FrameRange, Marker
 from app.errors import LissomError
 
@@ -25,11 +28,14 @@ class Document:
     frames: FrameRange = FrameRange(0, 48)  # all frames of the animation; every key lies in it
     # The part of them that plays, to look at it; None plays everything. Exports do not heed it.
     preview: FrameRange | None = None
+    choices: tuple[Choice, ...] = ()  # between figures that take turns; none is in two of them
     markers: tuple[Marker, ...] = ()  # in the order of their frames, of which each has one at most
     fps: float = 24.0  # frames per second
     # Whether the last frame leads back to the first one: both are the same moment.
     loop: bool = False
     export: ExportSettings = ExportSettings()
+    # Words in the names of layers and handles, or whole names, of which each is the other's side.
+    pairs: SidePairs = PAIRS
     # Fields of the project file that this version does not know and hands on.
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
     # Likewise its members, by their names.
@@ -38,9 +44,12 @@ class Document:
     )
     # Width and height of the canvas; None takes those of the picture behind all others.
     size: tuple[int, int] | None = None
+    # Each after the one that it is in.
+    groups: tuple[Group, ...] = ()
 
     def __post_init__(self) -> None:
         self._check_figures()
+        require_pairs(self.pairs)
         require(
             self.preview is None
             or (self.preview.first in self.frames and self.preview.last in self.frames),
@@ -67,8 +76,29 @@ class Document:
 
     @property
     def exported(self) -> tuple[Figure, ...]:
-        """The figures that exports show, from back to front."""
-        return tuple(each for each in self.figures if not (each.reference or each.hidden))
+        """The figures that exports show at some time, from back to front."""
+        chosen = {identity for choice in self.choices for identity in choice.figures}
+        return tuple(
+            each
+            for each in self.figures
+            if not (each.reference or self.is_in_hidden(each))
+            and (each.id in chosen or not each.hidden)
+        )
+
+    def is_in_hidden(self, figure: Figure) -> bool:
+        """Tell whether a group that a figure is in is hidden at all times."""
+        return any(group.hidden for group in self.groups_around(figure.group))
+
+    def group(self, path: str) -> Group:
+        """Return the group with this path."""
+        for group in self.groups:
+            if group.name == path:
+                return group
+        raise LissomError(f"There is no group {path!r}.")
+
+    def groups_around(self, path: str) -> tuple[Group, ...]:
+        """Return the group with this path after those that it is in, the outermost first."""
+        return tuple(self.group(each) for each in paths_to(path))
 
     def figure(self, identity: int) -> Figure:
         """Return the figure with this id."""
@@ -76,6 +106,17 @@ class Document:
             if figure.id == identity:
                 return figure
         raise LissomError(f"There is no figure with the id {identity}.")
+
+    def choice(self, name: str) -> Choice:
+        """Return the choice with this name."""
+        for choice in self.choices:
+            if choice.name == name:
+                return choice
+        raise LissomError(f"There is no choice {name!r}.")
+
+    def choice_of(self, identity: int) -> Choice | None:
+        """Return the choice that decides when the figure with this id is seen, if there is one."""
+        return next((choice for choice in self.choices if identity in choice.figures), None)
 
     def marker(self, frame: int) -> Marker:
         """Return the marker at this frame."""
@@ -93,16 +134,38 @@ class Document:
         figures = tuple(changed if figure.id == changed.id else figure for figure in self.figures)
         return replace(self, figures=figures, frames=frames)
 
-    def carriers(self, identity: int) -> tuple[Figure, ...]:
-        """Return the figure with this id, the one that it hangs on, and so on."""
+    def carriers(self, identity: int, frame: float, *, before: bool = False) -> tuple[Figure, ...]:
+        """Return the figure with this id, the one that it hangs on at a frame, and so on.
+
+        Parameters
+        ----------
+        identity : int
+        frame : float
+        before : bool
+            Whether what hangs just before the frame counts, and not from it on.
+        """
+        frame = self.in_time(frame)
         chain = [self.figure(identity)]
-        while (joint := chain[-1].attachment) is not None:
-            chain.append(self.figure(joint.to))
-            require(
-                len(chain) <= len(self.figures),
-                f"{chain[0].name!r} would hang on itself; detach one of the figures between first.",
-            )
+        while (joint := chain[-1].joint_at(frame, before=before)) and joint.to is not None:
+            parent = self.figure(joint.to)
+            if parent in chain:
+                self._refuse_circle((*chain[chain.index(parent) :], parent), frame)
+            chain.append(parent)
         return tuple(chain)
+
+    def all_carriers(self, identity: int) -> tuple[Figure, ...]:
+        """Return the others on which a figure hangs at some time, directly or by others."""
+        found = [self.figure(identity)]
+        for figure in found:
+            parents = [self.figure(joint.to) for joint in figure.joints if joint.to is not None]
+            found += [each for each in dict.fromkeys(parents) if each not in found]
+        return tuple(found[1:])
+
+    def in_time(self, frame: float) -> float:
+        """Return a frame as it comes round in a loop; of what does not loop it is itself."""
+        first, period = self.frames.first, self.frames.last - self.frames.first
+        is_beyond = self.loop and period and frame not in self.frames
+        return first + (frame - first) % period if is_beyond else frame
 
     def _check_figures(self) -> None:
         require(len(self.figures) > 0, "A document has at least one figure.")
@@ -110,6 +173,7 @@ class Document:
             require_size(self.size, "canvas")
         require_distinct((figure.id for figure in self.figures), "Two figures have the id {!r}.")
         require_distinct((figure.name for figure in self.figures), "Two figures are called {!r}.")
+        self._check_groups()
         for figure in self.figures:
             for frame in figure.ends:
                 require(
@@ -117,9 +181,54 @@ class Document:
                     f"The key at frame {frame} lies outside the animation's frames "
                     f"{self.frames.first} to {self.frames.last}.",
                 )
+        changes = {joint.frame for figure in self.figures for joint in figure.joints}
         for figure in self.figures:
-            self.carriers(figure.id)
+            if figure.joints:
+                for frame in sorted(changes):
+                    self.carriers(figure.id, frame)
             self._check_clocks(figure)
+        self._check_choices()
+
+    def _check_choices(self) -> None:
+        require_distinct((choice.name for choice in self.choices), "Two choices are called {!r}.")
+        taken: dict[int, str] = {}
+        for choice in self.choices:
+            for identity in choice.figures:
+                figure = self.figure(identity)
+                require(
+                    identity not in taken,
+                    f"The layer {figure.name!r} is in two choices, {taken.get(identity)!r} and "
+                    f"{choice.name!r}; take it out of one.",
+                )
+                require(
+                    not figure.switches,
+                    f"The layer {figure.name!r} is shown and hidden at frames of its own, and is "
+                    f"in the choice {choice.name!r}, which alone decides that; leave out one.",
+                )
+                taken[identity] = choice.name
+
+    def _refuse_circle(self, circle: Sequence[Figure], frame: float) -> NoReturn:
+        """Refuse figures each of which hangs on the next one, the last one being the first."""
+        links = ", ".join(f"{one.name!r} on {other.name!r}" for one, other in pairwise(circle))
+        when = f" at frame {frame:g}" if any(len(figure.joints) > 1 for figure in circle) else ""
+        raise LissomError(
+            f"{circle[0].name!r} would hang on itself{when}: {links}; detach one of them first."
+        )
+
+    def _check_groups(self) -> None:
+        known: set[str] = set()
+        for group in self.groups:
+            require(group.name not in known, f"Two groups are called {group.name!r}.")
+            require(
+                known.issuperset(paths_to(group.name)[:-1]),
+                f"The group {group.name!r} comes before the one that it is in.",
+            )
+            known.add(group.name)
+        for figure in self.figures:
+            require(
+                not figure.group or figure.group in known,
+                f"{figure.name!r} is in the group {figure.group!r}, which is not there.",
+            )
 
     def _check_clocks(self, figure: Figure) -> None:
         """Refuse what does not come round in a loop."""

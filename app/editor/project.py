@@ -24,6 +24,7 @@ from app.document import (
 )
 from app.editor.timeline_view import KeyRow, KeysOf, Timing, TrackRow, row_of
 from app.editor.work import Afterwards, Carry, Derived, Promise, Pull, Take
+from app.errors import NOTHING_TOLD, ImportSummary
 from app.motion import (
     Box,
     CorrectedFrames,
@@ -63,12 +64,13 @@ class Flip:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PoseBlend:
-    """A pose of the library, by its name, that is mixed into the one at a frame.
+    """A pose of a figure's library, by its name, that is mixed into the one at a frame.
 
     Its `share` goes from 0 to 1; all that is mixed in one gesture is one step of undo.
     """
 
     name: str
+    owner: int
     gesture: object
     share: float = 0.0
 
@@ -130,6 +132,9 @@ class Project:
     path: Path | None  # of the project file; None for a new one
     # The files that its pictures were read from, which nothing is written over.
     drawings: set[Path] = field(default_factory=set)
+    # What opening a drawing told, and whether the panel of layers shows it.
+    summary: ImportSummary = NOTHING_TOLD
+    shows_summary: bool = False
     hold: Hold | None = None  # by which other windows see that the file is open here
     # What the file held when it was opened or saved here last; None for a new one.
     read_as: str | None = None
@@ -342,7 +347,7 @@ class Project:
 
     def placements(self, frames: Iterable[int], unknown: RigidMotion) -> list[RigidMotion]:
         """Return where the figure that is posed is at some frames: `unknown` till that is known."""
-        if len(self.document.carriers(self.active)) == 1:
+        if not self.figure.joints:
             return [HERE for _ in frames]
         joints = self.hung
         return [unknown if joints is None else joints.placement(self.active, f) for f in frames]

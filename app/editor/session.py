@@ -11,7 +11,6 @@ from app.document import Baseline, Document, Figure, Keyframe, Meshing, Track, T
 from app.editor.action import Action
 from app.editor.dialogs import Dialog, FileDialog
 from app.editor.project import Project
-from app.editor.timeline_view import TrackRow
 from app.editor.work import Jobs
 from app.errors import shown_name
 from app.export import ExportPlan, Poses
@@ -143,9 +142,9 @@ class CopiedKeys:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CopiedTrack:
-    """Keys of a track to be pasted, from its row, and the track as it was then."""
+    """Keys of a track to be pasted, and the track and its figure as they were then."""
 
-    row: TrackRow
+    figure: Figure
     track: Track
     keys: tuple[TrackKey, ...]
 
@@ -221,6 +220,7 @@ class Session:
     cancellation: Cancellation = field(default_factory=Cancellation)  # of an export
     named_layer: int | None = None  # for which a name is asked
     pointed_layer: int | None = None  # on whose row in the list the pointer is
+    wanted_panel: str = ""  # is brought to the front by the next frame of the window
     export_frame: Box | None = None  # shown in the viewport while the export's settings are
     keeps_aspect: bool = True  # of an export whose size is entered
     curves: CurveKind = "relative"

@@ -101,7 +101,7 @@ def moving_shapes(
     clips = [
         clip_of(document, figure.id)
         for figure in document.exported
-        if any(is_visible(figure, frame) for frame in numbers)
+        if any(is_visible(document, figure, frame) for frame in numbers)
     ]
     if not clips:
         raise LissomError("no figure is seen in these frames; there is nothing to export")
@@ -121,7 +121,7 @@ def moving_shapes(
         texture, uv = _cut_out(pictures[figure.id], places - figure.corner)
         order = PaintOrder(mesh)
         orders = [(frame, order.triangles(clip, frame)) for frame in numbers]
-        sights = [(frame, is_visible(figure, frame)) for frame in numbers]
+        sights = [(frame, is_visible(document, figure, frame)) for frame in numbers]
         shape = MovingShape(
             name=plan.out.stem if len(document.figures) == 1 else figure.name,
             texture=bled(texture),

@@ -3,11 +3,15 @@
 from dataclasses import dataclass
 from typing import Final
 
+from app.document import Composite
 from app.render.gpu import PosedMesh
 from engine.arrays import Complexes
 
 Colour = tuple[float, float, float, float]
 """Red, green, blue and alpha between 0 and 1, straight, as they stand in a picture file."""
+
+Painted = PosedMesh | Composite[PosedMesh]
+"""A mesh, or several that are composited as one."""
 
 TRANSPARENT: Final[Colour] = (0.0, 0.0, 0.0, 0.0)
 
@@ -82,7 +86,8 @@ class Scene:
     """A frame, from back to front: background, ghosts, drawing, wireframe, lines, discs."""
 
     background: Backdrop = Backdrop()
-    meshes: tuple[PosedMesh, ...] = ()  # the drawing in this frame, the furthest first
+    # The drawing in this frame, the furthest first.
+    meshes: tuple[Painted, ...] = ()
     # Paints the drawing in the colours of the values last written to its meshes.
     heat: Heat | None = None
     wireframe: Wireframe | None = None

@@ -115,6 +115,15 @@ class Report:
         return Verdict.worst([*(each.verdict for each in self.intervals), self.corrected_verdict])
 
     @property
+    def reached(self) -> Extremes:
+        """The worst that is reached: of keys as proven, in between and in own ways as measured."""
+        found = [Extremes(own.k, own.sigma_a, own.sigma_b) for _, own in self.keys]
+        found += [each.reached for each in self.intervals]
+        if self.corrected is not None and self.corrected.solved:
+            found += [self.corrected.reached, self.corrected.between]
+        return reduce(Extremes.joined, found)
+
+    @property
     def corrected_verdict(self) -> Verdict:
         """What is known of the frames that are corrected."""
         if self.corrected is None or not self.corrected.solved:

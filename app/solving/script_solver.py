@@ -1,5 +1,6 @@
 """From a new document and a pose script to an animation, solved as the window would solve it."""
 
+import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
@@ -7,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 
 from app.document import (
-    Attachment,
     Document,
     Figure,
     FrameRange,
@@ -24,6 +24,13 @@ from app.document import (
 from app.errors import LissomError
 from app.solving.drag import Drag, Rig
 from app.solving.script import FigureScript, PoseKey, PoseScript
+from app.solving.stage import (
+    layer_named,
+    unseen,
+    with_choices,
+    with_joints,
+    with_kept_places,
+)
 from app.storage import still_figure
 from engine.deform import Hand
 from engine.errors import EngineError
@@ -69,7 +76,8 @@ def pose_document(
     )
     for identity, part in named.items():
         with _whose(part):
-            document = _prepared(document, identity, part)
+            with _among(document, identity, part):
+                document = _prepared(document, identity, part)
             document, told = _with_material(document, identity, part)
         notices += told
     if script.figures[0].layer is not None:
@@ -81,7 +89,8 @@ def pose_document(
             figure, told = _posed(document.figure(identity), part, progress, loop=script.loop)
         document = document.with_figure(figure)
         notices += told
-    return document, tuple(notices)
+    document = with_choices(with_kept_places(document, script), script)
+    return document, (*notices, *unseen(document, script))
 
 
 @contextmanager
@@ -95,25 +104,39 @@ def _whose(part: FigureScript) -> Iterator[None]:
         raise LissomError(f"layer {part.layer!r}: {error}") from error
 
 
+@contextmanager
+def _among(document: Document, identity: int, part: FigureScript) -> Iterator[None]:
+    """Tell in errors which layer a script took that names none, and how it names them."""
+    try:
+        yield
+    except (LissomError, EngineError) as error:
+        figure = document.figure(identity)
+        names = [repr(each.name) for each in document.figures if each is not figure]
+        places = [handle.at for handle in part.handles.values()]
+        places += [] if part.anchor is None else [part.anchor]
+        are_on_it = figure.covers(np.array(places, dtype=np.complex128)).all()
+        if part.layer is not None or not names or are_on_it:
+            raise
+        own = figure.name
+        raise LissomError(
+            f"{error} The script names no layer, so that its handles are on {own!r}, the one in "
+            f"front. The drawing has also {', '.join(names)}: say which layer is meant in "
+            f'"figures": [{{"layer": {json.dumps(own, ensure_ascii=False)}, ...}}].'
+        ) from error
+
+
 def _by_figure(document: Document, script: PoseScript) -> dict[int, FigureScript]:
     """Return what the script says of the figures, by their ids."""
-    names = {figure.name: figure for figure in document.figures}
     named = {}
     for part in script.figures:
         if part.layer is None:
             figure = next((f for f in reversed(document.figures) if not f.still), None)
         else:
-            figure = _layer(names, part.layer)
+            figure = layer_named(document, part.layer)
         if figure is None or figure.still:
             raise LissomError(f"the layer {part.layer!r} stands still: there is no shape on it")
         named[figure.id] = part
     return named
-
-
-def _layer(names: Mapping[str, Figure], layer: str) -> Figure:
-    if layer not in names:
-        raise LissomError(f"there is no layer {layer!r}; the layers are {', '.join(names)}")
-    return names[layer]
 
 
 def _prepared(document: Document, identity: int, part: FigureScript) -> Document:
@@ -124,14 +147,17 @@ def _prepared(document: Document, identity: int, part: FigureScript) -> Document
         document = handle_commands.add_handle(identity, handle.at, name=name)(document)
         document = layer_commands.set_front(identity, added, handle.front, handle.extent)(document)
         document = handle_commands.free_handles(identity, {added}, free=not handle.still)(document)
-    switches = tuple(Switch(frame, visible) for frame, visible in part.visible)
+    figure = document.figure(identity)
+    if part.visible is not None:
+        # What the script says holds, whatever is hidden in the drawing.
+        switches = tuple(Switch(frame, visible) for frame, visible in part.visible)
+        figure = replace(figure, switches=switches, hidden=False)
     document = document.with_figure(
         replace(
-            document.figure(identity),
+            figure,
             variant=part.variant,
             bounds=part.bounds,
             anchor=part.anchor,
-            switches=switches,
             stillness=part.still,
             tracks=tuple(
                 replace(track, handles=tuple(first + number for number in track.handles))
@@ -140,21 +166,7 @@ def _prepared(document: Document, identity: int, part: FigureScript) -> Document
             springs=tuple(replace(spring, handle=first + spring.handle) for spring in part.springs),
         )
     )
-    if part.attach is None:
-        return document
-    parent = _layer({figure.name: figure for figure in document.figures}, part.attach.to)
-    at = part.attach.at
-    what = f"it is attached at ({at.real:g}, {at.imag:g})"
-    if not parent.covers(np.array([at])).all():
-        raise LissomError(f"{what}, which is not on {parent.name!r}")
-    if part.anchor is None and not document.figure(identity).covers(np.array([at])).all():
-        raise LissomError(
-            f"{what}, which is on {parent.name!r} but not on itself; give it an anchor by which it "
-            "hangs there, or choose a point that is on both"
-        )
-    anchor = at if part.anchor is None else part.anchor
-    joint = Attachment(to=parent.id, at=part.attach.at, turns=part.attach.turns)
-    return layer_commands.attach(identity, anchor, joint)(document)
+    return with_joints(document, identity, part)
 
 
 def _with_material(

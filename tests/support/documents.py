@@ -13,6 +13,7 @@ from shapes import regular_polygon
 from app.document.body import Bone
 from app.document.commands import (
     Command,
+    choice_commands,
     figure_commands,
     handle_commands,
     key_commands,
@@ -24,7 +25,7 @@ from app.document.commands import (
 )
 from app.document.figure import PictureFile, new_figure
 from app.document.keyframe import Handle, KeptPose, Keyframe, Passing, Pose, Target
-from app.document.layering import Attachment, Switch
+from app.document.layering import Attachment, Group, Switch
 from app.document.model import Document
 from app.document.settings import FRAMINGS, VARIANTS, ExportSettings, FrameRange, Marker, Meshing
 from app.document.timing import HOLD, LINEAR, PRESETS, Easing, Spring, Track, TrackKey
@@ -95,6 +96,7 @@ def random_command(rng: np.random.Generator, document: Document) -> Command:
     makers = (
         _random_handle_command,
         _random_key_command,
+        _random_choice_command,
         _random_layer_command,
         _random_material_command,
         _random_pose_command,
@@ -144,6 +146,26 @@ def _random_layer_command(rng: np.random.Generator, document: Document) -> Comma
             layer_commands.key_front(figure.id, frame, handle, rng.uniform(-1, 1)),
             layer_commands.key_front(figure.id, frame, handle, None),
         ]
+    return commands[rng.integers(len(commands))]
+
+
+def _random_choice_command(rng: np.random.Generator, document: Document) -> Command:
+    ids = [figure.id for figure in document.figures]
+    identity, frame, to = ids[rng.integers(len(ids))], *(int(at) for at in rng.integers(50, size=2))
+    choice = document.choices[0] if document.choices else None
+    name = choice.name if choice else "none"
+    turn = choice.turns[0].frame if choice and choice.turns else frame
+    commands = [
+        choice_commands.form_choice(f"choice {rng.integers(3)}", ids[: 2 + int(rng.integers(2))]),
+        choice_commands.form_choice("two", rng.permutation(ids)[:2].tolist()),
+        choice_commands.choose_at(identity, frame),
+        choice_commands.unchoose_at(name, turn),
+        choice_commands.move_turn(name, turn, to),
+        choice_commands.rename_choice(name, f"choice {rng.integers(3)}"),
+        choice_commands.join_choice(name, identity),
+        choice_commands.leave_choice(identity),
+        choice_commands.dissolve_choice(name),
+    ]
     return commands[rng.integers(len(commands))]
 
 
@@ -435,12 +457,12 @@ def full_document() -> Document:
         hidden=True,
         switches=(Switch(0, visible=False), Switch(12, visible=True)),
         opacity=0.25,
-        attachment=Attachment(to=5, at=90 + 80j, turns=False, rest=-0.5),
+        joints=(Attachment(to=5, at=90 + 80j, turns=False, rest=-0.5),),
         unknown=MappingProxyType({"visible": False, "bounds": {"tau": 4}}),
     )
     return dataclasses.replace(
         empty,
-        figures=(figure, dataclasses.replace(figure, id=5, name="parent", attachment=None)),
+        figures=(figure, dataclasses.replace(figure, id=5, name="parent", joints=())),
         size=(640, 480),
         frames=FrameRange(1, 60),
         preview=FrameRange(3, 40),
@@ -459,7 +481,7 @@ def full_document() -> Document:
 
 
 def clocked_document() -> Document:
-    """The full document with clocks of single handles, tracks and springs, and with material."""
+    """The full document with what came later: clocks of single handles, material, and groups."""
     full = full_document()
     figure = full.figures[0]
     nose, foot = figure.handles
@@ -490,8 +512,15 @@ def clocked_document() -> Document:
         springs=(spring,),
         stiffness=painted,
         bones=(Bone(ends=(4, 1), amount=1 / 3, is_shown=False, unknown=more),),
+        blend="multiply",
+        clipped=True,
+        group="limbs/left",
     )
-    return dataclasses.replace(full, figures=(child, parent))
+    groups = (
+        Group(name="limbs", hidden=True, unknown=more),
+        Group(name="limbs/left", opacity=1 / 3, blend="screen", clipped=True),
+    )
+    return dataclasses.replace(full, figures=(child, parent), groups=groups)
 
 
 def differences(first: object, second: object, where: str = "document") -> list[str]:

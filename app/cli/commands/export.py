@@ -61,9 +61,10 @@ def _alone(document: Document, name: str) -> Document:
     if name not in names:
         raise LissomError(f"there is no layer {name!r}; the layers are {', '.join(names)}")
     figures = tuple(
-        replace(figure, hidden=figure.name != name, reference=False) for figure in document.figures
+        replace(figure, hidden=False, reference=figure.name != name) for figure in document.figures
     )
-    return replace(document, figures=figures, size=document.canvas)
+    groups = tuple(replace(group, hidden=False) for group in document.groups)
+    return replace(document, figures=figures, groups=groups, size=document.canvas)
 
 
 def _make(

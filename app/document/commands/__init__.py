@@ -10,7 +10,6 @@ from app.document.commands import (
     figure_commands as figure_commands,
     handle_commands as handle_commands,
     key_commands as key_commands,
-    layer_commands as layer_commands,
     material_commands as material_commands,
     pose_commands as pose_commands,
     scene_commands as scene_commands,
@@ -18,3 +17,8 @@ from app.document.commands import (
 )
 from app.document.commands.command import Command as Command
 from app.document.commands.pose_commands import Settled as Settled, exchanged as exchanged
+from app.document.commands.staging import (
+    choice_commands as choice_commands,
+    group_commands as group_commands,
+    layer_commands as layer_commands,
+)

@@ -9,11 +9,11 @@ from app.document.queries.clips import (
     Clip as Clip,
     clip_of as clip_of,
 )
+from app.document.queries.compositing import Composite as Composite, composed as composed
 from app.document.queries.fronts import (
     USUAL_EXTENT as USUAL_EXTENT,
     Front as Front,
     fronts_at as fronts_at,
-    is_visible as is_visible,
 )
 from app.document.queries.material import (
     are_as_stiff as are_as_stiff,
@@ -28,6 +28,7 @@ from app.document.queries.shortfall import (
     falls_short as falls_short,
     find_shortfall as find_shortfall,
 )
+from app.document.queries.sight import is_visible as is_visible, sights_of as sights_of
 from app.document.queries.spans import (
     KeySpan as KeySpan,
     closing_span as closing_span,

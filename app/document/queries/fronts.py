@@ -1,9 +1,9 @@
-"""What is in front at a frame, and what is seen at all."""
+"""What is in front at a frame."""
 
 from typing import NamedTuple
 
-from app.document.figure import Figure
 from app.document.queries.clips import Clip
+from app.document.queries.spans import has_been
 from engine.geometry import box_diagonal
 
 # Of the drawing's diagonal: how far a depth reaches that is given no extent.
@@ -31,7 +31,7 @@ def fronts_at(clip: Clip, frame: float) -> tuple[Front, ...]:
         frame = clip.frames.first + (frame - clip.frames.first) % clip.period
     is_before_all = clip.loop and frame < clip.keys[0].frame
     for key in clip.keys:
-        if is_before_all or _has_been(figure, key.frame, frame):
+        if is_before_all or has_been(figure, key.frame, frame):
             depths.update(key.fronts)
     usual = USUAL_EXTENT * box_diagonal(figure.domain.outline)
     return tuple(
@@ -39,26 +39,3 @@ def fronts_at(clip: Clip, frame: float) -> tuple[Front, ...]:
         for handle in figure.handles
         if depths[handle.id]
     )
-
-
-def is_visible(figure: Figure, frame: float) -> bool:
-    """Tell whether a figure is seen at a frame."""
-    if figure.hidden:
-        return False
-    shown = figure.switches[0].visible if figure.switches else True
-    for switch in figure.switches:
-        if _has_been(figure, switch.frame, frame):
-            shown = switch.visible
-    return shown
-
-
-def _has_been(figure: Figure, event: int, frame: float) -> bool:
-    """Tell whether an event of a figure's keys holds at a frame, as far as no later one does.
-
-    Those of a cycle hold until a repeat, or all of them, are over, and begin anew.
-    """
-    for cycle in figure.cycles:
-        if cycle.has(event):
-            end = frame if cycle.until is None else min(frame, cycle.until)
-            return event <= frame and event <= cycle.source(end)
-    return event <= frame

@@ -182,7 +182,7 @@ def deselect_keys(_: Session, project: Project) -> None:
 @with_project
 def select_mirrored(session: Session, project: Project) -> None:
     """Select the partners of the selected handles on the other side, as their names tell."""
-    pairs = pairs_by_name(project.figure.handles)
+    pairs = pairs_by_name(project.figure.handles, project.document.pairs)
     partners = frozenset(pairs[handle] for handle in project.selected if handle in pairs)
     if partners:
         select(session, partners)

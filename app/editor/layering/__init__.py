@@ -7,9 +7,12 @@ Imports: `app.editor`, `app.document`, `app.motion`, `app.solving`, `app.storage
 
 from app.editor.layering.arranging import (
     ask_name as ask_name,
+    blend as blend,
     choose as choose,
+    clip as clip,
     duplicate as duplicate,
     fade as fade,
+    fade_group as fade_group,
     figure_at as figure_at,
     is_at as is_at,
     list_active as list_active,
@@ -19,6 +22,7 @@ from app.editor.layering.arranging import (
     remove as remove,
     rename as rename,
     show as show,
+    show_group as show_group,
     switch_here as switch_here,
     unswitch_here as unswitch_here,
 )

@@ -2,7 +2,13 @@
 
 import numpy as np
 
-from app.document import is_visible, layer_commands
+from app.document import (
+    BlendMode,
+    choice_commands,
+    group_commands,
+    is_visible,
+    layer_commands,
+)
 from app.editor.actions import editing, playback, posing
 from app.editor.project import Project
 from app.editor.session import Session, with_project
@@ -50,7 +56,8 @@ def figure_at(
 def is_at(project: Project, identity: int, place: complex) -> bool:
     """Tell whether a figure is seen at a place of the scene."""
     shown = project.puppets[identity].shown
-    if shown is None or not is_visible(project.document.figure(identity), shown.frame):
+    document = project.document
+    if shown is None or not is_visible(document, document.figure(identity), shown.frame):
         return False
     outline = shown.positions[: len(shown.mesh.domain.outline)]
     return bool(contains(outline, np.array([shown.placement.back(place)]))[0])
@@ -93,12 +100,43 @@ def fade(session: Session, identity: int, opacity: float) -> None:
     editing.edit(session, layer_commands.set_opacity(identity, opacity))
 
 
+def blend(session: Session, identity: int, mode: BlendMode) -> None:
+    """Set how a layer's colours meet those behind it."""
+    editing.edit(session, layer_commands.set_blend(identity, mode))
+
+
+@with_project
+def clip(session: Session, project: Project, identity: int) -> None:
+    """Let a layer be seen only where what lies below it is, or everywhere again."""
+    clipped = project.document.figure(identity).clipped
+    editing.edit(session, layer_commands.set_clipped(identity, clipped=not clipped))
+
+
+def fade_group(session: Session, path: str, opacity: float) -> None:
+    """Set how opaque a group is."""
+    editing.edit(session, group_commands.set_group_opacity(path, opacity))
+
+
+@with_project
+def show_group(session: Session, project: Project, path: str) -> None:
+    """Hide a group, or show it again."""
+    hidden = project.document.group(path).hidden
+    editing.edit(session, group_commands.set_group_hidden(path, hidden=not hidden))
+
+
 @with_project
 def switch_here(session: Session, project: Project, identity: int) -> None:
-    """Show or hide a layer from the present frame on: the other way than it is there."""
+    """Show or hide a layer from the present frame on: the other way than it is there.
+
+    One that takes turns with others is shown in place of them.
+    """
     frame = playback.current_frame(session, project)
-    visible = not is_visible(project.document.figure(identity), frame)
-    editing.edit(session, layer_commands.switch_at(identity, frame, visible=visible))
+    document = project.document
+    visible = not is_visible(document, document.figure(identity), frame)
+    if document.choice_of(identity) is None:
+        editing.edit(session, layer_commands.switch_at(identity, frame, visible=visible))
+    elif visible:
+        editing.edit(session, choice_commands.choose_at(identity, frame))
 
 
 @with_project

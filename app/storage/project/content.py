@@ -10,8 +10,10 @@ import numpy as np
 
 from app.document import (
     FRAME_NAMES,
+    PAIRS,
     Attachment,
     Bone,
+    Choice,
     Cycle,
     Document,
     Easing,
@@ -19,6 +21,7 @@ from app.document import (
     Figure,
     FormatPictures,
     FrameRange,
+    Group,
     Handle,
     KeptPose,
     Keyframe,
@@ -31,6 +34,7 @@ from app.document import (
     Target,
     Track,
     TrackKey,
+    Turn,
 )
 from app.errors import LissomError
 from app.export_formats import FormatOptions, FormatSettings
@@ -219,12 +223,23 @@ DOMAIN = part(
     Field("stale", FLAG, attrgetter("is_stale"), earlier=False),
 )
 SWITCH = pair(WHOLE, FLAG, "a frame and true or false", make=Switch, of=astuple)
-ATTACHMENT = part(
+ATTACHMENT = record(
     Attachment,
-    Field("to", WHOLE),
+    Field("to", optional(WHOLE)),
     Field("at", POINT),
     Field("turns", FLAG),
     Field("rest", NUMBER),
+    Field("frame", WHOLE, usual=0),
+    Field("offset", POINT, usual=0j),
+    Field("keeps", FLAG, usual=False),
+)
+GROUP = record(
+    Group,
+    Field("name", TEXT),
+    Field("opacity", NUMBER, usual=1.0),
+    Field("hidden", FLAG, usual=False),
+    Field("blend", TEXT, usual="pass-through"),
+    Field("clipped", FLAG, usual=False),
 )
 FIGURE = record(
     dict,
@@ -255,7 +270,18 @@ FIGURE = record(
     Field("hidden", FLAG, usual=False),
     Field("switches", several(SWITCH), usual=()),
     Field("opacity", NUMBER, usual=1.0),
-    Field("attachment", optional(ATTACHMENT), usual=None),
+    Field("blend", TEXT, usual="normal"),
+    Field("clipped", FLAG, usual=False),
+    Field("group", TEXT, usual=""),
+    # Its joints: the first one, and those that come later.
+    Field("attachment", optional(ATTACHMENT), lambda each: (*each.joints, None)[0], usual=None),
+    Field("handovers", several(ATTACHMENT), lambda each: each.joints[1:], usual=()),
+)
+CHOICE = record(
+    Choice,
+    Field("name", TEXT),
+    Field("figures", several(WHOLE)),
+    Field("turns", several(pair(WHOLE, WHOLE, "a frame and a figure", make=Turn, of=tuple))),
 )
 DOCUMENT = record(
     dict,
@@ -269,6 +295,9 @@ DOCUMENT = record(
     Field("loop", FLAG),
     Field("export", EXPORT),
     Field("size", optional(SIZE), usual=None),
+    Field("pairs", several(pair(TEXT, TEXT, "two words")), usual=PAIRS),
+    Field("choices", several(CHOICE), usual=()),
+    Field("groups", several(GROUP), usual=()),
 )
 
 
@@ -329,6 +358,7 @@ def _read_figure(fields: dict[str, Any], archive: Archive) -> Figure:
             raise LissomError(f"one of its {kind} has two targets for one handle")
         return Pose.of(f, targets, certify(f, boundary, fields["bounds"]))
 
+    first, later = fields.pop("attachment"), fields.pop("handovers")
     for index, key in enumerate(fields["keys"]):
         key["pose"] = pose("keys", index, key.pop("targets"))
         key["fronts"] = dict(key["fronts"])
@@ -338,6 +368,7 @@ def _read_figure(fields: dict[str, Any], archive: Archive) -> Figure:
         **fields
         | {
             "picture": picture,
+            "joints": (*(() if first is None else (first,)), *later),
             "domain": domain,
             "meshing": Meshing(detail=made.pop("detail"), triangles=made.pop("triangles")),
             "is_stale": made.pop("stale"),

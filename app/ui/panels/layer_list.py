@@ -45,7 +45,7 @@ def draw_list(
     imgui.begin_child("list", ImVec2(0, shown * pitch))
     frame = playback.current_frame(session, project)
     for figure in reversed(figures):
-        is_seen = is_visible(figure, frame)
+        is_seen = is_visible(project.document, figure, frame)
         actions += _row(session, look, figure, pictures, is_seen=is_seen)
     # An item: placing the cursor alone gives the list no height.
     imgui.dummy(ImVec2(0, 0))
@@ -186,7 +186,7 @@ def _text(look: Look, figure: Figure, left: float, end: ImVec2, *, is_seen: bool
     palette, em = look.palette, look.em
     draw_list, middle = imgui.get_window_draw_list(), end.y
     signs = [f"{100 * figure.opacity:.0f}%"] if figure.opacity < 1 else []
-    signs += [icons.ICON_FA_LINK] if figure.attachment is not None else []
+    signs += [icons.ICON_FA_LINK] if figure.hangs else []
     signs += [icons.ICON_FA_IMAGE] if figure.still else []
     signs += [icons.ICON_FA_BAN] if figure.reference else []
     right = end.x - GAP * em

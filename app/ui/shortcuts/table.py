@@ -1,5 +1,6 @@
 """All actions that have a name, in the order of the menus: adding one is adding it here."""
 
+from functools import partial
 from typing import Any
 
 from imgui_bundle import hello_imgui, icons_fontawesome_6 as icons
@@ -23,9 +24,9 @@ from app.editor.actions import (
     tracks,
     viewing,
 )
-from app.editor.poses import copying, flipping, library
+from app.editor.poses import copying, library, pasting, receiving
 from app.editor.tools import moving
-from app.ui.panel import is_in_front
+from app.ui.panel import bring_to_front
 from app.ui.shortcuts.binding import Binding
 
 
@@ -47,6 +48,14 @@ def _copied(session: Session, project: Project) -> str:
 def _stretch(_: Session, project: Project) -> str:
     stretch = cycles.chosen_stretch(project)
     return "" if stretch is None else f"frames {stretch[0]} to {stretch[1]}"
+
+
+def _onto(session: Session, project: Project, way: receiving.PasteWay) -> str:
+    """Tell onto which layers is pasted, where that is not the one that is posed alone."""
+    onto = [each.figure for each in receiving.landings(session, project, way)]
+    if len(onto) > 1:
+        return f"onto {len(onto)} layers"
+    return "".join(f"onto {figure.name}" for figure in onto if figure.id != project.active)
 
 
 def _all(session: Session, _: Project) -> str:
@@ -88,6 +97,10 @@ def _all_locked(session: Session) -> bool:
     return bool(project and selected and all(map(project.figure.is_locked, selected)))
 
 
+def _has_summary(_: Session, project: Project) -> bool:
+    return bool(project.summary)
+
+
 def _loops(session: Session) -> bool:
     return session.project is not None and session.project.document.loop
 
@@ -103,22 +116,14 @@ def _brushes(session: Session, _: Project) -> bool:
 @with_project
 def _rename_layer(session: Session, project: Project) -> None:
     """Ask for the name of the layer that is posed, in the list of layers."""
-    _bring_to_front("Layers")
+    bring_to_front("Layers")
     layering.ask_name(session, project.active)
 
 
 def _export(session: Session) -> None:
     """Show what the export makes; where that is seen already, ask where to and begin."""
-    if _bring_to_front("Export"):
+    if bring_to_front("Export"):
         exporting.ask(session)
-
-
-def _bring_to_front(title: str) -> bool:
-    """Show a panel; return whether it was in front already."""
-    for panel in hello_imgui.get_runner_params().docking_params.dockable_windows:
-        if panel.label.endswith(f"###{title}"):
-            panel.focus_window_at_next_frame = True
-    return is_in_front(title)
 
 
 def _overlay(label: str, name: OverlayName, keys: str, **more: Any) -> Binding:
@@ -167,26 +172,49 @@ MENUS: dict[str, dict[str, Binding]] = {
             detail=_redo_label,
         ),
         "copy": Binding("Copy", do(copying.copy), "Ctrl+C", parted=True, detail=_copied),
-        "paste": Binding("Paste", do(copying.paste), "Ctrl+V", possible=copying.can_paste),
+        "copy all": Binding(
+            "Copy poses of all layers",
+            do(copying.copy_all),
+            "Ctrl+Alt+C",
+            possible=lambda _, project: len(project.document.figures) > 1,
+        ),
+        "paste": Binding(
+            "Paste",
+            do(pasting.paste),
+            "Ctrl+V",
+            detail=partial(_onto, way="as it is"),
+            why_not=partial(pasting.why_not, way="as it is"),
+        ),
         "paste flipped": Binding(
             "Paste flipped",
-            do(flipping.paste),
+            do(pasting.paste, "flipped"),
             "Ctrl+Shift+V",
             icon=icons.ICON_FA_PASTE,
-            hint="Put the copied pose in a key at this frame, left and right exchanged",
-            possible=copying.copied_here,
+            hint="Put what was copied in a key at this frame, mirrored: left and right exchange",
+            detail=partial(_onto, way="flipped"),
+            why_not=partial(pasting.why_not, way="flipped"),
+        ),
+        "paste swapped": Binding(
+            "Paste swapped",
+            do(pasting.paste, "swapped"),
+            "Ctrl+Shift+X",
+            icon=icons.ICON_FA_RIGHT_LEFT,
+            hint="Put what was copied in a key at this frame: near and far, or left and right, "
+            "exchange, and nothing is mirrored",
+            detail=partial(_onto, way="swapped"),
+            why_not=partial(pasting.why_not, way="swapped"),
         ),
         "paste on selected": Binding(
             "Paste on selected handles",
-            do(copying.paste_on_selected),
+            do(pasting.paste_on_selected),
             "Ctrl+Alt+V",
-            possible=copying.copied_for_selected,
+            why_not=partial(pasting.why_not_on_selected, way="as it is"),
         ),
         "flip on selected": Binding(
             "Paste flipped on selected",
-            do(flipping.paste_on_selected),
+            do(pasting.paste_on_selected, "flipped"),
             "Ctrl+Alt+Shift+V",
-            possible=copying.copied_for_selected,
+            why_not=partial(pasting.why_not_on_selected, way="flipped"),
         ),
         "keep pose": Binding(
             "Keep pose",
@@ -533,6 +561,7 @@ MENUS: dict[str, dict[str, Binding]] = {
         "shortcuts": Binding(
             "Keys and mouse", do(viewing.show_shortcuts), "F1", needs_project=False
         ),
+        "import": Binding("What opening it told", do(files.show_summary), possible=_has_summary),
     },
 }
 BINDINGS = {name: binding for menu in MENUS.values() for name, binding in menu.items()}

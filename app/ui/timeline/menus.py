@@ -61,7 +61,11 @@ def key_menu(bands: Bands, row: KeyRow, key: Keyframe | TrackKey) -> list[Action
 
 def _paste_items(session: Session, frame: int) -> list[Action]:
     """Draw what pastes at a frame, where the playhead goes then."""
-    pasted = [action for name in ("paste", "paste flipped") for action in bound_item(session, name)]
+    pasted = [
+        action
+        for name in ("paste", "paste swapped", "paste flipped")
+        for action in bound_item(session, name)
+    ]
     return [do(playback.scrub, frame), *pasted] if pasted else []
 
 

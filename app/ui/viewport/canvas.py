@@ -6,11 +6,11 @@ from functools import partial
 
 import numpy as np
 
-from app.document import Figure, is_visible, time_of
+from app.document import Figure, composed, is_visible, time_of
 from app.editor import HeatMap, Project, Puppet, Session
 from app.motion import PosableMesh, Shown
-from app.render import Ghost, Heat, Renderer, Scene, Wireframe
-from app.render.gpu import PosedMesh, RenderTarget
+from app.render import Ghost, Heat, Painted, Renderer, Scene, Wireframe
+from app.render.gpu import RenderTarget
 from app.ui.style import PALETTES
 from app.ui.viewport.backdrop import background
 from app.ui.viewport.cut_view import mark_holes
@@ -66,7 +66,7 @@ class Canvas:
         self._fit_targets(session.screen, 1 + is_split)
         if self._drawing is None:
             self._drawing = Drawing(self._renderer, project)
-        posable = partial(self._drawing.drawn_mesh, project.active, number=SMALL_PICTURE)
+        posable = partial(self._drawing.drawn_mesh, number=SMALL_PICTURE)
         self.pose_pictures.draw(session, project, posable)
         inputs = _inputs(session, project)
         if inputs != self._drawn:
@@ -128,6 +128,7 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
         project.figure.cut_out if session.cutting else None,
         session.tint,
         project.document.figures,
+        project.document.groups,
         session.overlays,
         session.export_frame,
         session.preferences,
@@ -199,23 +200,24 @@ def _posed(
     drawing: Drawing,
     *,
     number: int = 0,
-) -> tuple[PosedMesh, ...]:
+) -> tuple[Painted, ...]:
     """Return what is seen of the figures, in the order of the document: the last is in front."""
     heat_map = session.overlays.heat_map
-    poses = []
-    for figure in project.document.figures:
+    poses = {}
+    document = project.document
+    for figure in document.figures:
         shown = shows[figure.id]
-        if shown is None or not is_visible(figure, shown.frame):
+        if shown is None or not is_visible(document, figure, shown.frame):
             continue
         pose = drawing.drawn_mesh(figure.id, shown.mesh, number).pose(
-            shown.vertices, placement=shown.placement, opacity=figure.opacity
+            shown.vertices, placement=shown.placement
         )
-        poses.append(pose)
+        poses[figure.id] = pose
         if session.tint is not None:
             drawing.tint(pose, _tinted(session, project, drawing, figure, shown))
         elif heat_map != "none":
             drawing.heat(pose, shown, heat_map)
-    return tuple(poses)
+    return composed(document, poses)
 
 
 def _tinted(

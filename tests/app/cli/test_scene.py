@@ -1,6 +1,7 @@
 """A drawing on layers, from its script to frames, as a person does it in a shell."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,7 +11,8 @@ from PIL import Image, ImageDraw
 from app.cli.main import main
 from app.document import is_visible
 from app.motion import Joints
-from app.storage.project_file import load_project
+from app.storage.project_file import load_project, save_project
+from engine.maps import Bounds
 
 WIDTH, HEIGHT = 240, 200
 STACK = "".join(
@@ -79,13 +81,13 @@ def test_a_script_poses_the_layers_that_it_names(project):
     assert [figure.name for figure in document.figures] == ["wall", "body", "arm", "patch"]
     assert (wall.still, body.still) == (True, False)
     assert document.canvas == (WIDTH, HEIGHT)
-    assert (arm.attachment.to, arm.attachment.at, arm.anchor) == (body.id, 95 + 120j, 95 + 120j)
-    assert [is_visible(patch, frame) for frame in (3, 4)] == [True, False]
+    assert (arm.joints[0].to, arm.joints[0].at, arm.anchor) == (body.id, 95 + 120j, 95 + 120j)
+    assert [is_visible(document, patch, frame) for frame in (3, 4)] == [True, False]
     head = body.handles[1]
     assert (head.front, head.extent, dict(body.keys[1].fronts)) == (0.5, 30.0, {head.id: -1.0})
     # The joint of a joint is closed, and the patch keeps its own turn.
     joints = Joints(document)
-    at = np.array([patch.attachment.at])
+    at = np.array([patch.joints[0].at])
     arm_place = joints.placement(arm.id, 8).on(arm.map_of(arm.keys[1].pose)(at))
     own = joints.placement(patch.id, 8)
     assert own.factor == 1
@@ -98,7 +100,36 @@ def test_certify_tells_of_each_figure(project, capsys):
     assert set(figures) == {"body", "arm", "patch"}
     assert all(block["certified"] for block in figures.values())
     assert main(["certify", str(project)]) == 0
-    assert "\narm\n" in capsys.readouterr().out
+    first, header, *lines, more = capsys.readouterr().out.splitlines()
+    assert first == (
+        "All in all: proven: all 3 figures are proven to keep their bounds at every moment."
+    )
+    assert header.split() == ["k", "sigma_a", "sigma_b"]
+    assert [line.split()[0] for line in lines] == ["body", "arm", "patch"]
+    for line in lines:
+        name, *values, verdict = line.split()
+        block, worst = figures[name], (max, max, min)
+        parts = [*block["keys"], *block["intervals"], *filter(None, [block["corrected"]])]
+        for column, value, extreme in zip(("k", "sigma_a", "sigma_b"), values, worst, strict=True):
+            assert float(value) == pytest.approx(extreme(p[column] for p in parts), abs=1e-4)
+        assert verdict == "proven"
+    assert "--details" in more
+    assert main(["certify", str(project), "--details"]) == 0
+    detailed = capsys.readouterr().out
+    assert detailed.startswith(first)
+    assert "\narm\n" in detailed
+
+
+def test_certify_names_what_is_over_first(project, capsys, tmp_path):
+    document = load_project(project)
+    arm = next(figure for figure in document.figures if figure.name == "arm")
+    narrow = replace(arm, bounds=Bounds(k=0.01, sigma_a=1.01, sigma_b=0.99))
+    save_project(tmp_path / "over.lissom", document.with_figure(narrow))
+    assert main(["certify", str(tmp_path / "over.lissom")]) == 1
+    first, _, _, line, *_ = capsys.readouterr().out.splitlines()
+    assert first == "All in all: OVER: 1 of 3 figures are beyond their bounds, or may fold."
+    assert line.split()[0] == "arm"
+    assert "OVER at key 8" in line
 
 
 def frame(project, name, *options):
@@ -169,6 +200,18 @@ def test_export_draws_the_scene_or_one_figure_of_it(project):
             "figures[0].springs[0].handle names the handle 'thumb'",
         ),
         ({"still": "no"}, "figures[0].still must be true or false"),
+        (
+            {"attach": [{"to": "body", "at": [95, 120]}, {"to": "body", "keep": True}]},
+            "figures[0].attach is out of order: frame 0 after 0",
+        ),
+        ({"attach": [{"frame": -1, "to": None}]}, "figures[0].attach[0].frame must be a whole"),
+        ({"attach": [{"to": None, "at": [1, 2]}]}, "lets go, so that it has no at"),
+        ({"attach": [{"to": "body"}]}, "figures[0].attach[0] lacks the field 'at'"),
+        ({"attach": [{"frame": 4, "to": "leg", "keep": True}]}, "there is no layer 'leg'"),
+        (
+            {"attach": [{"to": "body", "at": [95, 120]}, {"frame": 4, "to": "arm", "keep": True}]},
+            "'arm' would hang on itself at frame 4: 'arm' on 'arm'",
+        ),
     ],
 )
 def test_what_a_drawing_does_not_have_is_told(folder, change, words, capsys):
@@ -183,8 +226,214 @@ def test_what_a_drawing_does_not_have_is_told(folder, change, words, capsys):
     assert not (folder / "bad.lissom").exists()
 
 
+def refused(folder, script, capsys):
+    """Return what is said where a script cannot be followed."""
+    path = folder / "bad.json"
+    path.write_text(json.dumps(script))
+    arguments = [str(folder / "man.ora"), str(path), "--out", str(folder / "bad.lissom")]
+    with pytest.raises(SystemExit):
+        main(["pose", *arguments, "--triangles", "4000"])
+    return capsys.readouterr().err
+
+
+def test_a_script_of_one_figure_is_told_which_layer_it_took(folder, capsys):
+    script = {"schema": 1, "handles": {"foot": [80, 40]}, "keys": [{"frame": 0}]}
+    told = refused(folder, script, capsys)
+    assert "The handle 'foot' at (80, 40) lies outside" in told
+    assert "on 'patch', the one in front" in told
+    assert "also 'wall', 'body', 'arm'" in told
+    assert '"figures": [{"layer": "patch", ...}]' in told
+    # What is wrong with it on any layer says nothing of others.
+    on_it = {**script, "handles": {"spot": {"at": [180, 120], "front": 3}}}
+    assert "figures" not in refused(folder, on_it, capsys)
+
+
+def test_what_hangs_by_an_anchor_elsewhere_comes_to_its_parent_as_the_help_says(folder):
+    """Its targets are told as if it hung on nothing."""
+    body, arm, _ = SCRIPT["figures"]
+    elsewhere = {**arm, "anchor": [190, 120], "handles": {"hand": [100, 120]}}
+    keys = [{"frame": 0}, {"frame": 8, "targets": {"hand": [104, 132]}}]
+    script = {**SCRIPT, "figures": [body, {**elsewhere, "keys": keys}]}
+    path, out = folder / "elsewhere.json", folder / "elsewhere.lissom"
+    path.write_text(json.dumps(script))
+    arguments = [str(folder / "man.ora"), str(path), "--out", str(out), "--triangles", "4000"]
+    assert main(["pose", *arguments]) == 0
+    document = load_project(out)
+    figures = {figure.name: figure for figure in document.figures}
+    arm, body, joints = figures["arm"], figures["body"], Joints(document)
+    assert arm.keys[1].pose.targets[0].position == 104 + 132j
+    for frame, index in ((0, 0), (8, 1)):
+        f, g = (each.map_of(each.keys[index].pose) for each in (arm, body))
+        at = np.array([95 + 120j])
+        own = joints.placement(arm.id, frame)
+        here = own.on(f(np.array([190 + 120j])))[0]
+        assert abs(here - g(at)[0]) < 1e-9 * WIDTH
+        fz = g.derivatives(at)[0][0]
+        assert abs(own.factor - fz / abs(fz)) < 1e-12
+
+
+def test_a_short_colour_is_one(project):
+    short = frame(project, "short", "--frames", "5:5", "--background", "#fA0", "--figure", "patch")
+    assert (short.reshape(-1, short.shape[-1])[:, :3] == (255, 170, 0)).all()
+
+
 def test_a_figure_that_is_not_there_is_told(project, folder, capsys):
     arguments = ["export", str(project), "--out", str(folder / "no"), "--figure", "leg"]
     with pytest.raises(SystemExit):
         main(arguments)
     assert "the layers are wall, body, arm, patch" in capsys.readouterr().err
+
+
+def test_what_changes_hands_does_not_jump(folder):
+    patch = {
+        **SCRIPT["figures"][2],
+        "visible": [],
+        "attach": [
+            {"to": "arm", "at": [180, 120]},
+            {"frame": 3, "to": "body", "keep": True},
+            {"frame": 6, "to": None, "keep": True},
+        ],
+    }
+    script = {**SCRIPT, "figures": [*SCRIPT["figures"][:2], patch]}
+    (folder / "hands.json").write_text(json.dumps(script))
+    out = folder / "hands.lissom"
+    arguments = [str(folder / "man.ora"), str(folder / "hands.json"), "--out", str(out)]
+    assert main(["pose", *arguments, "--triangles", "4000"]) == 0
+    document = load_project(out)
+    patch, body = (next(f for f in document.figures if f.name == n) for n in ("patch", "body"))
+    assert [joint.frame for joint in patch.joints] == [0, 3, 6]
+    assert patch.joints[1].to == body.id
+    joints = Joints(document)
+    for frame in (3, 6):
+        just, now = (joints.placement(patch.id, at) for at in (frame - 1e-6, frame))
+        assert abs(just.shift - now.shift) < 1e-3
+        assert abs(just.factor - now.factor) < 1e-5
+    assert joints.placement(patch.id, 8) == joints.placement(patch.id, 6)
+    # The nearest point of the body when it is handed over, not as it was drawn.
+    assert patch.joints[1].at.real > 105
+
+
+MOUTHS = "".join(
+    f'<layer name="{name}" src="data/{index}.png" visibility="{visibility}"/>'
+    for index, (name, visibility) in enumerate(
+        (("oh", "hidden"), ("ah", "hidden"), ("closed", "visible"), ("head", "visible"))
+    )
+)
+
+
+@pytest.fixture
+def face(tmp_path):
+    """A head with three mouths, of which two are hidden; returns what poses it by a script."""
+    pictures = [
+        painted("ellipse", (100, 100, 140, 140), (250, 250, 0, 255)),
+        painted("ellipse", (100, 100, 140, 140), (0, 250, 0, 255)),
+        painted("ellipse", (100, 110, 140, 130), (250, 0, 0, 255)),
+        painted("ellipse", (40, 20, 200, 180), (40, 40, 200, 255)),
+    ]
+    (tmp_path / "face.ora").write_bytes(openraster((WIDTH, HEIGHT), MOUTHS, pictures))
+
+    def pose(**stage):
+        script = {
+            "schema": 1,
+            "figures": [{"layer": "head", "handles": {}, "keys": [{"frame": 0}, {"frame": 12}]}],
+        }
+        (tmp_path / "face.json").write_text(json.dumps(script | stage))
+        out = tmp_path / "face.lissom"
+        files = [str(tmp_path / "face.ora"), str(tmp_path / "face.json"), "--out", str(out)]
+        return main(["pose", *files, "--triangles", "2000"]), out
+
+    return pose
+
+
+def mouth_at(out, number):
+    """The colour of the mouth in a frame."""
+    options = ("--framing", "canvas", "--frames", f"{number}:{number}")
+    return frame(out, f"frame{number}", *options)[HEIGHT - 80, 120, :3].tolist()
+
+
+CHOICE = {
+    "name": "mouth",
+    "layers": ["closed", "ah", "oh"],
+    "keys": [[0, "closed"], [4, "ah"], [8, "oh"], [10, "closed"]],
+}
+
+
+def test_a_choice_shows_one_layer_at_a_time_whatever_is_hidden_in_the_drawing(face, capsys):
+    code, out = face(choices=[CHOICE])
+    assert code == 0
+    assert "never seen" not in capsys.readouterr().err
+    document = load_project(out)
+    for number, name in ((0, "closed"), (3, "closed"), (4, "ah"), (8, "oh"), (12, "closed")):
+        assert [f.name for f in document.figures if is_visible(document, f, number)] == [
+            "head",
+            name,
+        ]
+    assert mouth_at(out, 2) == [250, 0, 0]
+    assert mouth_at(out, 5) == [0, 250, 0]
+    assert mouth_at(out, 8) == [250, 250, 0]
+    # One layer of it alone is seen when it is chosen.
+    options = ("--framing", "canvas", "--figure", "ah")
+    assert frame(out, "ah", *options, "--frames", "5:5")[..., 3].any()
+    assert not frame(out, "no ah", *options, "--frames", "9:9")[..., 3].any()
+
+
+def test_a_script_shows_what_the_drawing_hides(face, capsys):
+    oh = {"layer": "oh", "handles": {}, "keys": [{"frame": 0}, {"frame": 12}]}
+    assert face(figures=[{**oh, "visible": [[0, False], [6, True]]}])[0] == 0
+    assert "never seen" not in capsys.readouterr().err
+    out = face(figures=[{**oh, "visible": [[0, False], [6, True]]}])[1]
+    assert mouth_at(out, 5) == [250, 0, 0]
+    assert mouth_at(out, 6) == [250, 250, 0]
+
+
+@pytest.mark.parametrize(
+    ("visible", "words"),
+    [
+        ({}, 'oh is hidden in the drawing, and so never seen; with "visible": [[0, true]] it is'),
+        ({"visible": [[0, False]]}, "oh is never seen: its visible shows it at no frame"),
+        (
+            {"visible": [[0, False], [40, True]]},
+            "oh is never seen: it is shown from frame 40 on, and the animation ends at frame 12",
+        ),
+    ],
+)
+def test_what_is_never_seen_is_told(face, visible, words, capsys):
+    oh = {"layer": "oh", "handles": {}, "keys": [{"frame": 0}, {"frame": 12}], **visible}
+    assert face(figures=[oh])[0] == 0
+    assert words in " ".join(capsys.readouterr().err.split())
+
+
+def test_a_choice_after_the_end_is_told(face, capsys):
+    assert face(choices=[{**CHOICE, "keys": [[0, "closed"], [99, "ah"]]}])[0] == 0
+    told = " ".join(capsys.readouterr().err.split())
+    assert "choice 'mouth': ah from frame 99 on is never seen, as the animation ends" in told
+
+
+@pytest.mark.parametrize(
+    ("stage", "words"),
+    [
+        ([{**CHOICE, "layers": ["closed", "eh"], "keys": []}], "'mouth': there is no layer 'eh'"),
+        ([{**CHOICE, "layers": ["closed"], "keys": []}], "choices[0].layers must be two layers"),
+        ([{**CHOICE, "layers": ["ah", "ah"], "keys": []}], "choices[0].layers has 'ah' twice"),
+        ([{**CHOICE, "keys": [[0, "head"]]}], "choices[0].keys[0] shows 'head', which is not"),
+        ([{**CHOICE, "keys": [[4, "ah"], [2, "oh"]]}], "choices[0].keys are out of order"),
+        ([{**CHOICE, "keys": [4]}], "choices[0].keys[0] must be a list"),
+        ([CHOICE, {**CHOICE, "name": "lips"}], "the layer 'closed' is in two choices"),
+        ([CHOICE, {**CHOICE, "layers": ["head", "eh"], "keys": []}], "two choices are called"),
+        ([{"layers": ["ah", "oh"]}], "choices[0] lacks the field 'name'"),
+        ([{**CHOICE, "shown": 1}], "choices[0] has an unknown field 'shown'"),
+        ({"mouth": []}, "choices must be a list"),
+    ],
+)
+def test_choices_that_cannot_be_are_refused(face, stage, words, capsys):
+    with pytest.raises(SystemExit) as refused:
+        face(choices=stage)
+    assert refused.value.code == 2
+    assert words in " ".join(capsys.readouterr().err.split())
+
+
+def test_a_layer_of_a_choice_has_no_visible(face, capsys):
+    oh = {"layer": "oh", "handles": {}, "keys": [{"frame": 0}], "visible": [[0, True]]}
+    with pytest.raises(SystemExit):
+        face(figures=[oh], choices=[CHOICE])
+    assert "the layer 'oh' is in a choice, which alone decides" in capsys.readouterr().err

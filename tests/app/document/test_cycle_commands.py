@@ -12,7 +12,8 @@ from app.document.commands import cycle_commands, key_commands, scene_commands, 
 from app.document.keyframe import Handle, Target
 from app.document.layering import Switch
 from app.document.queries.clips import clip_of
-from app.document.queries.fronts import fronts_at, is_visible
+from app.document.queries.fronts import fronts_at
+from app.document.queries.sight import is_visible
 from app.document.queries.tracks import track_at
 from app.document.settings import FrameRange
 from app.document.timing import Cycle, Track, TrackKey
@@ -124,7 +125,8 @@ def test_tracks_what_is_in_front_and_visibility_are_made_into_keys():
         ]
         assert abs(places[0][0] - places[1][0]) < 1e-12
         assert fronts_at(before, frame) == fronts_at(after, frame)
-        assert is_visible(before.figure, frame) == is_visible(after.figure, frame)
+        shown = [is_visible(each, each.figures[0], frame) for each in (document, keyed)]
+        assert shown[0] == shown[1]
     key = track_commands.put_track_key(0, 0, 24, 1 + 0j)
     with pytest.raises(LissomError, match="track of 'tail' acts in a part of frames 20 to 44 only"):
         cycle_commands.make_keys(0, 20, 92)(key(document))

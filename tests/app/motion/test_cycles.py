@@ -12,7 +12,8 @@ from app.document.commands import key_commands
 from app.document.keyframe import Handle, Passing, Target
 from app.document.layering import Switch
 from app.document.queries.clips import clip_of
-from app.document.queries.fronts import fronts_at, is_visible
+from app.document.queries.fronts import fronts_at
+from app.document.queries.sight import is_visible
 from app.document.queries.spans import intervals
 from app.document.queries.timeline import exported_frames, time_of
 from app.document.settings import FrameRange
@@ -213,5 +214,5 @@ def test_what_is_in_front_and_seen_repeats_with_it():
     switches = (Switch(0, visible=True), Switch(30, visible=False))
     document = altered(document, switches=switches)
     figure = document.figures[0]
-    shown = [is_visible(figure, frame) for frame in (29, 30, 43, 44, 53, 54, 91, 92, 120)]
+    shown = [is_visible(document, figure, frame) for frame in (29, 30, 43, 44, 53, 54, 91, 92, 120)]
     assert shown == [True, False, False, True, True, False, False, True, True]

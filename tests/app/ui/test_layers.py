@@ -13,15 +13,18 @@ from app.editor import do, layering
 from app.editor.actions import (
     close_dialog,
     editing,
+    files,
     keys,
     playback,
     posing,
     saving,
     timeline_pointing,
 )
-from app.editor.poses import copying
+from app.editor.poses import pasting
 from app.editor.timeline_view import Strip
 from app.storage import load_project
+from app.ui.panel import is_in_front
+from app.ui.shortcuts import BINDINGS
 
 WIDTH, HEIGHT = 240, 200
 
@@ -251,7 +254,7 @@ def test_the_menu_of_a_layer(window, scene, listed):
     window.act(layering.choose, body)
     joined = scene.document
     listed(lambda rows: rows.menu(body, "Delete"))
-    assert scene.document.figure(arm).attachment is None
+    assert scene.document.figure(arm).joints == ()
     assert scene.figure.name == "wall"
     window.act(editing.undo)
     assert scene.document is joined
@@ -357,7 +360,7 @@ def test_a_layer_that_hangs_follows_live_and_is_posed_around_its_joint(window, s
     window.act(posing.wish, {top: Target(position=110 + 155j)})
     window.settle()
     hung, carrier = scene.puppets[arm].shown, scene.puppets[body].shown
-    joint = scene.document.figure(arm).attachment
+    joint = scene.document.figure(arm).joints[0]
     at = carrier.hinge(joint.at)
     place = hung.placement.on(np.array([hung.hinge(95 + 118j).place]))[0]
     assert abs(place - at.place) < 1e-6 * WIDTH
@@ -644,13 +647,12 @@ def test_keys_of_several_rows_are_copied_and_pasted_each_on_its_own(window, keye
     assert (frames_of(keyed, "arm"), frames_of(keyed, "body")) == ((0, 12, 24, 42), (0, 18, 30, 48))
     assert keyed.document.figure(arm).key(42).turns == 1
     assert keyed.chosen_of == {arm: {42}, body: {30, 48}}
-    assert not copying.copied_here(window.session, window.session.project)
     window.act(editing.undo)
     assert keyed.document is before
     # The rest can be pasted where one of the layers is gone.
     window.act(layering.remove, body)
     window.act(playback.seek, 40)
-    window.act(copying.paste)
+    window.act(pasting.paste)
     assert frames_of(keyed, "arm") == (0, 12, 24, 40)
 
 
@@ -789,7 +791,7 @@ def test_another_picture_keeps_handles_keys_and_joints(window, posed, tmp_path):
     assert figure.picture is not old.picture
     assert (figure.name, figure.opacity, figure.handles) == ("limb", 0.75, old.handles)
     assert posed.document.figures.index(figure) == 1
-    assert (figure.anchor, figure.attachment) == (old.anchor, old.attachment)
+    assert (figure.anchor, figure.joints) == (old.anchor, old.joints)
     assert [key.frame for key in figure.keys] == [0, 24]
     for key, earlier in zip(figure.keys, old.keys, strict=True):
         assert key.pose.certificate.certified
@@ -813,7 +815,7 @@ def test_another_picture_keeps_handles_keys_and_joints(window, posed, tmp_path):
     window.settle()
     again = load_project(path).figure(arm)
     assert again.picture.sha256 == figure.picture.sha256
-    assert (again.corner, again.attachment) == (figure.corner, figure.attachment)
+    assert (again.corner, again.joints) == (figure.corner, figure.joints)
 
 
 def test_what_is_outside_of_another_picture_comes_into_it(window, posed, tmp_path):
@@ -832,12 +834,12 @@ def test_what_is_outside_of_another_picture_comes_into_it(window, posed, tmp_pat
     rest, raised = figure.keys
     assert abs(rest.pose.targets[0].position - figure.handles[0].position) < 1e-9
     assert raised.pose.targets[0].position != before.figure(arm).keys[1].pose.targets[0].position
-    assert figure.attachment == before.figure(arm).attachment
+    assert figure.joints == before.figure(arm).joints
     # The body without the place where the arm hangs.
     legs = saved(tmp_path / "legs.png", painted((60, 120, 110, 180), (40, 40, 200, 255)))
     window.act(layering.replace_picture, body, legs)
     window.settle()
-    joint = posed.document.figure(arm).attachment
+    joint = posed.document.figure(arm).joints[0]
     assert posed.document.figure(body).domain.contains(np.array([joint.at])).all()
     assert joint.at.imag < 82
     assert not posed.joints.has_failed(posed.joints.source)
@@ -879,3 +881,71 @@ def test_a_layer_that_comes_after_one_is_gone_shows_its_own_picture(window, scen
     assert (added.id, added.name, added.corner) == (gone, "dot", 90 + 80j)
     assert scene.active == added.id
     assert pixel(window, 138 + 100j) == (250, 220, 0)
+
+
+@pytest.fixture(scope="module")
+def stranger(tmp_path_factory):
+    """A drawing with what looks different here, and small matters."""
+    path = tmp_path_factory.mktemp("layers") / "stranger.ora"
+    stack = (
+        '<layer name="glow" src="data/0.png" composite-op="svg:overlay"/>'
+        '<layer name="shine" src="data/0.png" composite-op="svg:overlay"/>'
+        '<stack name="limbs" opacity="0.5"><layer name="arm" src="data/0.png"/></stack>'
+        '<layer name="body" src="data/1.png"/><layer name="wall" src="data/2.png"/>'
+    )
+    pictures = [
+        painted((85, 70, 200, 95), (200, 40, 40, 255)),
+        painted((60, 25, 110, 180), (40, 40, 200, 255)),
+        Image.new("RGBA", (WIDTH, HEIGHT), (220, 230, 220, 255)),
+    ]
+    path.write_bytes(openraster((WIDTH, HEIGHT), stack, pictures))
+    return path
+
+
+def test_what_an_import_told_stays_in_the_panel(window, stranger):
+    project = window.again(Harness.open, stranger)
+    (toast,) = window.session.toasts
+    assert "One thing looks different here" in toast.text
+    assert project.summary.losses == ("shine, glow: drawn normally, not in the mode 'overlay'",)
+    assert "wall: opaque all over, so that it stands still" in project.summary.matters
+    window.show_tab("Handle")
+    window.act(toast.action.apply)
+    window.frames(3)
+    assert is_in_front("Layers")
+    assert project.shows_summary
+
+    def fold(robot):
+        robot.set_ref("Layers")
+        robot.item_click("###summary")
+
+    window.run(fold)
+    window.frames(3)
+    assert not project.shows_summary
+    assert BINDINGS["import"].is_possible(window.session)
+    BINDINGS["import"].action.apply(window.session)
+    assert project.shows_summary
+
+
+def test_blends_clipping_and_groups_are_set_in_the_panel(window, stranger):
+    project = window.again(Harness.open, stranger)
+    arm = identity(project, "arm")
+    window.act(layering.choose, arm)
+    window.show_tab("Layers")
+    window.act(files.fold_summary)
+
+    def play(robot):
+        robot.set_ref("Layers")
+        robot.combo_click("##blend/multiply")
+        robot.item_check("Clipped")
+        robot.item_check("**/Hide all of limbs")
+
+    window.run(play)
+    window.frames(3)
+    figure = project.document.figure(arm)
+    assert (figure.blend, figure.clipped, figure.group) == ("multiply", True, "limbs")
+    (group,) = project.document.groups
+    assert (group.opacity, group.hidden) == (0.5, True)
+    for _ in range(3):
+        window.act(editing.undo)
+    assert not project.document.groups[0].hidden
+    assert project.document.figure(arm).blend == "normal"

@@ -1,6 +1,6 @@
 """Commands on the figures as layers: which there are, in what order, seen when, hung on what."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -8,9 +8,11 @@ import numpy as np
 from app.document.commands.command import command, figure_command, numbered
 from app.document.commands.handle_commands import with_handles
 from app.document.commands.key_commands import exchange
+from app.document.commands.staging import choice_commands
+from app.document.commands.staging.showing import revealed
 from app.document.figure import Figure
 from app.document.keyframe import Pose, Target
-from app.document.layering import Attachment, Switch
+from app.document.layering import Attachment, BlendMode, Switch, paths_to, shared_path
 from app.document.model import Document
 from app.errors import LissomError
 
@@ -23,7 +25,8 @@ def add_figure(document: Document, figure: Figure, index: int | None = None) -> 
     """
     figures = list(document.figures)
     place = len(figures) if index is None else index
-    figures.insert(place, replace(figure, name=free_name(document, figure.name)))
+    group, name = _group_at(figures, place, figure), free_name(document, figure.name)
+    figures.insert(place, replace(figure, name=name, group=group))
     # A canvas that was one picture's stays what it was.
     return replace(document, figures=tuple(figures), size=document.canvas)
 
@@ -44,55 +47,69 @@ def keep_joints(document: Document, identity: int) -> Document:
     """Move joints that are beside a figure now to the nearest points of it."""
     domain = document.figure(identity).domain
     for child in document.figures:
-        joint = child.attachment
-        if joint is None or joint.to != identity:
-            continue
-        (at,) = domain.nearest(np.array([joint.at]))
-        if at != joint.at:
-            moved = replace(child, attachment=replace(joint, at=complex(at)))
-            document = document.with_figure(moved)
+        places = np.array([joint.at for joint in child.joints], dtype=np.complex128)
+        nearest = domain.nearest(places) if len(places) else places
+        joints = tuple(
+            replace(joint, at=complex(at)) if joint.to == identity and at != joint.at else joint
+            for joint, at in zip(child.joints, nearest, strict=True)
+        )
+        if joints != child.joints:
+            document = document.with_figure(replace(child, joints=joints))
     return document
 
 
 @command("Duplicate layer")
 def duplicate_figure(document: Document, identity: int) -> Document:
-    """Put a copy of a figure in front of it."""
+    """Put a copy of a figure in front of it, which takes turns with it where it takes turns."""
     figure = document.figure(identity)
     index = document.figures.index(figure)
     copy = replace(
         figure, id=free_identity(document), name=free_name(document, f"{figure.name} copy")
     )
     figures = (*document.figures[: index + 1], copy, *document.figures[index + 1 :])
-    return replace(document, figures=figures, size=document.canvas)
+    choices = tuple(
+        replace(choice, figures=(*choice.figures, copy.id))
+        if identity in choice.figures
+        else choice
+        for choice in document.choices
+    )
+    return replace(document, figures=figures, choices=choices, size=document.canvas)
 
 
 @command("Delete layer")
 def remove_figure(document: Document, identity: int) -> Document:
-    """Remove a figure. What hung on it hangs on nothing any more, and stays as it is by itself."""
-    gone = document.figure(identity)
+    """Remove a figure. What hung on it hangs as it did before that, else on nothing."""
+    document.figure(identity)
     if len(document.figures) == 1:
         raise LissomError("A document has at least one layer; add another one first.")
+    document = choice_commands.let_go(document, identity)
     figures = tuple(
-        replace(figure, attachment=None)
-        if figure.attachment is not None and figure.attachment.to == identity
-        else figure
-        for figure in document.figures
-        if figure is not gone
+        replace(each, joints=tuple(joint for joint in each.joints if joint.to != identity))
+        if any(joint.to == identity for joint in each.joints)
+        else each
+        for each in document.figures
+        if each.id != identity
     )
-    return replace(document, figures=figures, size=document.canvas)
+    return without_empty_groups(replace(document, figures=figures, size=document.canvas))
 
 
 @command("Move layer")
 def move_figure(document: Document, identity: int, index: int) -> Document:
-    """Put a figure at an index in the order from back to front."""
+    """Put a figure at an index in the order from back to front.
+
+    It stays in its groups as long as it lies beside others of them, and joins those amid which it
+    comes to lie.
+    """
     figure = document.figure(identity)
     others = [other for other in document.figures if other is not figure]
     if not 0 <= index <= len(others):
         raise LissomError(f"There are {len(others) + 1} layers; none can be number {index + 1}.")
-    others.insert(index, figure)
-    if tuple(others) == document.figures:
+    if document.figures[index] is figure:
         return document
-    return replace(document, figures=tuple(others), size=document.canvas)
+    group = _group_at(others, index, figure)
+    others.insert(index, figure if group == figure.group else replace(figure, group=group))
+    moved = replace(document, figures=tuple(others), size=document.canvas)
+    return without_empty_groups(moved)
 
 
 @command("Rename layer")
@@ -105,6 +122,18 @@ def rename_figure(document: Document, identity: int, name: str) -> Document:
 def set_opacity(document: Document, identity: int, opacity: float) -> Document:
     """Set how opaque a figure is painted."""
     return _with(document, identity, opacity=float(opacity))
+
+
+@command("Set blend")
+def set_blend(document: Document, identity: int, blend: BlendMode) -> Document:
+    """Set how the colours of a figure meet those behind it."""
+    return _with(document, identity, blend=blend)
+
+
+@command("Clip layer")
+def set_clipped(document: Document, identity: int, *, clipped: bool) -> Document:
+    """Let a figure be seen only where what lies below it in its group is, or everywhere again."""
+    return _with(document, identity, clipped=clipped)
 
 
 @command("Show or hide layer")
@@ -125,17 +154,26 @@ def set_reference(document: Document, identity: int, *, reference: bool) -> Docu
     return _with(document, identity, reference=reference)
 
 
-@figure_command("Show or hide from here on")
-def switch_at(figure: Figure, frame: int, *, visible: bool | None) -> Figure:
-    """Show or hide a figure from a frame on; None takes back what was said at that frame."""
-    others = [switch for switch in figure.switches if switch.frame != frame]
+@command("Show or hide from here on")
+def switch_at(document: Document, identity: int, frame: int, *, visible: bool | None) -> Document:
+    """Show or hide a figure from a frame on; None takes back what was said at that frame.
+
+    One that was hidden at all times is shown there, and hidden until then.
+    """
+    figure = document.figure(identity)
+    switches = figure.switches
+    if visible and (figure.hidden or document.is_in_hidden(figure)):
+        document = revealed(document, identity)
+        figure = document.figure(identity)
+        switches = switches or (Switch(0, visible=False),)
+    others = [switch for switch in switches if switch.frame != frame]
     if visible is not None:
-        if not others and not figure.switches and frame > 0:
+        if not others and not switches and frame > 0:
             # What was seen before stays so.
             others = [Switch(0, not visible)]
         others.append(Switch(frame, visible))
     switches = tuple(sorted(others, key=lambda switch: switch.frame))
-    return figure if switches == figure.switches else replace(figure, switches=switches)
+    return _with(document, identity, switches=switches)
 
 
 @figure_command("Move visibility")
@@ -153,16 +191,39 @@ def move_switch(figure: Figure, frame: int, to: int) -> Figure:
 
 @command("Attach")
 def attach(document: Document, identity: int, anchor: complex, joint: Attachment) -> Document:
-    """Hang a figure by its anchor on a point of another one; circles are refused.
+    """Hang a figure by its anchor on a point of another one from a frame on; circles are refused.
 
-    `app.motion` finds the point and the turn with which nothing moves at a frame.
+    What began to hold at that frame does no longer. `app.motion` finds the point and the turn with
+    which nothing moves at a frame.
     """
-    return _with(document, identity, anchor=anchor, attachment=joint)
+    joints = [each for each in document.figure(identity).joints if each.frame != joint.frame]
+    joints = sorted([*joints, joint], key=lambda each: each.frame)
+    return _with(document, identity, anchor=anchor, joints=tuple(joints))
+
+
+@figure_command("Attach as before")
+def unjoin(figure: Figure, frame: int) -> Figure:
+    """Take back what a figure hangs on from a frame on: what held before it still does."""
+    joints = tuple(joint for joint in figure.joints if joint.frame != frame)
+    return figure if joints == figure.joints else replace(figure, joints=joints)
+
+
+@figure_command("Move joint in time")
+def move_joint(figure: Figure, frame: int, to: int) -> Figure:
+    """Let what a figure hangs on from a frame on hold from another frame on."""
+    moved = next((joint for joint in figure.joints if joint.frame == frame), None)
+    if moved is None:
+        raise LissomError(f"{figure.name!r} is not attached anew at frame {frame}.")
+    if to == frame:
+        return figure
+    others = [joint for joint in figure.joints if joint is not moved]
+    joints = sorted([*others, replace(moved, frame=to)], key=lambda joint: joint.frame)
+    return replace(figure, joints=tuple(joints))
 
 
 @command("Detach")
 def detach(document: Document, identity: int, factor: complex, shift: complex) -> Document:
-    """Let a figure hang on nothing any more, turned and moved as it was seen at one moment.
+    """Let a figure hang on nothing at any time, turned and moved as it was seen at one moment.
 
     Parameters
     ----------
@@ -173,10 +234,10 @@ def detach(document: Document, identity: int, factor: complex, shift: complex) -
         By which they are moved then.
     """
     figure = document.figure(identity)
-    if figure.attachment is None:
+    if not figure.joints:
         return document
     poses = (_carried(figure, pose, factor, shift) for pose in figure.poses)
-    return document.with_figure(figure.with_poses(poses, attachment=None))
+    return document.with_figure(figure.with_poses(poses, joints=()))
 
 
 @figure_command("Set depth")
@@ -211,6 +272,25 @@ def free_name(document: Document, name: str) -> str:
 def numbered_name(name: str, taken: Collection[str]) -> str:
     """Return a name that is not taken: this one, or this one with a number."""
     return numbered(name, taken, 2) if name in taken else name
+
+
+def without_empty_groups(document: Document) -> Document:
+    """Return the document without groups that no figure is in any more."""
+    filled = {path for figure in document.figures for path in paths_to(figure.group)}
+    groups = tuple(group for group in document.groups if group.name in filled)
+    return document if groups == document.groups else replace(document, groups=groups)
+
+
+def _group_at(others: Sequence[Figure], index: int, figure: Figure) -> str:
+    """Return the group that a figure is in which is put at an index among others."""
+    own, beside = figure.group, [each.group for each in others[max(index - 1, 0) : index + 1]]
+    amid = shared_path(*beside) if len(beside) == 2 else ""
+    if amid and amid not in paths_to(own):
+        return amid
+    stays = max((shared_path(own, group) for group in beside), key=len, default="")
+    shared = max((shared_path(own, each.group) for each in others), key=len, default="")
+    # With all of what else is in its groups elsewhere, it leaves them; alone in one, it keeps it.
+    return own if stays == shared else stays
 
 
 def _with(document: Document, identity: int, **changes: object) -> Document:
