@@ -318,7 +318,8 @@ class Project:
         unkeyed = self.history.unkeyed
         if unkeyed is None or unkeyed.figure != self.active or self.playhead.since is not None:
             return None
-        return unkeyed.pose if unkeyed.frame == self.playhead.frame else None
+        here = self.figure.source_of(self.playhead.frame)
+        return unkeyed.pose if unkeyed.frame == here else None
 
     @property
     def pulls(self) -> list[Pull]:
@@ -335,7 +336,7 @@ class Project:
         """The one on its way that is shown of the figure that is posed."""
         if self.playhead.since is not None:
             return None
-        here = (self.active, self.playhead.frame)
+        here = (self.active, self.figure.source_of(self.playhead.frame))
         mine = [pull for pull in self.pulls if (pull.figure, pull.frame) == here]
         return mine[-1] if mine else None
 

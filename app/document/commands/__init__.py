@@ -6,6 +6,7 @@ Imports: the values of `app.document`.
 """
 
 from app.document.commands import (
+    cycle_commands as cycle_commands,
     figure_commands as figure_commands,
     handle_commands as handle_commands,
     key_commands as key_commands,

@@ -8,8 +8,6 @@ Imports: the values of `app.document`.
 from app.document.queries.clips import (
     Clip as Clip,
     clip_of as clip_of,
-    closes as closes,
-    intervals as intervals,
 )
 from app.document.queries.compositing import Composite as Composite, composed as composed
 from app.document.queries.fronts import (
@@ -32,6 +30,13 @@ from app.document.queries.shortfall import (
     find_shortfall as find_shortfall,
 )
 from app.document.queries.sight import is_visible as is_visible, sights_of as sights_of
+from app.document.queries.spans import (
+    KeySpan as KeySpan,
+    closing_span as closing_span,
+    intervals as intervals,
+    place_at as place_at,
+    spans as spans,
+)
 from app.document.queries.timeline import (
     Moment as Moment,
     changed_stretches as changed_stretches,
@@ -48,6 +53,7 @@ from app.document.queries.tracks import (
 )
 from app.document.queries.transits import (
     Transit as Transit,
-    comes_round as comes_round,
+    are_alike as are_alike,
+    passings_of as passings_of,
     transits as transits,
 )

@@ -3,14 +3,16 @@
 from app.document.figure import Figure
 from app.document.layering import Switch
 from app.document.model import Document
+from app.document.queries.spans import has_been
 
 
 def is_visible(document: Document, figure: Figure, frame: float) -> bool:
     """Tell whether a figure of a document is seen at a frame."""
     switches = sights_of(document, figure)
+    is_own = switches is figure.switches
     shown = switches[0].visible if switches else True
     for switch in switches:
-        if switch.frame <= frame:
+        if has_been(figure, switch.frame, frame) if is_own else switch.frame <= frame:
             shown = switch.visible
     return shown
 

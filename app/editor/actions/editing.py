@@ -305,7 +305,7 @@ def depth_now(session: Session, project: Project, handle: Handle) -> float:
 def set_depth(session: Session, project: Project, identity: int, front: float) -> None:
     """Set what is painted in front around a handle, in the present key if it says so already."""
     if identity in _fronts_here(session, project):
-        frame = playback.current_frame(session, project)
+        frame = playback.posed_frame(session, project)
         edit_figure(session, layer_commands.key_front, frame, identity, front)
     else:
         extent = project.figure.handle(identity).extent
@@ -314,5 +314,5 @@ def set_depth(session: Session, project: Project, identity: int, front: float) -
 
 def _fronts_here(session: Session, project: Project) -> Mapping[int, float]:
     """Return what the key at the present frame says, if there is one."""
-    frame, figure = playback.current_frame(session, project), project.figure
+    frame, figure = playback.posed_frame(session, project), project.figure
     return figure.key(frame).fronts if frame in figure.key_frames else {}
