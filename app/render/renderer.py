@@ -1,6 +1,6 @@
 """Draws scenes: the same for the window and without one."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Final
 
@@ -44,20 +44,26 @@ class Renderer:
             raise ValueError(f"a view of {view.size} pixels cannot fill a frame of {target.size}")
         target.framebuffer.use()
         self._draw_background(scene.background, view, target.oversampling)
+        self._draw_meshes(scene, scene.meshes[: scene.ghosts_over], target, view)
         for ghost in scene.ghosts:
             self._draw_ghost(ghost, target, view)
+        self._draw_meshes(scene, scene.meshes[scene.ghosts_over :], target, view)
+        if scene.wireframe is not None:
+            for mesh in scene.meshes:
+                self._draw_wireframe(mesh, view, scene.wireframe)
+        self._overlay.draw(view, scene.lines, scene.discs)
+
+    def _draw_meshes(
+        self, scene: Scene, meshes: Sequence[PosedMesh], target: RenderTarget, view: View
+    ) -> None:
         self._blend_over()
-        for mesh in scene.meshes:
+        for mesh in meshes:
             if mesh.opacity == 1:
                 self._draw_mesh(mesh, view, scene.heat)
             else:
                 faint = Ghost(meshes=(mesh,), tint=None, opacity=mesh.opacity)
                 self._draw_ghost(faint, target, view, scene.heat)
                 self._blend_over()
-        if scene.wireframe is not None:
-            for mesh in scene.meshes:
-                self._draw_wireframe(mesh, view, scene.wireframe)
-        self._overlay.draw(view, scene.lines, scene.discs)
 
     def _blend_over(self) -> None:
         self._context.enable_only(moderngl.BLEND)

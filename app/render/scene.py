@@ -79,7 +79,10 @@ class Disc:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Scene:
-    """A frame, from back to front: background, ghosts, drawing, wireframe, lines, discs."""
+    """A frame, from back to front: background, ghosts, drawing, wireframe, lines, discs.
+
+    Ghosts may come later, before some of the drawing's meshes or after all of them.
+    """
 
     background: Backdrop = Backdrop()
     meshes: tuple[PosedMesh, ...] = ()  # the drawing in this frame, the furthest first
@@ -87,5 +90,6 @@ class Scene:
     heat: Heat | None = None
     wireframe: Wireframe | None = None
     ghosts: tuple[Ghost, ...] = ()  # the furthest first
+    ghosts_over: int = 0  # how many of the meshes are behind them
     lines: tuple[Line, ...] = ()
     discs: tuple[Disc, ...] = ()
