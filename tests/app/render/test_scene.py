@@ -190,6 +190,7 @@ def test_ghosts_lie_over_as_many_of_the_meshes_as_is_told(easel, over):
     for column, name in ((4, "wall"), (15, "drawing")):
         red, _, blue = frame[10, column, :3]
         assert (red > 60) == (blue < 200) == is_over[name], name
+        assert blue > 60, name
 
 
 def test_limbs_of_a_ghost_do_not_shine_through_each_other(easel):
