@@ -8,6 +8,7 @@ import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
+from dataclasses import dataclass
 
 from engine.errors import EngineError
 
@@ -23,6 +24,55 @@ class LissomError(Exception):
 
 # What a command line, a job or a panel reports as a plain message.
 EXPECTED_ERRORS = (LissomError, EngineError)
+
+
+@dataclass(frozen=True, slots=True)
+class ImportSummary:
+    """What opening a drawing told, a line each, with the names of the layers that it is about."""
+
+    losses: tuple[str, ...] = ()  # what does not look as it does elsewhere
+    matters: tuple[str, ...] = ()  # what was done, and looks the same
+
+    def __bool__(self) -> bool:
+        """Tell whether there is anything to be told."""
+        return bool(self.losses or self.matters)
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """All of it, losses first."""
+        return self.losses + self.matters
+
+    def __add__(self, other: "ImportSummary") -> "ImportSummary":
+        """Return both."""
+        return ImportSummary(self.losses + other.losses, self.matters + other.matters)
+
+
+NOTHING_TOLD = ImportSummary()
+
+
+class Told:
+    """What is found while a drawing is read: told once, with the names of all that it is about."""
+
+    def __init__(self) -> None:
+        self._losses: dict[str, list[str]] = {}
+        self._matters: dict[str, list[str]] = {}
+
+    def lose(self, name: str, what: str) -> None:
+        """Tell what of something is not shown as it is elsewhere."""
+        self._losses.setdefault(what, []).append(name)
+
+    def note(self, name: str, what: str) -> None:
+        """Tell what was done to something, which looks the same."""
+        self._matters.setdefault(what, []).append(name)
+
+    @property
+    def summary(self) -> ImportSummary:
+        """All that was told."""
+        losses, matters = (
+            tuple(f"{', '.join(names)}: {what}" for what, names in found.items())
+            for found in (self._losses, self._matters)
+        )
+        return ImportSummary(losses, matters)
 
 
 def shown_name(name: object) -> str:

@@ -19,9 +19,16 @@ from app.document.checks import (
     require_size,
 )
 from app.document.keyframe import Handle, KeptPose, Keyframe, Pose
-from app.document.layering import Attachment, Switch, require_in_order, require_joints
+from app.document.layering import (
+    BLENDS,
+    Attachment,
+    BlendMode,
+    Switch,
+    require_in_order,
+    require_joints,
+)
 from app.document.settings import NATURAL, VARIANTS, Meshing
-from app.document.timing import Spring, Track
+from app.document.timing import Cycle, Spring, Track, require_apart, require_repeatable
 from app.errors import LissomError
 from engine.arrays import Booleans, Complexes, Floats, readonly
 from engine.deform import MOST_HANDLES
@@ -72,6 +79,7 @@ class Figure:
     stillness: bool = True
     tracks: tuple[Track, ...] = ()  # no handle has two
     springs: tuple[Spring, ...] = ()  # no handle has two
+    cycles: tuple[Cycle, ...] = ()  # in the order of their frames
     # float64 (p,): How stiff it is painted, at the vertices of the domain's loops; None is the
     # usual material, 1 everywhere.
     stiffness: Floats | None = field(default=None, hash=False)
@@ -96,6 +104,10 @@ class Figure:
     # says. Always seen without any.
     switches: tuple[Switch, ...] = ()
     opacity: float = 1.0  # in [0, 1]
+    blend: BlendMode = "normal"
+    # Whether it is seen only where that is which lies below it in its group: a figure, or a group.
+    clipped: bool = False
+    group: str = ""  # the path of the innermost group that it is in; "" outside of all groups
     # The joints by which it hangs on others, each from its frame on; its anchor is then given.
     joints: tuple[Attachment, ...] = ()
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
@@ -105,6 +117,10 @@ class Figure:
         require(bool(self.name.strip()), "A figure needs a name.")
         require_place(self.corner, f"The corner of {self.name!r}")
         require(0 <= self.opacity <= 1, f"Opacity is between 0 and 1, not {self.opacity:g}.")
+        require(
+            self.blend in BLENDS,
+            f"The blend of {self.name!r} is one of {', '.join(BLENDS)}, not {self.blend!r}.",
+        )
         require_in_order(self.switches)
         require(
             not self.joints or self.anchor is not None,
@@ -141,11 +157,22 @@ class Figure:
 
     @property
     def ends(self) -> tuple[int, int]:
-        """The frames of the first key and of the last one, those of tracks among them."""
+        """The first and the last frame of what is keyed: poses, tracks and what repeats."""
         frames = [self.keys[0].frame, self.keys[-1].frame]
         for track in self.tracks:
             frames += [track.keys[0].frame, track.keys[-1].frame]
+        for cycle in self.cycles:
+            frames += [cycle.first, cycle.last if cycle.until is None else cycle.until]
         return min(frames), max(frames)
+
+    def cycle_at(self, frame: float) -> Cycle | None:
+        """Return the cycle that a frame is in, be it in its stretch or in its repeats."""
+        return next((cycle for cycle in self.cycles if cycle.covers(frame)), None)
+
+    def source_of(self, frame: int) -> int:
+        """Return the frame at which what a frame shows is keyed: another one where it repeats."""
+        cycle = self.cycle_at(frame)
+        return frame if cycle is None or frame in self.key_frames else int(cycle.source(frame))
 
     @property
     def poses(self) -> tuple[Pose, ...]:
@@ -314,6 +341,9 @@ class Figure:
                 key.fronts.keys() <= key.pose.targets.keys(),
                 f"The key at frame {key.frame} puts a handle in front that is not there.",
             )
+        require_apart(self.cycles)
+        for cycle in self.cycles:
+            require_repeatable(cycle, [key.frame for key in self.keys])
 
     def _check_library(self) -> None:
         require_distinct((kept.name for kept in self.library), "Two poses have the name {!r}.")

@@ -14,7 +14,7 @@ from typing import NoReturn
 from app.document.body import PAIRS, SidePairs, require_pairs
 from app.document.checks import NOTHING, Unknown, require, require_distinct, require_size
 from app.document.figure import Figure
-from app.document.layering import Choice
+from app.document.layering import Choice, Group, paths_to
 from app.document.settings import FASTEST, ExportSettings, FrameRange, Marker
 from app.errors import LissomError
 
@@ -44,6 +44,8 @@ class Document:
     )
     # Width and height of the canvas; None takes those of the picture behind all others.
     size: tuple[int, int] | None = None
+    # Each after the one that it is in.
+    groups: tuple[Group, ...] = ()
 
     def __post_init__(self) -> None:
         self._check_figures()
@@ -79,8 +81,24 @@ class Document:
         return tuple(
             each
             for each in self.figures
-            if not each.reference and (each.id in chosen or not each.hidden)
+            if not (each.reference or self.is_in_hidden(each))
+            and (each.id in chosen or not each.hidden)
         )
+
+    def is_in_hidden(self, figure: Figure) -> bool:
+        """Tell whether a group that a figure is in is hidden at all times."""
+        return any(group.hidden for group in self.groups_around(figure.group))
+
+    def group(self, path: str) -> Group:
+        """Return the group with this path."""
+        for group in self.groups:
+            if group.name == path:
+                return group
+        raise LissomError(f"There is no group {path!r}.")
+
+    def groups_around(self, path: str) -> tuple[Group, ...]:
+        """Return the group with this path after those that it is in, the outermost first."""
+        return tuple(self.group(each) for each in paths_to(path))
 
     def figure(self, identity: int) -> Figure:
         """Return the figure with this id."""
@@ -155,6 +173,7 @@ class Document:
             require_size(self.size, "canvas")
         require_distinct((figure.id for figure in self.figures), "Two figures have the id {!r}.")
         require_distinct((figure.name for figure in self.figures), "Two figures are called {!r}.")
+        self._check_groups()
         for figure in self.figures:
             for frame in figure.ends:
                 require(
@@ -195,6 +214,21 @@ class Document:
         raise LissomError(
             f"{circle[0].name!r} would hang on itself{when}: {links}; detach one of them first."
         )
+
+    def _check_groups(self) -> None:
+        known: set[str] = set()
+        for group in self.groups:
+            require(group.name not in known, f"Two groups are called {group.name!r}.")
+            require(
+                known.issuperset(paths_to(group.name)[:-1]),
+                f"The group {group.name!r} comes before the one that it is in.",
+            )
+            known.add(group.name)
+        for figure in self.figures:
+            require(
+                not figure.group or figure.group in known,
+                f"{figure.name!r} is in the group {figure.group!r}, which is not there.",
+            )
 
     def _check_clocks(self, figure: Figure) -> None:
         """Refuse what does not come round in a loop."""

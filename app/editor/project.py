@@ -18,12 +18,15 @@ from app.document import (
     Playhead,
     Pose,
     Track,
+    TreeRow,
     UnkeyedPose,
     Variant,
     clip_of,
+    layer_tree,
 )
 from app.editor.timeline_view import KeyRow, KeysOf, Timing, TrackRow, row_of
 from app.editor.work import Afterwards, Carry, Derived, Promise, Pull, Take
+from app.errors import NOTHING_TOLD, ImportSummary
 from app.motion import (
     Box,
     CorrectedFrames,
@@ -131,6 +134,9 @@ class Project:
     path: Path | None  # of the project file; None for a new one
     # The files that its pictures were read from, which nothing is written over.
     drawings: set[Path] = field(default_factory=set)
+    # What opening a drawing told, and whether the panel of layers shows it.
+    summary: ImportSummary = NOTHING_TOLD
+    shows_summary: bool = False
     hold: Hold | None = None  # by which other windows see that the file is open here
     # What the file held when it was opened or saved here last; None for a new one.
     read_as: str | None = None
@@ -192,6 +198,11 @@ class Project:
     flip: Flip | None = None
     blend: PoseBlend | None = None
     picked_pose: str | None = None  # of the library
+    # The ids of layers that are chosen beside the one that is posed, and of those that alone are
+    # looked at, if any.
+    beside: frozenset[int] = frozenset()
+    solo: frozenset[int] = frozenset()
+    toggled: frozenset[str] = frozenset()  # rows of the tree of layers, open or closed by hand
     listed: int | None = None  # the figure that the list of layers was scrolled to
 
     @property
@@ -210,10 +221,21 @@ class Project:
         return self.document.figure(self.active)
 
     @property
+    def tree(self) -> tuple[TreeRow, ...]:
+        """The rows of the layers that are listed, the one in front on top."""
+        return layer_tree(self.document, self.toggled, self.active)
+
+    @property
+    def layers(self) -> tuple[int, ...]:
+        """The ids of the chosen layers, from front to back; the one that is posed is among them."""
+        chosen = self.beside | {self.active}
+        return tuple(each.id for each in reversed(self.document.figures) if each.id in chosen)
+
+    @property
     def rows(self) -> list[KeyRow]:
         """The rows of the timeline from top to bottom: the figure in front comes first."""
         rows: list[KeyRow] = []
-        for figure in reversed(self.document.figures):
+        for figure in (row.figure for row in self.tree if row.figure):
             rows.append(figure.id)
             if figure.id in self.timing.unfolded:
                 rows += [row_of(figure, track) for track in figure.tracks]
@@ -296,7 +318,8 @@ class Project:
         unkeyed = self.history.unkeyed
         if unkeyed is None or unkeyed.figure != self.active or self.playhead.since is not None:
             return None
-        return unkeyed.pose if unkeyed.frame == self.playhead.frame else None
+        here = self.figure.source_of(self.playhead.frame)
+        return unkeyed.pose if unkeyed.frame == here else None
 
     @property
     def pulls(self) -> list[Pull]:
@@ -313,7 +336,7 @@ class Project:
         """The one on its way that is shown of the figure that is posed."""
         if self.playhead.since is not None:
             return None
-        here = (self.active, self.playhead.frame)
+        here = (self.active, self.figure.source_of(self.playhead.frame))
         mine = [pull for pull in self.pulls if (pull.figure, pull.frame) == here]
         return mine[-1] if mine else None
 

@@ -220,6 +220,7 @@ class Session:
     cancellation: Cancellation = field(default_factory=Cancellation)  # of an export
     named_layer: int | None = None  # for which a name is asked
     pointed_layer: int | None = None  # on whose row in the list the pointer is
+    wanted_panel: str = ""  # is brought to the front by the next frame of the window
     export_frame: Box | None = None  # shown in the viewport while the export's settings are
     keeps_aspect: bool = True  # of an export whose size is entered
     curves: CurveKind = "relative"

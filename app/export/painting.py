@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from app.document import Document, clip_of, is_visible
+from app.document import Document, clip_of, composed, is_visible
 from app.errors import EXPECTED_ERRORS, LissomError
 from app.export.framing import shown_box
 from app.export.plan import ExportPlan
@@ -83,8 +83,8 @@ class Painter:
         poses: Mapping[int, Poses],
         plan: ExportPlan,
     ) -> None:
-        self._context, self._plan = context, plan
-        self._document, figures = document, document.exported
+        self._context, self._document, self._plan = context, document, plan
+        figures = document.exported
         self._clips = [clip_of(document, figure.id) for figure in figures]
         self._poses = [poses[figure.id] for figure in figures]
         self._background = Backdrop(colour=_colour(plan))
@@ -173,11 +173,12 @@ class Painter:
         """
         try:
             drawn = zip(self._drawn, posed.vertices, self._clips, strict=True)
-            meshes = tuple(
-                mesh.pose(vertices, opacity=clip.figure.opacity)
+            seen = {
+                clip.figure.id: mesh.pose(vertices)
                 for mesh, vertices, clip in drawn
                 if is_visible(self._document, clip.figure, posed.frame)
-            )
+            }
+            meshes = composed(self._document, seen)
             scene = Scene(background=self._background, meshes=meshes)
             pixels = _filled(self._plan.view.size, self._background.colour)
             for tile in self._tiles:

@@ -2,7 +2,7 @@
 
 In: a `Scene`, as values, and a `View`.
 Out: pixels in a target.
-Imports: `app.motion`, `app.storage`; with `app.render.gpu` it alone sees OpenGL.
+Imports: `app.document`, `app.motion`, `app.storage`; with `app.render.gpu` it alone sees OpenGL.
 """
 
 from app.render.drawn_mesh import DrawnMesh as DrawnMesh, shader_is_faster as shader_is_faster
@@ -21,6 +21,7 @@ from app.render.scene import (
     Ghost as Ghost,
     Heat as Heat,
     Line as Line,
+    Painted as Painted,
     Scene as Scene,
     Wireframe as Wireframe,
 )

@@ -29,15 +29,12 @@ class DrawnMesh:
         self._series_pose: PosedMesh | None = None
         self._current: tuple[Vertices, PosedMesh] | None = None
 
-    def pose(
-        self, vertices: Vertices, *, placement: RigidMotion = HERE, opacity: float = 1.0
-    ) -> PosedMesh:
+    def pose(self, vertices: Vertices, *, placement: RigidMotion = HERE) -> PosedMesh:
         """Return the mesh with its vertices there and painted in their order; new ones go up."""
         if self._current is None or self._current[0] is not vertices:
             self._current = vertices, self._placed(vertices)
         posed = self._current[1]
         posed.place(*placement)
-        posed.opacity = opacity
         return posed
 
     def release(self) -> None:

@@ -1,15 +1,16 @@
 """Draws scenes: the same for the window and without one."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Final
 
 import moderngl
 
+from app.document import BlendMode, Composite
 from app.render.gpu import PosedMesh, Programs, RenderTarget, ShaderFiles
 from app.render.overlay import Overlay
 from app.render.ramp import heat_ramp
-from app.render.scene import Backdrop, Colour, Ghost, Heat, Scene, Wireframe
+from app.render.scene import Backdrop, Colour, Heat, Painted, Scene, Wireframe
 from app.render.view import View
 
 _MESH: Final = ("mesh.vert", "placed.glsl")
@@ -21,6 +22,29 @@ _WIRE: Final = ShaderFiles(vertex=_MESH, geometry="wire.geom", fragment=("wire.f
 _BORDER: Final = replace(_WIRE, geometry="border.geom")
 _GHOST: Final = ShaderFiles(vertex=("screen.vert",), fragment=("ghost.frag",))
 _PICTURE_UNIT, _RAMP_UNIT, _LAYER_UNIT = 0, 1, 0
+# "Compositing and Blending Level 1" of the W3C, Sections 9.1.4, 10.1.2 and 10.1.3, of premultiplied
+# colours: factors of the source s and of the backdrop b, for the colours and for alpha. What is
+# multiplied comes in two passes, since its factor 1 − α_b + b is none of OpenGL's: first
+# s·b + (1 − α_s)·b with the backdrop's alpha as it was, then (1 − α_b)·s added to it.
+_OVER: Final = (moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA)
+_BESIDE: Final = (moderngl.ONE_MINUS_DST_ALPHA, moderngl.ONE)
+_STAYS: Final = (moderngl.ZERO, moderngl.ONE)
+_WITHIN: Final = (moderngl.DST_COLOR, moderngl.ONE_MINUS_SRC_ALPHA, *_STAYS)
+_BLENDS: Final[Mapping[BlendMode, tuple[tuple[int, int, int, int], ...]]] = {
+    "normal": ((*_OVER, *_OVER),),
+    "multiply": (_WITHIN, (*_BESIDE, *_BESIDE)),
+    "screen": ((moderngl.ONE, moderngl.ONE_MINUS_SRC_COLOR, *_OVER),),
+}
+# What is clipped meets its backdrop as if that were opaque, and leaves its alpha: α_b times the
+# blend of the straight colours by α_s, as if painted first and then cut out.
+_CLIPPED: Final[Mapping[BlendMode, tuple[tuple[int, int, int, int], ...]]] = {
+    "normal": ((moderngl.DST_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA, *_STAYS),),
+    "multiply": (_WITHIN,),
+    "screen": (
+        (moderngl.ZERO, moderngl.ONE_MINUS_SRC_COLOR, *_STAYS),
+        (moderngl.DST_ALPHA, moderngl.ONE, *_STAYS),
+    ),
+}
 
 
 class Renderer:
@@ -30,7 +54,7 @@ class Renderer:
         self.programs = Programs(context)
         self._context = context
         self._overlay = Overlay(self.programs)
-        self._layer: RenderTarget | None = None
+        self._layers: list[RenderTarget] = []
         ramp = heat_ramp()
         self._ramp = context.texture((len(ramp), 1), 3, ramp.tobytes())
         self._ramp.repeat_x = self._ramp.repeat_y = False
@@ -44,30 +68,20 @@ class Renderer:
             raise ValueError(f"a view of {view.size} pixels cannot fill a frame of {target.size}")
         target.framebuffer.use()
         self._draw_background(scene.background, view, target.oversampling)
-        self._draw_meshes(scene, scene.meshes[: scene.ghosts_over], target, view)
+        behind, before = scene.meshes[: scene.ghosts_over], scene.meshes[scene.ghosts_over :]
+        self._draw_parts(behind, target, view, scene.heat)
         for ghost in scene.ghosts:
-            self._draw_ghost(ghost, target, view)
-        self._draw_meshes(scene, scene.meshes[scene.ghosts_over :], target, view)
+            self._draw_layer(Composite(ghost.meshes, ghost.opacity), target, view, tint=ghost.tint)
+        self._draw_parts(before, target, view, scene.heat)
         if scene.wireframe is not None:
-            for mesh in scene.meshes:
+            self._blend_over()
+            for mesh in _meshes(scene.meshes):
                 self._draw_wireframe(mesh, view, scene.wireframe)
         self._overlay.draw(view, scene.lines, scene.discs)
 
-    def _draw_meshes(
-        self, scene: Scene, meshes: Sequence[PosedMesh], target: RenderTarget, view: View
-    ) -> None:
-        self._blend_over()
-        for mesh in meshes:
-            if mesh.opacity == 1:
-                self._draw_mesh(mesh, view, scene.heat)
-            else:
-                faint = Ghost(meshes=(mesh,), tint=None, opacity=mesh.opacity)
-                self._draw_ghost(faint, target, view, scene.heat)
-                self._blend_over()
-
     def _blend_over(self) -> None:
         self._context.enable_only(moderngl.BLEND)
-        self._context.blend_func = (moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA)
+        self._context.blend_func = _OVER
 
     def _draw_background(self, background: Backdrop, view: View, samples: int) -> None:
         if background.checks is None:
@@ -110,37 +124,68 @@ class Renderer:
         mesh.draw(_WIRE, uniforms)
         mesh.draw_border(_BORDER, uniforms)
 
-    def _draw_ghost(
-        self, ghost: Ghost, target: RenderTarget, view: View, heat: Heat | None = None
+    def _draw_parts(
+        self,
+        parts: Sequence[Painted],
+        target: RenderTarget,
+        view: View,
+        heat: Heat | None,
+        depth: int = 0,
     ) -> None:
-        # On a layer of its own: limbs that overlap would shine through each other.
-        wanted = (target.size, target.oversampling)
-        if self._layer is None or (self._layer.size, self._layer.oversampling) != wanted:
-            self._release_layer()
-            self._layer = RenderTarget(self.programs, *wanted)
-        self._layer.framebuffer.use()
-        self._layer.framebuffer.clear()
         self._blend_over()
-        for mesh in ghost.meshes:
-            self._draw_mesh(mesh, view, heat)
+        for part in parts:
+            if isinstance(part, Composite):
+                self._draw_layer(part, target, view, heat=heat, depth=depth)
+                self._blend_over()
+            else:
+                self._draw_mesh(part, view, heat)
+
+    def _draw_layer(
+        self,
+        whole: Composite[PosedMesh],
+        target: RenderTarget,
+        view: View,
+        *,
+        tint: tuple[float, float, float] | None = None,
+        heat: Heat | None = None,
+        depth: int = 0,
+    ) -> None:
+        """Draw parts on a layer of their own first, so deep in others, and then that on the target.
+
+        Else limbs that overlap would shine through each other.
+        """
+        layer = self._layer_at(depth, target)
+        layer.framebuffer.use()
+        layer.framebuffer.clear()
+        self._draw_parts(whole.parts, layer, view, heat, depth + 1)
         target.framebuffer.use()
-        self._layer.texture.use(_LAYER_UNIT)
+        layer.texture.use(_LAYER_UNIT)
         uniforms = {
             "frame": _LAYER_UNIT,
-            "tint": ghost.tint or (0.0, 0.0, 0.0),
-            "strength": 0.0 if ghost.tint is None else 1.0,
-            "opacity": ghost.opacity,
+            "tint": tint or (0.0, 0.0, 0.0),
+            "strength": 0.0 if tint is None else 1.0,
+            "opacity": whole.opacity,
         }
-        self.programs.draw_screen(_GHOST, uniforms)
+        for factors in (_CLIPPED if whole.clipped else _BLENDS)[whole.blend]:
+            self._context.blend_func = factors  # type: ignore[assignment]
+            self.programs.draw_screen(_GHOST, uniforms)
 
-    def _release_layer(self) -> None:
-        if self._layer is not None:
-            self._layer.release()
-            self._layer = None
+    def _layer_at(self, depth: int, target: RenderTarget) -> RenderTarget:
+        wanted = (target.size, target.oversampling)
+        if self._layers and (self._layers[0].size, self._layers[0].oversampling) != wanted:
+            self._release_layers()
+        while len(self._layers) <= depth:
+            self._layers.append(RenderTarget(self.programs, *wanted))
+        return self._layers[depth]
+
+    def _release_layers(self) -> None:
+        for layer in self._layers:
+            layer.release()
+        self._layers.clear()
 
     def release(self) -> None:
         """Let everything go that the renderer made; targets, poses and pictures are not its own."""
-        self._release_layer()
+        self._release_layers()
         self._ramp.release()
         self._overlay.release()
         self.programs.release()
@@ -149,3 +194,11 @@ class Renderer:
 def _premultiplied(colour: Colour) -> Colour:
     red, green, blue, alpha = colour
     return red * alpha, green * alpha, blue * alpha, alpha
+
+
+def _meshes(parts: Sequence[Painted]) -> Iterator[PosedMesh]:
+    for part in parts:
+        if isinstance(part, Composite):
+            yield from _meshes(part.parts)
+        else:
+            yield part

@@ -3,11 +3,15 @@
 from dataclasses import dataclass
 from typing import Final
 
+from app.document import Composite
 from app.render.gpu import PosedMesh
 from engine.arrays import Complexes
 
 Colour = tuple[float, float, float, float]
 """Red, green, blue and alpha between 0 and 1, straight, as they stand in a picture file."""
+
+Painted = PosedMesh | Composite[PosedMesh]
+"""A mesh, or several that are composited as one."""
 
 TRANSPARENT: Final[Colour] = (0.0, 0.0, 0.0, 0.0)
 
@@ -48,7 +52,7 @@ class Wireframe:
 class Ghost:
     """A drawing that shines through: another frame of it under the current one, an onion skin."""
 
-    meshes: tuple[PosedMesh, ...]  # the drawing in that frame, the furthest first
+    meshes: tuple[Painted, ...]  # the drawing in that frame, the furthest first
     # Red, green and blue; None leaves the colours as they are.
     tint: tuple[float, float, float] | None
     opacity: float
@@ -85,7 +89,8 @@ class Scene:
     """
 
     background: Backdrop = Backdrop()
-    meshes: tuple[PosedMesh, ...] = ()  # the drawing in this frame, the furthest first
+    # The drawing in this frame, the furthest first.
+    meshes: tuple[Painted, ...] = ()
     # Paints the drawing in the colours of the values last written to its meshes.
     heat: Heat | None = None
     wireframe: Wireframe | None = None

@@ -5,20 +5,22 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from PIL import Image
+from PIL import Image, ImageChops
 
 from app.document import (
+    Composite,
     Document,
     ExportSettings,
     Figure,
     Framing,
     Meshing,
     PictureFile,
+    composed,
     is_visible,
     layer_commands,
     new_figure,
 )
-from app.errors import LissomError, shown_name
+from app.errors import LissomError, Told, shown_name
 from app.storage.files import read_file
 from app.storage.opening import OpenedScene
 from app.storage.pictures import (
@@ -71,7 +73,7 @@ def open_pictures(paths: Sequence[Path], meshing: Meshing) -> OpenedScene:
     """
     layers: list[Layer] = []
     taken: set[str] = set()
-    notices: list[str] = []
+    told = Told()
     files = [(read_file(path), str(path)) for path in paths]
     pictures = decode_pictures(files)
     size = (
@@ -83,8 +85,9 @@ def open_pictures(paths: Sequence[Path], meshing: Meshing) -> OpenedScene:
         taken.add(name)
         corner = complex((size[0] - picture.size[0]) // 2, (size[1] - picture.size[1]) // 2)
         layers.append(Layer(name=name, data=data, picture=picture, corner=corner))
-        notices += [f"{name}: {notice}" for notice in picture.notices]
-    drawing = LayeredPicture(size=size, layers=tuple(layers), notices=tuple(notices))
+        for notice in picture.notices:
+            told.note(name, notice)
+    drawing = LayeredPicture(size=size, layers=tuple(layers), summary=told.summary)
     return _scene(drawing, meshing, is_cut_out=False)
 
 
@@ -104,18 +107,38 @@ def flattened(document: Document, textures: Mapping[int, Bytes]) -> Bytes:
     factor = max(1, max(document.canvas) // LARGEST_FLAT)
     if len(document.figures) == 1:
         return np.asarray(_reduced(textures[document.figures[0].id], factor))
-    flat = Image.new("RGBA", [-(-side // factor) for side in document.canvas])
-    for figure in document.exported:
-        if not is_visible(document, figure, document.frames.first):
-            continue
-        layer = _reduced(textures[figure.id], factor)
-        layer.putalpha(layer.getchannel("A").point(lambda a, o=figure.opacity: round(o * a)))
-        corner = figure.corner / factor
-        place = round(corner.real), round(flat.height - corner.imag - layer.height)
-        moved = Image.new("RGBA", flat.size)
-        moved.paste(layer, place)
-        flat = Image.alpha_composite(flat, moved)
-    return readonly(np.asarray(flat))
+    size = -(-document.canvas[0] // factor), -(-document.canvas[1] // factor)
+
+    def drawn(figure: Figure) -> Image.Image:
+        layer, corner = _reduced(textures[figure.id], factor), figure.corner / factor
+        moved = Image.new("RGBA", size)
+        moved.paste(layer, (round(corner.real), round(size[1] - corner.imag - layer.height)))
+        return moved
+
+    def painted(parts: Sequence[Figure | Composite[Figure]]) -> Image.Image:
+        flat = Image.new("RGBA", size)
+        for part in parts:
+            if isinstance(part, Composite):
+                flat = _blended(flat, painted(part.parts), part)
+            else:
+                flat = Image.alpha_composite(flat, drawn(part))
+        return flat
+
+    first = document.frames.first
+    seen = {each.id: each for each in document.exported if is_visible(document, each, first)}
+    return readonly(np.asarray(painted(composed(document, seen))))
+
+
+def _blended(below: Image.Image, layer: Image.Image, how: Composite[Figure]) -> Image.Image:
+    """Return a layer over what lies below it ("Compositing and Blending Level 1", Section 10)."""
+    alpha = layer.getchannel("A").point(lambda a: round(how.opacity * a))
+    if how.blend != "normal":
+        mix = ImageChops.multiply if how.blend == "multiply" else ImageChops.screen
+        own, lower = layer.convert("RGB"), below.convert("RGB")
+        # Where there is nothing below, it keeps its colours.
+        layer = Image.composite(mix(lower, own), own, below.getchannel("A")).convert("RGBA")
+    layer.putalpha(alpha)
+    return Image.alpha_composite(below, layer)
 
 
 def _reduced(rgba: Bytes, factor: int) -> Image.Image:
@@ -142,7 +165,7 @@ def layer_figure(
     file = PictureFile(data=layer.data, suffix=picture.suffix, size=picture.size)
     cut_out = WHOLE if is_cut_out else CutOut()
     domain, still = rectangle_domain(*picture.size), True
-    notices: tuple[str, ...] = ("it is opaque all over, and stands still",)
+    notices: tuple[str, ...] = ("opaque all over, so that it stands still",)
     if not (is_cut_out and picture.is_opaque):
         try:
             domain, notices = build_domain(
@@ -153,7 +176,7 @@ def layer_figure(
             )
             still = False
         except EngineError as error:
-            notices = (f"it stands still: {error}",)
+            notices = (f"stands still: {error}",)
     figure = replace(
         new_figure(file, domain.moved(layer.corner), meshing, WHOLE if still else cut_out),
         id=identity,
@@ -162,8 +185,11 @@ def layer_figure(
         still=still,
         hidden=not layer.visible,
         opacity=layer.opacity,
+        blend=layer.blend,
+        clipped=layer.clipped,
+        group=layer.group,
     )
-    return figure, tuple(f"{layer.name}: {notice}" for notice in notices)
+    return figure, notices
 
 
 def still_picture(data: bytes, picture: Picture) -> Figure:
@@ -187,6 +213,9 @@ def still_figure(figure: Figure) -> Figure:
         hidden=figure.hidden,
         switches=figure.switches,
         opacity=figure.opacity,
+        blend=figure.blend,
+        clipped=figure.clipped,
+        group=figure.group,
     )
 
 
@@ -202,8 +231,16 @@ def _scene(drawing: LayeredPicture, meshing: Meshing, *, is_cut_out: bool) -> Op
     if all(figure.still for figure in figures):
         raise LissomError("none of its layers can be posed: there is no shape on any of them")
     pictures = {index: layer.picture for index, layer in enumerate(drawing.layers)}
-    notices = [*drawing.notices, *(notice for _, told in made for notice in told)]
+    told = Told()
+    for figure, notices in made:
+        for notice in notices:
+            told.note(figure.name, notice)
     # A drawing with a background has a frame of its own.
     framing: Framing = "canvas" if figures[0].still else "fit"
-    document = Document(figures=figures, size=drawing.size, export=ExportSettings(framing=framing))
-    return OpenedScene(document, pictures, tuple(notices))
+    document = Document(
+        figures=figures,
+        size=drawing.size,
+        export=ExportSettings(framing=framing),
+        groups=drawing.groups,
+    )
+    return OpenedScene(document, pictures, summary=drawing.summary + told.summary)

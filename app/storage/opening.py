@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import NamedTuple, Self
 
 from app.document import Document, Meshing, PictureFile, new_figure
-from app.errors import shown_name
+from app.errors import NOTHING_TOLD, ImportSummary, shown_name
 from app.storage.files import read_file
 from app.storage.pictures import Picture, decode_picture
 from engine.arrays import Booleans, Bytes, freeze
@@ -19,7 +19,8 @@ class OpenedScene(NamedTuple):
 
     document: Document
     pictures: Mapping[int, Picture]
-    notices: tuple[str, ...]
+    notices: tuple[str, ...] = ()  # of a single picture
+    summary: ImportSummary = NOTHING_TOLD  # of several layers
 
 
 @dataclass(frozen=True, slots=True, eq=False)

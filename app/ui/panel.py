@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
-from imgui_bundle import imgui
+from imgui_bundle import hello_imgui, imgui
 
 from app.editor import Action, Project, Session
 from app.ui.style import Look
@@ -34,6 +34,14 @@ class Panel:
     def label(self) -> str:
         """The name of the panel's window, whatever is shown of it."""
         return self.labels[0]
+
+
+def bring_to_front(title: str) -> bool:
+    """Show a panel in the next frame; return whether it was in front already."""
+    for panel in hello_imgui.get_runner_params().docking_params.dockable_windows:
+        if panel.label.endswith(f"###{title}"):
+            panel.focus_window_at_next_frame = True
+    return is_in_front(title)
 
 
 def is_in_front(title: str) -> bool:

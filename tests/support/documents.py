@@ -25,7 +25,7 @@ from app.document.commands import (
 )
 from app.document.figure import PictureFile, new_figure
 from app.document.keyframe import Handle, KeptPose, Keyframe, Passing, Pose, Target
-from app.document.layering import Attachment, Switch
+from app.document.layering import Attachment, Group, Switch
 from app.document.model import Document
 from app.document.settings import FRAMINGS, VARIANTS, ExportSettings, FrameRange, Marker, Meshing
 from app.document.timing import HOLD, LINEAR, PRESETS, Easing, Spring, Track, TrackKey
@@ -481,7 +481,7 @@ def full_document() -> Document:
 
 
 def clocked_document() -> Document:
-    """The full document with clocks of single handles, tracks and springs, and with material."""
+    """The full document with what came later: clocks of single handles, material, and groups."""
     full = full_document()
     figure = full.figures[0]
     nose, foot = figure.handles
@@ -512,8 +512,15 @@ def clocked_document() -> Document:
         springs=(spring,),
         stiffness=painted,
         bones=(Bone(ends=(4, 1), amount=1 / 3, is_shown=False, unknown=more),),
+        blend="multiply",
+        clipped=True,
+        group="limbs/left",
     )
-    return dataclasses.replace(full, figures=(child, parent))
+    groups = (
+        Group(name="limbs", hidden=True, unknown=more),
+        Group(name="limbs/left", opacity=1 / 3, blend="screen", clipped=True),
+    )
+    return dataclasses.replace(full, figures=(child, parent), groups=groups)
 
 
 def differences(first: object, second: object, where: str = "document") -> list[str]:

@@ -84,7 +84,7 @@ def _read(path: Path, layer: str | None) -> tuple[Picture, complex]:
         )
     if layer is not None and layer not in names:
         raise LissomError(f"{path} has no layer {layer!r}; its layers are, from the front: {told}")
-    for message in drawing.notices:
+    for message in drawing.summary.lines:
         notice(message)
     found = drawing.layers[0 if layer is None else names.index(layer)]
     return found.picture, found.corner

@@ -63,7 +63,8 @@ def _alone(document: Document, name: str) -> Document:
     figures = tuple(
         replace(figure, hidden=False, reference=figure.name != name) for figure in document.figures
     )
-    return replace(document, figures=figures, size=document.canvas)
+    groups = tuple(replace(group, hidden=False) for group in document.groups)
+    return replace(document, figures=figures, groups=groups, size=document.canvas)
 
 
 def _make(

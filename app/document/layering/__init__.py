@@ -1,13 +1,24 @@
-"""How figures stand among each other: what they hang on, and when they are seen.
+"""How figures stand among each other: their groups, what they hang on, and when they are seen.
 
 In: ids of figures, and frames.
-Out: joints, switches and choices.
+Out: groups, joints, switches and choices.
 Imports: the values of `app.document`.
 """
 
 from app.document.layering.attachment import (
     Attachment as Attachment,
     require_joints as require_joints,
+)
+from app.document.layering.groups import (
+    BLENDS as BLENDS,
+    DEEPEST as DEEPEST,
+    GROUP_BLENDS as GROUP_BLENDS,
+    BlendMode as BlendMode,
+    Group as Group,
+    GroupBlend as GroupBlend,
+    paths_to as paths_to,
+    require_path as require_path,
+    shared_path as shared_path,
 )
 from app.document.layering.sight import (
     Choice as Choice,

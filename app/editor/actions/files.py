@@ -15,9 +15,9 @@ from app.editor.actions.saving import PROJECT
 from app.editor.dialogs import Leftover, Question, Recovery
 from app.editor.failures import ask_worker, sentence
 from app.editor.project import Project, Puppet
-from app.editor.session import Session
+from app.editor.session import Session, with_project
 from app.editor.work import Kind
-from app.errors import shown_name
+from app.errors import NOTHING_TOLD, ImportSummary, shown_name
 from app.storage import (
     Hold,
     HoldError,
@@ -115,7 +115,8 @@ class Opened(NamedTuple):
 
     document: Document
     puppets: dict[int, Puppet]
-    notices: tuple[str, ...]
+    notices: tuple[str, ...] = ()
+    summary: ImportSummary = NOTHING_TOLD
     offer: Offer | None = None
     read_as: str | None = None
     drawings: tuple[Path, ...] = ()
@@ -207,27 +208,55 @@ def _show(
 ) -> None:
     """Make what was read the project of the window; `own` is the file that it is saved in."""
     session.autosave.forget()
-    saving.put_project(
-        session,
-        Project(
-            name=shown_name(path.stem),
-            history=History(opened.document, saved=True),
-            puppets=opened.puppets,
-            active=_foremost(opened.document),
-            path=own,
-            read_as=opened.read_as,
-            drawings=set(opened.drawings),
-            hold=hold,
-        ),
+    project = Project(
+        name=shown_name(path.stem),
+        history=History(opened.document, saved=True),
+        puppets=opened.puppets,
+        active=_foremost(opened.document),
+        path=own,
+        read_as=opened.read_as,
+        drawings=set(opened.drawings),
+        hold=hold,
     )
+    saving.put_project(session, project)
     if path.parent != sample_images():
         session.preferences = session.preferences.with_recent(path)
     elif any(len(figure.keys) > 1 for figure in opened.document.figures):
         playback.toggle_play(session)
     for notice in opened.notices:
         session.tell(sentence(notice))
+    tell_of_import(session, project, opened.summary)
     if opened.offer:
         session.tell(tone="good", **opened.offer._asdict())
+
+
+def tell_of_import(session: Session, project: Project, summary: ImportSummary) -> None:
+    """Keep what opening a drawing told with the project, and tell of what is lost."""
+    project.summary += summary
+    if not summary.losses:
+        return
+    project.shows_summary = True
+    count = len(summary.losses)
+    session.tell(
+        f"{'One thing looks' if count == 1 else f'{count} things look'} different here; the tab "
+        "Layers tells which.",
+        topic="import",
+        label="Show",
+        action=do(show_summary),
+    )
+
+
+@with_project
+def show_summary(session: Session, project: Project) -> None:
+    """Show what opening a drawing told, in the panel of layers."""
+    project.shows_summary = True
+    session.wanted_panel = "Layers"
+
+
+@with_project
+def fold_summary(_: Session, project: Project) -> None:
+    """Show or hide what opening a drawing told, where the panel of layers has it."""
+    project.shows_summary = not project.shows_summary
 
 
 def _foremost(document: Document) -> int:
@@ -240,7 +269,8 @@ def _foremost(document: Document) -> int:
 
 def with_puppets(opened: OpenedScene) -> Opened:
     """Return a scene with its figures as a window has them."""
-    return Opened(opened.document, _puppets(opened.document, opened.pictures), opened.notices)
+    puppets = _puppets(opened.document, opened.pictures)
+    return Opened(opened.document, puppets, opened.notices, opened.summary)
 
 
 def _puppets(document: Document, pictures: Mapping[int, Picture]) -> dict[int, Puppet]:
@@ -273,7 +303,7 @@ def _decoded(document: Document, name: str) -> Opened:
         figure.id: picture
         for figure, picture in zip(document.figures, decode_pictures(files), strict=True)
     }
-    return Opened(document, _puppets(document, pictures), ())
+    return Opened(document, _puppets(document, pictures))
 
 
 def _read_picture(path: Path, meshing: Meshing) -> Opened:

@@ -5,17 +5,25 @@ from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
-from app.document import Figure, Meshing, clip_of, layer_commands
+from app.document import (
+    Document,
+    Figure,
+    Group,
+    Meshing,
+    clip_of,
+    group_commands,
+    layer_commands,
+)
 from app.editor import promises
 from app.editor.action import Action, do
 from app.editor.actions import editing, files, rebuilding
 from app.editor.dialogs import Question
 from app.editor.failures import sentence
-from app.editor.layering.arranging import choose
+from app.editor.layering.choosing import choose
 from app.editor.project import Project, Puppet
 from app.editor.session import Session, with_project
 from app.editor.work import Kind
-from app.errors import LissomError, shown_name
+from app.errors import NOTHING_TOLD, ImportSummary, LissomError, Told, shown_name
 from app.solving import Renewal, begin_replacing
 from app.storage import (
     Layer,
@@ -62,6 +70,9 @@ def stand_up(session: Session, project: Project, identity: int) -> None:
         corner=figure.corner,
         visible=not figure.hidden,
         opacity=figure.opacity,
+        blend=figure.blend,
+        clipped=figure.clipped,
+        group=figure.group,
     )
     meshing = session.meshing
 
@@ -131,13 +142,13 @@ def add(session: Session, project: Project, paths: Sequence[Path]) -> None:
     meshing, before = session.meshing, project.document
     canvas = before.canvas
 
-    def work() -> tuple[list[_Made], list[str]]:
-        document = before
+    def work() -> tuple[list[_Made], ImportSummary, Sequence[Group]]:
+        document, summary, told = before, NOTHING_TOLD, Told()
         made: list[_Made] = []
-        told: list[str] = []
         for path in paths:
-            drawing = _drawing(path)
-            told += drawing.notices
+            drawing = _with_free_groups(_drawing(path), document)
+            document = group_commands.add_groups(drawing.groups)(document)
+            summary += drawing.summary
             across, up = ((ours - its) // 2 for ours, its in zip(canvas, drawing.size, strict=True))
             for layer in drawing.layers:
                 moved = replace(layer, corner=layer.corner + complex(across, up))
@@ -148,14 +159,16 @@ def add(session: Session, project: Project, paths: Sequence[Path]) -> None:
                 document = layer_commands.add_figure(figure)(document)
                 # Here, and not while the window waits: it takes a tenth of a second.
                 puppet = Puppet.of(clip_of(document, identity), layer.picture)
-                notices = layer.picture.notices + notices
-                made.append(_Made(figure, layer.picture, notices, puppet))
-        return made, told
+                for notice in layer.picture.notices + notices:
+                    told.note(document.figures[-1].name, notice)
+                made.append(_Made(figure, layer.picture, (), puppet))
+        return made, summary + told.summary, document.groups[len(before.groups) :]
 
-    def done(read: tuple[list[_Made], list[str]]) -> None:
-        made, told = read
+    def done(read: tuple[list[_Made], ImportSummary, Sequence[Group]]) -> None:
+        made, summary, groups = read
         project.drawings.update(paths)
         gesture = object()
+        project.history.do(group_commands.add_groups(groups), gesture=gesture)
         for figure, picture, _, puppet in made:
             identity = layer_commands.free_identity(project.document)
             project.pictures[figure.picture] = picture
@@ -165,10 +178,24 @@ def add(session: Session, project: Project, paths: Sequence[Path]) -> None:
                 project.puppets[identity] = puppet
         editing.follow_figures(project)
         choose(session, identity)
-        for notice in (*told, *(notice for each in made for notice in each.notices)):
-            session.tell(sentence(notice))
+        files.tell_of_import(session, project, summary)
 
     promises.begin(session, project, ADDING, work, done)
+
+
+def _with_free_groups(drawing: LayeredPicture, document: Document) -> LayeredPicture:
+    """Return a drawing with names of groups that a document does not have."""
+    taken = {group.name for group in document.groups}
+
+    def free(path: str) -> str:
+        outermost, slash, inner = path.partition("/")
+        return path and layer_commands.numbered_name(outermost, taken) + slash + inner
+
+    return replace(
+        drawing,
+        layers=tuple(replace(layer, group=free(layer.group)) for layer in drawing.layers),
+        groups=tuple(replace(group, name=free(group.name)) for group in drawing.groups),
+    )
 
 
 def _drawing(path: Path) -> LayeredPicture:
@@ -178,7 +205,7 @@ def _drawing(path: Path) -> LayeredPicture:
     data = read_file(path)
     picture = decode_picture(data, path.name)
     layer = Layer(name=shown_name(path.stem).strip() or "layer", data=data, picture=picture)
-    return LayeredPicture(size=picture.size, layers=(layer,), notices=())
+    return LayeredPicture(size=picture.size, layers=(layer,))
 
 
 def ask(session: Session) -> None:

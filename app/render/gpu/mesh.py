@@ -147,16 +147,10 @@ class PosedMesh:
         Released after its poses.
     source : VertexSource
         For as many vertices as the mesh has.
-
-    Attributes
-    ----------
-    opacity : float
-        1 at first; below, the whole drawing shines through, but not its parts through each other.
     """
 
     def __init__(self, mesh: GpuMesh, source: VertexSource) -> None:
         self.picture = mesh.picture
-        self.opacity = 1.0
         self._placement = (1.0, 0.0, 0.0, 0.0)
         self._mesh = mesh
         self._source = source

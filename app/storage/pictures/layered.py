@@ -4,14 +4,12 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from app.document import layer_commands
-from app.errors import LissomError
+from app.document import DEEPEST, BlendMode, Group, layer_commands, paths_to
+from app.errors import NOTHING_TOLD, ImportSummary, LissomError, Told, shown_name
 from app.storage.pictures.cores import require_memory
 from app.storage.pictures.picture import Picture
 
 MOST_LAYERS = 200
-# Groups in each other.
-DEEPEST = 50
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -29,8 +27,14 @@ class Layer:
     corner : complex
         Where its lower left corner is on the canvas, in pixels, y up.
     visible : bool
+        By itself, whatever its groups.
     opacity : float
         In [0, 1].
+    blend : BlendMode
+    clipped : bool
+        Whether it is seen only where what lies below it in its group is.
+    group : str
+        The path of the group that it is in, "" where there is none.
     """
 
     name: str
@@ -39,6 +43,9 @@ class Layer:
     corner: complex = 0j
     visible: bool = True
     opacity: float = 1.0
+    blend: BlendMode = "normal"
+    clipped: bool = False
+    group: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -51,45 +58,92 @@ class LayeredPicture:
         Width and height of the canvas in pixels.
     layers : tuple of Layer
         From the one behind all others to the one in front; there is always one.
-    notices : tuple of str
-        What could not be kept, in words.
+    summary : ImportSummary
+    groups : tuple of Group
+        Those of the layers, each after the one that it is in.
     """
 
     size: tuple[int, int]
     layers: tuple[Layer, ...]
-    notices: tuple[str, ...]
+    summary: ImportSummary = NOTHING_TOLD
+    groups: tuple[Group, ...] = ()
+
+
+class Groups:
+    """The groups of a drawing as they are found, each with a path of its own."""
+
+    def __init__(self) -> None:
+        self._found: dict[str, Group] = {}
+
+    def add(self, around: str, group: Group) -> str:
+        """Take in a group by its name, that is in the one with the path `around`; return its path.
+
+        Raises
+        ------
+        LissomError
+            If it lies too deep in others.
+        """
+        if around.count("/") + bool(around) >= DEEPEST:
+            raise LissomError(f"its groups lie more than {DEEPEST} deep in each other")
+        # A slash stands between groups.
+        name = shown_name(group.name).replace("/", "-").strip() or "group"
+        path = layer_commands.numbered_name(f"{around}/{name}" if around else name, self._found)
+        self._found[path] = replace(group, name=path)
+        return path
+
+    def of(self, layers: Sequence[Layer]) -> tuple[Group, ...]:
+        """Return the groups that these layers are in."""
+        filled = {path for layer in layers for path in paths_to(layer.group)}
+        return tuple(group for path, group in self._found.items() if path in filled)
 
 
 def layered_picture(
-    size: tuple[int, int], found: Sequence[tuple[str, Layer]], notices: Sequence[str]
+    size: tuple[int, int], found: Sequence[Layer], groups: Groups, told: Told
 ) -> LayeredPicture:
     """Return the drawing of the layers that were found, each with a name of its own.
 
     Parameters
     ----------
     size : tuple of int
-    found : sequence of (str, Layer)
-        From back to front, each with the names of the groups that it is in, as "limbs/left"; layers
-        of which nothing is to be seen are left out.
-    notices : sequence of str
+    found : sequence of Layer
+        From back to front; those of which nothing is to be seen are left out.
+    groups : Groups
+        All of them.
+    told : Told
+        About the layers, and added to.
     """
-    notices, kept = list(notices), []
-    for group, layer in found:
-        if layer.picture.rgba[..., 3].any():
-            kept.append((group, layer))
+    kept: list[Layer] = []
+    empty: dict[str, str] = {}  # the names of layers that clip others in the groups, by their paths
+    for layer in found:
+        base = empty.get(layer.group) if layer.clipped else None
+        if base is not None:
+            told.note(layer.name, f"left out, since it is clipped by the empty layer {base}")
+            continue
+        is_empty = not layer.picture.rgba[..., 3].any()
+        if is_empty:
+            told.note(layer.name, "left out, since it is empty")
         else:
-            notices.append(f"left out the empty layer {layer.name!r}")
+            kept.append(layer)
+        if not layer.clipped:
+            # A layer of an inner group is part of what clips in those around it.
+            for path in ("", *paths_to(layer.group)):
+                empty.pop(path, None)
+            if is_empty:
+                empty[layer.group] = layer.name
     if not kept:
         raise LissomError("it has no layer on which anything is drawn")
-    own = Counter(layer.name for _, layer in kept)
+    own = Counter(layer.name for layer in kept)
     taken: set[str] = set()
     layers = []
-    for group, layer in kept:
-        name = f"{group}/{layer.name}" if group and own[layer.name] > 1 else layer.name
+    for layer in kept:
+        has_twin = layer.group and own[layer.name] > 1
+        name = f"{layer.group}/{layer.name}" if has_twin else layer.name
         free = layer_commands.numbered_name(name, taken)
         taken.add(free)
         layers.append(replace(layer, name=free))
-    return LayeredPicture(size=size, layers=tuple(layers), notices=tuple(notices))
+    return LayeredPicture(
+        size=size, layers=tuple(layers), summary=told.summary, groups=groups.of(layers)
+    )
 
 
 def require_few(count: int) -> None:

@@ -1,20 +1,20 @@
 """Reading OpenRaster files: a zip of `stack.xml` and one PNG a layer.
 
-Krita, MyPaint and GIMP write them. Groups are flattened: what lies in them stays in its order, with
-the group's visibility and opacity.
+Krita, MyPaint and GIMP write them.
 """
 
 import io
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from math import isfinite
 from xml.etree import ElementTree as ET
 
-from app.errors import LissomError
+from app.document import BlendMode, Group, paths_to
+from app.errors import LissomError, Told
 from app.storage.files import DAMAGED_ZIP, opened_zip
 from app.storage.pictures.layered import (
-    DEEPEST,
+    Groups,
     Layer,
     LayeredPicture,
     corner_from_top,
@@ -29,19 +29,23 @@ LARGEST_XML = 4 * 1024 * 1024
 # By which all pictures together may outgrow twice the file; they are packed already.
 MOST_UNPACKED = 16 * 1024 * 1024
 LARGEST_SIDE = 65_535
-NORMAL = {"", "svg:src-over"}
+MODES: dict[str, BlendMode] = {
+    "": "normal",
+    "svg:src-over": "normal",
+    "svg:src-atop": "normal",
+    "svg:multiply": "multiply",
+    "svg:screen": "screen",
+}
 DAMAGE = (*DAMAGED_ZIP, OSError)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Place:
-    """Where an element of the stack is, with all that the groups around it do to it."""
+    """Where an element of the stack is."""
 
     group: str = ""
     x: float = 0.0
     y: float = 0.0
-    visible: bool = True
-    opacity: float = 1.0
 
 
 def read_openraster(data: bytes) -> LayeredPicture:
@@ -61,9 +65,9 @@ def _read(archive: zipfile.ZipFile) -> LayeredPicture:
     stack = image.find("stack")
     if image.tag != "image" or stack is None:
         raise LissomError("its stack.xml holds no stack of layers")
-    notices: list[str] = []
+    told, groups = Told(), Groups()
     # The stack counts from the front.
-    elements = list(_layers(stack, _Place(), notices, 0))[::-1]
+    elements = list(_layers(stack, _Place(), groups, told))[::-1]
     require_few(len(elements))
     sources = []
     for element, _ in elements:
@@ -79,7 +83,7 @@ def _read(archive: zipfile.ZipFile) -> LayeredPicture:
     require_room([stored_size(members[source], source) for source in sources])
     decoded = decode_pictures([(members[source], source) for source in distinct])
     pictures = dict(zip(distinct, decoded, strict=True))
-    found = []
+    found: list[Layer] = []
     for (element, place), source in zip(elements, sources, strict=True):
         member, picture = members[source], pictures[source]
         name = element.get("name", "").strip() or "layer"
@@ -88,38 +92,91 @@ def _read(archive: zipfile.ZipFile) -> LayeredPicture:
             data=member,
             picture=picture,
             corner=corner_from_top(place.x, place.y, picture.size, size[1]),
-            visible=place.visible,
-            opacity=place.opacity,
+            visible=_is_visible(element),
+            opacity=_opacity(element),
+            blend=_blend(element, told),
+            clipped=_is_clipped(element),
+            group=place.group,
         )
-        found.append((place.group, layer))
-    return layered_picture(size, found, notices)
+        found.append(replace(layer, clipped=layer.clipped and _clips(found, layer, size, told)))
+    return layered_picture(size, found, groups, told)
+
+
+def _clips(found: Sequence[Layer], layer: Layer, size: tuple[int, int], told: Told) -> bool:
+    """Tell whether a layer is clipped, which here all that lies below it in its group does."""
+    depth = len(paths_to(layer.group))
+    below = set()
+    for each in found:
+        if layer.group and layer.group not in paths_to(each.group):
+            continue
+        covers = each.picture.is_opaque and each.picture.size >= size and each.opacity == 1
+        if covers and each.visible and not each.corner:
+            return False
+        if not each.clipped:
+            # Of a group in the group, all layers are one.
+            below.add((*paths_to(each.group)[depth : depth + 1], each)[0])
+    if len(below) > 1:
+        what = "clipped by what lies right below it, not by all that does in its group"
+        told.lose(layer.name, what)
+    return bool(below)
 
 
 def _layers(
-    stack: ET.Element, around: _Place, notices: list[str], depth: int
+    stack: ET.Element, around: _Place, groups: Groups, told: Told
 ) -> Iterator[tuple[ET.Element, _Place]]:
     """Go through the layers of a stack and of the groups in it, from the front."""
-    if depth > DEEPEST:
-        raise LissomError(f"its groups lie more than {DEEPEST} deep in each other")
     for element in stack:
-        name = element.get("name", "").strip()
-        place = _Place(
-            group=around.group,
+        place = replace(
+            around,
             x=around.x + _number(element, "x", 0.0),
             y=around.y + _number(element, "y", 0.0),
-            visible=around.visible and element.get("visibility", "visible") != "hidden",
-            opacity=around.opacity * min(max(_number(element, "opacity", 1.0), 0.0), 1.0),
         )
-        if element.tag in {"layer", "stack"} and element.get("composite-op", "") not in NORMAL:
-            mode = element.get("composite-op", "").removeprefix("svg:")
-            notices.append(f"{name!r} is drawn normally, not in the mode {mode!r}")
+        name = element.get("name", "").strip()
         if element.tag == "layer":
             yield element, place
         elif element.tag == "stack":
-            group = "/".join(part for part in (around.group, name) if part)
-            yield from _layers(element, replace(place, group=group), notices, depth + 1)
+            blend = _blend(element, told)
+            group = Group(
+                name=name or "group",
+                opacity=_opacity(element),
+                hidden=not _is_visible(element),
+                blend="pass-through" if blend == "normal" and _passes(element) else blend,
+                clipped=_is_clipped(element),
+            )
+            inner = replace(place, group=groups.add(around.group, group))
+            yield from _layers(element, inner, groups, told)
         else:
-            notices.append(f"left out {name or element.tag!r}: Lissom takes drawn layers only")
+            told.lose(name or element.tag, "left out, since Lissom takes drawn layers only")
+
+
+def _is_visible(element: ET.Element) -> bool:
+    return element.get("visibility", "visible") != "hidden"
+
+
+def _opacity(element: ET.Element) -> float:
+    return min(max(_number(element, "opacity", 1.0), 0.0), 1.0)
+
+
+def _passes(element: ET.Element) -> bool:
+    """Tell whether a group of this element is painted as if there were none, if it can be."""
+    return element.get("isolation", "auto") == "auto"
+
+
+def _is_clipped(element: ET.Element) -> bool:
+    """Tell whether an element is seen only where something lies below it.
+
+    Krita says so of layers that inherit alpha, other programs by an attribute of their own.
+    """
+    return element.get("composite-op") == "svg:src-atop" or element.get("alpha-preserve") == "true"
+
+
+def _blend(element: ET.Element, told: Told) -> BlendMode:
+    """Return how an element is blended; a mode that is not taken over is told."""
+    mode = element.get("composite-op", "")
+    if mode not in MODES:
+        name = element.get("name", "").strip() or element.tag
+        told.lose(name, f"drawn normally, not in the mode {mode.removeprefix('svg:')!r}")
+    return MODES.get(mode, "normal")
 
 
 def _parse(content: bytes) -> ET.Element:

@@ -1,37 +1,44 @@
 """Reading Photoshop files with psd-tools, where that is installed."""
 
 import io
+import re
 import struct
 import warnings
 import zlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
-from PIL import Image, ImageChops
+from PIL import Image, ImageChops, ImageFilter
 
-from app.errors import LissomError
+from app.document import BlendMode, Group
+from app.errors import LissomError, Told
 from app.storage.pictures.layered import (
-    DEEPEST,
+    Groups,
     Layer,
     LayeredPicture,
     corner_from_top,
     layered_picture,
     require_room,
 )
-from app.storage.pictures.picture import decode_picture
+from app.storage.pictures.picture import Picture, decode_picture
+from engine.arrays import freeze
 
 MEBIBYTE = 1024 * 1024
 SIGNATURE = b"8BPS"
-# What is drawn, and by which name psd-tools knows it. Shapes and placed pictures come with pixels.
-DRAWN: Final = {"pixel", "shape", "smartobject"}
-SKIPPED: Final = {"type": "text"}
+# What is drawn, and by which name psd-tools knows it. Shapes, placed pictures and texts come with
+# pixels.
+DRAWN: Final = {"pixel", "shape", "smartobject", "type"}
 # Channels of a layer's colours, numbered from 0, and the one before them.
 COLOURS: Final = {"GRAYSCALE": 1, "RGB": 3, "CMYK": 4, "LAB": 3}
 TRANSPARENCY: Final = -1
 PADDING: Final = 3  # bytes that may follow the picture of all layers
-NORMAL: Final = {"NORMAL", "PASS_THROUGH"}
+MODES: Final[dict[str, BlendMode]] = {
+    "NORMAL": "normal",
+    "MULTIPLY": "multiply",
+    "SCREEN": "screen",
+}
 DAMAGE = (
     OSError,
     ValueError,
@@ -51,20 +58,17 @@ DAMAGE = (
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Group:
-    """What the groups around a layer do to it."""
+class _Place:
+    """Where a layer is."""
 
-    path: str = ""
-    visible: bool = True
-    opacity: float = 1.0
-    depth: int = 0
+    group: str = ""  # its path
+    masks: tuple[Any, ...] = ()  # the groups around it that have masks
 
 
 def read_photoshop(data: bytes) -> LayeredPicture:
     """Read the layers of a Photoshop file.
 
-    Groups are flattened: what lies in them stays in its order, with the group's visibility and
-    opacity. Masks are taken into the pixels.
+    Masks are taken into the pixels.
 
     Raises
     ------
@@ -91,60 +95,98 @@ def read_photoshop(data: bytes) -> LayeredPicture:
 
 
 def _read(drawing: Any) -> LayeredPicture:
-    notices: list[str] = []
-    found = list(_drawn_layers(drawing, _Group(), notices))
-    require_room([(layer.width, layer.height) for _, layer in found])
+    told, groups = Told(), Groups()
+    found = list(_drawn_layers(drawing, _Place(), groups, told))
+    require_room([(layer.width, layer.height) for _, layer, _ in found])
     layers = []
-    for group, layer in found:
+    for place, layer, is_clipped in found:
+        name = layer.name.strip() or "layer"
         _require_channels(layer, drawing)
-        image = _pixels(layer)
+        image = _pixels(layer, place.masks, told)
         if image is None:
-            notices.append(f"left out the empty layer {layer.name!r}")
-            continue
-        file = _png(image)
-        picture = decode_picture(file, layer.name)
+            # So that it clips what it does in the file.
+            image = Image.new("RGBA", (1, 1))
+        picture = Picture(rgba=freeze(np.array(image)))
         read = Layer(
-            name=layer.name.strip() or "layer",
-            data=file,
+            name=name,
+            data=_png(image),
             picture=picture,
             corner=corner_from_top(layer.left, layer.top, picture.size, drawing.height),
-            visible=group.visible and layer.visible,
-            opacity=group.opacity * layer.opacity / 255,
+            visible=layer.visible,
+            opacity=layer.opacity / 255 * layer.fill_opacity / 255,
+            blend=_blend(layer, told),
+            clipped=is_clipped,
+            group=place.group,
         )
-        layers.append((group.path, read))
-    if not found and not notices:
+        layers.append(read)
+    if not found and not told.summary:
         # Saved without layers: the picture that all programs see.
         whole = drawing._record.image_data  # noqa: SLF001 - as of channels
         rows = drawing.height * drawing.channels
         _require_all_rows(whole, rows, drawing.version, padding=PADDING)
         file = _png(drawing.topil().convert("RGBA"))
         flat = decode_picture(file, "the picture")
-        layers = [("", Layer(name="picture", data=file, picture=flat))]
-    return layered_picture((drawing.width, drawing.height), layers, notices)
+        layers = [Layer(name="picture", data=file, picture=flat)]
+    return layered_picture((drawing.width, drawing.height), layers, groups, told)
 
 
-def _drawn_layers(around: Any, group: _Group, notices: list[str]) -> Iterator[tuple[_Group, Any]]:
-    """Go through what is drawn, from the back, with what the groups do to it."""
-    if group.depth > DEEPEST:
-        raise LissomError(f"its groups lie more than {DEEPEST} deep in each other")
+def _drawn_layers(
+    around: Any, place: _Place, groups: Groups, told: Told
+) -> Iterator[tuple[_Place, Any, bool]]:
+    """Go through what is drawn, from the back: where it is, and whether it is clipped."""
+    # What clips a layer may be left out, and then nothing does.
+    clips = True
     for layer in around:
-        name = layer.name.strip()
-        if layer.blend_mode.name not in NORMAL:
-            mode = layer.blend_mode.name.lower().replace("_", " ")
-            notices.append(f"{name!r} is drawn normally, not in the mode {mode!r}")
+        name = layer.name.strip() or "layer"
         if layer.is_group():
-            inner = _Group(
-                path="/".join(part for part in (group.path, name) if part),
-                visible=group.visible and layer.visible,
-                opacity=group.opacity * layer.opacity / 255,
-                depth=group.depth + 1,
+            passes = layer.blend_mode.name == "PASS_THROUGH"
+            group = Group(
+                name=name,
+                opacity=layer.opacity / 255,
+                hidden=not layer.visible,
+                blend="pass-through" if passes else _blend(layer, told),
+                clipped=_is_clipping(layer) and clips,
             )
-            yield from _drawn_layers(layer, inner, notices)
+            masks = place.masks
+            if _is_masked(layer, told):
+                masks = (*masks, layer)
+                told.note(name, "its mask is cut into the layers of the group, as they are drawn")
+            inner = _Place(group=groups.add(place.group, group), masks=masks)
+            yield from _drawn_layers(layer, inner, groups, told)
         elif layer.kind in DRAWN:
-            yield group, layer
+            if layer.has_effects():
+                effects = dict.fromkeys(
+                    _in_words(type(effect).__name__) for effect in layer.effects if effect.enabled
+                )
+                told.lose(name, f"drawn without effects ({', '.join(effects)})")
+            if layer.kind == "type":
+                told.note(name, "text, drawn as a picture")
+            yield place, layer, _is_clipping(layer) and clips
         else:
-            kind = SKIPPED.get(layer.kind, "adjustment")
-            notices.append(f"left out the {kind} layer {name!r}: Lissom takes drawn layers only")
+            kind = "a fill" if layer.kind.endswith("fill") else "an adjustment"
+            told.lose(name, f"left out, since it is {kind} layer")
+            clips = clips and _is_clipping(layer)
+            continue
+        clips = clips or not _is_clipping(layer)
+
+
+def _is_clipping(layer: Any) -> bool:
+    """Tell whether a layer or a group, of which psd-tools does not tell, is to be clipped."""
+    return bool(layer._record.clipping.name == "NON_BASE")  # noqa: SLF001 - as of channels
+
+
+def _in_words(name: str) -> str:
+    """Return the name of a class, as "DropShadow", in words."""
+    return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name).lower()
+
+
+def _blend(layer: Any, told: Told) -> BlendMode:
+    """Return how a layer is blended; a mode that is not taken over is told."""
+    mode = layer.blend_mode.name
+    if mode not in MODES:
+        what = f"drawn normally, not in the mode {mode.lower().replace('_', ' ')!r}"
+        told.lose(layer.name.strip() or "layer", what)
+    return MODES.get(mode, "normal")
 
 
 def _require_channels(layer: Any, drawing: Any) -> None:
@@ -179,19 +221,45 @@ def _png(image: Image.Image) -> bytes:
     return file.getvalue()
 
 
-def _pixels(layer: Any) -> Image.Image | None:
-    """Return the pixels of a layer with its mask taken in; None where it has none."""
+def _pixels(layer: Any, around: Sequence[Any], told: Told) -> Image.Image | None:
+    """Return the pixels of a layer with its masks, and those of groups around it, taken in.
+
+    None where it has none.
+    """
     if layer.width == 0 or layer.height == 0:
         return None
     image = layer.topil()
     if image is None:
         return None
     pixels: Image.Image = image.convert("RGBA")
-    mask = layer.mask
-    if mask is not None and not mask.disabled:
-        seen = Image.new("L", pixels.size, mask.background_color)
-        drawn = mask.topil()
-        if drawn is not None:
-            seen.paste(drawn.convert("L"), (mask.left - layer.left, mask.top - layer.top))
-        pixels.putalpha(ImageChops.multiply(pixels.getchannel("A"), seen))
+    for masked in (layer, *around):
+        if _is_masked(masked, told if masked is layer else Told()):
+            seen = _seen_through(masked.mask, (layer.left, layer.top), pixels.size)
+            pixels.putalpha(ImageChops.multiply(pixels.getchannel("A"), seen))
     return pixels
+
+
+def _is_masked(layer: Any, told: Told) -> bool:
+    """Tell whether a layer or group has a mask of pixels; one that is not taken over is told."""
+    mask = layer.mask
+    is_masked = mask is not None and not mask.disabled
+    # Programs store what is seen through a mask of paths as one of pixels, too.
+    is_by_paths = layer.kind != "shape" and mask is None and layer.has_vector_mask()
+    if is_by_paths and not layer.vector_mask.disabled:
+        told.lose(layer.name.strip() or "layer", "drawn without its vector mask")
+    return is_masked
+
+
+def _seen_through(mask: Any, corner: tuple[int, int], size: tuple[int, int]) -> Image.Image:
+    """Return how much of each pixel of a layer is seen through a mask."""
+    seen = Image.new("L", size, mask.background_color)
+    drawn = mask.topil()
+    if drawn is not None:
+        seen.paste(drawn.convert("L"), (mask.left - corner[0], mask.top - corner[1]))
+    settings = mask.parameters
+    if settings is not None and settings.user_mask_feather:
+        seen = seen.filter(ImageFilter.GaussianBlur(settings.user_mask_feather))
+    if settings is not None and settings.user_mask_density is not None:
+        density = settings.user_mask_density / 255
+        seen = seen.point(lambda level: round(255 - density * (255 - level)))
+    return seen

@@ -14,12 +14,14 @@ from app.document import (
     Attachment,
     Bone,
     Choice,
+    Cycle,
     Document,
     Easing,
     ExportSettings,
     Figure,
     FormatPictures,
     FrameRange,
+    Group,
     Handle,
     KeptPose,
     Keyframe,
@@ -180,6 +182,12 @@ SPRING = record(
     Field("strength", NUMBER, usual=1.0),
     Field("enabled", FLAG, usual=True),
 )
+CYCLE = record(
+    Cycle,
+    Field("first", WHOLE),
+    Field("last", WHOLE),
+    Field("until", optional(WHOLE)),
+)
 BONE = record(
     Bone,
     Field("ends", pair(WHOLE, WHOLE, "two handles")),
@@ -225,6 +233,14 @@ ATTACHMENT = record(
     Field("offset", POINT, usual=0j),
     Field("keeps", FLAG, usual=False),
 )
+GROUP = record(
+    Group,
+    Field("name", TEXT),
+    Field("opacity", NUMBER, usual=1.0),
+    Field("hidden", FLAG, usual=False),
+    Field("blend", TEXT, usual="pass-through"),
+    Field("clipped", FLAG, usual=False),
+)
 FIGURE = record(
     dict,
     Field("id", WHOLE),
@@ -238,6 +254,7 @@ FIGURE = record(
     Field("stillness", FLAG, usual=False),
     Field("tracks", several(TRACK), usual=()),
     Field("springs", several(SPRING), usual=()),
+    Field("cycles", several(CYCLE), usual=()),
     Field("bones", several(BONE), usual=()),
     Field("stiffness", FLAG, lambda figure: figure.stiffness is not None, usual=False),
     Field("variant", TEXT),
@@ -253,10 +270,11 @@ FIGURE = record(
     Field("hidden", FLAG, usual=False),
     Field("switches", several(SWITCH), usual=()),
     Field("opacity", NUMBER, usual=1.0),
+    Field("blend", TEXT, usual="normal"),
+    Field("clipped", FLAG, usual=False),
+    Field("group", TEXT, usual=""),
     # Its joints: the first one, and those that come later.
-    Field(
-        "attachment", optional(ATTACHMENT), lambda each: next(iter(each.joints), None), usual=None
-    ),
+    Field("attachment", optional(ATTACHMENT), lambda each: (*each.joints, None)[0], usual=None),
     Field("handovers", several(ATTACHMENT), lambda each: each.joints[1:], usual=()),
 )
 CHOICE = record(
@@ -279,6 +297,7 @@ DOCUMENT = record(
     Field("size", optional(SIZE), usual=None),
     Field("pairs", several(pair(TEXT, TEXT, "two words")), usual=PAIRS),
     Field("choices", several(CHOICE), usual=()),
+    Field("groups", several(GROUP), usual=()),
 )
 
 

@@ -10,6 +10,7 @@ from app.editor import Project, Session, do, layering, with_project
 from app.editor.actions import (
     OverlayName,
     cutting,
+    cycles,
     editing,
     exporting,
     files,
@@ -25,7 +26,7 @@ from app.editor.actions import (
 )
 from app.editor.poses import copying, library, pasting, receiving
 from app.editor.tools import moving
-from app.ui.panel import is_in_front
+from app.ui.panel import bring_to_front
 from app.ui.shortcuts.binding import Binding
 
 
@@ -42,6 +43,11 @@ def _redo_label(_: Session, project: Project) -> str:
 def _copied(session: Session, project: Project) -> str:
     count = project.count_chosen if copying.copies_keys(session, project) else 0
     return f"{count} keys" if count > 1 else "pose"
+
+
+def _stretch(_: Session, project: Project) -> str:
+    stretch = cycles.chosen_stretch(project)
+    return "" if stretch is None else f"frames {stretch[0]} to {stretch[1]}"
 
 
 def _onto(session: Session, project: Project, way: receiving.PasteWay) -> str:
@@ -91,6 +97,10 @@ def _all_locked(session: Session) -> bool:
     return bool(project and selected and all(map(project.figure.is_locked, selected)))
 
 
+def _has_summary(_: Session, project: Project) -> bool:
+    return bool(project.summary)
+
+
 def _loops(session: Session) -> bool:
     return session.project is not None and session.project.document.loop
 
@@ -106,22 +116,14 @@ def _brushes(session: Session, _: Project) -> bool:
 @with_project
 def _rename_layer(session: Session, project: Project) -> None:
     """Ask for the name of the layer that is posed, in the list of layers."""
-    _bring_to_front("Layers")
+    bring_to_front("Layers")
     layering.ask_name(session, project.active)
 
 
 def _export(session: Session) -> None:
     """Show what the export makes; where that is seen already, ask where to and begin."""
-    if _bring_to_front("Export"):
+    if bring_to_front("Export"):
         exporting.ask(session)
-
-
-def _bring_to_front(title: str) -> bool:
-    """Show a panel; return whether it was in front already."""
-    for panel in hello_imgui.get_runner_params().docking_params.dockable_windows:
-        if panel.label.endswith(f"###{title}"):
-            panel.focus_window_at_next_frame = True
-    return is_in_front(title)
 
 
 def _overlay(label: str, name: OverlayName, keys: str, **more: Any) -> Binding:
@@ -543,11 +545,23 @@ MENUS: dict[str, dict[str, Binding]] = {
         "ease in": Binding("Ease in", do(keys.ease, PRESETS["in"]), "Shift+F9"),
         "ease out": Binding("Ease out", do(keys.ease, PRESETS["out"]), "Ctrl+Shift+F9"),
         "ease not": Binding("Linear", do(keys.ease, LINEAR), "Alt+F9"),
+        "repeat": Binding(
+            "Repeat",
+            do(cycles.repeat),
+            detail=_stretch,
+            possible=lambda _, project: cycles.chosen_stretch(project),
+            parted=True,
+        ),
+        "repeats into keys": Binding(
+            "Make repeats into keys", do(cycles.make_keys), possible=cycles.cycle_here
+        ),
+        "repeat no more": Binding("Stop repeating", do(cycles.stop), possible=cycles.cycle_here),
     },
     "Help": {
         "shortcuts": Binding(
             "Keys and mouse", do(viewing.show_shortcuts), "F1", needs_project=False
         ),
+        "import": Binding("What opening it told", do(files.show_summary), possible=_has_summary),
     },
 }
 BINDINGS = {name: binding for menu in MENUS.values() for name, binding in menu.items()}

@@ -38,6 +38,7 @@ from app.ui.style.theme import (
 )
 from app.ui.style.widgets import (
     FILL as FILL,
+    LABEL_WIDTH as LABEL_WIDTH,
     POSE_PAYLOAD as POSE_PAYLOAD,
     TOAST as TOAST,
     at_end as at_end,

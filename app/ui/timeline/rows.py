@@ -4,7 +4,7 @@ from itertools import pairwise
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
-from app.document import Figure, Switch, is_visible, layer_commands
+from app.document import Document, Figure, Switch, is_visible, layer_commands, sights_of
 from app.editor import Action, SwitchDrag, do
 from app.editor.actions import editing, timeline_pointing
 from app.ui.style import CHOSEN, SMALL, begin_tip, in_hand, ink, is_pressed, shortened, sized
@@ -26,7 +26,7 @@ def draw_rows(bands: Bands, frame: int) -> list[Action]:
     for row in bands.rows:
         if bands.has_names:
             _draw_ground(bands, row)
-        for begin, end in _hidden(row.figure):
+        for begin, end in _hidden(bands.project.document, row.figure):
             _hatch(bands, row, begin, end)
     draw_ways(bands)
     for row in bands.rows:
@@ -49,6 +49,7 @@ def _draw_ground(bands: Bands, row: FigureRow) -> None:
 
 def _draw_names(bands: Bands, frame: int) -> list[Action]:
     actions: list[Action] = []
+    document = bands.project.document
     palette, draw_list, em = bands.look.palette, imgui.get_window_draw_list(), bands.look.em
     low, high = ImVec2(bands.corner.x, bands.track_top), ImVec2(bands.left, bands.track_bottom)
     imgui.push_clip_rect(low, high, intersect_with_current_clip_rect=True)
@@ -60,9 +61,7 @@ def _draw_names(bands: Bands, frame: int) -> list[Action]:
             colour = ink(palette.accent, CHOSEN) if row.is_active else ink(palette.hovered)
             draw_list.add_rect_filled(*box, colour, 0.2 * em)
         icon = icons.ICON_FA_IMAGE if row.figure.still else icons.ICON_FA_PERSON
-        colour = ink(
-            palette.text if is_visible(bands.project.document, row.figure, frame) else palette.dim
-        )
+        colour = ink(palette.text if is_visible(document, row.figure, frame) else palette.dim)
         with sized(SMALL):
             left = low.x + (FOLD * em if row.figure.tracks else 0.0)
             text = shortened(row.figure.name, box[1].x - left - 2.6 * em)
@@ -92,11 +91,9 @@ def _draw_scrolled(bands: Bands) -> None:
     )
 
 
-def _hidden(figure: Figure) -> list[tuple[int | None, int | None]]:
+def _hidden(document: Document, figure: Figure) -> list[tuple[int | None, int | None]]:
     """Return the stretches in which a figure is hidden; None is where there is no end to them."""
-    if figure.hidden:
-        return [(None, None)]
-    switches = figure.switches
+    switches = sights_of(document, figure)
     stretches: list[tuple[int | None, int | None]] = [
         (switch.frame, after.frame) for switch, after in pairwise(switches) if not switch.visible
     ]

@@ -3,13 +3,14 @@
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
+from itertools import takewhile
 
 import numpy as np
 
-from app.document import Figure, is_visible, time_of
+from app.document import Composite, Figure, composed, is_visible, time_of
 from app.editor import HeatMap, Project, Puppet, Session
 from app.motion import PosableMesh, Shown
-from app.render import Ghost, Heat, Renderer, Scene, Wireframe
+from app.render import Ghost, Heat, Painted, Renderer, Scene, Wireframe
 from app.render.gpu import PosedMesh, RenderTarget
 from app.ui.style import PALETTES
 from app.ui.viewport.backdrop import background
@@ -128,6 +129,9 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
         project.figure.cut_out if session.cutting else None,
         session.tint,
         project.document.figures,
+        project.document.groups,
+        project.document.choices,
+        project.solo,
         session.overlays,
         session.export_frame,
         session.preferences,
@@ -201,23 +205,26 @@ def _posed(
     drawing: Drawing,
     *,
     number: int = 0,
-) -> tuple[PosedMesh, ...]:
+) -> tuple[Painted, ...]:
     """Return what is seen of the figures, in the order of the document: the last is in front."""
     heat_map = session.overlays.heat_map
-    poses = []
-    for figure in project.document.figures:
+    poses = {}
+    document = project.document
+    for figure in document.figures:
         shown = shows[figure.id]
-        if shown is None or not is_visible(project.document, figure, shown.frame):
+        if shown is None or not is_visible(document, figure, shown.frame):
+            continue
+        if project.solo and figure.id not in project.solo:
             continue
         pose = drawing.drawn_mesh(figure.id, shown.mesh, number).pose(
-            shown.vertices, placement=shown.placement, opacity=figure.opacity
+            shown.vertices, placement=shown.placement
         )
-        poses.append(pose)
+        poses[figure.id] = pose
         if session.tint is not None:
             drawing.tint(pose, _tinted(session, project, drawing, figure, shown))
         elif heat_map != "none":
             drawing.heat(pose, shown, heat_map)
-    return tuple(poses)
+    return composed(document, poses)
 
 
 def _tinted(
@@ -251,12 +258,13 @@ def _ghosts(session: Session, project: Project, drawing: Drawing) -> tuple[Ghost
         for step in range(count, 0, -1):
             number += 1
             at = now + direction * step * choice.ghost_step
-            poses = (
-                _ghost(project, drawing, figure, now, at, number)
+            poses = {
+                figure.id: _ghost(project, drawing, figure, now, at, number)
                 for figure in project.document.figures
-            )
-            meshes = tuple(pose for pose in poses if pose is not None)
-            if meshes:
+            }
+            seen = {figure: pose for figure, pose in poses.items() if pose is not None}
+            if seen:
+                meshes = composed(project.document, seen)
                 ghosts.append(Ghost(meshes=meshes, tint=tint, opacity=GHOST_OPACITY / step**0.5))
     return tuple(ghosts)
 
@@ -274,6 +282,8 @@ def _ghost(
     if known is None or (at not in known.frames and not known.loop):
         return None
     placed = project.placed_at(figure.id, [now, at])
+    if project.solo and figure.id not in project.solo:
+        return None
     was_seen, is_seen = (is_visible(document, figure, document.in_time(f)) for f in (now, at))
     stays = time_of(known, at) == time_of(known, now) and placed and placed[0] == placed[1]
     if placed is None or not is_seen or (was_seen and stays):
@@ -292,10 +302,16 @@ def _behind_ghosts(session: Session, project: Project, meshes: int) -> int:
     """Return how many of the meshes are behind the ghosts: all, or those of a background."""
     if session.preferences.ghosts_in_front:
         return meshes
-    seen = [
-        each
-        for each in project.document.figures
-        if (shown := project.puppets[each.id].shown) is not None
-        and is_visible(project.document, each, shown.frame)
-    ]
-    return next((i for i, each in enumerate(seen) if not each.still), 0)
+    document, shows = project.document, project.puppets
+    still = {
+        each.id: each.still
+        for each in document.figures
+        if (shown := shows[each.id].shown) is not None
+        and is_visible(document, each, shown.frame)
+        and (not project.solo or each.id in project.solo)
+    }
+    return sum(1 for _ in takewhile(_is_still, composed(document, still)))
+
+
+def _is_still(part: bool | Composite[bool]) -> bool:  # noqa: FBT001 - of a composition
+    return all(map(_is_still, part.parts)) if isinstance(part, Composite) else part

@@ -13,7 +13,7 @@ from app.errors import EXPECTED_ERRORS
 from app.render import Thumbnail
 from app.ui import bars, toasts, welcome
 from app.ui.dialogs import Dialogs
-from app.ui.panel import Panel
+from app.ui.panel import Panel, bring_to_front
 from app.ui.shortcuts import pressed
 from app.ui.style import FONT_SIZE, PALETTES, Look, apply_theme, interface_scale, load_fonts
 from app.ui.window.docking import Docking
@@ -197,6 +197,9 @@ class Shell:
         actions, self._actions, self._asked = self._actions + self._asked, [], []
         for action in actions:
             self.attempt(partial(action.apply, self.session))
+        if self.session.wanted_panel:
+            bring_to_front(self.session.wanted_panel)
+            self.session.wanted_panel = ""
         # After the actions, so that a pull goes on with the newest wish; before the picture is
         # drawn, so that it shows at once how far the solver has come.
         self.attempt(self.session.jobs.deliver)

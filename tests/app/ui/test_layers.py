@@ -13,6 +13,7 @@ from app.editor import do, layering
 from app.editor.actions import (
     close_dialog,
     editing,
+    files,
     keys,
     playback,
     posing,
@@ -22,6 +23,8 @@ from app.editor.actions import (
 from app.editor.poses import pasting
 from app.editor.timeline_view import Strip
 from app.storage import load_project
+from app.ui.panel import is_in_front
+from app.ui.shortcuts import BINDINGS
 
 WIDTH, HEIGHT = 240, 200
 
@@ -251,6 +254,7 @@ def test_the_menu_of_a_layer(window, scene, listed):
     window.act(layering.choose, body)
     joined = scene.document
     listed(lambda rows: rows.menu(body, "Delete"))
+    window.settle()
     assert scene.document.figure(arm).joints == ()
     assert scene.figure.name == "wall"
     window.act(editing.undo)
@@ -878,3 +882,71 @@ def test_a_layer_that_comes_after_one_is_gone_shows_its_own_picture(window, scen
     assert (added.id, added.name, added.corner) == (gone, "dot", 90 + 80j)
     assert scene.active == added.id
     assert pixel(window, 138 + 100j) == (250, 220, 0)
+
+
+@pytest.fixture(scope="module")
+def stranger(tmp_path_factory):
+    """A drawing with what looks different here, and small matters."""
+    path = tmp_path_factory.mktemp("layers") / "stranger.ora"
+    stack = (
+        '<layer name="glow" src="data/0.png" composite-op="svg:overlay"/>'
+        '<layer name="shine" src="data/0.png" composite-op="svg:overlay"/>'
+        '<stack name="limbs" opacity="0.5"><layer name="arm" src="data/0.png"/></stack>'
+        '<layer name="body" src="data/1.png"/><layer name="wall" src="data/2.png"/>'
+    )
+    pictures = [
+        painted((85, 70, 200, 95), (200, 40, 40, 255)),
+        painted((60, 25, 110, 180), (40, 40, 200, 255)),
+        Image.new("RGBA", (WIDTH, HEIGHT), (220, 230, 220, 255)),
+    ]
+    path.write_bytes(openraster((WIDTH, HEIGHT), stack, pictures))
+    return path
+
+
+def test_what_an_import_told_stays_in_the_panel(window, stranger):
+    project = window.again(Harness.open, stranger)
+    (toast,) = window.session.toasts
+    assert "One thing looks different here" in toast.text
+    assert project.summary.losses == ("shine, glow: drawn normally, not in the mode 'overlay'",)
+    assert "wall: opaque all over, so that it stands still" in project.summary.matters
+    window.show_tab("Handle")
+    window.act(toast.action.apply)
+    window.frames(3)
+    assert is_in_front("Layers")
+    assert project.shows_summary
+
+    def fold(robot):
+        robot.set_ref("Layers")
+        robot.item_click("###summary")
+
+    window.run(fold)
+    window.frames(3)
+    assert not project.shows_summary
+    assert BINDINGS["import"].is_possible(window.session)
+    BINDINGS["import"].action.apply(window.session)
+    assert project.shows_summary
+
+
+def test_blends_clipping_and_groups_are_set_in_the_panel(window, stranger):
+    project = window.again(Harness.open, stranger)
+    arm = identity(project, "arm")
+    window.act(layering.choose, arm)
+    window.show_tab("Layers")
+    window.act(files.fold_summary)
+
+    def play(robot):
+        robot.set_ref("Layers")
+        robot.combo_click("##blend/multiply")
+        robot.item_check("Clipped")
+        robot.item_check("**/Hide all of limbs")
+
+    window.run(play)
+    window.frames(3)
+    figure = project.document.figure(arm)
+    assert (figure.blend, figure.clipped, figure.group) == ("multiply", True, "limbs")
+    (group,) = project.document.groups
+    assert (group.opacity, group.hidden) == (0.5, True)
+    for _ in range(3):
+        window.act(editing.undo)
+    assert not project.document.groups[0].hidden
+    assert project.document.figure(arm).blend == "normal"

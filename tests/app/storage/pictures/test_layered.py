@@ -10,6 +10,7 @@ from PIL import Image
 from psd_tools import PSDImage
 from psd_tools.constants import BlendMode
 
+from app.document.layering import Group
 from app.errors import LissomError
 from app.storage.pictures import read_openraster, read_photoshop
 
@@ -36,21 +37,69 @@ def test_layers_come_from_back_to_front_where_they_are_on_the_canvas():
     assert (head.visible, head.opacity) == (True, 1.0)
     assert (body.visible, body.opacity) == (False, 0.5)
     assert_array_equal(head.picture.rgba, np.asarray(blob(30, 20)))
-    assert read.notices == ()
+    assert not read.summary
 
 
-def test_groups_are_flattened_with_what_they_do_to_their_layers():
+def test_groups_are_kept_as_they_lie_in_each_other():
     stack = (
-        '<stack name="limbs" x="3" y="4" opacity="0.5"><stack name="left" visibility="hidden">'
-        f"{HEAD}</stack>{HEAD}</stack>{HEAD}"
+        '<stack name="limbs" x="3" y="4" opacity="0.5" isolation="isolate">'
+        f'<stack name="left" visibility="hidden">{HEAD}</stack>{HEAD}</stack>{HEAD}'
+        f'<stack name="empty"/><stack name="a/b"><stack>{HEAD}</stack></stack>'
+        f'<stack name="limbs" composite-op="svg:screen">{BODY}</stack>'
     )
     read = read_openraster(drawing(stack))
-    assert [layer.name for layer in read.layers] == ["head", "limbs/head", "limbs/left/head"]
-    front, right, left = read.layers
+    body, inner, front, right, left = read.layers
+    assert [layer.group for layer in read.layers] == [
+        "limbs 2",
+        "a-b/group",
+        "",
+        "limbs",
+        "limbs/left",
+    ]
+    assert [layer.name for layer in (body, front, right, left)] == [
+        "body",
+        "head",
+        "limbs/head",
+        "limbs/left/head",
+    ]
+    assert inner.name == "a-b/group/head"
     assert right.corner - front.corner == 3 - 4j
     assert left.corner == right.corner
-    assert (front.opacity, right.opacity, left.opacity) == (1.0, 0.5, 0.5)
-    assert (front.visible, right.visible, left.visible) == (True, True, False)
+    # What the groups do stays theirs.
+    assert (left.opacity, left.visible) == (1.0, True)
+    assert read.groups == (
+        Group(name="limbs", opacity=0.5, blend="normal"),
+        Group(name="limbs/left", hidden=True),
+        Group(name="a-b"),
+        Group(name="a-b/group"),
+        Group(name="limbs 2", blend="screen"),
+    )
+    assert not read.summary
+
+
+def test_layers_that_inherit_alpha_are_clipped():
+    base, other = HEAD.replace("head", "base"), HEAD.replace("head", "other")
+    atop = HEAD.replace("/>", ' composite-op="svg:src-atop"/>')
+    kept = HEAD.replace("head", "kept").replace(
+        "/>", ' composite-op="svg:multiply" alpha-preserve="true"/>'
+    )
+
+    def clipped(stack, *more):
+        pictures = (*more, blob(30, 20), blob(50, 60))
+        read = read_openraster(openraster((100, 120), stack, pictures))
+        return [layer.name for layer in read.layers if layer.clipped], read.summary.losses
+
+    assert clipped(kept + atop + base) == (["head", "kept"], ())
+    assert clipped(atop) == ([], ())
+    # All that lies below in the group clips it there.
+    told = ("head: clipped by what lies right below it, not by all that does in its group",)
+    assert clipped(atop + base + other) == (["head"], told)
+    assert clipped(f"<stack>{atop}{base}</stack>{other}") == (["head"], ())
+    assert clipped(f"{atop}<stack>{base}{other}</stack>") == (["head"], ())
+    assert clipped(f"{atop}{base}<stack>{other}</stack>") == (["head"], told)
+    paper = '<layer name="paper" src="data/0.png"/>'
+    whole = Image.new("RGBA", (100, 120), (255, 255, 255, 255))
+    assert clipped(atop.replace("0.png", "1.png") + paper, whole) == ([], ())
 
 
 def test_layers_of_one_name_are_told_apart():
@@ -59,18 +108,18 @@ def test_layers_of_one_name_are_told_apart():
 
 def test_what_cannot_be_kept_is_told():
     stack = (
-        HEAD.replace("/>", ' composite-op="svg:multiply"/>')
+        HEAD.replace("/>", ' composite-op="svg:overlay"/>')
         + '<text name="title"/>'
         + '<layer name="nothing" src="data/2.png"/>'
     )
     empty = Image.new("RGBA", (4, 4))
     read = read_openraster(openraster((100, 100), stack, [blob(9, 9), blob(9, 9), empty]))
     assert [layer.name for layer in read.layers] == ["head"]
-    assert sorted(read.notices) == [
-        "'head' is drawn normally, not in the mode 'multiply'",
-        "left out 'title': Lissom takes drawn layers only",
-        "left out the empty layer 'nothing'",
+    assert sorted(read.summary.losses) == [
+        "head: drawn normally, not in the mode 'overlay'",
+        "title: left out, since Lissom takes drawn layers only",
     ]
+    assert read.summary.matters == ("nothing: left out, since it is empty",)
 
 
 @pytest.mark.parametrize(
@@ -125,7 +174,8 @@ def test_layers_of_a_photoshop_file():
     def build(drawing):
         drawing.create_pixel_layer(blob(50, 60), name="body", top=40, left=5)
         head = drawing.create_pixel_layer(blob(30, 20), name="head", top=20, left=10)
-        drawing.create_group([head], name="face", opacity=128)
+        face = drawing.create_group([head], name="face", opacity=128)
+        face.blend_mode = BlendMode.NORMAL
         head.visible = False
         head.blend_mode = BlendMode.MULTIPLY
 
@@ -134,9 +184,10 @@ def test_layers_of_a_photoshop_file():
     body, head = read.layers
     assert (body.name, body.corner, body.visible, body.opacity) == ("body", 5 + 20j, True, 1.0)
     assert (head.name, head.corner, head.visible) == ("head", 10 + 80j, False)
-    assert head.opacity == pytest.approx(128 / 255)
+    assert (head.opacity, head.blend, head.group) == (1.0, "multiply", "face")
+    assert read.groups == (Group(name="face", opacity=128 / 255, blend="normal"),)
     assert_array_equal(body.picture.rgba, np.asarray(blob(50, 60)))
-    assert read.notices == ("'head' is drawn normally, not in the mode 'multiply'",)
+    assert not read.summary
 
 
 def test_a_mask_is_taken_into_the_pixels():
@@ -196,7 +247,7 @@ def test_one_byte_that_costs_a_photoshop_layer_a_colour_is_told(mode):
                 refused += 1
                 continue
             after = read.layers[0].picture.rgba
-            assert ((after == 0).all((0, 1)) <= (before == 0).all((0, 1))).all() or read.notices
+            assert ((after == 0).all((0, 1)) <= (before == 0).all((0, 1))).all() or read.summary
     assert refused > len(places)
 
 

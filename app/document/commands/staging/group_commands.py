@@ -1,0 +1,156 @@
+"""Commands on groups of figures: which are in them, and how they are painted as one."""
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from app.document.commands.command import command
+from app.document.commands.staging.layer_commands import numbered_name, without_empty_groups
+from app.document.figure import Figure
+from app.document.layering import Group, GroupBlend, paths_to, shared_path
+from app.document.model import Document
+from app.errors import LissomError
+
+
+@command("Group layers")
+def put_in_group(document: Document, identities: Collection[int], path: str) -> Document:
+    """Put figures in a group, or with "" out of all groups; groups that are missing are made.
+
+    They keep their order, and lie in front of those that the group has already, or, where it has
+    none, where the foremost of them was.
+    """
+    missing = _missing_groups(document, path)
+    chosen = [figure for figure in document.figures if figure.id in identities]
+    if all(figure.group == path for figure in chosen):
+        return document
+    others = [figure for figure in document.figures if figure.id not in identities]
+    place = _place_in_group(document.figures, others, path)
+    others[place:place] = [replace(figure, group=path) for figure in chosen]
+    grouped = replace(
+        document,
+        figures=tuple(others),
+        groups=(*document.groups, *missing),
+        size=document.canvas,
+    )
+    return without_empty_groups(grouped)
+
+
+@command("Add groups")
+def add_groups(document: Document, groups: Sequence[Group]) -> Document:
+    """Add those of these groups that are not there, with no figure in them yet."""
+    known = {group.name for group in document.groups}
+    new = tuple(group for group in groups if group.name not in known)
+    return replace(document, groups=(*document.groups, *new)) if new else document
+
+
+@command("Rename group")
+def rename_group(document: Document, path: str, name: str) -> Document:
+    """Give a group another name, which no other one beside it may have."""
+    document.group(path)
+    name = name.strip()
+    if "/" in name:
+        raise LissomError(f"A group's name has no slash, unlike {name!r}.")
+    to = f"{path.rpartition('/')[0]}/{name}".removeprefix("/")
+    if to == path:
+        return document
+    if any(group.name == to for group in document.groups):
+        raise LissomError(f"There is a group {name!r} already; choose another name.")
+    return _moved(document, document.figures, document.groups, {path: to})
+
+
+@command("Ungroup layers")
+def ungroup(document: Document, path: str) -> Document:
+    """Let the figures of a group be by themselves, as visible and as opaque as they were.
+
+    Where figures of the group overlap, they shine through each other from now on.
+    """
+    gone, around = document.group(path), path.rpartition("/")[0]
+    taken = {group.name for group in document.groups if path not in paths_to(group.name)}
+    to = {path: around}
+    for group in document.groups:
+        outer, _, name = group.name.rpartition("/")
+        if outer == path:
+            to[group.name] = numbered_name(f"{around}/{name}" if around else name, taken)
+            taken.add(to[group.name])
+
+    def freed(each: Figure | Group) -> dict[str, Any]:
+        return {"hidden": each.hidden or gone.hidden, "opacity": each.opacity * gone.opacity}
+
+    figures = tuple(
+        replace(figure, **freed(figure)) if figure.group == path else figure
+        for figure in document.figures
+    )
+    groups = tuple(
+        replace(group, **freed(group)) if group.name in to else group
+        for group in document.groups
+        if group is not gone
+    )
+    return _moved(document, figures, groups, to)
+
+
+@command("Set group's opacity")
+def set_group_opacity(document: Document, path: str, opacity: float) -> Document:
+    """Set how opaque the figures of a group are together."""
+    return _changed(document, path, opacity=float(opacity))
+
+
+@command("Show or hide group")
+def set_group_hidden(document: Document, path: str, *, hidden: bool) -> Document:
+    """Hide all figures of a group at all times, or show them again."""
+    return _changed(document, path, hidden=hidden)
+
+
+@command("Set group's blend")
+def set_group_blend(document: Document, path: str, blend: GroupBlend) -> Document:
+    """Set how the colours of a group meet those behind it."""
+    return _changed(document, path, blend=blend)
+
+
+def _missing_groups(document: Document, path: str) -> list[Group]:
+    known = {group.name for group in document.groups}
+    return [Group(name=each) for each in paths_to(path) if each not in known]
+
+
+def _place_in_group(before: Sequence[Figure], others: Sequence[Figure], path: str) -> int:
+    """Return where figures come among the others that join a group, or are the first in it."""
+    for around in reversed(paths_to(path)):
+        members = [index for index, other in enumerate(others) if around in paths_to(other.group)]
+        if members:
+            return members[-1] + 1
+    kept = {id(other) for other in others}
+    foremost = max(index for index, figure in enumerate(before) if id(figure) not in kept)
+    place = sum(id(figure) in kept for figure in before[:foremost])
+    # Not amid another group.
+    while 0 < place < len(others) and shared_path(others[place - 1].group, others[place].group):
+        place += 1
+    return place
+
+
+def _moved(
+    document: Document, figures: Sequence[Figure], groups: Sequence[Group], to: Mapping[str, str]
+) -> Document:
+    """Return the document with these figures and groups, where some groups have other paths."""
+
+    def moved(path: str) -> str:
+        for outer in reversed(paths_to(path)):
+            if outer in to:
+                return to[outer] + path[len(outer) :]
+        return path
+
+    figures = tuple(
+        figure
+        if moved(figure.group) == figure.group
+        else replace(figure, group=moved(figure.group))
+        for figure in figures
+    )
+    groups = tuple(replace(group, name=moved(group.name)) for group in groups)
+    return replace(document, figures=figures, groups=groups)
+
+
+def _changed(document: Document, path: str, **changes: Any) -> Document:
+    group = document.group(path)
+    changed = replace(group, **changes)
+    if changed == group:
+        return document
+    groups = tuple(changed if each is group else each for each in document.groups)
+    return replace(document, groups=groups)

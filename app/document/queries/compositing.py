@@ -1,0 +1,100 @@
+"""Which figures are composited together before they meet what lies behind them."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Generic, TypeVar
+
+from app.document.figure import Figure
+from app.document.layering import BlendMode, paths_to
+from app.document.model import Document
+
+Drawn = TypeVar("Drawn")
+
+
+@dataclass(frozen=True, slots=True)
+class Composite(Generic[Drawn]):
+    """What is painted over each other first, and then over all that lies behind, as one."""
+
+    parts: tuple["Drawn | Composite[Drawn]", ...]  # from back to front
+    opacity: float = 1.0  # in [0, 1]
+    blend: BlendMode = "normal"
+    # Whether it is painted only where that is which lies behind it in the composite around it, as
+    # if that were opaque there.
+    clipped: bool = False
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether its parts could as well be painted one by one."""
+        meets_more = any(
+            isinstance(each, Composite) and each.blend != "normal" for each in self.parts
+        )
+        return self.opacity == 1 and self.blend == "normal" and not (self.clipped or meets_more)
+
+
+@dataclass(slots=True)
+class _Unit(Generic[Drawn]):
+    """A figure or a run of a group, and what is cut by it."""
+
+    whole: Composite[Drawn]
+    passes: bool = False  # whether it may be in parts, as a group that passes through
+    cut: list[Composite[Drawn]] = field(default_factory=list)
+
+
+def composed(
+    document: Document, drawn: Mapping[int, Drawn]
+) -> tuple[Drawn | Composite[Drawn], ...]:
+    """Return how what is drawn of figures is composited, from back to front.
+
+    Parameters
+    ----------
+    drawn : mapping of int to Drawn
+        By the ids of the figures that are seen. Of a group's figures each run without others
+        between is composited by itself; what is cut by something that is not seen is not, either.
+    """
+    return _parts(document, document.figures, drawn, 0)
+
+
+def _parts(
+    document: Document, figures: Sequence[Figure], drawn: Mapping[int, Drawn], depth: int
+) -> tuple[Drawn | Composite[Drawn], ...]:
+    """Return the parts of figures that are in the same groups down to this depth."""
+    units: list[_Unit[Drawn]] = []
+    for path, run in _runs(figures, depth):
+        unit: _Unit[Drawn]
+        if path:
+            group, inner = document.group(path), _parts(document, run, drawn, depth + 1)
+            blend: BlendMode = "normal" if group.blend == "pass-through" else group.blend
+            passes = group.blend == "pass-through" and group.opacity == 1
+            unit = _Unit(Composite(inner, group.opacity, blend, group.clipped), passes)
+        else:
+            (figure,) = run
+            seen = (drawn[figure.id],) if figure.id in drawn else ()
+            unit = _Unit(Composite(seen, figure.opacity, figure.blend, figure.clipped))
+        if unit.whole.clipped and units and not units[-1].whole.clipped:
+            units[-1].cut.append(unit.whole)
+        else:
+            units.append(unit)
+    return tuple(part for unit in units for part in _painted(unit))
+
+
+def _runs(figures: Sequence[Figure], depth: int) -> list[tuple[str, list[Figure]]]:
+    """Return figures that follow each other in one group, with its path; "" of others, each."""
+    runs: list[tuple[str, list[Figure]]] = []
+    for figure in figures:
+        path = "".join(paths_to(figure.group)[depth : depth + 1])
+        if not (path and runs and runs[-1][0] == path):
+            runs.append((path, []))
+        runs[-1][1].append(figure)
+    return runs
+
+
+def _painted(unit: _Unit[Drawn]) -> tuple[Drawn | Composite[Drawn], ...]:
+    """Return the parts that a unit is painted by: its own, or one."""
+    # With nothing below it, it is cut by nothing.
+    whole = Composite(unit.whole.parts, unit.whole.opacity, unit.whole.blend)
+    cut = [each for each in unit.cut if each.parts]
+    if not whole.parts:
+        return ()
+    if cut:
+        return (Composite((*whole.parts, *cut), whole.opacity, whole.blend),)
+    return whole.parts if unit.passes or whole.is_plain else (whole,)

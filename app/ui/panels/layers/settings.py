@@ -1,0 +1,188 @@
+"""The settings of the layer that is posed: how it is painted, when it is seen, what carries it."""
+
+from imgui_bundle import ImVec2, imgui
+
+from app.document import BLENDS, Choice, Document, Figure, Group, is_visible
+from app.editor import Action, Project, do, layering
+from app.ui.style import (
+    FILL,
+    LABEL_WIDTH,
+    Look,
+    Scale,
+    label,
+    shortened,
+    slider,
+    small,
+    text_button,
+    tip,
+)
+
+PERCENT = Scale(left=0, right=100)
+NOTHING = "nothing"
+
+
+def draw_settings(project: Project, look: Look, figure: Figure, frame: int) -> list[Action]:
+    """Draw the settings of a layer at a frame."""
+    actions = []
+    identity = figure.id
+    label(look, "Name")
+    entered, name = imgui.input_text(
+        "##layer name", figure.name, imgui.InputTextFlags_.enter_returns_true
+    )
+    if entered or (imgui.is_item_deactivated_after_edit() and name != figure.name):
+        actions.append(do(layering.rename, identity, name))
+    label(look, "Opacity")
+    hint = "How much of what lies behind is covered"
+    faded = slider(look, "opacity", 100 * figure.opacity, PERCENT, text="%.0f %%", hint=hint)
+    if faded is not None:
+        actions.append(do(layering.fade, identity, min(max(faded.value / 100, 0.0), 1.0)))
+    label(look, "Blend")
+    if imgui.begin_combo("##blend", figure.blend):
+        actions += [
+            do(layering.blend, identity, blend)
+            for blend in BLENDS
+            if imgui.selectable(blend, blend == figure.blend)[0]
+        ]
+        imgui.end_combo()
+    tip("How its colours meet those of what lies behind: multiply darkens, screen lightens")
+    changed, _ = imgui.checkbox("Clipped", figure.clipped)
+    tip("Seen only where that is which lies below it in its group")
+    if changed:
+        actions.append(do(layering.clip, identity))
+    for group in project.document.groups_around(figure.group):
+        actions += _group(look, group)
+    changed, _ = imgui.checkbox("Reference only", figure.reference)
+    tip("Seen while you work, left out of exports")
+    if changed:
+        actions.append(do(layering.refer, identity))
+    actions += _switch(project.document, look, figure, frame)
+    actions += _joint(project, look, figure, frame)
+    if figure.still:
+        small(look, "A still picture: it is shown as it was drawn.")
+        if imgui.button("Let it be posed", ImVec2(FILL, 0)):
+            actions.append(do(layering.stand_up, identity))
+    elif imgui.button("Make it a still picture", ImVec2(FILL, 0)):
+        actions.append(do(layering.stand_still, identity))
+    return actions
+
+
+def _group(look: Look, group: Group) -> list[Action]:
+    """Draw the settings of a group that the chosen layer is in."""
+    actions = []
+    imgui.push_id(group.name)
+    name = group.name.rpartition("/")[2]
+    label(look, shortened(f"In {name}", (LABEL_WIDTH - 0.5) * look.em))
+    hint = f"How much all layers of the group {group.name} together cover of what lies behind"
+    faded = slider(look, "opacity", 100 * group.opacity, PERCENT, text="%.0f %%", hint=hint)
+    if faded is not None:
+        actions.append(do(layering.fade_group, group.name, min(max(faded.value / 100, 0.0), 1.0)))
+    if imgui.checkbox(shortened(f"Hide all of {name}", 14 * look.em), group.hidden)[0]:
+        actions.append(do(layering.show_group, group.name))
+    imgui.pop_id()
+    return actions
+
+
+def _switch(document: Document, look: Look, figure: Figure, frame: int) -> list[Action]:
+    """Draw what shows or hides a layer from the present frame on."""
+    choice = document.choice_of(figure.id)
+    if choice is not None:
+        return _turns(document, look, choice, figure, frame)
+    actions = []
+    is_seen = is_visible(document, figure, frame)
+    text = f"{'Hide' if is_seen else 'Show'} from frame {frame} on"
+    is_put_away = figure.hidden or document.is_in_hidden(figure)
+    hint = (
+        "It is hidden at all times now: switched instead, it is hidden until here and seen from "
+        "here on"
+        if is_put_away
+        else "For props that come and go; what is in one place takes turns by a choice"
+    )
+    if text_button(text, FILL, hint):
+        actions.append(do(layering.switch_here, figure.id))
+    is_switched = any(switch.frame == frame for switch in figure.switches)
+    if is_switched and imgui.button(f"No change at frame {frame}", ImVec2(FILL, 0)):
+        actions.append(do(layering.unswitch_here, figure.id))
+    if figure.switches:
+        told = (f"{'shown' if s.visible else 'hidden'} from {s.frame}" for s in figure.switches)
+        small(look, "This layer is " + ", ".join(told) + ".")
+    return actions
+
+
+def _turns(
+    document: Document, look: Look, choice: Choice, figure: Figure, frame: int
+) -> list[Action]:
+    """Draw which layer of a choice is seen from the present frame on."""
+    actions = []
+    label(look, shortened(choice.name, (LABEL_WIDTH - 0.5) * look.em))
+    seen = choice.at(frame)
+    if imgui.begin_combo("##turn", document.figure(seen).name):
+        actions += [
+            do(layering.show_here, each)
+            for each in choice.figures
+            if imgui.selectable(f"{document.figure(each).name}###turn {each}", each == seen)[0]
+        ]
+        imgui.end_combo()
+    tip(f"Which of these layers is seen from frame {frame} on")
+    if text_button("Take it out of the choice", FILL, "It is seen when it was, by itself"):
+        actions.append(do(layering.leave, figure.id))
+    return actions
+
+
+def _joint(project: Project, look: Look, figure: Figure, frame: int) -> list[Action]:
+    """Draw what a layer hangs on at the present frame, and from which frames on."""
+    document = project.document
+    others = [
+        other for other in document.figures if not layering.hangs_on(project, other.id, figure.id)
+    ]
+    if not others and not figure.joints:
+        return []
+    actions = []
+    joint = figure.joint_at(frame)
+    parent = None if joint is None or joint.to is None else document.figure(joint.to)
+    label(look, "Attached to")
+    if imgui.begin_combo("##attached to", NOTHING if parent is None else parent.name):
+        if imgui.selectable(NOTHING, parent is None)[0] and parent is not None:
+            actions.append(do(layering.let_hang, figure.id))
+        actions += [
+            do(layering.hang, figure.id, other.id)
+            for other in others
+            if imgui.selectable(f"{other.name}###parent {other.id}", other is parent)[0]
+        ]
+        imgui.end_combo()
+    tip("The layer moves with the place of the other one that is under its anchor now")
+    if joint is not None and parent is not None:
+        changed, turns = imgui.checkbox("Turns with it", joint.turns)
+        if changed:
+            actions.append(do(layering.turn_with, figure.id, turns))
+    if frame > document.frames.first:
+        actions += _hand_over(project, look, figure, frame)
+    return actions
+
+
+def _hand_over(project: Project, look: Look, figure: Figure, frame: int) -> list[Action]:
+    """Draw what lets a layer hang on something else from the present frame on."""
+    actions: list[Action] = []
+    document, joint = project.document, figure.joint_at(frame)
+    now = None if joint is None else joint.to
+    if text_button(f"Hand over from frame {frame} on…", FILL, "Nothing jumps at that frame"):
+        imgui.open_popup("hand over")
+    if imgui.begin_popup("hand over"):
+        if imgui.menu_item_simple("Let it go", enabled=now is not None):
+            actions.append(do(layering.hand_over, figure.id, None))
+        for other in document.figures:
+            is_circle = any(each is figure for each in document.carriers(other.id, frame))
+            name = f"To {other.name}###to {other.id}"
+            if imgui.menu_item_simple(name, enabled=not is_circle and other.id != now):
+                actions.append(do(layering.hand_over, figure.id, other.id))
+        imgui.end_popup()
+    if joint is not None and joint.frame == frame and len(figure.joints) > 1:
+        hint = "What held it before goes on holding it"
+        if text_button(f"No change at frame {frame}###joint", FILL, hint):
+            actions.append(do(layering.take_back_joint, figure.id, frame))
+    if len(figure.joints) > 1:
+        told = (
+            f"{'nothing' if each.to is None else document.figure(each.to).name} from {each.frame}"
+            for each in figure.joints
+        )
+        small(look, "It hangs on " + ", ".join(told) + ".")
+    return actions

@@ -1,0 +1,214 @@
+from dataclasses import replace
+
+import pytest
+from documents import disc_document
+
+from app.document import group_commands as groups, layer_commands as layers
+from app.document.layering import Group
+from app.document.queries.compositing import Composite, composed
+from app.document.queries.sight import is_visible
+from app.errors import LissomError
+
+
+def scene(*names):
+    """A document with a figure for each name, from back to front, with the ids 0, 1, 2 …"""
+    document = disc_document()
+    figures = tuple(
+        replace(document.figures[0], id=identity, name=name) for identity, name in enumerate(names)
+    )
+    return replace(document, figures=figures)
+
+
+def grouped(names, *found):
+    """A scene of figures that are named as "sky limbs/arm", each in the group before its slash."""
+    made = scene(*names.split())
+    figures = tuple(
+        replace(figure, name=figure.name.rpartition("/")[2], group=figure.name.rpartition("/")[0])
+        for figure in made.figures
+    )
+    return replace(made, figures=figures, groups=tuple(Group(name=name) for name in found))
+
+
+def paths(document):
+    return [f"{figure.group}/{figure.name}".removeprefix("/") for figure in document.figures]
+
+
+def names_of(document):
+    return [group.name for group in document.groups]
+
+
+@pytest.mark.parametrize("name", ["", "/", "a/", "/a", "a//b", " a", "a/b ", "/".join("a" * 51)])
+def test_a_group_has_a_path_of_names(name):
+    with pytest.raises(LissomError, match=r"needs a name|at most 50 deep"):
+        Group(name=name)
+
+
+def test_every_group_around_a_figure_is_there_once_and_after_its_own():
+    document = scene("sky", "arm")
+    for found in (("b",), ("a/b", "a"), ("a/b",), ("a", "a")):
+        with pytest.raises(LissomError, match="group"):
+            replace(
+                document,
+                figures=(document.figures[0], replace(document.figures[1], group="a/b")),
+                groups=tuple(Group(name=name) for name in found),
+            )
+    with pytest.raises(LissomError, match="Opacity"):
+        Group(name="a", opacity=1.5)
+    with pytest.raises(LissomError, match="blend is one of"):
+        Group(name="a", blend="overlay")
+    with pytest.raises(LissomError, match="blend of 'sky' is one of normal, multiply, screen"):
+        replace(document.figures[0], blend="pass-through")
+
+
+def test_figures_are_gathered_in_a_group_in_their_order():
+    document = scene("sky", "leg", "body", "arm", "hat")
+    limbs = groups.put_in_group([3, 1], "limbs")(document)
+    assert paths(limbs) == ["sky", "body", "limbs/leg", "limbs/arm", "hat"]
+    more = groups.put_in_group({0}, "limbs/far")(limbs)
+    assert paths(more) == ["body", "limbs/leg", "limbs/arm", "limbs/far/sky", "hat"]
+    assert names_of(more) == ["limbs", "limbs/far"]
+    assert groups.put_in_group({0}, "limbs/far")(more) is more
+    # The last one of a group takes it along.
+    assert names_of(groups.put_in_group({0}, "")(more)) == ["limbs"]
+    assert document.canvas == more.canvas
+
+
+def test_what_leaves_a_group_does_not_part_it():
+    document = grouped("a/one a/two a/three sky", "a")
+    out = groups.put_in_group({1}, "")(document)
+    assert paths(out) == ["a/one", "a/three", "two", "sky"]
+    inner = groups.put_in_group({1}, "a/b")(document)
+    assert paths(inner) == ["a/one", "a/three", "a/b/two", "sky"]
+    beside = groups.put_in_group({1}, "c")(document)
+    assert paths(beside) == ["a/one", "a/three", "c/two", "sky"]
+
+
+@pytest.mark.parametrize(
+    ("identity", "index", "wanted"),
+    [
+        (0, 1, "a/one a/sky a/two b/c/hat tail"),  # amid a group: it joins
+        (0, 2, "a/one a/two sky b/c/hat tail"),  # between two: in none
+        (1, 2, "sky a/two a/one b/c/hat tail"),  # beside its own: it stays
+        (1, 3, "sky a/two b/c/hat one tail"),  # away from them: it leaves
+        (3, 0, "b/c/hat sky a/one a/two tail"),  # alone, it takes its groups along
+        (3, 2, "sky a/one a/hat a/two tail"),
+        (3, 4, "sky a/one a/two tail b/c/hat"),
+    ],
+)
+def test_a_figure_that_is_moved_joins_and_leaves_groups_so_that_they_stay_whole(
+    identity, index, wanted
+):
+    document = grouped("sky a/one a/two b/c/hat tail", "a", "b", "b/c")
+    after = layers.move_figure(identity, index)(document)
+    assert paths(after) == wanted.split()
+    filled = {figure.group for figure in after.figures}
+    assert all(any(path.startswith(name) for path in filled) for name in names_of(after))
+
+
+def test_a_new_figure_amid_a_group_is_in_it_and_a_copy_is_beside_its_original():
+    document = grouped("sky a/one a/two", "a")
+    new = replace(document.figures[0], id=9, name="new")
+    assert paths(layers.add_figure(new, 2)(document)) == ["sky", "a/one", "a/new", "a/two"]
+    assert paths(layers.add_figure(new, 1)(document)) == ["sky", "new", "a/one", "a/two"]
+    assert paths(layers.duplicate_figure(1)(document))[2] == "a/one copy"
+    alone = layers.remove_figure(2)(layers.remove_figure(1)(document))
+    assert (paths(alone), alone.groups) == (["sky"], ())
+
+
+def test_groups_are_renamed_with_what_is_in_them():
+    document = grouped("a/one a/b/two ab/three", "a", "a/b", "ab")
+    renamed = groups.rename_group("a", "limbs")(document)
+    assert paths(renamed) == ["limbs/one", "limbs/b/two", "ab/three"]
+    assert names_of(renamed) == ["limbs", "limbs/b", "ab"]
+    inner = groups.rename_group("limbs/b", " far ")(renamed)
+    assert names_of(inner) == ["limbs", "limbs/far", "ab"]
+    assert groups.rename_group("a", "a")(document) is document
+    with pytest.raises(LissomError, match="'ab' already"):
+        groups.rename_group("a", "ab")(document)
+    with pytest.raises(LissomError, match="no slash"):
+        groups.rename_group("a", "x/y")(document)
+    with pytest.raises(LissomError, match="no group 'z'"):
+        groups.rename_group("z", "a")(document)
+
+
+def test_ungrouping_hands_on_what_the_group_did():
+    document = grouped("a/one a/a/two a/b/three b/four", "a", "a/a", "a/b", "b")
+    document = groups.set_group_opacity("a", 0.5)(document)
+    document = groups.set_group_hidden("a", hidden=True)(document)
+    free = groups.ungroup("a")(document)
+    assert paths(free) == ["one", "a/two", "b 2/three", "b/four"]
+    assert [group.opacity for group in free.groups] == [0.5, 0.5, 1.0]
+    for figure in free.figures[:3]:
+        assert not is_visible(free, figure, 0)
+    assert (free.figures[0].opacity, free.figures[1].opacity) == (0.5, 1.0)
+    nested = groups.ungroup("a/b")(document)
+    assert paths(nested)[2] == "a/three"
+
+
+def test_a_hidden_group_hides_all_that_is_in_it():
+    document = grouped("sky a/one a/b/two", "a", "a/b")
+    hidden = groups.set_group_hidden("a", hidden=True)(document)
+    assert [is_visible(hidden, figure, 3) for figure in hidden.figures] == [True, False, False]
+    assert [figure.name for figure in hidden.exported] == ["sky"]
+    assert groups.set_group_hidden("a", hidden=True)(hidden) is hidden
+    inner = groups.set_group_hidden("a/b", hidden=True)(document)
+    assert [is_visible(inner, figure, 3) for figure in inner.figures] == [True, True, False]
+
+
+def test_each_run_of_a_group_is_composited_by_itself():
+    document = grouped("a/one sky a/two a/b/three", "a", "a/b")
+
+    def drawn(changed):
+        return composed(changed, {figure.id: figure.name for figure in changed.figures})
+
+    assert drawn(document) == ("one", "sky", "two", "three")
+    faded = groups.set_group_opacity("a", 0.5)(document)
+    assert drawn(faded) == (
+        Composite(("one",), 0.5),
+        "sky",
+        Composite(("two", "three"), 0.5),
+    )
+    inner = groups.set_group_blend("a/b", "multiply")(faded)
+    assert drawn(inner)[2] == Composite(("two", Composite(("three",), 1.0, "multiply")), 0.5)
+    # A group keeps what blends in it from what is behind only if it does not let it through.
+    alone = groups.set_group_blend("a/b", "multiply")(document)
+    assert drawn(alone)[3] == Composite(("three",), 1.0, "multiply")
+    apart = groups.set_group_blend("a", "normal")(alone)
+    assert drawn(apart)[2] == Composite(("two", Composite(("three",), 1.0, "multiply")))
+    assert drawn(groups.set_group_blend("a", "normal")(document)) == drawn(document)
+
+
+def clipped(document, *names):
+    figures = (
+        replace(figure, clipped=figure.name in names, opacity=0.5 if figure.name == "arm" else 1.0)
+        for figure in document.figures
+    )
+    return replace(document, figures=tuple(figures))
+
+
+def test_what_is_clipped_is_painted_on_what_lies_below_it_in_its_group():
+    document = clipped(grouped("sky arm shade light a/two a/three", "a"), "shade", "light", "two")
+    names = {figure.id: figure.name for figure in document.figures}
+    cut = [Composite((name,), clipped=True) for name in ("shade", "light")]
+    # At the bottom of its group there is nothing that cuts.
+    whole = ("sky", Composite(("arm", *cut), 0.5), "two", "three")
+    assert composed(document, names) == whole
+    # What cuts is not seen, and nothing of what it cuts.
+    assert composed(document, {i: name for i, name in names.items() if name != "arm"}) == (
+        "sky",
+        "two",
+        "three",
+    )
+    assert composed(document, {1: "arm"}) == (Composite(("arm",), 0.5),)
+    assert layers.set_clipped(2, clipped=True)(document) is document
+
+
+def test_a_group_is_clipped_and_cuts():
+    document = clipped(grouped("arm a/one a/two hat", "a"), "hat")
+    document = replace(document, groups=(Group(name="a", clipped=True),))
+    names = {figure.id: figure.name for figure in document.figures}
+    parts = composed(document, names)
+    cut = Composite(("one", "two"), clipped=True), Composite(("hat",), clipped=True)
+    assert parts == (Composite(("arm", *cut), 0.5),)
+    free = replace(document, groups=(Group(name="a"),))
+    assert composed(free, names)[1] == Composite(("one", "two", Composite(("hat",), clipped=True)))

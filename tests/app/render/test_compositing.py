@@ -1,0 +1,110 @@
+"""Faded and blended figures and groups, against the formulas of the W3C in double precision.
+
+"Compositing and Blending Level 1", Sections 9.1.4 and 10.
+"""
+
+import numpy as np
+import pytest
+from drawings import Easel
+from numpy.testing import assert_allclose
+
+from app.document.queries.compositing import Composite
+from app.render.gpu.mesh import PosedMesh
+from app.render.scene import Backdrop, Scene
+from app.render.view import canvas_view
+from engine.arrays import Bytes, Floats
+
+SIDE = 32
+BLENDS = {
+    "normal": lambda _, s: s,
+    "multiply": lambda b, s: b * s,
+    "screen": lambda b, s: b + s - b * s,
+}
+
+
+def colours(seed: int) -> Bytes:
+    """Pixels of every alpha and colour, some of them opaque or nothing."""
+    rng = np.random.default_rng(seed)
+    pixels = rng.integers(0, 256, (SIDE, SIDE, 4), dtype=np.uint8)
+    pixels[:8, :, 3] = 255
+    pixels[:, :8, 3] = 0
+    return pixels
+
+
+def laid(easel: Easel, pixels: Bytes) -> PosedMesh:
+    """A picture that fills the frame."""
+    corners = SIDE * np.array([0, 1, 1 + 1j, 1j])
+    triangles = np.array([[0, 1, 2], [0, 2, 3]], np.int32)
+    return easel.pose(easel.mesh(pixels, corners, triangles), corners)
+
+
+def over(
+    below: Floats, layer: Floats, opacity: float, blend: str, *, clipped: bool = False
+) -> Floats:
+    """One straight colour over another."""
+    backdrop, source = below[..., :3], layer[..., :3]
+    alpha_b, alpha_s = below[..., 3:], layer[..., 3:] * opacity
+    if clipped:
+        painted = (1 - alpha_s) * backdrop + alpha_s * BLENDS[blend](backdrop, source)
+        return np.concatenate([painted, alpha_b], axis=-1)
+    mixed = (1 - alpha_b) * source + alpha_b * BLENDS[blend](backdrop, source)
+    alpha = alpha_s + alpha_b - alpha_s * alpha_b
+    colour = alpha_s * mixed + (1 - alpha_s) * alpha_b * backdrop
+    return np.concatenate([colour / np.maximum(alpha, 1e-9), alpha], axis=-1)
+
+
+def composited(parts: tuple, pictures: dict, below: Floats | None = None) -> Floats:
+    flat = np.zeros((SIDE, SIDE, 4)) if below is None else below
+    for part in parts:
+        if isinstance(part, Composite):
+            layer = composited(part.parts, pictures)
+            flat = over(flat, layer, part.opacity, part.blend, clipped=part.clipped)
+        else:
+            flat = over(flat, pictures[part] / 255, 1, "normal")
+    return flat
+
+
+def check(easel: Easel, parts: tuple, pictures: dict, colour=(0.0, 0.0, 0.0, 0.0)) -> None:
+    frame = easel.frame(
+        canvas_view((SIDE, SIDE)), Scene(background=Backdrop(colour=colour), meshes=parts)
+    )
+    wanted = composited(parts, pictures, np.broadcast_to(colour, (SIDE, SIDE, 4)))
+    assert_allclose(frame[..., 3] / 255, wanted[..., 3], rtol=0, atol=1.5 / 255)
+    # Of faint pixels few levels are left; what counts is what they paint.
+    shown, meant = (each[..., :3] * wanted[..., 3:] for each in (frame / 255, wanted))
+    assert_allclose(shown, meant, rtol=0, atol=2.5 / 255)
+
+
+@pytest.mark.parametrize("blend", BLENDS)
+@pytest.mark.parametrize("opacity", [1.0, 0.4, 0.0])
+@pytest.mark.parametrize("colour", [(0.0, 0.0, 0.0, 0.0), (0.8, 0.5, 0.1, 1.0)])
+def test_figures_meet_what_is_behind_them_as_they_are_blended(easel, blend, opacity, colour):
+    pictures = {laid(easel, pixels): pixels for pixels in (colours(1), colours(2))}
+    below, above = pictures
+    check(easel, (below, Composite((above,), opacity, blend)), pictures, colour)
+
+
+def test_groups_are_composited_as_one_and_then_faded(easel):
+    pictures = {laid(easel, pixels): pixels for pixels in map(colours, range(5))}
+    sky, one, two, three, four = pictures
+    inner = Composite((two, Composite((three,), 0.7, "multiply")), 0.5, "screen")
+    parts = (sky, Composite((one, inner), 0.6), Composite((four,), 1.0, "multiply"))
+    check(easel, parts, pictures)
+
+
+def test_what_overlaps_in_a_faded_group_does_not_shine_through(easel):
+    opaque = [
+        np.full((SIDE, SIDE, 4), colour, np.uint8)
+        for colour in ((255, 0, 0, 255), (0, 0, 255, 255))
+    ]
+    red, blue = (laid(easel, pixels) for pixels in opaque)
+    frame = easel.frame(canvas_view((SIDE, SIDE)), Scene(meshes=(Composite((red, blue), 0.5),)))
+    assert (frame == (0, 0, 255, 128)).all()
+
+
+@pytest.mark.parametrize("blend", BLENDS)
+def test_what_is_clipped_is_seen_within_what_is_below_it_alone(easel, blend):
+    pictures = {laid(easel, pixels): pixels for pixels in map(colours, range(3))}
+    sky, base, above = pictures
+    cut = Composite((above,), 0.6, blend, clipped=True)
+    check(easel, (sky, Composite((base, cut), 0.8)), pictures)

@@ -1,0 +1,176 @@
+"""Photoshop files as other programs write them: groups, masks, clipping, modes, texts."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+from photoshop_files import (
+    MULTIPLY,
+    NORMAL,
+    OVERLAY,
+    SCREEN,
+    Drawn,
+    Folder,
+    Mask,
+    photoshop_file,
+)
+
+from app.document.layering import Group
+from app.errors import LissomError
+from app.storage.pictures import read_photoshop
+
+SIZE = (100, 120)
+FULL = np.full((20, 30, 4), 255, np.uint8)
+HALF = np.full((20, 15), 255, np.uint8)
+EMPTY = np.zeros((0, 0, 4), np.uint8)
+
+
+def read(*layers):
+    return read_photoshop(photoshop_file(SIZE, layers))
+
+
+def drawn(name, **more):
+    return Drawn(name=name, pixels=FULL, left=10, top=20, **more)
+
+
+def test_groups_keep_what_they_do():
+    found = read(
+        drawn("sky"),
+        Folder(
+            name="limbs",
+            opacity=51,
+            layers=[
+                drawn("arm"),
+                Folder(name="far/left", layers=[drawn("arm")], blend=NORMAL, hidden=True),
+            ],
+        ),
+        Folder(name="nothing", layers=[Folder(name="at all", layers=[])]),
+        Folder(name="limbs", layers=[drawn("leg", opacity=51)], blend=SCREEN),
+    )
+    assert [(layer.name, layer.group) for layer in found.layers] == [
+        ("sky", ""),
+        ("limbs/arm", "limbs"),
+        ("limbs/far-left/arm", "limbs/far-left"),
+        ("leg", "limbs 2"),
+    ]
+    assert found.groups == (
+        Group(name="limbs", opacity=0.2),
+        Group(name="limbs/far-left", blend="normal", hidden=True),
+        Group(name="limbs 2", blend="screen"),
+    )
+    assert found.layers[-1].opacity == 0.2
+    assert not found.summary
+
+
+def test_clipping_layers_are_clipped_by_what_is_below_them_in_their_group():
+    found = read(
+        drawn("lone", clipped=True),
+        drawn("arm"),
+        drawn("shade", clipped=True, blend=MULTIPLY),
+        Folder(name="limbs", layers=[drawn("first", clipped=True), drawn("leg")], clipped=True),
+        drawn("over the group", clipped=True),
+    )
+    clipped = {layer.name: layer.clipped for layer in found.layers}
+    # What nothing clips, `composed` paints whole.
+    assert clipped == {
+        "lone": True,
+        "arm": False,
+        "shade": True,
+        "first": True,
+        "leg": False,
+        "over the group": True,
+    }
+    assert found.groups == (Group(name="limbs", clipped=True),)
+    assert not found.summary
+
+
+def test_what_an_empty_layer_clips_is_nowhere_and_what_an_adjustment_does_is_everywhere():
+    curves = (b"curv", bytes(4))
+    found = read(
+        drawn("arm"),
+        Drawn(name="levels", pixels=EMPTY, blocks=(curves,)),
+        drawn("light", clipped=True),
+        Drawn(name="blank", pixels=np.zeros((4, 4, 4), np.uint8)),
+        drawn("gone", clipped=True),
+        Drawn(name="hollow", pixels=EMPTY),
+        drawn("gone too", clipped=True),
+        drawn("leg"),
+        drawn("shade", clipped=True),
+    )
+    assert {layer.name: layer.clipped for layer in found.layers} == {
+        "arm": False,
+        "light": False,
+        "leg": False,
+        "shade": True,
+    }
+    assert found.summary.losses == ("levels: left out, since it is an adjustment layer",)
+    assert found.summary.matters == (
+        "blank, hollow: left out, since it is empty",
+        "gone: left out, since it is clipped by the empty layer blank",
+        "gone too: left out, since it is clipped by the empty layer hollow",
+    )
+
+
+@pytest.mark.parametrize(
+    "mask",
+    [
+        Mask(pixels=HALF, left=10, top=20),
+        Mask(pixels=0 * HALF, outside=255),  # beside the layer
+        Mask(pixels=HALF // 3, left=30, top=10),
+        Mask(pixels=np.arange(40_000).reshape(200, 200).astype(np.uint8), left=-50, top=-60),
+        Mask(pixels=0 * HALF, disabled=True),
+        Mask(pixels=HALF, left=12, top=25, density=51),
+        Mask(pixels=np.zeros((0, 0), np.uint8), outside=102),
+    ],
+)
+def test_masks_are_taken_into_the_pixels_of_layers_and_groups(mask):
+    (own,) = read(drawn("arm", mask=mask)).layers
+    around = np.full((400, 400), mask.outside)
+    height, width = mask.pixels.shape
+    around[100 + mask.top :, 100 + mask.left :][:height, :width] = mask.pixels
+    wanted = around[120:140, 110:140]
+    if mask.density is not None:
+        wanted = 255 - (255 - wanted) * mask.density / 255
+    if mask.disabled:
+        wanted = np.full((20, 30), 255)
+    assert_allclose(own.picture.rgba[..., 3], wanted, rtol=0, atol=0.5)
+    assert (own.picture.rgba[..., :3] == 255).all()
+    grouped = read(Folder(name="limbs", layers=[drawn("arm")], mask=mask))
+    assert_array_equal(grouped.layers[0].picture.rgba, own.picture.rgba)
+    told = ("limbs: its mask is cut into the layers of the group, as they are drawn",)
+    assert grouped.summary.matters == (() if mask.disabled else told)
+
+
+def test_a_feathered_mask_is_soft():
+    edge = Mask(pixels=HALF, left=10, top=20, feather=2.0)
+    (soft,) = read(drawn("arm", mask=edge)).layers
+    levels = soft.picture.rgba[10, :, 3].astype(int)
+    assert (np.diff(levels) <= 0).all()
+    assert abs(levels[14] - 128) < 40
+    assert (levels[[0, -1]] == (255, 0)).all()
+
+
+def test_what_is_not_taken_over_is_told_once_with_all_names():
+    found = read(
+        drawn("a", blend=OVERLAY),
+        Folder(name="limbs", layers=[drawn("b", blend=OVERLAY)], blend=OVERLAY),
+        Drawn(name="paint", pixels=EMPTY, blocks=((b"SoCo", bytes(4)),)),
+    )
+    assert found.summary.losses == (
+        "limbs, a, b: drawn normally, not in the mode 'overlay'",
+        "paint: left out, since it is a fill layer",
+    )
+
+
+def test_forty_layers_and_one_pixel():
+    dot = Drawn(name="dot", pixels=FULL[:1, :1], left=99, top=119)
+    found = read(*(drawn("arm") for _ in range(40)), dot)
+    assert len({layer.name for layer in found.layers}) == 41
+    assert found.layers[-1].corner == 99
+
+
+def test_groups_have_an_end():
+    inner = drawn("arm")
+    for depth in range(51):
+        inner = Folder(name=str(depth), layers=[inner])
+    with pytest.raises(LissomError, match="more than 50 deep"):
+        read(inner)

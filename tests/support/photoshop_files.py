@@ -1,0 +1,146 @@
+"""Photoshop files, written byte by byte as other programs write them."""
+
+import struct
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from engine.arrays import Bytes
+
+NORMAL, PASS_THROUGH, MULTIPLY, SCREEN, OVERLAY = b"norm", b"pass", b"mul ", b"scrn", b"over"
+FOLDER, BELOW_ALL = 1, 3  # kinds of section dividers: a group, and where it begins from below
+DENSITY, FEATHER = 1, 2  # bits of what is said of a mask of pixels
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Mask:
+    """A mask, uint8 (h, w), which is `outside` around itself."""
+
+    pixels: Bytes
+    left: int = 0
+    top: int = 0
+    outside: int = 0
+    disabled: bool = False
+    density: int | None = None
+    feather: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Drawn:
+    """A layer with pixels, uint8 (h, w, 4)."""
+
+    name: str
+    pixels: Bytes
+    left: int = 0
+    top: int = 0
+    opacity: int = 255
+    blend: bytes = NORMAL
+    clipped: bool = False
+    hidden: bool = False
+    mask: Mask | None = None
+    blocks: tuple[tuple[bytes, bytes], ...] = ()  # keys of four letters, and what they say
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Folder:
+    """A group of what lies in it, from back to front."""
+
+    name: str
+    layers: "Sequence[Drawn | Folder]"
+    opacity: int = 255
+    blend: bytes = PASS_THROUGH
+    clipped: bool = False
+    hidden: bool = False
+    mask: Mask | None = None
+
+
+@dataclass
+class _Written:
+    records: list[bytes] = field(default_factory=list)
+    channels: list[bytes] = field(default_factory=list)
+
+
+def photoshop_file(size: tuple[int, int], layers: Sequence[Drawn | Folder]) -> bytes:
+    """Return a file of a canvas of this width and height, and its layers from back to front."""
+    width, height = size
+    written = _Written()
+    for layer in layers:
+        _write(written, layer)
+    info = struct.pack(">h", len(written.records))
+    info += b"".join(written.records) + b"".join(written.channels)
+    info += bytes(len(info) % 2)
+    section = struct.pack(">I", len(info)) + info + struct.pack(">I", 0)
+    header = b"8BPS" + struct.pack(">H6xHIIHH", 1, 3, height, width, 8, 3)
+    return b"".join(
+        [
+            header,
+            struct.pack(">II", 0, 0),
+            struct.pack(">I", len(section)),
+            section,
+            struct.pack(">H", 0),
+            bytes(3 * width * height),
+        ]
+    )
+
+
+def _write(written: _Written, layer: Drawn | Folder) -> None:
+    if isinstance(layer, Drawn):
+        _record(written, layer, layer.pixels, (layer.left, layer.top), layer.blocks)
+        return
+    end = Drawn(name="</Layer group>", pixels=np.zeros((0, 0, 4), np.uint8))
+    _record(written, end, end.pixels, (0, 0), (_divider(BELOW_ALL),))
+    for inner in layer.layers:
+        _write(written, inner)
+    _record(written, layer, end.pixels, (0, 0), (_divider(FOLDER, layer.blend),))
+
+
+def _divider(kind: int, blend: bytes = b"") -> tuple[bytes, bytes]:
+    return b"lsct", struct.pack(">I", kind) + (b"8BIM" + blend if blend else b"")
+
+
+def _record(
+    written: _Written,
+    layer: Drawn | Folder,
+    pixels: Bytes,
+    corner: tuple[int, int],
+    blocks: Sequence[tuple[bytes, bytes]],
+) -> None:
+    left, top = corner
+    height, width, _ = pixels.shape
+    planes = {-1: pixels[..., 3], 0: pixels[..., 0], 1: pixels[..., 1], 2: pixels[..., 2]}
+    if layer.mask is not None:
+        planes[-2] = layer.mask.pixels
+    data = {number: struct.pack(">H", 0) + plane.tobytes() for number, plane in planes.items()}
+    name = layer.name.encode("latin-1")
+    extra = _mask(layer.mask) + struct.pack(">I", 0) + bytes([len(name)]) + name
+    extra += bytes(-(1 + len(name)) % 4)
+    for key, said in blocks:
+        extra += b"8BIM" + key + struct.pack(">I", len(said)) + said
+    record = struct.pack(">iiiiH", top, left, top + height, left + width, len(data))
+    for number, channel in data.items():
+        record += struct.pack(">hI", number, len(channel))
+    # A group's own mode is with its divider.
+    blend = NORMAL if layer.blend == PASS_THROUGH else layer.blend
+    flags = 2 * layer.hidden
+    record += b"8BIM" + blend + bytes([layer.opacity, layer.clipped, flags, 0])
+    written.records.append(record + struct.pack(">I", len(extra)) + extra)
+    written.channels += data.values()
+
+
+def _mask(mask: Mask | None) -> bytes:
+    if mask is None:
+        return struct.pack(">I", 0)
+    height, width = mask.pixels.shape
+    box = (mask.top, mask.left, mask.top + height, mask.left + width)
+    settings = DENSITY * (mask.density is not None) + FEATHER * (mask.feather is not None)
+    flags = 2 * mask.disabled + 16 * bool(settings)
+    data = struct.pack(">iiiiBB", *box, mask.outside, flags)
+    if settings:
+        data += bytes([settings])
+        data += b"" if mask.density is None else bytes([mask.density])
+        data += b"" if mask.feather is None else struct.pack(">d", mask.feather)
+        data += bytes(max(0, 36 - len(data)) if len(data) > 20 else 20 - len(data))
+    else:
+        data += bytes(2)
+    return struct.pack(">I", len(data)) + data
