@@ -1,6 +1,6 @@
 """The project that is open: its document, what the window has of it, and what is under way."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from math import inf
 from pathlib import Path
@@ -365,10 +365,32 @@ class Project:
 
     def placements(self, frames: Iterable[int], unknown: RigidMotion) -> list[RigidMotion]:
         """Return where the figure that is posed is at some frames: `unknown` till that is known."""
-        if not self.figure.joints:
+        frames = list(frames)
+        return self.placed_at(self.active, frames) or [unknown for _ in frames]
+
+    def placed_at(self, figure: int, frames: Sequence[int]) -> list[RigidMotion] | None:
+        """Return where a figure, by its id, is at some frames; None till that is known.
+
+        While it is posed itself, it hangs as before: its joint holds.
+        """
+        own, joints = self.document.figure(figure), self.hung
+        if not own.joints:
             return [HERE for _ in frames]
-        joints = self.hung
-        return [unknown if joints is None else joints.placement(self.active, f) for f in frames]
+        if joints is None and (before := self.joints.value) is not None:
+            joints = before if self._hangs_as_in(before.document, own) else None
+        return None if joints is None else [joints.placement(figure, frame) for frame in frames]
+
+    def _hangs_as_in(self, before: Document, figure: Figure) -> bool:
+        """Tell whether a figure hangs on the very same others as in an earlier document."""
+        was = {each.id: each for each in before.figures}
+        document, own = self.document, was.get(figure.id)
+        return (
+            own is not None
+            and (before.frames, before.loop) == (document.frames, document.loop)
+            and (own.joints, own.anchor, own.domain)
+            == (figure.joints, figure.anchor, figure.domain)
+            and all(was.get(each.id) is each for each in document.all_carriers(figure.id))
+        )
 
     def pair_up(self, method: Variant | Baseline | None) -> None:
         """Let each figure have a twin by a method, or none."""
