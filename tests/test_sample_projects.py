@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from app.document.queries.fronts import is_visible
 from app.document.queries.shortfall import Extremes
+from app.document.queries.sight import is_visible
 from app.document.queries.timeline import clip_of, exported_frames
 from app.motion import Animation, Joints, PaintOrder
 from app.motion.interval_store import IntervalStore

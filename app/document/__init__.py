@@ -15,6 +15,7 @@ from app.document.body import (
 from app.document.commands import (
     Command as Command,
     Settled as Settled,
+    choice_commands as choice_commands,
     exchanged as exchanged,
     figure_commands as figure_commands,
     group_commands as group_commands,
@@ -47,9 +48,11 @@ from app.document.layering import (
     GROUP_BLENDS as GROUP_BLENDS,
     Attachment as Attachment,
     BlendMode as BlendMode,
+    Choice as Choice,
     Group as Group,
     GroupBlend as GroupBlend,
     Switch as Switch,
+    Turn as Turn,
     paths_to as paths_to,
 )
 from app.document.model import Document as Document

@@ -12,7 +12,7 @@ from itertools import pairwise
 
 from app.document.checks import NOTHING, Unknown, require, require_distinct, require_size
 from app.document.figure import Figure
-from app.document.layering import Group, paths_to
+from app.document.layering import Choice, Group, paths_to
 from app.document.settings import FASTEST, ExportSettings, FrameRange, Marker
 from app.errors import LissomError
 
@@ -26,6 +26,7 @@ class Document:
     frames: FrameRange = FrameRange(0, 48)  # all frames of the animation; every key lies in it
     # The part of them that plays, to look at it; None plays everything. Exports do not heed it.
     preview: FrameRange | None = None
+    choices: tuple[Choice, ...] = ()  # between figures that take turns; none is in two of them
     markers: tuple[Marker, ...] = ()  # in the order of their frames, of which each has one at most
     fps: float = 24.0  # frames per second
     # Whether the last frame leads back to the first one: both are the same moment.
@@ -70,14 +71,19 @@ class Document:
 
     @property
     def exported(self) -> tuple[Figure, ...]:
-        """The figures that exports show, from back to front."""
+        """The figures that exports show at some time, from back to front."""
+        chosen = {identity for choice in self.choices for identity in choice.figures}
         return tuple(
-            each for each in self.figures if not (each.reference or self.is_put_away(each))
+            each
+            for each in self.figures
+            if not each.reference
+            and (each.id in chosen or not each.hidden)
+            and not self.is_in_hidden_group(each)
         )
 
-    def is_put_away(self, figure: Figure) -> bool:
-        """Tell whether a figure, or a group that it is in, is hidden at all times."""
-        return figure.hidden or any(group.hidden for group in self.groups_around(figure.group))
+    def is_in_hidden_group(self, figure: Figure) -> bool:
+        """Tell whether a group that a figure is in is hidden at all times."""
+        return any(group.hidden for group in self.groups_around(figure.group))
 
     def group(self, path: str) -> Group:
         """Return the group with this path."""
@@ -96,6 +102,17 @@ class Document:
             if figure.id == identity:
                 return figure
         raise LissomError(f"There is no figure with the id {identity}.")
+
+    def choice(self, name: str) -> Choice:
+        """Return the choice with this name."""
+        for choice in self.choices:
+            if choice.name == name:
+                return choice
+        raise LissomError(f"There is no choice {name!r}.")
+
+    def choice_of(self, identity: int) -> Choice | None:
+        """Return the choice that decides when the figure with this id is seen, if there is one."""
+        return next((choice for choice in self.choices if identity in choice.figures), None)
 
     def marker(self, frame: int) -> Marker:
         """Return the marker at this frame."""
@@ -141,6 +158,25 @@ class Document:
         for figure in self.figures:
             self.carriers(figure.id)
             self._check_clocks(figure)
+        self._check_choices()
+
+    def _check_choices(self) -> None:
+        require_distinct((choice.name for choice in self.choices), "Two choices are called {!r}.")
+        taken: dict[int, str] = {}
+        for choice in self.choices:
+            for identity in choice.figures:
+                figure = self.figure(identity)
+                require(
+                    identity not in taken,
+                    f"The layer {figure.name!r} is in two choices, {taken.get(identity)!r} and "
+                    f"{choice.name!r}; take it out of one.",
+                )
+                require(
+                    not figure.switches,
+                    f"The layer {figure.name!r} is shown and hidden at frames of its own, and is "
+                    f"in the choice {choice.name!r}, which alone decides that; leave out one.",
+                )
+                taken[identity] = choice.name
 
     def _check_groups(self) -> None:
         known: set[str] = set()

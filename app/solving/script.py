@@ -28,6 +28,7 @@ from app.solving.script_fields import (
     require_order,
 )
 from app.solving.script_material import StiffPart, parse_material
+from app.solving.script_stage import ScriptChoice, parse_choices
 from app.storage import (
     JsonObject,
     as_flag,
@@ -46,6 +47,7 @@ SCHEMA = 1
 LARGEST = 32 * 1024 * 1024  # bytes
 SCENE_FIELDS = ("schema", "fps", "loop", "variant", "bounds", "still")
 OWN_FIELDS = ("anchor", "handles", "keys", "tracks", "springs", "stiff")
+STAGE_FIELDS = ("figures", "choices")
 FIGURE_FIELDS = ("layer", "variant", "bounds", "still", *OWN_FIELDS, "attach", "visible")
 HANDLE_FIELDS = ("at", "front", "extent", "still")
 JOINT_FIELDS = ("to", "at", "turn")
@@ -104,7 +106,8 @@ class FigureScript:
     parts: tuple[StiffPart, ...] = ()
     bones: tuple[Bone, ...] = ()
     attach: ScriptJoint | None = None
-    visible: tuple[tuple[int, bool], ...] = ()
+    # When it is seen; None leaves that to the drawing.
+    visible: tuple[tuple[int, bool], ...] | None = None
 
     @property
     def last(self) -> int:
@@ -119,6 +122,7 @@ class PoseScript:
     figures: tuple[FigureScript, ...]
     fps: float
     loop: bool
+    choices: tuple[ScriptChoice, ...] = ()
 
     @property
     def last(self) -> int:
@@ -160,7 +164,7 @@ def parse_pose_script(content: object) -> PoseScript:
         frames are out of order.
     """
     read = as_object(content, "the script")
-    own = ("figures",) if "figures" in read else OWN_FIELDS
+    own = STAGE_FIELDS if "figures" in read else OWN_FIELDS
     script = fields_in(content, "the script", (*SCENE_FIELDS, *own))
     schema = script.get("schema")
     if schema != SCHEMA or isinstance(schema, bool):
@@ -181,6 +185,7 @@ def parse_pose_script(content: object) -> PoseScript:
         figures=tuple(figures),
         fps=as_number(script.get("fps", 24.0), "fps"),
         loop=as_flag(script.get("loop", False), "loop"),
+        choices=parse_choices(script, [f.layer for f in figures if f.layer and f.visible]),
     )
     for index, figure in enumerate(figures if parsed.loop else ()):
         where = "" if figure.layer is None else f"figures[{index}]."
@@ -206,10 +211,8 @@ def _figure(script: JsonObject, where: str, usual: Mapping[str, Any]) -> FigureS
         own["anchor"] = as_point(script["anchor"], f"{where}anchor")
     if script.get("attach") is not None:
         own["attach"] = _joint(script["attach"], f"{where}attach")
-    visible = as_list(script.get("visible", []), f"{where}visible")
-    switches = [_switch(switch, f"{where}visible[{index}]") for index, switch in enumerate(visible)]
-    require_order([frame for frame, _ in switches], f"{where}visible is")
-    own["visible"] = tuple(switches)
+    if "visible" in script:
+        own["visible"] = _switches(script["visible"], f"{where}visible")
     own["tracks"] = parse_tracks(script.get("tracks", []), f"{where}tracks", tuple(handles))
     own["springs"] = parse_springs(script.get("springs", []), f"{where}springs", tuple(handles))
     own["parts"], own["bones"] = parse_material(
@@ -238,6 +241,14 @@ def _joint(content: object, where: str) -> ScriptJoint:
         at=as_point(joint["at"], f"{where}.at"),
         turns=as_flag(joint.get("turn", True), f"{where}.turn"),
     )
+
+
+def _switches(content: object, where: str) -> tuple[tuple[int, bool], ...]:
+    switches = [
+        _switch(switch, f"{where}[{index}]") for index, switch in enumerate(as_list(content, where))
+    ]
+    require_order([frame for frame, _ in switches], f"{where} is")
+    return tuple(switches)
 
 
 def _switch(content: object, where: str) -> tuple[int, bool]:

@@ -17,6 +17,7 @@ from app.document import (
     Target,
     brushed_stiffness,
     find_shortfall,
+    group_commands,
     handle_commands,
     layer_commands,
     material_commands,
@@ -24,6 +25,7 @@ from app.document import (
 from app.errors import LissomError
 from app.solving.drag import Drag, Rig
 from app.solving.script import FigureScript, PoseKey, PoseScript
+from app.solving.stage import layer_named, unseen, with_choices
 from app.storage import still_figure
 from engine.deform import Hand
 from engine.errors import EngineError
@@ -81,7 +83,8 @@ def pose_document(
             figure, told = _posed(document.figure(identity), part, progress, loop=script.loop)
         document = document.with_figure(figure)
         notices += told
-    return document, tuple(notices)
+    document = with_choices(document, script)
+    return document, (*notices, *unseen(document, script))
 
 
 @contextmanager
@@ -97,23 +100,16 @@ def _whose(part: FigureScript) -> Iterator[None]:
 
 def _by_figure(document: Document, script: PoseScript) -> dict[int, FigureScript]:
     """Return what the script says of the figures, by their ids."""
-    names = {figure.name: figure for figure in document.figures}
     named = {}
     for part in script.figures:
         if part.layer is None:
             figure = next((f for f in reversed(document.figures) if not f.still), None)
         else:
-            figure = _layer(names, part.layer)
+            figure = layer_named(document, part.layer)
         if figure is None or figure.still:
             raise LissomError(f"the layer {part.layer!r} stands still: there is no shape on it")
         named[figure.id] = part
     return named
-
-
-def _layer(names: Mapping[str, Figure], layer: str) -> Figure:
-    if layer not in names:
-        raise LissomError(f"there is no layer {layer!r}; the layers are {', '.join(names)}")
-    return names[layer]
 
 
 def _prepared(document: Document, identity: int, part: FigureScript) -> Document:
@@ -124,14 +120,19 @@ def _prepared(document: Document, identity: int, part: FigureScript) -> Document
         document = handle_commands.add_handle(identity, handle.at, name=name)(document)
         document = layer_commands.set_front(identity, added, handle.front, handle.extent)(document)
         document = handle_commands.free_handles(identity, {added}, free=not handle.still)(document)
-    switches = tuple(Switch(frame, visible) for frame, visible in part.visible)
+    if part.visible is not None:
+        document = group_commands.uncovered(document, [identity])
+    figure = document.figure(identity)
+    if part.visible is not None:
+        # What the script says holds, whatever is hidden in the drawing.
+        switches = tuple(Switch(frame, visible) for frame, visible in part.visible)
+        figure = replace(figure, switches=switches, hidden=False)
     document = document.with_figure(
         replace(
-            document.figure(identity),
+            figure,
             variant=part.variant,
             bounds=part.bounds,
             anchor=part.anchor,
-            switches=switches,
             stillness=part.still,
             tracks=tuple(
                 replace(track, handles=tuple(first + number for number in track.handles))
@@ -142,7 +143,7 @@ def _prepared(document: Document, identity: int, part: FigureScript) -> Document
     )
     if part.attach is None:
         return document
-    parent = _layer({figure.name: figure for figure in document.figures}, part.attach.to)
+    parent = layer_named(document, part.attach.to)
     at = part.attach.at
     what = f"it is attached at ({at.real:g}, {at.imag:g})"
     if not parent.covers(np.array([at])).all():

@@ -13,6 +13,7 @@ from shapes import regular_polygon
 from app.document.body import Bone
 from app.document.commands import (
     Command,
+    choice_commands,
     figure_commands,
     handle_commands,
     key_commands,
@@ -95,6 +96,7 @@ def random_command(rng: np.random.Generator, document: Document) -> Command:
     makers = (
         _random_handle_command,
         _random_key_command,
+        _random_choice_command,
         _random_layer_command,
         _random_material_command,
         _random_pose_command,
@@ -144,6 +146,26 @@ def _random_layer_command(rng: np.random.Generator, document: Document) -> Comma
             layer_commands.key_front(figure.id, frame, handle, rng.uniform(-1, 1)),
             layer_commands.key_front(figure.id, frame, handle, None),
         ]
+    return commands[rng.integers(len(commands))]
+
+
+def _random_choice_command(rng: np.random.Generator, document: Document) -> Command:
+    ids = [figure.id for figure in document.figures]
+    identity, frame, to = ids[rng.integers(len(ids))], *(int(at) for at in rng.integers(50, size=2))
+    choice = document.choices[0] if document.choices else None
+    name = choice.name if choice else "none"
+    turn = choice.turns[0].frame if choice and choice.turns else frame
+    commands = [
+        choice_commands.form_choice(f"choice {rng.integers(3)}", ids[: 2 + int(rng.integers(2))]),
+        choice_commands.form_choice("two", rng.permutation(ids)[:2].tolist()),
+        choice_commands.choose_at(identity, frame),
+        choice_commands.unchoose_at(name, turn),
+        choice_commands.move_turn(name, turn, to),
+        choice_commands.rename_choice(name, f"choice {rng.integers(3)}"),
+        choice_commands.join_choice(name, identity),
+        choice_commands.leave_choice(identity),
+        choice_commands.dissolve_choice(name),
+    ]
     return commands[rng.integers(len(commands))]
 
 

@@ -61,7 +61,7 @@ def _alone(document: Document, name: str) -> Document:
     if name not in names:
         raise LissomError(f"there is no layer {name!r}; the layers are {', '.join(names)}")
     figures = tuple(
-        replace(figure, hidden=figure.name != name, reference=False) for figure in document.figures
+        replace(figure, hidden=False, reference=figure.name != name) for figure in document.figures
     )
     groups = tuple(replace(group, hidden=False) for group in document.groups)
     return replace(document, figures=figures, groups=groups, size=document.canvas)

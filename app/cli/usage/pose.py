@@ -74,11 +74,14 @@ tracks, springs and stiff:
                {"layer": "arm", "handles": {"hand": [310, 240]},
                 "keys": [{"frame": 0}, {"frame": 12, "targets": {"hand": [300, 330]}}],
                 "attach": {"to": "body", "at": [200, 260], "turn": true},
-                "visible": [[0, true], [40, false]]}]
+                "visible": [[0, true], [40, false]]}],
+   "choices": [{"name": "mouth", "layers": ["closed", "ah"], "keys": [[0, "closed"], [8, "ah"]]}]
 
 Each may have a variant, bounds, an anchor, tracks, springs and stiff of its own. What is attached
 hangs by its anchor, or where none is given by that point, and is posed as if its parent were at
-rest. Layers that no entry names stand still.
+rest. Layers that no entry names stand still. visible says from which frames on a layer is seen or
+not, also one that is hidden in DRAWING. Of the layers of a choice exactly one is seen at a time,
+from the frame on that its keys name; none of them is in another choice or has visible.
 
 examples:
   lissom pose giraffe.png nod.json --out nod.lissom

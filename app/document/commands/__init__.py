@@ -7,7 +7,6 @@ Imports: the values of `app.document`.
 
 from app.document.commands import (
     figure_commands as figure_commands,
-    group_commands as group_commands,
     handle_commands as handle_commands,
     key_commands as key_commands,
     layer_commands as layer_commands,
@@ -18,3 +17,7 @@ from app.document.commands import (
 )
 from app.document.commands.command import Command as Command
 from app.document.commands.pose_commands import Settled as Settled, exchanged as exchanged
+from app.document.commands.staging import (
+    choice_commands as choice_commands,
+    group_commands as group_commands,
+)

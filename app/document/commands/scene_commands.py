@@ -76,6 +76,10 @@ def scale_time(document: Document, factor: float) -> Document:
             replace(marker, frame=scaled(marker.frame, first, factor))
             for marker in document.markers
         ),
+        choices=tuple(
+            choice.at_frames(lambda frame: scaled(frame, first, factor))
+            for choice in document.choices
+        ),
     )
 
 

@@ -16,7 +16,6 @@ from app.document.queries.fronts import (
     USUAL_EXTENT as USUAL_EXTENT,
     Front as Front,
     fronts_at as fronts_at,
-    is_visible as is_visible,
 )
 from app.document.queries.material import (
     are_as_stiff as are_as_stiff,
@@ -31,6 +30,7 @@ from app.document.queries.shortfall import (
     falls_short as falls_short,
     find_shortfall as find_shortfall,
 )
+from app.document.queries.sight import is_visible as is_visible
 from app.document.queries.timeline import (
     Moment as Moment,
     changed_stretches as changed_stretches,

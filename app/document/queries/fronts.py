@@ -1,9 +1,7 @@
-"""What is in front at a frame, and what is seen at all."""
+"""What is in front at a frame."""
 
 from typing import NamedTuple
 
-from app.document.figure import Figure
-from app.document.model import Document
 from app.document.queries.clips import Clip
 from engine.geometry import box_diagonal
 
@@ -39,14 +37,3 @@ def fronts_at(clip: Clip, frame: float) -> tuple[Front, ...]:
         for handle in figure.handles
         if depths[handle.id]
     )
-
-
-def is_visible(document: Document, figure: Figure, frame: float) -> bool:
-    """Tell whether a figure is seen at a frame."""
-    if document.is_put_away(figure):
-        return False
-    shown = figure.switches[0].visible if figure.switches else True
-    for switch in figure.switches:
-        if switch.frame <= frame:
-            shown = switch.visible
-    return shown

@@ -50,9 +50,8 @@ def figure_at(
 def is_at(project: Project, identity: int, place: complex) -> bool:
     """Tell whether a figure is seen at a place of the scene."""
     shown = project.puppets[identity].shown
-    if shown is None or not is_visible(
-        project.document, project.document.figure(identity), shown.frame
-    ):
+    document = project.document
+    if shown is None or not is_visible(document, document.figure(identity), shown.frame):
         return False
     outline = shown.positions[: len(shown.mesh.domain.outline)]
     return bool(contains(outline, np.array([shown.placement.back(place)]))[0])
@@ -123,7 +122,8 @@ def show_group(session: Session, project: Project, path: str) -> None:
 def switch_here(session: Session, project: Project, identity: int) -> None:
     """Show or hide a layer from the present frame on: the other way than it is there."""
     frame = playback.current_frame(session, project)
-    visible = not is_visible(project.document, project.document.figure(identity), frame)
+    document = project.document
+    visible = not is_visible(document, document.figure(identity), frame)
     editing.edit(session, layer_commands.switch_at(identity, frame, visible=visible))
 
 

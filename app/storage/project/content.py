@@ -12,6 +12,7 @@ from app.document import (
     FRAME_NAMES,
     Attachment,
     Bone,
+    Choice,
     Document,
     Easing,
     ExportSettings,
@@ -31,6 +32,7 @@ from app.document import (
     Target,
     Track,
     TrackKey,
+    Turn,
 )
 from app.errors import LissomError
 from app.export_formats import FormatOptions, FormatSettings
@@ -261,6 +263,12 @@ FIGURE = record(
     Field("group", TEXT, usual=""),
     Field("attachment", optional(ATTACHMENT), usual=None),
 )
+CHOICE = record(
+    Choice,
+    Field("name", TEXT),
+    Field("figures", several(WHOLE)),
+    Field("turns", several(pair(WHOLE, WHOLE, "a frame and a figure", make=Turn, of=tuple))),
+)
 DOCUMENT = record(
     dict,
     Field("schema", WHOLE, lambda _: SCHEMA),
@@ -274,6 +282,7 @@ DOCUMENT = record(
     Field("export", EXPORT),
     Field("size", optional(SIZE), usual=None),
     Field("groups", several(GROUP), usual=()),
+    Field("choices", several(CHOICE), usual=()),
 )
 
 

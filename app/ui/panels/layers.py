@@ -126,7 +126,8 @@ def _switch(document: Document, look: Look, figure: Figure, frame: int) -> list[
     is_seen = is_visible(document, figure, frame)
     text = f"{'Hide' if is_seen else 'Show'} from frame {frame} on"
     hint = "For mouths, blinks and props: layers that take turns"
-    if text_button(text, FILL, hint, enabled=not document.is_put_away(figure)):
+    is_away = figure.hidden or document.is_in_hidden_group(figure)
+    if text_button(text, FILL, hint, enabled=not is_away):
         actions.append(do(layering.switch_here, figure.id))
     is_switched = any(switch.frame == frame for switch in figure.switches)
     if is_switched and imgui.button(f"No change at frame {frame}", ImVec2(FILL, 0)):

@@ -93,7 +93,7 @@ def _draw_scrolled(bands: Bands) -> None:
 
 def _hidden(document: Document, figure: Figure) -> list[tuple[int | None, int | None]]:
     """Return the stretches in which a figure is hidden; None is where there is no end to them."""
-    if document.is_put_away(figure):
+    if figure.hidden or document.is_in_hidden_group(figure):
         return [(None, None)]
     switches = figure.switches
     stretches: list[tuple[int | None, int | None]] = [

@@ -188,3 +188,129 @@ def test_a_figure_that_is_not_there_is_told(project, folder, capsys):
     with pytest.raises(SystemExit):
         main(arguments)
     assert "the layers are wall, body, arm, patch" in capsys.readouterr().err
+
+
+MOUTHS = "".join(
+    f'<layer name="{name}" src="data/{index}.png" visibility="{visibility}"/>'
+    for index, (name, visibility) in enumerate(
+        (("oh", "hidden"), ("ah", "hidden"), ("closed", "visible"), ("head", "visible"))
+    )
+)
+
+
+@pytest.fixture
+def face(tmp_path):
+    """A head with three mouths, of which two are hidden; returns what poses it by a script."""
+    pictures = [
+        painted("ellipse", (100, 100, 140, 140), (250, 250, 0, 255)),
+        painted("ellipse", (100, 100, 140, 140), (0, 250, 0, 255)),
+        painted("ellipse", (100, 110, 140, 130), (250, 0, 0, 255)),
+        painted("ellipse", (40, 20, 200, 180), (40, 40, 200, 255)),
+    ]
+    (tmp_path / "face.ora").write_bytes(openraster((WIDTH, HEIGHT), MOUTHS, pictures))
+
+    def pose(**stage):
+        script = {
+            "schema": 1,
+            "figures": [{"layer": "head", "handles": {}, "keys": [{"frame": 0}, {"frame": 12}]}],
+        }
+        (tmp_path / "face.json").write_text(json.dumps(script | stage))
+        out = tmp_path / "face.lissom"
+        files = [str(tmp_path / "face.ora"), str(tmp_path / "face.json"), "--out", str(out)]
+        return main(["pose", *files, "--triangles", "2000"]), out
+
+    return pose
+
+
+def mouth_at(out, number):
+    """The colour of the mouth in a frame."""
+    options = ("--framing", "canvas", "--frames", f"{number}:{number}")
+    return frame(out, f"frame{number}", *options)[HEIGHT - 80, 120, :3].tolist()
+
+
+CHOICE = {
+    "name": "mouth",
+    "layers": ["closed", "ah", "oh"],
+    "keys": [[0, "closed"], [4, "ah"], [8, "oh"], [10, "closed"]],
+}
+
+
+def test_a_choice_shows_one_layer_at_a_time_whatever_is_hidden_in_the_drawing(face, capsys):
+    code, out = face(choices=[CHOICE])
+    assert code == 0
+    assert "never seen" not in capsys.readouterr().err
+    document = load_project(out)
+    for number, name in ((0, "closed"), (3, "closed"), (4, "ah"), (8, "oh"), (12, "closed")):
+        assert [f.name for f in document.figures if is_visible(document, f, number)] == [
+            "head",
+            name,
+        ]
+    assert mouth_at(out, 2) == [250, 0, 0]
+    assert mouth_at(out, 5) == [0, 250, 0]
+    assert mouth_at(out, 8) == [250, 250, 0]
+    # One layer of it alone is seen when it is chosen.
+    options = ("--framing", "canvas", "--figure", "ah")
+    assert frame(out, "ah", *options, "--frames", "5:5")[..., 3].any()
+    assert not frame(out, "no ah", *options, "--frames", "9:9")[..., 3].any()
+
+
+def test_a_script_shows_what_the_drawing_hides(face, capsys):
+    oh = {"layer": "oh", "handles": {}, "keys": [{"frame": 0}, {"frame": 12}]}
+    assert face(figures=[{**oh, "visible": [[0, False], [6, True]]}])[0] == 0
+    assert "never seen" not in capsys.readouterr().err
+    out = face(figures=[{**oh, "visible": [[0, False], [6, True]]}])[1]
+    assert mouth_at(out, 5) == [250, 0, 0]
+    assert mouth_at(out, 6) == [250, 250, 0]
+
+
+@pytest.mark.parametrize(
+    ("visible", "words"),
+    [
+        ({}, 'oh is hidden in the drawing, and so never seen; with "visible": [[0, true]] it is'),
+        ({"visible": [[0, False]]}, "oh is never seen: its visible shows it at no frame"),
+        (
+            {"visible": [[0, False], [40, True]]},
+            "oh is never seen: it is shown from frame 40 on, and the animation ends at frame 12",
+        ),
+    ],
+)
+def test_what_is_never_seen_is_told(face, visible, words, capsys):
+    oh = {"layer": "oh", "handles": {}, "keys": [{"frame": 0}, {"frame": 12}], **visible}
+    assert face(figures=[oh])[0] == 0
+    assert words in " ".join(capsys.readouterr().err.split())
+
+
+def test_a_choice_after_the_end_is_told(face, capsys):
+    assert face(choices=[{**CHOICE, "keys": [[0, "closed"], [99, "ah"]]}])[0] == 0
+    told = " ".join(capsys.readouterr().err.split())
+    assert "choice 'mouth': ah from frame 99 on is never seen, as the animation ends" in told
+
+
+@pytest.mark.parametrize(
+    ("stage", "words"),
+    [
+        ([{**CHOICE, "layers": ["closed", "eh"], "keys": []}], "'mouth': there is no layer 'eh'"),
+        ([{**CHOICE, "layers": ["closed"], "keys": []}], "choices[0].layers must be two layers"),
+        ([{**CHOICE, "layers": ["ah", "ah"], "keys": []}], "choices[0].layers has 'ah' twice"),
+        ([{**CHOICE, "keys": [[0, "head"]]}], "choices[0].keys[0] shows 'head', which is not"),
+        ([{**CHOICE, "keys": [[4, "ah"], [2, "oh"]]}], "choices[0].keys are out of order"),
+        ([{**CHOICE, "keys": [4]}], "choices[0].keys[0] must be a list"),
+        ([CHOICE, {**CHOICE, "name": "lips"}], "the layer 'closed' is in two choices"),
+        ([CHOICE, {**CHOICE, "layers": ["head", "eh"], "keys": []}], "two choices are called"),
+        ([{"layers": ["ah", "oh"]}], "choices[0] lacks the field 'name'"),
+        ([{**CHOICE, "shown": 1}], "choices[0] has an unknown field 'shown'"),
+        ({"mouth": []}, "choices must be a list"),
+    ],
+)
+def test_choices_that_cannot_be_are_refused(face, stage, words, capsys):
+    with pytest.raises(SystemExit) as refused:
+        face(choices=stage)
+    assert refused.value.code == 2
+    assert words in " ".join(capsys.readouterr().err.split())
+
+
+def test_a_layer_of_a_choice_has_no_visible(face, capsys):
+    oh = {"layer": "oh", "handles": {}, "keys": [{"frame": 0}], "visible": [[0, True]]}
+    with pytest.raises(SystemExit):
+        face(figures=[oh], choices=[CHOICE])
+    assert "the layer 'oh' is in a choice, which alone decides" in capsys.readouterr().err

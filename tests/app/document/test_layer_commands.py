@@ -12,7 +12,8 @@ from app.document import (
 )
 from app.document.layering import Attachment, Switch
 from app.document.queries.clips import clip_of
-from app.document.queries.fronts import fronts_at, is_visible
+from app.document.queries.fronts import fronts_at
+from app.document.queries.sight import is_visible
 from app.errors import LissomError
 
 
@@ -107,8 +108,8 @@ def test_a_layer_is_seen_as_its_switches_say():
         Switch(0, visible=True),
         Switch(20, visible=True),
     )
-    fresh = disc_document()
-    assert is_visible(fresh, fresh.figures[0], 5)
+    document = disc_document()
+    assert is_visible(document, document.figures[0], 5)
 
 
 def test_what_is_seen_when_moves_and_is_stretched_with_all_time():

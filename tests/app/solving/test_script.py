@@ -62,7 +62,7 @@ def test_what_is_left_out_has_its_documented_default():
     script = parse_pose_script({"schema": 1, "handles": {}, "keys": [{"frame": 3}]})
     assert (script.fps, script.loop) == (24.0, False)
     (script,) = script.figures
-    assert (script.variant, script.attach, script.visible) == ("metric", None, ())
+    assert (script.variant, script.attach, script.visible) == ("metric", None, None)
     assert script.bounds == Bounds(k=0.5, sigma_a=2.0, sigma_b=0.5)
     assert script.anchor is None
     assert script.keys[0].ease == PRESETS["linear"]

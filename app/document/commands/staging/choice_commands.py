@@ -1,0 +1,167 @@
+"""Commands on choices: figures of one place that take turns, such as mouths."""
+
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import replace
+
+from app.document.commands.command import command
+from app.document.commands.staging.group_commands import uncovered
+from app.document.layering import Choice, Switch, Turn
+from app.document.model import Document
+from app.document.queries import is_visible
+from app.errors import LissomError
+
+
+@command("Let layers take turns")
+def form_choice(document: Document, name: str, figures: Sequence[int]) -> Document:
+    """Let figures take turns, which are not in another choice.
+
+    Where they were shown and hidden at frames of their own, the one in front of those that were
+    seen is seen; where none was, the last one still is.
+    """
+    document = uncovered(document, figures)
+    members = [document.figure(identity) for identity in figures]
+    starts = {switch.frame for figure in members for switch in figure.switches}
+    front = [figure for figure in reversed(document.figures) if figure in members]
+    turns: list[Turn] = []
+    for frame in sorted(starts | {document.frames.first}):
+        seen = next((each.id for each in front if is_visible(document, each, frame)), None)
+        if seen is not None and (not turns or seen != turns[-1].figure):
+            turns.append(Turn(frame, seen))
+    if [turn.figure for turn in turns] == list(figures[:1]):
+        turns = []  # the first one, at all times
+    for figure in members:
+        document = document.with_figure(replace(figure, switches=(), hidden=False))
+    choice = Choice(name=name.strip(), figures=tuple(figures), turns=tuple(turns))
+    return replace(document, choices=(*document.choices, choice))
+
+
+@command("Choose from here on")
+def choose_at(document: Document, identity: int, frame: int) -> Document:
+    """Let a figure be the one of its choice that is seen from a frame on."""
+    choice = _choice_of(document, identity)
+    if choice.at(frame) == identity:
+        return document
+    turns = choice.turns or (Turn(min(frame, document.frames.first), choice.figures[0]),)
+    changed = replace(choice, turns=_put(turns, Turn(frame, identity)))
+    return _exchange(document, choice, changed)
+
+
+@command("Change nothing here")
+def unchoose_at(document: Document, name: str, frame: int) -> Document:
+    """Take back what a choice says at a frame: what was seen before it is still seen."""
+    choice = document.choice(name)
+    left = _plain(turn for turn in choice.turns if turn.frame != frame)
+    return _exchange(document, choice, replace(choice, turns=left))
+
+
+@command("Move choice in time")
+def move_turn(document: Document, name: str, frame: int, to: int) -> Document:
+    """Move the frame from which on a choice shows a figure, in place of what begins there."""
+    choice = document.choice(name)
+    moved = next((turn for turn in choice.turns if turn.frame == frame), None)
+    if moved is None:
+        raise LissomError(f"The choice {name!r} changes nothing at frame {frame}.")
+    others = (turn for turn in choice.turns if turn is not moved)
+    changed = replace(choice, turns=_put(others, moved._replace(frame=to)))
+    return _exchange(document, choice, changed)
+
+
+@command("Rename choice")
+def rename_choice(document: Document, name: str, new: str) -> Document:
+    """Give a choice another name, which no other one may have."""
+    choice = document.choice(name)
+    return _exchange(document, choice, replace(choice, name=new.strip()))
+
+
+@command("Take into the choice")
+def join_choice(document: Document, name: str, identity: int) -> Document:
+    """Take a figure into a choice, as the last one; it is seen where it is chosen only."""
+    choice, figure = document.choice(name), document.figure(identity)
+    if identity in choice.figures:
+        return document
+    document = uncovered(document, [identity])
+    document = document.with_figure(replace(figure, switches=(), hidden=False))
+    return _exchange(document, choice, replace(choice, figures=(*choice.figures, identity)))
+
+
+@command("Take out of the choice")
+def leave_choice(document: Document, identity: int) -> Document:
+    """Take a figure out of its choice; by itself it is seen when it was.
+
+    Of the others the one before is seen then, too. A choice of one layer is none.
+    """
+    choice = _choice_of(document, identity)
+    rest = _without(choice, identity)
+    return _exchange(document, choice, rest, freed=[identity] if rest else choice.figures)
+
+
+@command("Let layers take turns no more")
+def dissolve_choice(document: Document, name: str) -> Document:
+    """Let each figure of a choice be seen when it was, by itself."""
+    choice = document.choice(name)
+    return _exchange(document, choice, None, freed=choice.figures)
+
+
+def let_go(document: Document, identity: int) -> Document:
+    """Return a document in which a figure that is about to be removed is in no choice."""
+    choice = document.choice_of(identity)
+    if choice is None:
+        return document
+    rest = _without(choice, identity)
+    return _exchange(document, choice, rest, freed=() if rest else choice.figures)
+
+
+def _without(choice: Choice, identity: int) -> Choice | None:
+    figures = tuple(figure for figure in choice.figures if figure != identity)
+    turns = _plain(turn for turn in choice.turns if turn.figure != identity)
+    return replace(choice, figures=figures, turns=turns) if len(figures) > 1 else None
+
+
+def _exchange(
+    document: Document, choice: Choice, changed: Choice | None, freed: Collection[int] = ()
+) -> Document:
+    """Return a document with another choice, or none, and figures that are seen as it had them."""
+    if changed == choice:
+        return document
+    figures = tuple(
+        replace(each, switches=_switches(document, choice, each.id), hidden=False)
+        if each.id in freed
+        else each
+        for each in document.figures
+    )
+    choices = (changed if each is choice else each for each in document.choices)
+    return replace(document, figures=figures, choices=tuple(filter(None, choices)))
+
+
+def _switches(document: Document, choice: Choice, identity: int) -> tuple[Switch, ...]:
+    """Return the switches by which a figure is seen when its choice has it."""
+    switches: list[Switch] = []
+    first = document.frames.first
+    for frame in (first, *(turn.frame for turn in choice.turns if turn.frame > first)):
+        visible = choice.at(frame) == identity
+        if not switches or switches[-1].visible != visible:
+            switches.append(Switch(frame, visible))
+    return () if switches == [Switch(first, visible=True)] else tuple(switches)
+
+
+def _put(turns: Iterable[Turn], new: Turn) -> tuple[Turn, ...]:
+    """Return turns with another one in place of what begins at its frame."""
+    others = [turn for turn in turns if turn.frame != new.frame]
+    return _plain(sorted([*others, new]))
+
+
+def _plain(turns: Iterable[Turn]) -> tuple[Turn, ...]:
+    """Return turns without those that change nothing."""
+    plain: list[Turn] = []
+    for turn in turns:
+        if not plain or turn.figure != plain[-1].figure:
+            plain.append(turn)
+    return tuple(plain)
+
+
+def _choice_of(document: Document, identity: int) -> Choice:
+    choice = document.choice_of(identity)
+    if choice is None:
+        name = document.figure(identity).name
+        raise LissomError(f"The layer {name!r} takes no turns with others.")
+    return choice

@@ -1,0 +1,24 @@
+"""How figures stand among each other: their groups, what they hang on, and when they are seen.
+
+In: ids of figures, paths of groups, and frames.
+Out: groups, joints, switches and choices.
+Imports: the values of `app.document`.
+"""
+
+from app.document.layering.attachment import Attachment as Attachment
+from app.document.layering.grouping import (
+    BLENDS as BLENDS,
+    DEEPEST as DEEPEST,
+    GROUP_BLENDS as GROUP_BLENDS,
+    BlendMode as BlendMode,
+    Group as Group,
+    GroupBlend as GroupBlend,
+    paths_to as paths_to,
+    shared_path as shared_path,
+)
+from app.document.layering.sight import (
+    Choice as Choice,
+    Switch as Switch,
+    Turn as Turn,
+    require_in_order as require_in_order,
+)

@@ -1,0 +1,76 @@
+"""When figures are seen: each by itself, or one of several that take turns."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
+from typing import NamedTuple, Self
+
+from app.document.checks import NOTHING, Unknown, require, require_distinct
+
+
+@dataclass(frozen=True, slots=True)
+class Switch:
+    """From a frame on a figure is seen, or is not."""
+
+    frame: int
+    visible: bool
+
+
+def require_in_order(switches: tuple[Switch, ...]) -> None:
+    """Raise a `LissomError` unless each switch comes after the one before."""
+    for before, after in pairwise(switches):
+        require(
+            before.frame < after.frame,
+            f"The figure is shown or hidden at frame {after.frame} after frame {before.frame}.",
+        )
+
+
+class Turn(NamedTuple):
+    """From a frame on one figure of a choice is seen, by its id."""
+
+    frame: int
+    figure: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Choice:
+    """Figures of one place that take turns, such as mouths: of these exactly one is seen.
+
+    It alone decides whether they are seen, whatever is said of each of them.
+    """
+
+    name: str  # unique in the document
+    figures: tuple[int, ...]  # by their ids, at least two, in the order in which they are offered
+    # In the order of their frames; before the first one its figure is seen, and without any the
+    # first figure.
+    turns: tuple[Turn, ...] = ()
+    unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
+
+    def __post_init__(self) -> None:
+        require(bool(self.name.strip()), "A choice needs a name.")
+        require(len(self.figures) > 1, f"The choice {self.name!r} is between two layers or more.")
+        require_distinct(self.figures, f"The choice {self.name!r} has the layer {{!r}} twice.")
+        for turn in self.turns:
+            require(
+                turn.figure in self.figures,
+                f"The choice {self.name!r} shows a layer at frame {turn.frame} that it has not.",
+            )
+        for before, after in pairwise(self.turns):
+            require(
+                before.frame < after.frame,
+                f"The choice {self.name!r} is made at frame {after.frame} after frame "
+                f"{before.frame}.",
+            )
+
+    def at_frames(self, to: Callable[[int], int]) -> Self:
+        """Return the choice with its turns at other frames; of two at one frame the later holds."""
+        turns = {to(turn.frame): turn.figure for turn in self.turns}
+        return replace(self, turns=tuple(Turn(*turn) for turn in sorted(turns.items())))
+
+    def at(self, frame: float) -> int:
+        """Return the id of the figure that is seen at a frame."""
+        seen = self.turns[0].figure if self.turns else self.figures[0]
+        for turn in self.turns:
+            if turn.frame <= frame:
+                seen = turn.figure
+        return seen

@@ -1,0 +1,148 @@
+"""Layers that take turns: of each choice exactly one is seen, whatever is done to it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from documents import disc_document, disc_domain, random_command
+
+from app.document.commands import choice_commands as choices, layer_commands, scene_commands
+from app.document.layering import Choice, Switch, Turn
+from app.document.queries import is_visible
+from app.errors import LissomError
+
+FRAMES = range(49)
+
+
+@pytest.fixture
+def mouths():
+    """Three layers, of which the second is hidden."""
+    document = disc_document()
+    for name in ("ah", "oh"):
+        figure = replace(
+            document.figures[0],
+            id=layer_commands.free_identity(document),
+            name=name,
+            domain=disc_domain(),
+        )
+        document = layer_commands.add_figure(figure)(document)
+    return layer_commands.set_hidden(1, hidden=True)(document)
+
+
+def seen(document, frames=FRAMES):
+    """The ids of the figures that are seen, at each frame."""
+    return [
+        [each.id for each in document.figures if is_visible(document, each, frame)]
+        for frame in frames
+    ]
+
+
+def test_exactly_one_is_seen_whatever_is_hidden(mouths):
+    document = choices.form_choice("mouth", (0, 1, 2))(mouths)
+    assert [figure.hidden for figure in document.figures] == [False] * 3
+    # The one in front of those that were seen.
+    assert seen(document) == [[2]] * 49
+    document = choices.choose_at(1, 8)(document)
+    assert seen(document, (0, 7.9, 8, 40)) == [[2], [2], [1], [1]]
+    document = choices.choose_at(0, 12)(document)
+    assert seen(document, (8, 12)) == [[1], [0]]
+    hidden = layer_commands.set_hidden(0, hidden=True)(document)
+    assert seen(hidden) == seen(document)
+    assert [figure.id for figure in hidden.exported] == [0, 1, 2]
+    assert choices.choose_at(0, 20)(document) is document
+    back = choices.unchoose_at("mouth", 8)(document)
+    assert seen(back, (8, 11, 12)) == [[2], [2], [0]]
+    moved = choices.move_turn("mouth", 8, 10)(document)
+    assert seen(moved, (8, 10, 12)) == [[2], [1], [0]]
+    # Onto another: what is moved holds.
+    assert seen(choices.move_turn("mouth", 8, 12)(document), (11, 12)) == [[2], [1]]
+
+
+def test_what_took_turns_by_switches_still_does(mouths):
+    document = layer_commands.set_hidden(1, hidden=False)(mouths)
+    for identity, frames in ((0, (0, 10)), (1, (10, 20)), (2, (20, 48))):
+        switches = tuple(Switch(frame, frames[0] <= frame < frames[1]) for frame in (0, 10, 20))
+        document = document.with_figure(replace(document.figure(identity), switches=switches))
+    formed = choices.form_choice("mouth", (0, 1, 2))(document)
+    assert seen(formed) == seen(document)
+    assert formed.choices[0].turns == (Turn(0, 0), Turn(10, 1), Turn(20, 2))
+    apart = choices.dissolve_choice("mouth")(formed)
+    assert apart.choices == ()
+    assert seen(apart) == seen(document)
+
+
+def test_a_layer_that_leaves_is_seen_when_it_was(mouths):
+    document = choices.form_choice("mouth", (0, 1, 2))(mouths)
+    document = choices.choose_at(1, 8)(document)
+    left = choices.leave_choice(1)(document)
+    assert left.choices[0].figures == (0, 2)
+    assert seen(left, (0, 8)) == [[2], [1, 2]]
+    # A choice of one is none, and what remains is seen as before.
+    alone = choices.leave_choice(0)(left)
+    assert alone.choices == ()
+    assert seen(alone) == seen(left)
+    gone = layer_commands.remove_figure(2)(left)
+    assert gone.choices == ()
+    assert seen(gone) == [[figure for figure in now if figure != 2] for now in seen(left)]
+
+
+def test_copies_take_turns_with_what_they_were_copied_from(mouths):
+    document = choices.form_choice("mouth", (0, 1))(mouths)
+    document = layer_commands.duplicate_figure(1)(document)
+    assert document.choices[0].figures == (0, 1, 3)
+    assert all(len(now) == 2 for now in seen(document))  # with the layer that is in no choice
+
+
+def test_time_that_is_scaled_takes_turns_along(mouths):
+    document = choices.form_choice("mouth", (0, 1))(mouths)
+    document = choices.choose_at(1, 10)(document)
+    scaled = scene_commands.scale_time(2.0)(document)
+    assert scaled.choices[0].turns[-1] == Turn(20, 1)
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (choices.form_choice("eyes", (1, 2)), "'ah' is in two choices, 'mouth' and 'eyes'"),
+        (choices.form_choice("mouth", (2, 3)), "no figure with the id 3"),
+        (choices.form_choice("mouth", (2, 2)), "has the layer 2 twice"),
+        (choices.form_choice(" ", (2, 1)), "needs a name"),
+        (choices.form_choice("eyes", (2,)), "two layers or more"),
+        (layer_commands.switch_at(1, 5, visible=True), "shown and hidden at frames of its own"),
+        (choices.choose_at(2, 5), "'oh' takes no turns"),
+        (choices.dissolve_choice("nose"), "no choice 'nose'"),
+        (choices.move_turn("mouth", 7, 9), "changes nothing at frame 7"),
+    ],
+)
+def test_what_cannot_be_chosen_is_refused(mouths, make, words):
+    document = choices.form_choice("mouth", (0, 1))(mouths)
+    with pytest.raises(LissomError, match=words):
+        make(document)
+
+
+def test_turns_are_in_order_and_of_the_choice():
+    with pytest.raises(LissomError, match="at frame 4 after frame 8"):
+        Choice(name="mouth", figures=(0, 1), turns=(Turn(8, 0), Turn(4, 1)))
+    with pytest.raises(LissomError, match="a layer at frame 8 that it has not"):
+        Choice(name="mouth", figures=(0, 1), turns=(Turn(8, 2),))
+
+
+def test_after_any_commands_one_of_each_choice_is_seen():
+    rng = np.random.default_rng(5)
+    document, formed = disc_document(), 0
+    for _ in range(1500):
+        try:
+            document = random_command(rng, document)(document)
+        except LissomError:
+            continue
+        formed += bool(document.choices)
+        for choice in document.choices:
+            for frame in (0, 10, 25.5, 48):
+                now = [i for i in choice.figures if is_visible(document, document.figure(i), frame)]
+                assert now == [choice.at(frame)]
+    assert formed > 50
+
+
+def test_what_was_hidden_is_shown_from_a_frame_on(mouths):
+    document = layer_commands.switch_at(1, 12, visible=True)(mouths)
+    assert [1 in now for now in seen(document, (0, 11, 12, 30))] == [False, False, True, True]
