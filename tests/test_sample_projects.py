@@ -67,8 +67,7 @@ def test_a_sample_on_layers_is_what_its_script_says(name):
         if part is None:
             continue
         assert [key.frame for key in figure.keys] == [key.frame for key in part.keys]
-        joint = figure.attachment
-        assert (None if joint is None else names[joint.to]) == (part.attach and part.attach.to)
+        assert [names[each.to] for each in figure.joints] == [each.to for each in part.attach]
         assert (
             max([0.0, *(lag for key in figure.keys for lag in figure.lags(key.pose).values())]) < 2
         )
@@ -76,7 +75,7 @@ def test_a_sample_on_layers_is_what_its_script_says(name):
     joints = Joints(document)
     laugh, head = (next(f for f in document.figures if f.name == n) for n in ("laugh", "head"))
     assert [is_visible(document, laugh, frame) for frame in (29, 30, 52)] == [True, False, True]
-    at = np.array([laugh.attachment.at])
+    at = np.array([laugh.joints[0].at])
     for frame in (9.5, 36):
         carrier = joints.placement(head.id, frame)
         moved = Animation(clip_of(document, head.id), points=at).positions(frame)

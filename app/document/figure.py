@@ -19,7 +19,14 @@ from app.document.checks import (
     require_size,
 )
 from app.document.keyframe import Handle, KeptPose, Keyframe, Pose
-from app.document.layering import BLENDS, Attachment, BlendMode, Switch, require_in_order
+from app.document.layering import (
+    BLENDS,
+    Attachment,
+    BlendMode,
+    Switch,
+    require_in_order,
+    require_joints,
+)
 from app.document.settings import NATURAL, VARIANTS, Meshing
 from app.document.timing import Spring, Track
 from app.errors import LissomError
@@ -100,8 +107,8 @@ class Figure:
     # Whether it is seen only where that is which lies below it in its group: a figure, or a group.
     clipped: bool = False
     group: str = ""  # the path of the innermost group that it is in; "" outside of all groups
-    # The joint by which it hangs on another figure. Its anchor is then given.
-    attachment: Attachment | None = None
+    # The joints by which it hangs on others, each from its frame on; its anchor is then given.
+    joints: tuple[Attachment, ...] = ()
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
@@ -115,9 +122,10 @@ class Figure:
         )
         require_in_order(self.switches)
         require(
-            self.attachment is None or self.anchor is not None,
+            not self.joints or self.anchor is not None,
             f"{self.name!r} is attached, but has no anchor.",
         )
+        require_joints(self.joints)
         require(
             not self.still or (len(self.keys) == 1 and not self.handles),
             f"{self.name!r} is a still picture: it has neither handles nor a second key.",
@@ -214,12 +222,25 @@ class Figure:
         return next((spring for spring in self.springs if spring.handle == identity), None)
 
     @property
+    def hangs(self) -> bool:
+        """Whether it hangs on another figure at some time."""
+        return any(joint.to is not None for joint in self.joints)
+
+    def joint_at(self, frame: float, *, before: bool = False) -> Attachment | None:
+        """Return the joint that holds at a frame, or until just before; None before the first."""
+        held = None
+        for joint in self.joints:
+            if joint.frame < frame or (joint.frame == frame and not before):
+                held = joint
+        return held
+
+    @property
     def followers(self) -> frozenset[int]:
         """The ids of the handles that follow by springs, which poses are not held by.
 
         A track of a handle comes first, and so does the joint where it sits.
         """
-        joint = None if self.attachment is None else self.anchor
+        joint = self.anchor if self.hangs else None
         held = {handle.id for handle in self.handles if handle.position == joint}
         held |= {i for track in self.tracks if track.enabled for i in track.handles}
         return frozenset(each.handle for each in self.springs if each.enabled) - held

@@ -6,9 +6,10 @@ where it comes in: a domain is built by the engine or tested by it, a picture is
 and a certificate is proven of its map, never read.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
+from typing import NoReturn
 
 from app.document.checks import NOTHING, Unknown, require, require_distinct, require_size
 from app.document.figure import Figure
@@ -130,16 +131,38 @@ class Document:
         figures = tuple(changed if figure.id == changed.id else figure for figure in self.figures)
         return replace(self, figures=figures, frames=frames)
 
-    def carriers(self, identity: int) -> tuple[Figure, ...]:
-        """Return the figure with this id, the one that it hangs on, and so on."""
+    def carriers(self, identity: int, frame: float, *, before: bool = False) -> tuple[Figure, ...]:
+        """Return the figure with this id, the one that it hangs on at a frame, and so on.
+
+        Parameters
+        ----------
+        identity : int
+        frame : float
+        before : bool
+            Whether what hangs just before the frame counts, and not from it on.
+        """
+        frame = self.in_time(frame)
         chain = [self.figure(identity)]
-        while (joint := chain[-1].attachment) is not None:
-            chain.append(self.figure(joint.to))
-            require(
-                len(chain) <= len(self.figures),
-                f"{chain[0].name!r} would hang on itself; detach one of the figures between first.",
-            )
+        while (joint := chain[-1].joint_at(frame, before=before)) and joint.to is not None:
+            parent = self.figure(joint.to)
+            if parent in chain:
+                self._refuse_circle((*chain[chain.index(parent) :], parent), frame)
+            chain.append(parent)
         return tuple(chain)
+
+    def all_carriers(self, identity: int) -> tuple[Figure, ...]:
+        """Return the others on which a figure hangs at some time, directly or by others."""
+        found = [self.figure(identity)]
+        for figure in found:
+            parents = [self.figure(joint.to) for joint in figure.joints if joint.to is not None]
+            found += [each for each in dict.fromkeys(parents) if each not in found]
+        return tuple(found[1:])
+
+    def in_time(self, frame: float) -> float:
+        """Return a frame as it comes round in a loop; of what does not loop it is itself."""
+        first, period = self.frames.first, self.frames.last - self.frames.first
+        is_beyond = self.loop and period and frame not in self.frames
+        return first + (frame - first) % period if is_beyond else frame
 
     def _check_figures(self) -> None:
         require(len(self.figures) > 0, "A document has at least one figure.")
@@ -155,8 +178,11 @@ class Document:
                     f"The key at frame {frame} lies outside the animation's frames "
                     f"{self.frames.first} to {self.frames.last}.",
                 )
+        changes = {joint.frame for figure in self.figures for joint in figure.joints}
         for figure in self.figures:
-            self.carriers(figure.id)
+            if figure.joints:
+                for frame in sorted(changes):
+                    self.carriers(figure.id, frame)
             self._check_clocks(figure)
         self._check_choices()
 
@@ -192,6 +218,14 @@ class Document:
                 not figure.group or figure.group in known,
                 f"{figure.name!r} is in the group {figure.group!r}, which is not there.",
             )
+
+    def _refuse_circle(self, circle: Sequence[Figure], frame: float) -> NoReturn:
+        """Refuse figures each of which hangs on the next one, the last one being the first."""
+        links = ", ".join(f"{one.name!r} on {other.name!r}" for one, other in pairwise(circle))
+        when = f" at frame {frame:g}" if any(len(figure.joints) > 1 for figure in circle) else ""
+        raise LissomError(
+            f"{circle[0].name!r} would hang on itself{when}: {links}; detach one of them first."
+        )
 
     def _check_clocks(self, figure: Figure) -> None:
         """Refuse what does not come round in a loop."""

@@ -345,7 +345,7 @@ class Project:
 
     def placements(self, frames: Iterable[int], unknown: RigidMotion) -> list[RigidMotion]:
         """Return where the figure that is posed is at some frames: `unknown` till that is known."""
-        if len(self.document.carriers(self.active)) == 1:
+        if not self.figure.joints:
             return [HERE for _ in frames]
         joints = self.hung
         return [unknown if joints is None else joints.placement(self.active, f) for f in frames]

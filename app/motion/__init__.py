@@ -32,8 +32,11 @@ from app.motion.intervals import (
 )
 from app.motion.joints import (
     Joints as Joints,
+    anchor_of as anchor_of,
     animation_at as animation_at,
     carried_in as carried_in,
+    hand_over as hand_over,
+    hang as hang,
     hung_animations as hung_animations,
     joints_source as joints_source,
 )

@@ -45,7 +45,7 @@ def extent_source(document: Document) -> tuple[object, ...]:
             figure.anchor,
             figure.variant,
             figure.bounds,
-            figure.attachment,
+            figure.joints,
             figure in document.exported,
             is_corrected(clip_of(document, figure.id))
             and (figure.stillness, figure.handles, figure.tracks, figure.springs),

@@ -2,15 +2,16 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
-from app.document import Clip, Document, Pose, resting_pose, time_of
+from app.document import Attachment, Clip, Document, Figure, Pose, resting_pose, time_of
 from app.motion.corrected_frames import CorrectedFrames
 from app.motion.inbetweens import FrameCorrection
 from app.motion.interval_store import IntervalStore
 from app.motion.intervals import OneFrame
-from app.motion.joints import Hinge, Joints, along
+from app.motion.joints import Hinge, Joints, along, chain_of
 from app.motion.posable_mesh import AttachedPoints, PosableMesh
 from app.motion.vertices import Streamed, Vertices
 from engine.arrays import Complexes
@@ -148,6 +149,7 @@ def hang_shown(
     shown: Mapping[int, Shown],
     joints: Joints | None,
     poses: Mapping[int, Pose],
+    earlier: Joints | None = None,
 ) -> dict[int, Shown]:
     """Return what is drawn of each figure, where its scene has it.
 
@@ -159,19 +161,31 @@ def hang_shown(
         Of the document; without them places are as exact as the triangles are small.
     poses : mapping of int to Pose
         Shown though the document does not have them.
+    earlier : Joints, optional
+        Of another document, which tell where figures that keep their places are held until `joints`
+        are there.
     """
     hung = {}
     for identity, each in shown.items():
-        chain = document.carriers(identity)
-        if len(chain) == 1:
+        chain = chain_of(document, identity, each.frame)
+        if not document.figure(identity).joints:
             placement = HERE
         elif joints is None:
-            placement = along(chain, lambda figure, place: shown[figure.id].hinge(place))
+            kept = partial(_as_it_was, earlier)
+            placement = along(chain, lambda figure, place: shown[figure.id].hinge(place), kept)
         else:
             placement = joints.placement(identity, each.frame, poses)
         same = placement == each.placement
         hung[identity] = each if same else replace(each, placement=placement)
     return hung
+
+
+def _as_it_was(earlier: Joints | None, figure: Figure, joint: Attachment) -> RigidMotion:
+    """Return how a figure was held by a joint in an earlier document, if it was."""
+    known = {each.id: each for each in earlier.document.figures} if earlier else {}
+    if earlier is None or figure.id not in known or joint not in known[figure.id].joints:
+        return HERE
+    return earlier.kept(known[figure.id], joint)
 
 
 def _locate(clip: Clip, mesh: PosableMesh, earlier: Shown | None) -> AttachedPoints:

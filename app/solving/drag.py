@@ -253,7 +253,7 @@ def pins_of(figure: Figure, pose: Pose) -> tuple[Target, ...]:
 def _pins(figure: Figure) -> tuple[complex, ...]:
     """Return the points of a figure that are held where they are."""
     anchor = figure.anchor
-    if figure.attachment is None or anchor is None:
+    if not figure.hangs or anchor is None:
         return ()
     return () if any(handle.position == anchor for handle in figure.handles) else (anchor,)
 

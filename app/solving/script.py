@@ -28,7 +28,7 @@ from app.solving.script_fields import (
     require_order,
 )
 from app.solving.script_material import StiffPart, parse_material
-from app.solving.script_stage import ScriptChoice, parse_choices
+from app.solving.script_stage import ScriptChoice, ScriptJoint, parse_choices, parse_joints
 from app.storage import (
     JsonObject,
     as_flag,
@@ -50,7 +50,6 @@ OWN_FIELDS = ("anchor", "handles", "keys", "tracks", "springs", "stiff")
 STAGE_FIELDS = ("figures", "choices")
 FIGURE_FIELDS = ("layer", "variant", "bounds", "still", *OWN_FIELDS, "attach", "visible")
 HANDLE_FIELDS = ("at", "front", "extent", "still")
-JOINT_FIELDS = ("to", "at", "turn")
 KEY_FIELDS = ("frame", "targets", "pull", "ease", "passing", "front")
 BOUND_FIELDS = ("k", "sigma_a", "sigma_b")
 
@@ -78,15 +77,6 @@ class ScriptHandle:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ScriptJoint:
-    """The layer that a figure hangs on, and where on the canvas the joint is at rest."""
-
-    to: str
-    at: complex
-    turns: bool = True
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class FigureScript:
     """The animation of one figure, in pixels of the canvas with y up.
 
@@ -105,7 +95,7 @@ class FigureScript:
     springs: tuple[Spring, ...] = ()
     parts: tuple[StiffPart, ...] = ()
     bones: tuple[Bone, ...] = ()
-    attach: ScriptJoint | None = None
+    attach: tuple[ScriptJoint, ...] = ()
     # When it is seen; None leaves that to the drawing.
     visible: tuple[tuple[int, bool], ...] | None = None
 
@@ -210,7 +200,7 @@ def _figure(script: JsonObject, where: str, usual: Mapping[str, Any]) -> FigureS
     if script.get("anchor") is not None:
         own["anchor"] = as_point(script["anchor"], f"{where}anchor")
     if script.get("attach") is not None:
-        own["attach"] = _joint(script["attach"], f"{where}attach")
+        own["attach"] = parse_joints(script["attach"], f"{where}attach")
     if "visible" in script:
         own["visible"] = _switches(script["visible"], f"{where}visible")
     own["tracks"] = parse_tracks(script.get("tracks", []), f"{where}tracks", tuple(handles))
@@ -231,15 +221,6 @@ def _handle(content: object, where: str) -> ScriptHandle:
         front=as_number(handle.get("front", 0.0), f"{where}.front"),
         extent=None if extent is None else as_number(extent, f"{where}.extent"),
         still=as_flag(handle.get("still", True), f"{where}.still"),
-    )
-
-
-def _joint(content: object, where: str) -> ScriptJoint:
-    joint = fields_in(content, where, JOINT_FIELDS)
-    return ScriptJoint(
-        to=as_text(joint["to"], f"{where}.to"),
-        at=as_point(joint["at"], f"{where}.at"),
-        turns=as_flag(joint.get("turn", True), f"{where}.turn"),
     )
 
 

@@ -4,10 +4,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 
-import numpy as np
-
 from app.document import (
-    Attachment,
     Document,
     Figure,
     FrameRange,
@@ -25,7 +22,13 @@ from app.document import (
 from app.errors import LissomError
 from app.solving.drag import Drag, Rig
 from app.solving.script import FigureScript, PoseKey, PoseScript
-from app.solving.stage import layer_named, unseen, with_choices
+from app.solving.stage import (
+    layer_named,
+    unseen,
+    with_choices,
+    with_joints,
+    with_kept_places,
+)
 from app.storage import still_figure
 from engine.deform import Hand
 from engine.errors import EngineError
@@ -83,7 +86,7 @@ def pose_document(
             figure, told = _posed(document.figure(identity), part, progress, loop=script.loop)
         document = document.with_figure(figure)
         notices += told
-    document = with_choices(document, script)
+    document = with_choices(with_kept_places(document, script), script)
     return document, (*notices, *unseen(document, script))
 
 
@@ -141,21 +144,7 @@ def _prepared(document: Document, identity: int, part: FigureScript) -> Document
             springs=tuple(replace(spring, handle=first + spring.handle) for spring in part.springs),
         )
     )
-    if part.attach is None:
-        return document
-    parent = layer_named(document, part.attach.to)
-    at = part.attach.at
-    what = f"it is attached at ({at.real:g}, {at.imag:g})"
-    if not parent.covers(np.array([at])).all():
-        raise LissomError(f"{what}, which is not on {parent.name!r}")
-    if part.anchor is None and not document.figure(identity).covers(np.array([at])).all():
-        raise LissomError(
-            f"{what}, which is on {parent.name!r} but not on itself; give it an anchor by which it "
-            "hangs there, or choose a point that is on both"
-        )
-    anchor = at if part.anchor is None else part.anchor
-    joint = Attachment(to=parent.id, at=part.attach.at, turns=part.attach.turns)
-    return layer_commands.attach(identity, anchor, joint)(document)
+    return with_joints(document, identity, part)
 
 
 def _with_material(

@@ -1,4 +1,4 @@
-"""What a pose script says of its layers together: which take turns."""
+"""What a pose script says of its layers together: what hangs on what, and which take turns."""
 
 import json
 from collections import Counter
@@ -6,10 +6,22 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from app.errors import LissomError
-from app.solving.script_fields import fields_in, require_order
-from app.storage import JsonObject, as_list, as_text, as_whole
+from app.solving.script_fields import fields_in, frame_of, require_order
+from app.storage import JsonObject, as_flag, as_list, as_point, as_text, as_whole
 
 CHOICE_FIELDS = ("name", "layers", "keys")
+JOINT_FIELDS = ("to", "at", "turn", "frame", "keep")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ScriptJoint:
+    """The layer that a figure hangs on from a frame on, and where the joint is as it was drawn."""
+
+    to: str | None  # None lets it go
+    at: complex | None  # None takes the nearest point at that frame
+    turns: bool = True
+    frame: int = 0
+    keeps: bool = False  # whether nothing jumps at that frame
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -19,6 +31,33 @@ class ScriptChoice:
     name: str
     layers: tuple[str, ...]
     turns: tuple[tuple[int, str], ...] = ()
+
+
+def parse_joints(content: object, where: str) -> tuple[ScriptJoint, ...]:
+    """Return the joints of a figure: one, or several from one frame to the next."""
+    if not isinstance(content, list):
+        return (_joint(content, where),)
+    joints = tuple(_joint(each, f"{where}[{index}]") for index, each in enumerate(content))
+    require_order([joint.frame for joint in joints], f"{where} is")
+    return joints
+
+
+def _joint(content: object, where: str) -> ScriptJoint:
+    joint = fields_in(content, where, JOINT_FIELDS)
+    keeps = as_flag(joint.get("keep", False), f"{where}.keep")
+    if joint["to"] is None:
+        for name in ("at", "turn"):
+            if name in joint:
+                raise LissomError(f"{where} lets go, so that it has no {name}; leave that out")
+    to = None if joint["to"] is None else as_text(joint["to"], f"{where}.to")
+    at = None if to is None or (keeps and "at" not in joint) else joint["at"]
+    return ScriptJoint(
+        to=to,
+        at=None if at is None else as_point(at, f"{where}.at"),
+        turns=as_flag(joint.get("turn", True), f"{where}.turn"),
+        frame=frame_of(joint, where) if "frame" in joint else 0,
+        keeps=keeps,
+    )
 
 
 def parse_choices(script: JsonObject, switched: Sequence[str]) -> tuple[ScriptChoice, ...]:

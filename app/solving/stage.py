@@ -2,9 +2,21 @@
 
 from dataclasses import replace
 
-from app.document import Document, Figure, Turn, choice_commands, is_visible
+import numpy as np
+
+from app.document import (
+    Attachment,
+    Document,
+    Figure,
+    Turn,
+    choice_commands,
+    is_visible,
+    layer_commands,
+)
 from app.errors import LissomError
-from app.solving.script import PoseScript
+from app.motion import Joints, anchor_of, hand_over
+from app.solving.script import FigureScript, PoseScript
+from app.solving.script_stage import ScriptJoint
 
 
 def layer_named(document: Document, name: str) -> Figure:
@@ -13,6 +25,60 @@ def layer_named(document: Document, name: str) -> Figure:
     if name not in names:
         raise LissomError(f"there is no layer {name!r}; the layers are {', '.join(names)}")
     return names[name]
+
+
+def with_joints(document: Document, identity: int, part: FigureScript) -> Document:
+    """Return a document whose figure hangs on others as a script says, in the pose as drawn.
+
+    Where a joint has no point, it is the parent's point that is nearest to the figure's anchor.
+    """
+    figure = document.figure(identity)
+    if not part.attach:
+        return document
+    given = part.attach[0].at if part.anchor is None else part.anchor
+    anchor = anchor_of(figure) if given is None else given
+    joints = tuple(_attachment(document, joint, anchor) for joint in part.attach)
+    if part.anchor is None and not figure.covers(np.array([anchor])).all():
+        raise LissomError(
+            f"it is attached at ({anchor.real:g}, {anchor.imag:g}), which is on "
+            f"{part.attach[0].to!r} but not on itself; give it an anchor by which it hangs there, "
+            "or choose a point that is on both"
+        )
+    return document.with_figure(replace(figure, anchor=anchor, joints=joints))
+
+
+def _attachment(document: Document, joint: ScriptJoint, anchor: complex) -> Attachment:
+    at, parent = joint.at, None if joint.to is None else layer_named(document, joint.to)
+    if parent is not None and at is None:
+        at = complex(parent.domain.nearest(np.array([anchor]))[0])
+    elif parent is not None and at is not None and not parent.covers(np.array([at])).all():
+        raise LissomError(
+            f"it is attached at ({at.real:g}, {at.imag:g}), which is not on {parent.name!r}"
+        )
+    return Attachment(
+        to=None if parent is None else parent.id,
+        at=at or 0j,
+        turns=joint.turns,
+        frame=joint.frame,
+        keeps=joint.keeps,
+    )
+
+
+def with_kept_places(document: Document, script: PoseScript) -> Document:
+    """Return a posed document in which what is handed over goes on with the nearest point.
+
+    That is known only when all is posed.
+    """
+    for part in script.figures:
+        for joint in part.attach:
+            if part.layer is None or joint.to is None or joint.at is not None:
+                continue
+            child, parent = layer_named(document, part.layer), layer_named(document, joint.to)
+            nearest = hand_over(
+                Joints(document), child.id, parent.id, joint.frame, turns=joint.turns
+            )
+            document = layer_commands.attach(child.id, anchor_of(child), nearest)(document)
+    return document
 
 
 def with_choices(document: Document, script: PoseScript) -> Document:

@@ -457,12 +457,12 @@ def full_document() -> Document:
         hidden=True,
         switches=(Switch(0, visible=False), Switch(12, visible=True)),
         opacity=0.25,
-        attachment=Attachment(to=5, at=90 + 80j, turns=False, rest=-0.5),
+        joints=(Attachment(to=5, at=90 + 80j, turns=False, rest=-0.5),),
         unknown=MappingProxyType({"visible": False, "bounds": {"tau": 4}}),
     )
     return dataclasses.replace(
         empty,
-        figures=(figure, dataclasses.replace(figure, id=5, name="parent", attachment=None)),
+        figures=(figure, dataclasses.replace(figure, id=5, name="parent", joints=())),
         size=(640, 480),
         frames=FrameRange(1, 60),
         preview=FrameRange(3, 40),

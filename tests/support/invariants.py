@@ -48,9 +48,11 @@ def check_invariants(session: Session) -> None:
 def check_joints(project: Project) -> None:
     """Fail where a layer is not drawn at the point that it hangs by."""
     for figure in project.document.figures:
-        child, joint = project.puppets[figure.id].shown, figure.attachment
-        parent = None if joint is None else project.puppets[joint.to].shown
-        if joint is None or child is None or parent is None:
+        child, joint = project.puppets[figure.id].shown, figure.joint_at(0)
+        if joint is None or joint.to is None or joint.keeps or len(figure.joints) > 1:
+            continue
+        parent = project.puppets[joint.to].shown
+        if child is None or parent is None:
             continue
         pair = (child, figure), (parent, project.document.figure(joint.to))
         if not all(each.is_current and each.clip.figure is now for each, now in pair):
@@ -58,7 +60,8 @@ def check_joints(project: Project) -> None:
         anchor = child.placement.on(np.array([child.hinge(figure.anchor).place]))[0]
         at = parent.placement.on(np.array([parent.hinge(joint.at).place]))[0]
         size = np.abs(figure.domain.outline - figure.domain.outline.mean()).max()
-        assert abs(anchor - at) < OPEN * size
+        factor = parent.placement.factor * parent.hinge(joint.at).turn if joint.turns else 1.0
+        assert abs(anchor - at - factor * joint.offset) < OPEN * size
 
 
 def check_pose(figure: Figure, pose: Pose) -> None:

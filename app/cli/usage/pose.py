@@ -79,7 +79,12 @@ tracks, springs and stiff:
 
 Each may have a variant, bounds, an anchor, tracks, springs and stiff of its own. What is attached
 hangs by its anchor, or where none is given by that point, and is posed as if its parent were at
-rest. Layers that no entry names stand still. visible says from which frames on a layer is seen or
+rest. A list lets it change hands, each entry from its frame on: with "keep" nothing jumps then, and
+at may be left out; "to": null lets go:
+
+   "attach": [{"to": "hand A", "at": [310, 240]}, {"frame": 80, "to": "hand B", "keep": true}]
+
+Layers that no entry names stand still. visible says from which frames on a layer is seen or
 not, also one that is hidden in DRAWING. Of the layers of a choice exactly one is seen at a time,
 from the frame on that its keys name; none of them is in another choice or has visible.
 

@@ -145,8 +145,8 @@ def _with_keys(figure: Figure, keys: tuple[Keyframe, ...]) -> Figure:
 def stretched(figure: Figure, first: int, factor: float) -> Figure:
     """Return the figure with all of its time stretched or shortened around a frame that stays.
 
-    Where it would be shown and hidden at one frame, what comes later holds from there on. Springs
-    swing in seconds, and go on doing so.
+    Where it would be shown and hidden, or attached anew, at one frame, what comes later holds from
+    there on. Springs swing in seconds, and go on doing so.
     """
 
     def to(frame: int) -> int:
@@ -156,9 +156,11 @@ def stretched(figure: Figure, first: int, factor: float) -> Figure:
         return keys_in_time.in_order(key.at_pace(to(key.frame), 1 / factor) for key in keys)
 
     switches = {to(switch.frame): switch for switch in figure.switches}
+    joints = {max(to(joint.frame), 0): joint for joint in figure.joints}
     return replace(
         figure,
         switches=tuple(replace(switch, frame=at) for at, switch in switches.items()),
+        joints=tuple(replace(joint, frame=at) for at, joint in joints.items()),
         keys=all_to(figure.keys),
         tracks=tuple(
             replace(track, keys=all_to(track.keys), delay=round(factor * track.delay))

@@ -46,13 +46,14 @@ def keep_joints(document: Document, identity: int) -> Document:
     """Move joints that are beside a figure now to the nearest points of it."""
     domain = document.figure(identity).domain
     for child in document.figures:
-        joint = child.attachment
-        if joint is None or joint.to != identity:
-            continue
-        (at,) = domain.nearest(np.array([joint.at]))
-        if at != joint.at:
-            moved = replace(child, attachment=replace(joint, at=complex(at)))
-            document = document.with_figure(moved)
+        places = np.array([joint.at for joint in child.joints], dtype=np.complex128)
+        nearest = domain.nearest(places) if len(places) else places
+        joints = tuple(
+            replace(joint, at=complex(at)) if joint.to == identity and at != joint.at else joint
+            for joint, at in zip(child.joints, nearest, strict=True)
+        )
+        if joints != child.joints:
+            document = document.with_figure(replace(child, joints=joints))
     return document
 
 
@@ -76,17 +77,17 @@ def duplicate_figure(document: Document, identity: int) -> Document:
 
 @command("Delete layer")
 def remove_figure(document: Document, identity: int) -> Document:
-    """Remove a figure. What hung on it hangs on nothing any more, and stays as it is by itself."""
+    """Remove a figure. What hung on it hangs as it did before that, else on nothing."""
     document.figure(identity)
     if len(document.figures) == 1:
         raise LissomError("A document has at least one layer; add another one first.")
     document = choice_commands.let_go(document, identity)
     figures = tuple(
-        replace(figure, attachment=None)
-        if figure.attachment is not None and figure.attachment.to == identity
-        else figure
-        for figure in document.figures
-        if figure.id != identity
+        replace(each, joints=tuple(joint for joint in each.joints if joint.to != identity))
+        if any(joint.to == identity for joint in each.joints)
+        else each
+        for each in document.figures
+        if each.id != identity
     )
     left = replace(document, figures=figures, size=document.canvas)
     return group_commands.without_empty_groups(left)
@@ -187,16 +188,39 @@ def move_switch(figure: Figure, frame: int, to: int) -> Figure:
 
 @command("Attach")
 def attach(document: Document, identity: int, anchor: complex, joint: Attachment) -> Document:
-    """Hang a figure by its anchor on a point of another one; circles are refused.
+    """Hang a figure by its anchor on a point of another one from a frame on; circles are refused.
 
-    `app.motion` finds the point and the turn with which nothing moves at a frame.
+    What began to hold at that frame does no longer. `app.motion` finds the point and the turn with
+    which nothing moves at a frame.
     """
-    return _with(document, identity, anchor=anchor, attachment=joint)
+    joints = [each for each in document.figure(identity).joints if each.frame != joint.frame]
+    joints = sorted([*joints, joint], key=lambda each: each.frame)
+    return _with(document, identity, anchor=anchor, joints=tuple(joints))
+
+
+@figure_command("Attach as before")
+def unjoin(figure: Figure, frame: int) -> Figure:
+    """Take back what a figure hangs on from a frame on: what held before it still does."""
+    joints = tuple(joint for joint in figure.joints if joint.frame != frame)
+    return figure if joints == figure.joints else replace(figure, joints=joints)
+
+
+@figure_command("Move joint in time")
+def move_joint(figure: Figure, frame: int, to: int) -> Figure:
+    """Let what a figure hangs on from a frame on hold from another frame on."""
+    moved = next((joint for joint in figure.joints if joint.frame == frame), None)
+    if moved is None:
+        raise LissomError(f"{figure.name!r} is not attached anew at frame {frame}.")
+    if to == frame:
+        return figure
+    others = [joint for joint in figure.joints if joint is not moved]
+    joints = sorted([*others, replace(moved, frame=to)], key=lambda joint: joint.frame)
+    return replace(figure, joints=tuple(joints))
 
 
 @command("Detach")
 def detach(document: Document, identity: int, factor: complex, shift: complex) -> Document:
-    """Let a figure hang on nothing any more, turned and moved as it was seen at one moment.
+    """Let a figure hang on nothing at any time, turned and moved as it was seen at one moment.
 
     Parameters
     ----------
@@ -207,10 +231,10 @@ def detach(document: Document, identity: int, factor: complex, shift: complex) -
         By which they are moved then.
     """
     figure = document.figure(identity)
-    if figure.attachment is None:
+    if not figure.joints:
         return document
     poses = (_carried(figure, pose, factor, shift) for pose in figure.poses)
-    return document.with_figure(figure.with_poses(poses, attachment=None))
+    return document.with_figure(figure.with_poses(poses, joints=()))
 
 
 @figure_command("Set depth")

@@ -5,7 +5,10 @@ Out: groups, joints, switches and choices.
 Imports: the values of `app.document`.
 """
 
-from app.document.layering.attachment import Attachment as Attachment
+from app.document.layering.attachment import (
+    Attachment as Attachment,
+    require_joints as require_joints,
+)
 from app.document.layering.grouping import (
     BLENDS as BLENDS,
     DEEPEST as DEEPEST,

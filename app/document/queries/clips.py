@@ -1,6 +1,6 @@
 """A figure in the time of its scene, and the intervals between its keys."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from app.document.figure import Figure
 from app.document.keyframe import Keyframe
@@ -22,7 +22,8 @@ class Clip:
     fps: float  # springs swing in seconds
     # A method that the figure's own variant is compared with, in place of it.
     baseline: Baseline | None = None
-    # Those of the figures that it hangs on, where springs and planted tracks follow from them.
+    # Those of the figures that it hangs on at some time, by themselves, where springs and planted
+    # tracks follow from them.
     carriers: "tuple[Clip, ...]" = ()
 
     @property
@@ -38,16 +39,15 @@ class Clip:
 
 def clip_of(document: Document, figure: int) -> Clip:
     """Return the clip of the figure with this id."""
-    own, *carriers = document.carriers(figure)
+    own = document.figure(figure)
     feels = [each.enabled for each in own.springs]
     feels += [each.enabled and each.planted for each in own.tracks]
-    return Clip(
-        figure=own,
-        frames=document.frames,
-        loop=document.loop,
-        fps=document.fps,
-        carriers=tuple(clip_of(document, each.id) for each in carriers) if any(feels) else (),
-    )
+
+    def by_itself(each: Figure) -> Clip:
+        return Clip(figure=each, frames=document.frames, loop=document.loop, fps=document.fps)
+
+    carriers = document.all_carriers(figure) if any(feels) else ()
+    return replace(by_itself(own), carriers=tuple(by_itself(each) for each in carriers))
 
 
 def closes(clip: Clip) -> bool:

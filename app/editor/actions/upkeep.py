@@ -367,10 +367,11 @@ def _show(session: Session, project: Project) -> None:
             earlier, other = twin.shown or shown[figure], twin.clip(document)
             # What a pose shows is the same in both.
             twins[figure] = show(other, frame, pose, [puppet.store], earlier)
-    for figure, hung in hang_shown(document, shown, project.hung, poses).items():
+    known = project.joints.value
+    for figure, hung in hang_shown(document, shown, project.hung, poses, known).items():
         project.puppets[figure].shown = hung
     # By the meshes alone: the joints that are followed exactly are of the figures' own methods.
-    for figure, hung in hang_shown(document, twins, None, {}).items():
+    for figure, hung in hang_shown(document, twins, None, {}, known).items():
         if (twin := project.puppets[figure].twin) is not None:
             twin.shown = hung
 

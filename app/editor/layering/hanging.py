@@ -9,14 +9,15 @@ from app.editor.actions import editing, playback
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work import Kind
-from app.motion import Joints
+from app.motion import Joints, hang as joint_at_rest
 
 HANGING = Kind("Hanging a layer", "The layers cannot be joined")
 
 
 def hangs_on(project: Project, identity: int, carrier: int) -> bool:
-    """Tell whether a layer is another one, or hangs on it, directly or by others."""
-    return any(each.id == carrier for each in project.document.carriers(identity))
+    """Tell whether a layer is another one, or hangs on it at some time, directly or by others."""
+    others = project.document.all_carriers(identity)
+    return identity == carrier or any(each.id == carrier for each in others)
 
 
 @with_project
@@ -51,7 +52,7 @@ def hang(
     frame = playback.current_frame(session, project)
 
     def find(joints: Joints) -> tuple[complex, Attachment]:
-        return joints.hang(child, parent, frame, place=place, turns=turns)
+        return joint_at_rest(joints, child, parent, frame, place=place, turns=turns)
 
     joining = do(_join, child, parent, find)
     promises.once_settled(session, joining, "Hang the layer")
@@ -97,6 +98,7 @@ def let_hang(session: Session, project: Project, child: int) -> None:
 @with_project
 def turn_with(session: Session, project: Project, child: int, turns: bool) -> None:  # noqa: FBT001 - of an action
     """Let a layer turn with the one that it hangs on, or keep its own turn; nothing moves now."""
-    joint = project.document.figure(child).attachment
-    if joint is not None and turns != joint.turns:
+    frame = playback.current_frame(session, project)
+    joint = project.document.figure(child).joint_at(frame)
+    if joint is not None and joint.to is not None and turns != joint.turns:
         hang(session, child, joint.to, turns)

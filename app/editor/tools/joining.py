@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 from typing import Self
 
 from app.editor import layering
+from app.editor.actions import playback
 from app.editor.project import Project
 from app.editor.session import Hint, JointMark, Mark, Session
 from app.editor.tools.anchoring import Anchoring
@@ -64,7 +65,8 @@ class Joining(Tool):
             if gesture is not None:
                 gesture.end(session, place)
         elif self.parent is not None:
-            joint = project.document.figure(self.child).attachment
+            frame = playback.current_frame(session, project)
+            joint = project.document.figure(self.child).joint_at(frame)
             turns = joint is None or joint.turns
             # On both of them the joint is just there; else by the anchor.
             there = on_scene(project, place)

@@ -5,7 +5,7 @@ from typing import Self
 
 from app.document import Figure
 from app.editor import layering
-from app.editor.actions import posing
+from app.editor.actions import playback, posing
 from app.editor.project import Project
 from app.editor.session import Hint, Session, with_project
 from app.editor.tools.pulling import Pulling
@@ -23,7 +23,7 @@ class Moving(Pulling):
     def hints(cls, session: Session, project: Project, spot: Spot) -> tuple[Hint, ...]:
         """Tell what moves."""
         if session.moves:
-            return (Hint("drag", f"to move all of {_carrier(project, spot.figure).name}"),)
+            return (Hint("drag", f"to move all of {_carrier(session, project, spot.figure).name}"),)
         return (Hint("drag", "to move all of it", "ctrl+shift"),) if _is_beside(spot) else ()
 
     @classmethod
@@ -79,14 +79,15 @@ def _is_beside(spot: Spot) -> bool:
     return spot.handle is None and not (spot.on_shape or spot.on_ring)
 
 
-def _carrier(project: Project, figure: int | None) -> Figure:
+def _carrier(session: Session, project: Project, figure: int | None) -> Figure:
     """Return what a figure, by default the one that is posed, hangs on in the end; or itself."""
-    return project.document.carriers(project.active if figure is None else figure)[-1]
+    frame = playback.current_frame(session, project)
+    return project.document.carriers(project.active if figure is None else figure, frame)[-1]
 
 
 def _choose_carrier(session: Session, project: Project, figure: int | None) -> bool:
     """Choose what moves with all that hangs on it; tell why, and return False, if it stays."""
-    carrier = _carrier(project, figure)
+    carrier = _carrier(session, project, figure)
     if carrier.still or carrier.locked:
         what = "a still picture" if carrier.still else "locked"
         session.tell(f"{carrier.name} is {what}: it stays where it is, with all that hangs on it.")

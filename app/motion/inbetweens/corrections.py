@@ -51,7 +51,7 @@ def have_one_ground(clip: Clip, other: Clip) -> bool:
         figure = of.figure
         return (
             *(figure.id, figure.domain, figure.handles, figure.keys, figure.anchor),
-            *(figure.attachment, figure.stillness, figure.springs, figure.variant, figure.bounds),
+            *(figure.joints, figure.stillness, figure.springs, figure.variant, figure.bounds),
             *(id(figure.stiffness), figure.bones),
             *(of.frames, of.loop, of.fps, of.baseline, of.carriers),
         )
@@ -95,7 +95,7 @@ class Corrections:
         self._handles = slice(0, len(figure.handles))
         points = [handle.position for handle in figure.handles]
         # What hangs is held by its anchor.
-        self._is_hung = figure.attachment is not None and figure.anchor is not None
+        self._is_hung = figure.hangs and figure.anchor is not None
         if figure.anchor is not None and self._is_hung:
             points.append(figure.anchor)
         self._points = np.array(points, dtype=np.complex128)

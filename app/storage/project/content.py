@@ -215,12 +215,15 @@ DOMAIN = part(
     Field("stale", FLAG, attrgetter("is_stale"), earlier=False),
 )
 SWITCH = pair(WHOLE, FLAG, "a frame and true or false", make=Switch, of=astuple)
-ATTACHMENT = part(
+ATTACHMENT = record(
     Attachment,
-    Field("to", WHOLE),
+    Field("to", optional(WHOLE)),
     Field("at", POINT),
     Field("turns", FLAG),
     Field("rest", NUMBER),
+    Field("frame", WHOLE, usual=0),
+    Field("offset", POINT, usual=0j),
+    Field("keeps", FLAG, usual=False),
 )
 GROUP = record(
     Group,
@@ -261,7 +264,11 @@ FIGURE = record(
     Field("blend", TEXT, usual="normal"),
     Field("clipped", FLAG, usual=False),
     Field("group", TEXT, usual=""),
-    Field("attachment", optional(ATTACHMENT), usual=None),
+    # Its joints: the first one, and those that come later.
+    Field(
+        "attachment", optional(ATTACHMENT), lambda each: next(iter(each.joints), None), usual=None
+    ),
+    Field("handovers", several(ATTACHMENT), lambda each: each.joints[1:], usual=()),
 )
 CHOICE = record(
     Choice,
@@ -343,6 +350,7 @@ def _read_figure(fields: dict[str, Any], archive: Archive) -> Figure:
             raise LissomError(f"one of its {kind} has two targets for one handle")
         return Pose.of(f, targets, certify(f, boundary, fields["bounds"]))
 
+    first, later = fields.pop("attachment"), fields.pop("handovers")
     for index, key in enumerate(fields["keys"]):
         key["pose"] = pose("keys", index, key.pop("targets"))
         key["fronts"] = dict(key["fronts"])
@@ -352,6 +360,7 @@ def _read_figure(fields: dict[str, Any], archive: Archive) -> Figure:
         **fields
         | {
             "picture": picture,
+            "joints": (*(() if first is None else (first,)), *later),
             "domain": domain,
             "meshing": Meshing(detail=made.pop("detail"), triangles=made.pop("triangles")),
             "is_stale": made.pop("stale"),

@@ -186,7 +186,7 @@ def _text(look: Look, figure: Figure, left: float, end: ImVec2, *, is_seen: bool
     palette, em = look.palette, look.em
     draw_list, middle = imgui.get_window_draw_list(), end.y
     signs = [f"{100 * figure.opacity:.0f}%"] if figure.opacity < 1 else []
-    signs += [icons.ICON_FA_LINK] if figure.attachment is not None else []
+    signs += [icons.ICON_FA_LINK] if figure.hangs else []
     signs += [icons.ICON_FA_IMAGE] if figure.still else []
     signs += [icons.ICON_FA_BAN] if figure.reference else []
     right = end.x - GAP * em

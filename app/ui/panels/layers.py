@@ -94,7 +94,7 @@ def _settings(project: Project, look: Look, figure: Figure, frame: int) -> list[
     if changed:
         actions.append(do(layering.refer, identity))
     actions += _switch(project.document, look, figure, frame)
-    actions += _joint(project, look, figure)
+    actions += _joint(project, look, figure, frame)
     if figure.still:
         small(look, "A still picture: it is shown as it was drawn.")
         if imgui.button("Let it be posed", ImVec2(FILL, 0)):
@@ -138,30 +138,30 @@ def _switch(document: Document, look: Look, figure: Figure, frame: int) -> list[
     return actions
 
 
-def _joint(project: Project, look: Look, figure: Figure) -> list[Action]:
+def _joint(project: Project, look: Look, figure: Figure, frame: int) -> list[Action]:
     """Draw what a layer hangs on."""
     document = project.document
     others = [
-        other
-        for other in document.figures
-        if all(carrier.id != figure.id for carrier in document.carriers(other.id))
+        other for other in document.figures if not layering.hangs_on(project, other.id, figure.id)
     ]
-    if not others and figure.attachment is None:
+    if not others and not figure.joints:
         return []
     actions = []
-    joint = figure.attachment
+    joint = figure.joint_at(frame)
+    parent = None if joint is None or joint.to is None else document.figure(joint.to)
     label(look, "Attached to")
-    now = NOTHING if joint is None else document.figure(joint.to).name
+    now = NOTHING if parent is None else parent.name
     if imgui.begin_combo("##attached to", now):
-        if imgui.selectable(NOTHING, joint is None)[0] and joint is not None:
+        if imgui.selectable(NOTHING, parent is None)[0] and parent is not None:
             actions.append(do(layering.let_hang, figure.id))
-        for other in others:
-            is_parent = joint is not None and joint.to == other.id
-            if imgui.selectable(f"{other.name}###parent {other.id}", is_parent)[0]:
-                actions.append(do(layering.hang, figure.id, other.id))
+        actions += [
+            do(layering.hang, figure.id, other.id)
+            for other in others
+            if imgui.selectable(f"{other.name}###parent {other.id}", other is parent)[0]
+        ]
         imgui.end_combo()
     tip("The layer moves with the place of the other one that is under its anchor now")
-    if joint is not None:
+    if joint is not None and parent is not None:
         changed, turns = imgui.checkbox("Turns with it", joint.turns)
         if changed:
             actions.append(do(layering.turn_with, figure.id, turns))

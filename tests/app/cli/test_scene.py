@@ -79,13 +79,13 @@ def test_a_script_poses_the_layers_that_it_names(project):
     assert [figure.name for figure in document.figures] == ["wall", "body", "arm", "patch"]
     assert (wall.still, body.still) == (True, False)
     assert document.canvas == (WIDTH, HEIGHT)
-    assert (arm.attachment.to, arm.attachment.at, arm.anchor) == (body.id, 95 + 120j, 95 + 120j)
+    assert (arm.joints[0].to, arm.joints[0].at, arm.anchor) == (body.id, 95 + 120j, 95 + 120j)
     assert [is_visible(document, patch, frame) for frame in (3, 4)] == [True, False]
     head = body.handles[1]
     assert (head.front, head.extent, dict(body.keys[1].fronts)) == (0.5, 30.0, {head.id: -1.0})
     # The joint of a joint is closed, and the patch keeps its own turn.
     joints = Joints(document)
-    at = np.array([patch.attachment.at])
+    at = np.array([patch.joints[0].at])
     arm_place = joints.placement(arm.id, 8).on(arm.map_of(arm.keys[1].pose)(at))
     own = joints.placement(patch.id, 8)
     assert own.factor == 1
@@ -169,6 +169,18 @@ def test_export_draws_the_scene_or_one_figure_of_it(project):
             "figures[0].springs[0].handle names the handle 'thumb'",
         ),
         ({"still": "no"}, "figures[0].still must be true or false"),
+        (
+            {"attach": [{"to": "body", "at": [95, 120]}, {"to": "body", "keep": True}]},
+            "figures[0].attach is out of order: frame 0 after 0",
+        ),
+        ({"attach": [{"frame": -1, "to": None}]}, "figures[0].attach[0].frame must be a whole"),
+        ({"attach": [{"to": None, "at": [1, 2]}]}, "lets go, so that it has no at"),
+        ({"attach": [{"to": "body"}]}, "figures[0].attach[0] lacks the field 'at'"),
+        ({"attach": [{"frame": 4, "to": "leg", "keep": True}]}, "there is no layer 'leg'"),
+        (
+            {"attach": [{"to": "body", "at": [95, 120]}, {"frame": 4, "to": "arm", "keep": True}]},
+            "'arm' would hang on itself at frame 4: 'arm' on 'arm'",
+        ),
     ],
 )
 def test_what_a_drawing_does_not_have_is_told(folder, change, words, capsys):
@@ -188,6 +200,35 @@ def test_a_figure_that_is_not_there_is_told(project, folder, capsys):
     with pytest.raises(SystemExit):
         main(arguments)
     assert "the layers are wall, body, arm, patch" in capsys.readouterr().err
+
+
+def test_what_changes_hands_does_not_jump(folder):
+    patch = {
+        **SCRIPT["figures"][2],
+        "visible": [],
+        "attach": [
+            {"to": "arm", "at": [180, 120]},
+            {"frame": 3, "to": "body", "keep": True},
+            {"frame": 6, "to": None, "keep": True},
+        ],
+    }
+    script = {**SCRIPT, "figures": [*SCRIPT["figures"][:2], patch]}
+    (folder / "hands.json").write_text(json.dumps(script))
+    out = folder / "hands.lissom"
+    arguments = [str(folder / "man.ora"), str(folder / "hands.json"), "--out", str(out)]
+    assert main(["pose", *arguments, "--triangles", "4000"]) == 0
+    document = load_project(out)
+    patch, body = (next(f for f in document.figures if f.name == n) for n in ("patch", "body"))
+    assert [joint.frame for joint in patch.joints] == [0, 3, 6]
+    assert patch.joints[1].to == body.id
+    joints = Joints(document)
+    for frame in (3, 6):
+        just, now = (joints.placement(patch.id, at) for at in (frame - 1e-6, frame))
+        assert abs(just.shift - now.shift) < 1e-3
+        assert abs(just.factor - now.factor) < 1e-5
+    assert joints.placement(patch.id, 8) == joints.placement(patch.id, 6)
+    # The nearest point of the body when it is handed over, not as it was drawn.
+    assert patch.joints[1].at.real > 105
 
 
 MOUTHS = "".join(

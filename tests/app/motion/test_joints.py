@@ -1,83 +1,27 @@
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
-from documents import CENTRE, disc_document, inside
+from chains import SIZE, VARIANTS, bent, chain, exactly, seen
+from documents import CENTRE, inside
 from numpy.testing import assert_allclose
 
 from app.document import History, clip_of, key_commands, layer_commands as layers, scene_commands
-from app.document.keyframe import Keyframe, Passing
-from app.document.layering import Attachment
-from app.document.settings import FrameRange
+from app.document.keyframe import Passing
 from app.errors import LissomError
-from app.motion import Animation, IntervalStore, Joints, PosableMesh, Streamed
-from app.motion.joints import BATCH
+from app.motion import Animation, IntervalStore, Joints, PosableMesh, Streamed, hang
+from app.motion.joints.joints import BATCH
 from app.storage import load_project, save_project
 from engine.domain.meshing import triangulate
 from engine.geometry import HERE
 from engine.maps import distortion
-
-SIZE = 200.0
-VARIANTS = ("nu", "metric", "scaled-eta")
-
-
-def bent(figure, turn, bend, shift):
-    """The key pose of a figure turned by an angle, bent and moved."""
-    first = figure.keys[0].pose
-    z = figure.domain.cage - CENTRE
-    return replace(first, phi=CENTRE + shift + z * np.exp(1j * turn) + bend * z**2)
-
-
-@cache
-def chain(variant="nu", count=3):
-    """Discs that hang on each other, each bent otherwise, over 48 frames."""
-    document = replace(disc_document(), frames=FrameRange(0, 48))
-    rng = np.random.default_rng(4)
-    first = document.figures[0]
-    for index in range(count):
-        figure = replace(first, id=index, name=str(index), variant=variant)
-        keys = tuple(
-            Keyframe(
-                frame=frame,
-                pose=bent(figure, rng.normal(), 4e-4 * rng.normal(), complex(*rng.normal(size=2))),
-            )
-            for frame in (0, 20, 48)
-        )
-        figure = replace(figure, keys=keys)
-        if index == 0:
-            document = document.with_figure(figure)
-            continue
-        document = layers.add_figure(figure)(document)
-        joint = Attachment(to=index - 1, at=inside(rng), rest=rng.normal())
-        document = layers.attach(index, inside(rng), joint)(document)
-    return document
-
-
-@cache
-def alone(clip, place):
-    """A point of a figure by itself."""
-    return Animation(clip, points=np.array([place]))
-
-
-def exactly(document, figure, place, frame):
-    """Where a point of a figure is by itself, and its f_z."""
-    moved = alone(clip_of(document, figure), place).frame(frame)
-    return moved.positions[0], moved.fz[0]
-
-
-def seen(document, figure, frame):
-    """Where some points of a figure are in the scene."""
-    points = np.array([CENTRE, CENTRE + 30j, CENTRE - 50])
-    own = Animation(clip_of(document, figure), points=points).positions(frame)
-    return Joints(document).placement(figure, frame).on(own)
 
 
 def check_closed(document, frames):
     """Hold each joint of a document against the points that it joins."""
     joints = Joints(document)
     for figure in document.figures:
-        joint = figure.attachment
+        joint = figure.joint_at(0)
         if joint is None:
             continue
         for frame in frames:
@@ -103,7 +47,7 @@ def test_a_joint_stays_closed_and_turns_with_the_parent(variant):
 
 def test_what_hangs_on_nothing_is_where_it_is():
     joints = Joints(chain())
-    assert joints.placement(0, 17.5) is HERE
+    assert joints.placement(0, 17.5) == HERE
     places = np.array([1 + 2j])
     assert HERE.on(places) is places
 
@@ -111,14 +55,14 @@ def test_what_hangs_on_nothing_is_where_it_is():
 def test_what_does_not_turn_only_moves():
     document = chain()
     figure = document.figure(1)
-    still = replace(figure.attachment, turns=False)
+    still = replace(figure.joints[0], turns=False)
     document = layers.attach(1, figure.anchor, still)(document)
     assert Joints(document).placement(1, 30.0).factor == 1
 
 
 def test_a_pose_that_is_shown_takes_the_place_of_the_key_s():
     document = chain()
-    figure, joint = document.figure(0), document.figure(1).attachment
+    figure, joint = document.figure(0), document.figure(1).joints[0]
     pose = bent(figure, 1.0, 2e-4, 5)
     posed = document.with_figure(
         replace(figure, keys=(replace(figure.keys[0], pose=pose), *figure.keys[1:]))
@@ -139,11 +83,11 @@ def test_attaching_moves_nothing_at_the_present_frame(frame, turns):
     before = Joints(loose)
     held, _ = exactly(loose, 2, CENTRE, frame)
     place = complex(before.placement(2, frame).on(np.array([held]))[0])
-    anchor, joint = before.hang(2, 0, frame, place=place, turns=turns)
+    anchor, joint = hang(before, 2, 0, frame, place=place, turns=turns)
     assert abs(anchor - CENTRE) < 1e-8
     hung = layers.attach(2, anchor, joint)(loose)
     assert_allclose(seen(hung, 2, frame), seen(loose, 2, frame), rtol=0, atol=1e-8)
-    by_anchor = before.hang(2, 0, frame, turns=turns)
+    by_anchor = hang(before, 2, 0, frame, turns=turns)
     assert abs(by_anchor[0] - document.figure(2).anchor) < 1e-12
 
 
@@ -160,16 +104,41 @@ def test_without_a_common_anchor_layers_are_joined_where_they_overlap():
     apart = replace(figure, anchor=CENTRE - 80)
     keys = tuple(replace(k, pose=bent(figure, 0, 0, 130)) for k in figure.keys)
     document = document.with_figure(replace(apart, keys=keys))
-    anchor, joint = Joints(document).hang(2, 0, 0, turns=True)
+    anchor, joint = hang(Joints(document), 2, 0, 0, turns=True)
     assert anchor.real < CENTRE.real
     hung = layers.attach(2, anchor, joint)(document)
     assert_allclose(seen(hung, 2, 0), seen(document, 2, 0), rtol=0, atol=1e-8)
 
 
-def test_a_joint_must_be_on_both_figures():
+def test_what_hangs_is_beside_what_it_hangs_on_where_that_is_not():
+    """Nothing moves now, and later it goes with the nearest point, as it was beside it."""
+    document = layers.detach(2, 1, 0)(chain())
+    far = document.with_figure(
+        replace(
+            document.figure(2),
+            keys=tuple(
+                replace(k, pose=bent(document.figure(2), 0.3, 0, 400))
+                for k in document.figure(2).keys
+            ),
+        )
+    )
+    anchor, joint = hang(Joints(far), 2, 0, 11.5, turns=True)
+    hung = layers.attach(2, anchor, joint)(far)
+    assert_allclose(seen(hung, 2, 11.5), seen(far, 2, 11.5), rtol=0, atol=1e-8)
+    assert abs(joint.offset) > 200
+    joints, (place, other) = Joints(hung), (np.array([anchor]), np.array([joint.at]))
+    lengths = []
+    for frame in (0, 11.5, 30.2, 48):
+        own = Animation(clip_of(hung, 2), points=place).positions(frame)
+        parent = Animation(clip_of(hung, 0), points=other).positions(frame)
+        lengths.append(abs(joints.placement(2, frame).on(own) - parent)[0])
+    assert_allclose(lengths, abs(joint.offset), rtol=1e-9)
+
+
+def test_a_joint_must_be_on_what_hangs():
     document = layers.detach(2, 1, 0)(chain())
     with pytest.raises(LissomError, match=r"nothing of '2' at \(5000, 0\)"):
-        Joints(document).hang(2, 0, 0, place=5000 + 0j, turns=True)
+        hang(Joints(document), 2, 0, 0, place=5000 + 0j, turns=True)
 
 
 def test_joints_stay_closed_in_documents_that_were_changed_undone_and_saved(tmp_path):
@@ -198,8 +167,8 @@ def test_joints_stay_closed_in_documents_that_were_changed_undone_and_saved(tmp_
     history.redo()
     save_project(tmp_path / "chain.lissom", history.document)
     again = load_project(tmp_path / "chain.lissom")
-    assert [figure.attachment for figure in again.figures] == [
-        figure.attachment for figure in history.document.figures
+    assert [figure.joints for figure in again.figures] == [
+        figure.joints for figure in history.document.figures
     ]
     check_closed(again, frames)
 
@@ -213,7 +182,7 @@ def test_what_hangs_is_as_distorted_as_by_itself(variant):
     points = points[np.abs(points - CENTRE) < 0.8 * 90]
     for child in (1, 2):
         figure = hung.figure(child)
-        free = hung.with_figure(replace(figure, attachment=None, anchor=None))
+        free = hung.with_figure(replace(figure, joints=(), anchor=None))
         both = [Animation(clip_of(each, child), points=points) for each in (hung, free)]
         for frame in rng.uniform(0, 48, 12 if variant == "nu" else 4):
             one, other = (animation.frame(frame) for animation in both)
@@ -231,8 +200,8 @@ def test_a_joint_that_is_streamed_stays_closed_on_the_screen():
     for index, figure in enumerate(document.figures):
         finer = replace(figure, domain=replace(domain, mesh=mesh))
         if index:
-            joint = replace(figure.attachment, at=complex(middle[1]))
-            finer = replace(finer, anchor=complex(middle[0]), attachment=joint)
+            joint = replace(figure.joints[0], at=complex(middle[1]))
+            finer = replace(finer, anchor=complex(middle[0]), joints=(joint,))
         document = document.with_figure(finer)
     joints = Joints(document)
     stores = []

@@ -172,7 +172,7 @@ def test_a_hung_figure_keeps_its_joint_and_turns_about_it_alone():
         id=1,
         name="child",
         anchor=30 + 40j,
-        attachment=Attachment(to=0, at=90 + 45j),
+        joints=(Attachment(to=0, at=90 + 45j),),
     )
     scene = replace(document, figures=(figure, child))
     joints = Joints(scene)

@@ -93,7 +93,7 @@ def planted_child():
         id=1,
         name="child",
         anchor=60 + 45j,
-        attachment=Attachment(to=0, at=60 + 45j),
+        joints=(Attachment(to=0, at=60 + 45j),),
         bounds=RUBBERY.bounds,
         tracks=(track("top", ((0, place), (30, place)), planted=True),),
     )
@@ -233,7 +233,7 @@ def test_a_hung_spring_feels_what_it_hangs_on():
         name="child",
         keys=document.figures[0].keys[:1],
         anchor=30 + 40j,
-        attachment=Attachment(to=0, at=90 + 45j),
+        joints=(Attachment(to=0, at=90 + 45j),),
         springs=(spring,),
     )
     scene = replace(document, figures=(document.figures[0], child))

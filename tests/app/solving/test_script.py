@@ -62,7 +62,7 @@ def test_what_is_left_out_has_its_documented_default():
     script = parse_pose_script({"schema": 1, "handles": {}, "keys": [{"frame": 3}]})
     assert (script.fps, script.loop) == (24.0, False)
     (script,) = script.figures
-    assert (script.variant, script.attach, script.visible) == ("metric", None, None)
+    assert (script.variant, script.attach, script.visible) == ("metric", (), None)
     assert script.bounds == Bounds(k=0.5, sigma_a=2.0, sigma_b=0.5)
     assert script.anchor is None
     assert script.keys[0].ease == PRESETS["linear"]
@@ -299,7 +299,7 @@ def test_a_script_of_several_figures():
     assert body.bounds == arm.bounds == Bounds(k=0.7, sigma_a=2.0, sigma_b=0.5)
     assert arm.handles["hand"] == ScriptHandle(at=7 + 8j, front=0.5, extent=60.0)
     assert arm.keys[1].fronts == {"hand": -1.0}
-    assert arm.attach == ScriptJoint(to="body", at=3 + 4j, turns=False)
+    assert arm.attach == (ScriptJoint(to="body", at=3 + 4j, turns=False),)
     assert arm.visible == ((0, True), (12, False))
 
 

@@ -113,7 +113,7 @@ def test_the_anchor_is_dragged_onto_another_layer(window, scene, drag):
     assert "drag to hang it on another layer" in told[0].lower()
     assert "over the layer to hang it on" in told[1]
     assert "to hang arm on body" in told[2]
-    joint = scene.document.figure(arm).attachment
+    joint = scene.document.figure(arm).joints[0]
     assert (joint.to, joint.turns) == (body, True)
     assert abs(joint.at - SHOULDER) < 1
     assert np.abs(on_scene(scene, "arm") - was).max() < 1e-6 * WIDTH
@@ -121,16 +121,16 @@ def test_the_anchor_is_dragged_onto_another_layer(window, scene, drag):
     window.act(editing.undo)
     assert scene.document is before
     window.act(editing.redo)
-    assert scene.document.figure(arm).attachment.to == body
+    assert scene.document.figure(arm).joints[0].to == body
 
 
 def test_off_the_layer_itself_the_joint_is_where_both_are(scene, drag):
     drag(HIP)
     arm = scene.document.figure(identity(scene, "arm"))
-    assert arm.attachment.to == identity(scene, "body")
-    assert 85 < arm.attachment.at.real < 112
-    assert 100 < arm.attachment.at.imag < 132
-    assert abs(arm.anchor - arm.attachment.at) < 1e-6
+    assert arm.joints[0].to == identity(scene, "body")
+    assert 85 < arm.joints[0].at.real < 112
+    assert 100 < arm.joints[0].at.imag < 132
+    assert abs(arm.anchor - arm.joints[0].at) < 1e-6
 
 
 def test_the_layer_under_the_pointer_is_marked(window, scene):
@@ -175,7 +175,7 @@ def test_a_circle_is_refused_in_words(window, scene, drag):
     window.act(layering.choose, hand)
     window.settle()
     drag(170 + 118j)
-    assert scene.document.figure(hand).attachment.to == arm
+    assert scene.document.figure(hand).joints[0].to == arm
     before = scene.document
     window.act(layering.choose, body)
     window.settle()
@@ -206,8 +206,8 @@ def test_a_handle_that_is_the_anchor_is_dragged_onto_another_layer_with_ctrl(win
     window.settle()
     drag(SHOULDER + 6, HIP, key=window.Key.mod_ctrl)
     arm = scene.document.figure(identity(scene, "arm"))
-    assert arm.attachment.to == identity(scene, "body")
-    assert abs(arm.attachment.at - SHOULDER) < 1
+    assert arm.joints[0].to == identity(scene, "body")
+    assert abs(arm.joints[0].at - SHOULDER) < 1
     # A click with it takes the anchor back, as ever.
     window.act(editing.undo)
     drag(key=window.Key.mod_ctrl)

@@ -254,7 +254,7 @@ def test_the_menu_of_a_layer(window, scene, listed):
     window.act(layering.choose, body)
     joined = scene.document
     listed(lambda rows: rows.menu(body, "Delete"))
-    assert scene.document.figure(arm).attachment is None
+    assert scene.document.figure(arm).joints == ()
     assert scene.figure.name == "wall"
     window.act(editing.undo)
     assert scene.document is joined
@@ -360,7 +360,7 @@ def test_a_layer_that_hangs_follows_live_and_is_posed_around_its_joint(window, s
     window.act(posing.wish, {top: Target(position=110 + 155j)})
     window.settle()
     hung, carrier = scene.puppets[arm].shown, scene.puppets[body].shown
-    joint = scene.document.figure(arm).attachment
+    joint = scene.document.figure(arm).joints[0]
     at = carrier.hinge(joint.at)
     place = hung.placement.on(np.array([hung.hinge(95 + 118j).place]))[0]
     assert abs(place - at.place) < 1e-6 * WIDTH
@@ -792,7 +792,7 @@ def test_another_picture_keeps_handles_keys_and_joints(window, posed, tmp_path):
     assert figure.picture is not old.picture
     assert (figure.name, figure.opacity, figure.handles) == ("limb", 0.75, old.handles)
     assert posed.document.figures.index(figure) == 1
-    assert (figure.anchor, figure.attachment) == (old.anchor, old.attachment)
+    assert (figure.anchor, figure.joints) == (old.anchor, old.joints)
     assert [key.frame for key in figure.keys] == [0, 24]
     for key, earlier in zip(figure.keys, old.keys, strict=True):
         assert key.pose.certificate.certified
@@ -816,7 +816,7 @@ def test_another_picture_keeps_handles_keys_and_joints(window, posed, tmp_path):
     window.settle()
     again = load_project(path).figure(arm)
     assert again.picture.sha256 == figure.picture.sha256
-    assert (again.corner, again.attachment) == (figure.corner, figure.attachment)
+    assert (again.corner, again.joints) == (figure.corner, figure.joints)
 
 
 def test_what_is_outside_of_another_picture_comes_into_it(window, posed, tmp_path):
@@ -835,12 +835,12 @@ def test_what_is_outside_of_another_picture_comes_into_it(window, posed, tmp_pat
     rest, raised = figure.keys
     assert abs(rest.pose.targets[0].position - figure.handles[0].position) < 1e-9
     assert raised.pose.targets[0].position != before.figure(arm).keys[1].pose.targets[0].position
-    assert figure.attachment == before.figure(arm).attachment
+    assert figure.joints == before.figure(arm).joints
     # The body without the place where the arm hangs.
     legs = saved(tmp_path / "legs.png", painted((60, 120, 110, 180), (40, 40, 200, 255)))
     window.act(layering.replace_picture, body, legs)
     window.settle()
-    joint = posed.document.figure(arm).attachment
+    joint = posed.document.figure(arm).joints[0]
     assert posed.document.figure(body).domain.contains(np.array([joint.at])).all()
     assert joint.at.imag < 82
     assert not posed.joints.has_failed(posed.joints.source)

@@ -1,0 +1,84 @@
+"""From the figures that carry to the one that hangs on them, by joints."""
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from app.document import Attachment, Document, Figure
+from engine.geometry import HERE, RigidMotion
+
+
+class Hinge(NamedTuple):
+    """Where a point of a figure by itself is, and by what the figure turns there."""
+
+    place: complex
+    turn: complex  # of modulus 1
+
+
+class Hanging(NamedTuple):
+    """A figure, and the joint by which it hangs at a time; None where it never hung before."""
+
+    figure: Figure
+    joint: Attachment | None
+
+
+def chain_of(
+    document: Document, figure: int, frame: float, *, before: bool = False
+) -> tuple[Hanging, ...]:
+    """Return the links from a figure, by its id, to the one that all hangs on at a frame.
+
+    As they are from the frame on, or just before it.
+    """
+    chain = document.carriers(figure, frame, before=before)
+    at = document.in_time(frame)
+    return tuple(Hanging(each, each.joint_at(at, before=before)) for each in chain)
+
+
+def along(
+    chain: Sequence[Hanging],
+    hinge: Callable[[Figure, complex], Hinge],
+    kept: Callable[[Figure, Attachment], RigidMotion],
+) -> RigidMotion:
+    """Return where a figure is that hangs on a chain of others.
+
+    Parameters
+    ----------
+    chain : sequence of Hanging
+        The figure, the one that it hangs on, and so on.
+    hinge : callable
+        Returns how a point of a figure is moved and turned, the figure by itself.
+    kept : callable
+        Returns how a figure is held by a joint that keeps its place: turned and moved beside the
+        point of the parent, or where it was let go.
+    """
+    (last, released), others = chain[-1], chain[:-1]
+    is_kept = released is not None and released.keeps
+    placement = kept(last, released) if released is not None and is_kept else HERE
+    for (child, joint), (parent, _) in zip(others[::-1], chain[:0:-1], strict=True):
+        if joint is None:
+            raise ValueError("only the last carrier hangs on nothing")
+        at, own = hinge(parent, joint.at), hinge(child, require_anchor(child))
+        held = kept(child, joint) if joint.keeps else _held(joint)
+        turn = placement.factor * at.turn if joint.turns else 1.0
+        place = placement.factor * at.place + placement.shift + turn * held.shift
+        factor = turn * held.factor
+        placement = RigidMotion(complex(factor), complex(place - factor * own.place))
+    return placement
+
+
+def _held(joint: Attachment) -> RigidMotion:
+    """Return how a figure is held by a joint: turned and moved beside the point of the parent."""
+    return RigidMotion(complex(np.exp(-1j * joint.rest)) if joint.turns else 1.0, joint.offset)
+
+
+def hinge_at(position: complex, fz: complex) -> Hinge:
+    """Return where a point is and how the figure is turned there, by f and f_z."""
+    return Hinge(complex(position), complex(fz / abs(fz)))
+
+
+def require_anchor(figure: Figure) -> complex:
+    """Return the anchor of a figure that is attached."""
+    if figure.anchor is None:
+        raise ValueError("a figure that is attached has an anchor")
+    return figure.anchor

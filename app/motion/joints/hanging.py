@@ -1,0 +1,165 @@
+"""The joint by which a figure comes to hang on another one so that nothing moves."""
+
+import numpy as np
+
+from app.document import Attachment, Figure
+from app.errors import LissomError
+from app.motion.joints.chain import Hinge, hinge_at
+from app.motion.joints.joints import Joints
+from engine.arrays import Complexes
+from engine.errors import EngineError
+from engine.geometry import box_diagonal, contains, deepest_point
+from engine.interpolation import Frame
+
+# Newton steps towards the point of a parent that is at a place; each squares the error.
+MOST_STEPS = 20
+CLOSE = 1e-12  # of the figure's size
+MOST_STARTS = 2_000  # triangles among which the nearest one is where the search begins
+
+
+def hang(
+    joints: Joints,
+    child: int,
+    parent: int,
+    frame: float,
+    *,
+    place: complex | None = None,
+    turns: bool,
+) -> tuple[complex, Attachment]:
+    """Return the anchor and the joint by which a figure hangs so that nothing moves now.
+
+    Parameters
+    ----------
+    joints : Joints
+        As they were before.
+    child, parent : int
+        Ids of figures.
+    frame : float
+        Where nothing moves. The joint holds as long as the one that holds there now, or always.
+    place : complex, optional
+        Of the joint, in the scene; by default that of the child's anchor, or, where the parent is
+        not there, the middle of where the two overlap. Where the parent is not at the place, the
+        child hangs beside its nearest point.
+    turns : bool
+        Whether the child turns with the parent.
+
+    Returns
+    -------
+    anchor : complex
+        Of the child.
+    joint : Attachment
+
+    Raises
+    ------
+    LissomError
+        If the child is not at that place.
+    """
+    own, other = joints.document.figure(child), joints.document.figure(parent)
+    held = own.joint_at(frame)
+    here, there = joints.placement(child, frame), joints.placement(parent, frame)
+    if place is None:
+        anchor = _common_point(joints, own, other, frame)
+        place = complex(here.on(np.array([_hinge(joints, own, anchor, frame).place]))[0])
+    else:
+        anchor = _source(joints, own, here.back(place), frame)
+    at, away = _point_near(joints, other, there.back(place), frame)
+    turn = there.factor * _hinge(joints, other, at, frame).turn
+    return anchor, Attachment(
+        to=parent,
+        at=at,
+        turns=turns,
+        # With the parent's turn as it is now, the child is turned as it is now.
+        rest=float(np.angle(turn) - np.angle(here.factor)) if turns else 0.0,
+        offset=complex(away * there.factor / (turn if turns else 1.0)),
+        frame=0 if held is None else held.frame,
+    )
+
+
+def hand_over(joints: Joints, child: int, parent: int, frame: int, *, turns: bool) -> Attachment:
+    """Return the joint by which a figure goes on with another one from where it is at a frame.
+
+    It is at the point of that one which is nearest to the figure's anchor then.
+    """
+    own, other = joints.document.figure(child), joints.document.figure(parent)
+    here, there = joints.placement(child, frame, before=True), joints.placement(parent, frame)
+    place = here.on(np.array([_hinge(joints, own, anchor_of(own), frame).place]))[0]
+    at, _ = _point_near(joints, other, there.back(complex(place)), frame)
+    return Attachment(to=parent, at=at, turns=turns, frame=frame, keeps=True)
+
+
+def anchor_of(figure: Figure) -> complex:
+    """Return the anchor of a figure, or where it would be."""
+    if figure.anchor is not None:
+        return figure.anchor
+    return deepest_point(figure.domain.outline, figure.domain.loops[1:])
+
+
+def _moved(joints: Joints, figure: Figure, points: Complexes, frame: float) -> Frame:
+    return joints.animation(figure.id, points).frame(frame)
+
+
+def _hinge(joints: Joints, figure: Figure, place: complex, frame: float) -> Hinge:
+    moved = _moved(joints, figure, np.array([place]), frame)
+    return hinge_at(moved.positions[0], moved.fz[0])
+
+
+def _middles(figure: Figure) -> Complexes:
+    """Return points all over a figure at rest."""
+    mesh = figure.domain.mesh
+    middles: Complexes = mesh.vertices[mesh.triangles].mean(axis=1)
+    return middles[:: max(1, len(middles) // MOST_STARTS)]
+
+
+def _common_point(joints: Joints, child: Figure, parent: Figure, frame: float) -> complex:
+    """Return the child's anchor if it is in the parent, else a point of it that is in both."""
+    anchor = anchor_of(child)
+    points = np.array([anchor, *_middles(child)])
+    here, there = (joints.placement(each.id, frame) for each in (child, parent))
+    places = here.on(_moved(joints, child, points, frame).positions)
+    border = there.on(_moved(joints, parent, parent.domain.outline, frame).positions)
+    common = contains(border, places)
+    if common[0] or not common.any():
+        return anchor
+    middle = places[common].mean()
+    nearest = np.argmin(np.where(common, np.abs(places - middle), np.inf))
+    return complex(points[nearest])
+
+
+def _point_near(
+    joints: Joints, figure: Figure, place: complex, frame: float
+) -> tuple[complex, complex]:
+    """Return the point of a figure at rest that is at a place, or is nearest to it.
+
+    Also how far the place is from there; 0 where it is on the figure. All in the figure's own
+    terms.
+    """
+    try:
+        return _source(joints, figure, place, frame), 0j
+    except LissomError:
+        points = _middles(figure)
+        moved = _moved(joints, figure, points, frame).positions
+        nearest = np.argmin(np.abs(moved - place))
+        return complex(points[nearest]), complex(place - moved[nearest])
+
+
+def _source(joints: Joints, figure: Figure, place: complex, frame: float) -> complex:
+    """Return the point of a figure at rest that is at a place, in the figure's own terms."""
+    middles = _middles(figure)
+    moved = _moved(joints, figure, middles, frame)
+    source = complex(middles[np.argmin(np.abs(moved.positions - place))])
+    size = box_diagonal(figure.domain.outline)
+    for _ in range(MOST_STEPS):
+        try:
+            at = _moved(joints, figure, np.array([source]), frame)
+        except EngineError:
+            break  # outside
+        away = place - complex(at.positions[0])
+        if abs(away) <= CLOSE * size:
+            return source
+        fz, fzbar = complex(at.fz[0]), complex(at.fzbar[0])
+        area = abs(fz) ** 2 - abs(fzbar) ** 2
+        source += (fz.conjugate() * away - fzbar * away.conjugate()) / area
+    raise LissomError(
+        f"There is nothing of {figure.name!r} at ({place.real:.0f}, {place.imag:.0f}); put its "
+        "anchor on it."
+    )

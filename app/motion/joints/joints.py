@@ -1,0 +1,253 @@
+"""Where figures that hang on others are, at any time (Section 7, "a user curve for the anchor")."""
+
+from collections.abc import Iterable, Mapping
+from functools import partial
+from itertools import product
+
+import numpy as np
+
+from app.document import Attachment, Document, Figure, Pose, clip_of
+from app.motion.inbetweens import Animation, Carried, PoseSampler
+from app.motion.joints.chain import Hinge, along, chain_of, hinge_at, require_anchor
+from app.motion.tracing import TrackedPoints
+from engine.arrays import Complexes
+from engine.geometry import RigidMotion
+
+# Frames of figures that the worker works out before it looks for more urgent work, about a
+# millisecond each, and those that it looks at.
+BATCH, MOST_LOOKED_AT = 60, 5_000
+
+
+class Joints:
+    """The joints of a document, at any time.
+
+    A figure hangs by its anchor: it is turned around it and moved, and nothing else, so that it is
+    exactly as distorted as by itself and the joint never opens.
+
+    Parameters
+    ----------
+    siblings : mapping of int to PoseSampler
+        By the ids of figures; what they know of outlines is used again.
+    earlier : Joints, optional
+        Of an earlier document; what is still true of it is used again.
+
+    Attributes
+    ----------
+    document : Document
+    points : dict of int to list of complex
+        Of each figure, those by which it hangs, or others hang on it.
+    tracked : dict of int to TrackedPoints
+        The same over time.
+    is_whole : bool
+        Whether all frames have been gone through.
+
+    Raises
+    ------
+    EngineError
+        If a joint or an anchor lies outside its figure.
+    """
+
+    def __init__(
+        self,
+        document: Document,
+        siblings: Mapping[int, PoseSampler] | None = None,
+        earlier: "Joints | None" = None,
+    ) -> None:
+        self.document = document
+        self.points = _points(document)
+        self.is_whole = False
+        known = {} if earlier is None else earlier.tracked
+        siblings = siblings or {}
+        self.tracked: dict[int, TrackedPoints] = {
+            figure: TrackedPoints(
+                clip_of(document, figure),
+                np.array(points),
+                siblings.get(figure),
+                known.get(figure),
+                partial(self.carried, figure),
+            )
+            for figure, points in self.points.items()
+            if points
+        }
+        self._siblings = siblings
+        self._placements: dict[tuple[int, float, bool], RigidMotion] = {}
+        self._kept: dict[tuple[int, Attachment], RigidMotion] = {}
+        frames = range(document.frames.first, document.frames.last + 1)
+        self._ahead = product(frames, self.tracked.values())
+
+    @property
+    def worked_out(self) -> int:
+        """How many frames of figures had to be worked out, because nothing was known of them."""
+        return sum(each.worked_out for each in self.tracked.values())
+
+    def placement(
+        self,
+        figure: int,
+        frame: float,
+        poses: Mapping[int, Pose] | None = None,
+        *,
+        before: bool = False,
+    ) -> RigidMotion:
+        """Return where a figure, by its id, is at a frame.
+
+        Parameters
+        ----------
+        figure : int
+        frame : float
+        poses : mapping of int to Pose, optional
+            Shown instead of what the figures with these ids have at the frame.
+        before : bool
+            Whether joints that begin to hold at the frame do not count yet.
+        """
+        if poses:
+            return self._work_out(figure, frame, poses, before=before)
+        known = figure, frame, before
+        if known not in self._placements:
+            self._placements[known] = self._work_out(figure, frame, {}, before=before)
+        return self._placements[known]
+
+    def _work_out(
+        self, figure: int, frame: float, poses: Mapping[int, Pose], *, before: bool
+    ) -> RigidMotion:
+        chain = chain_of(self.document, figure, frame, before=before)
+        return along(chain, partial(self._joint, frame=frame, poses=poses), self.kept)
+
+    def kept(self, figure: Figure, joint: Attachment) -> RigidMotion:
+        """Return how a figure is held by a joint of the document that keeps its place."""
+        known = figure.id, joint
+        if known not in self._kept:
+            self._kept[known] = self._keep(figure, joint)
+        return self._kept[known]
+
+    def _keep(self, figure: Figure, joint: Attachment) -> RigidMotion:
+        frame = joint.frame
+        hinge = partial(self._seen_from, figure.id, frame=frame)
+        here = along(chain_of(self.document, figure.id, frame, before=True), hinge, self.kept)
+        if joint.to is None:
+            return here
+        there = along(chain_of(self.document, joint.to, frame), hinge, self.kept)
+        at = hinge(self.document.figure(joint.to), joint.at)
+        own = hinge(figure, require_anchor(figure))
+        turn = there.factor * at.turn if joint.turns else 1.0
+        away = here.factor * own.place + here.shift - (there.factor * at.place + there.shift)
+        return RigidMotion(complex(here.factor / turn), complex(away / turn))
+
+    def carried(self, figure: int, frame: float) -> RigidMotion:
+        """Return where a figure hangs, but for what is corrected of itself.
+
+        That leaves its anchor in place and does not turn it.
+        """
+        hinge = partial(self._seen_from, figure, frame=frame)
+        return along(chain_of(self.document, figure, frame), hinge, self.kept)
+
+    def _seen_from(self, figure: int, each: Figure, place: complex, frame: float) -> Hinge:
+        """Return where a point of a figure is for another one that follows from it.
+
+        What is corrected does not count where it may follow from the other one in turn: of that one
+        itself, and of what hangs on it at other times.
+        """
+        others = (each, *self.document.all_carriers(each.id))
+        if all(other.id != figure for other in others):
+            return self._joint(each, place, frame, {})
+        index = self.points[each.id].index(place)
+        found = self.tracked[each.id].base_at(frame)
+        return hinge_at(found.positions[index], found.fz[index])
+
+    def animation(self, figure: int, points: Complexes) -> Animation:
+        """Return the motion of some points (m,) of a figure, by its id, by itself."""
+        carried = partial(self.carried, figure)
+        return animation_at(self.document, figure, points, self._siblings, carried)
+
+    def advance(self) -> "Joints":
+        """Go through some frames, so that asking for them takes no time."""
+        end = self.worked_out + BATCH
+        for looked_at, (frame, tracked) in enumerate(self._ahead, 1):
+            tracked.at(frame)
+            if self.worked_out >= end or looked_at == MOST_LOOKED_AT:
+                return self
+        self.is_whole = True
+        return self
+
+    def _joint(
+        self, figure: Figure, place: complex, frame: float, poses: Mapping[int, Pose]
+    ) -> Hinge:
+        if figure.id in poses:
+            return _hinge_of(figure, poses[figure.id], place)
+        index = self.points[figure.id].index(place)
+        moved = self.tracked[figure.id].at(frame)
+        return hinge_at(moved.positions[index], moved.fz[index])
+
+
+def carried_in(
+    document: Document, figure: int, siblings: Mapping[int, PoseSampler] | None = None
+) -> Carried | None:
+    """Return what tells where a figure of a document hangs; None where it hangs on nothing."""
+    if not document.figure(figure).hangs:
+        return None
+    return partial(Joints(document, siblings).carried, figure)
+
+
+def animation_at(
+    document: Document,
+    identity: int,
+    points: Complexes,
+    siblings: Mapping[int, PoseSampler],
+    carried: Carried | None,
+) -> Animation:
+    """Return the motion of some points (m,) of a figure of a document, which may be carried."""
+    figure = document.figure(identity)
+    sampler = PoseSampler(
+        figure.domain, anchor=figure.anchor, points=points, sibling=siblings.get(identity)
+    )
+    return Animation(clip_of(document, identity), sampler=sampler, carried=carried)
+
+
+class HungAnimation:
+    """The motion of a figure by itself, brought to where the joints of its scene have it."""
+
+    def __init__(self, animation: Animation, joints: Joints) -> None:
+        self._animation = animation
+        animation.carried = partial(joints.carried, animation.clip.figure.id)
+        self._joints = joints
+
+    def positions(self, frame: float) -> Complexes:
+        """Return where the points (m,) are at a frame, which may lie between two numbers."""
+        placement = self._joints.placement(self._animation.clip.figure.id, frame)
+        return placement.on(self._animation.positions(frame))
+
+
+def joints_source(document: Document) -> tuple[object, ...]:
+    """Return all of a document that its joints depend on; empty where nothing hangs."""
+    involved = [
+        each
+        for child in document.figures
+        if child.joints
+        for each in (child, *document.all_carriers(child.id))
+    ]
+    return tuple(clip_of(document, each.id) for each in dict.fromkeys(involved))
+
+
+def hung_animations(
+    animations: Iterable[Animation], document: Document
+) -> dict[int, HungAnimation]:
+    """Return the animations of a document's figures where its scene has them, by their ids."""
+    own = {animation.clip.figure.id: animation for animation in animations}
+    joints = Joints(document, {identity: each.sampler for identity, each in own.items()})
+    return {identity: HungAnimation(each, joints) for identity, each in own.items()}
+
+
+def _points(document: Document) -> dict[int, list[complex]]:
+    """Return the points of each figure by which it hangs, or others hang on it."""
+    points: dict[int, list[complex]] = {figure.id: [] for figure in document.figures}
+    for figure in document.figures:
+        if figure.joints:
+            points[figure.id].append(require_anchor(figure))
+        for joint in figure.joints:
+            if joint.to is not None:
+                points[joint.to].append(joint.at)
+    return points
+
+
+def _hinge_of(figure: Figure, pose: Pose, place: complex) -> Hinge:
+    f, at = figure.map_of(pose), np.array([place])
+    return hinge_at(f(at)[0], f.derivatives(at)[0][0])

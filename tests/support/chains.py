@@ -1,0 +1,67 @@
+"""Discs that hang on each other, and where points of them are."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+from documents import CENTRE, disc_document, inside
+
+from app.document import clip_of, layer_commands as layers
+from app.document.keyframe import Keyframe
+from app.document.layering import Attachment
+from app.document.settings import FrameRange
+from app.motion import Animation, Joints
+
+SIZE = 200.0
+VARIANTS = ("nu", "metric", "scaled-eta")
+
+
+def bent(figure, turn, bend, shift):
+    """The key pose of a figure turned by an angle, bent and moved."""
+    first = figure.keys[0].pose
+    z = figure.domain.cage - CENTRE
+    return replace(first, phi=CENTRE + shift + z * np.exp(1j * turn) + bend * z**2)
+
+
+@cache
+def chain(variant="nu", count=3):
+    """Discs that hang on each other, each bent otherwise, over 48 frames."""
+    document = replace(disc_document(), frames=FrameRange(0, 48))
+    rng = np.random.default_rng(4)
+    first = document.figures[0]
+    for index in range(count):
+        figure = replace(first, id=index, name=str(index), variant=variant)
+        keys = tuple(
+            Keyframe(
+                frame=frame,
+                pose=bent(figure, rng.normal(), 4e-4 * rng.normal(), complex(*rng.normal(size=2))),
+            )
+            for frame in (0, 20, 48)
+        )
+        figure = replace(figure, keys=keys)
+        if index == 0:
+            document = document.with_figure(figure)
+            continue
+        document = layers.add_figure(figure)(document)
+        joint = Attachment(to=index - 1, at=inside(rng), rest=rng.normal())
+        document = layers.attach(index, inside(rng), joint)(document)
+    return document
+
+
+@cache
+def alone(clip, place):
+    """A point of a figure by itself."""
+    return Animation(clip, points=np.array([place]))
+
+
+def exactly(document, figure, place, frame):
+    """Where a point of a figure is by itself, and its f_z."""
+    moved = alone(clip_of(document, figure), place).frame(frame)
+    return moved.positions[0], moved.fz[0]
+
+
+def seen(document, figure, frame):
+    """Where some points of a figure are in the scene."""
+    points = np.array([CENTRE, CENTRE + 30j, CENTRE - 50])
+    own = Animation(clip_of(document, figure), points=points).positions(frame)
+    return Joints(document).placement(figure, frame).on(own)
