@@ -5,12 +5,20 @@ here and a writer in `app.export.writers`; the window and the command line ask f
 project files hold them, by what stands here.
 """
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from types import MappingProxyType
 from typing import Any, Final
 
 from app.errors import LissomError
+
+
+def full_colour(text: str) -> str:
+    """Return a colour as it is kept, "#rrggbb", where "#rgb" is told; else the text as it is."""
+    is_short = re.fullmatch("#[0-9a-fA-F]{3}", text) is not None
+    return "#" + "".join(2 * digit for digit in text[1:]) if is_short else text
+
 
 VIDEO: Final = "pip install 'lissom[video]'"
 

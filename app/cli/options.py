@@ -11,6 +11,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from app.errors import LissomError
+from app.export_formats import full_colour
 from engine.variant import Baseline, Variant
 
 DETAILS = ("coarse", "normal", "fine")
@@ -100,7 +101,7 @@ def add_cut_out_options(parser: argparse.ArgumentParser) -> None:
         metavar="WHICH",
         type=_background,
         default="auto",
-        help="what is removed from an opaque picture: auto, none, or a colour such as #ffffff that "
+        help="what is removed from an opaque picture: auto, none, or a colour such as #fff that "
         "reaches its border (default: %(default)s)",
     )
     either.add_argument(
@@ -135,11 +136,12 @@ def add_cut_out_options(parser: argparse.ArgumentParser) -> None:
 def _background(text: str) -> str | tuple[int, int, int]:
     if text in {"auto", "none"}:
         return text
-    if re.fullmatch("#[0-9a-fA-F]{6}", text) is None:
+    colour = full_colour(text)
+    if re.fullmatch("#[0-9a-fA-F]{6}", colour) is None:
         raise argparse.ArgumentTypeError(
-            f"expected auto, none, or a colour such as #ffffff, not {text!r}"
+            f"expected auto, none, or a colour such as #fff or #ffffff, not {text!r}"
         )
-    red, green, blue = bytes.fromhex(text[1:])
+    red, green, blue = bytes.fromhex(colour[1:])
     return red, green, blue
 
 

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from app.document.body import Bone, pairs_by_name
+from app.document.body import SIDES, Bone, pairs_by_name
 from app.document.checks import (
     NOTHING,
     Unknown,
@@ -28,7 +28,7 @@ from app.document.layering import (
     require_joints,
 )
 from app.document.settings import NATURAL, VARIANTS, Meshing
-from app.document.timing import Spring, Track
+from app.document.timing import Cycle, Spring, Track, require_apart, require_repeatable
 from app.errors import LissomError
 from engine.arrays import Booleans, Complexes, Floats, readonly
 from engine.deform import MOST_HANDLES
@@ -79,6 +79,7 @@ class Figure:
     stillness: bool = True
     tracks: tuple[Track, ...] = ()  # no handle has two
     springs: tuple[Spring, ...] = ()  # no handle has two
+    cycles: tuple[Cycle, ...] = ()  # in the order of their frames
     # float64 (p,): How stiff it is painted, at the vertices of the domain's loops; None is the
     # usual material, 1 everywhere.
     stiffness: Floats | None = field(default=None, hash=False)
@@ -156,11 +157,22 @@ class Figure:
 
     @property
     def ends(self) -> tuple[int, int]:
-        """The frames of the first key and of the last one, those of tracks among them."""
+        """The first and the last frame of what is keyed: poses, tracks and what repeats."""
         frames = [self.keys[0].frame, self.keys[-1].frame]
         for track in self.tracks:
             frames += [track.keys[0].frame, track.keys[-1].frame]
+        for cycle in self.cycles:
+            frames += [cycle.first, cycle.last if cycle.until is None else cycle.until]
         return min(frames), max(frames)
+
+    def cycle_at(self, frame: float) -> Cycle | None:
+        """Return the cycle that a frame is in, be it in its stretch or in its repeats."""
+        return next((cycle for cycle in self.cycles if cycle.covers(frame)), None)
+
+    def source_of(self, frame: int) -> int:
+        """Return the frame at which what a frame shows is keyed: another one where it repeats."""
+        cycle = self.cycle_at(frame)
+        return frame if cycle is None or frame in self.key_frames else int(cycle.source(frame))
 
     @property
     def poses(self) -> tuple[Pose, ...]:
@@ -172,7 +184,7 @@ class Figure:
         """Where the upright axis crosses the picture at which flipped poses are mirrored."""
         if self.mirror is not None:
             return self.mirror
-        paired = pairs_by_name(self.handles)
+        paired = pairs_by_name(self.handles, SIDES)
         places = [self.handle(identity).position.real for identity in paired]
         if not places:
             places = [float(self.domain.outline.real.min()), float(self.domain.outline.real.max())]
@@ -329,6 +341,9 @@ class Figure:
                 key.fronts.keys() <= key.pose.targets.keys(),
                 f"The key at frame {key.frame} puts a handle in front that is not there.",
             )
+        require_apart(self.cycles)
+        for cycle in self.cycles:
+            require_repeatable(cycle, [key.frame for key in self.keys])
 
     def _check_library(self) -> None:
         require_distinct((kept.name for kept in self.library), "Two poses have the name {!r}.")

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import NoReturn
 
+from app.document.body import PAIRS, SidePairs, require_pairs
 from app.document.checks import NOTHING, Unknown, require, require_distinct, require_size
 from app.document.figure import Figure
 from app.document.layering import Choice, Group, paths_to
@@ -33,6 +34,8 @@ class Document:
     # Whether the last frame leads back to the first one: both are the same moment.
     loop: bool = False
     export: ExportSettings = ExportSettings()
+    # Words in the names of layers and handles, or whole names, of which each is the other's side.
+    pairs: SidePairs = PAIRS
     # Fields of the project file that this version does not know and hands on.
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
     # Likewise its members, by their names.
@@ -46,6 +49,7 @@ class Document:
 
     def __post_init__(self) -> None:
         self._check_figures()
+        require_pairs(self.pairs)
         require(
             self.preview is None
             or (self.preview.first in self.frames and self.preview.last in self.frames),
@@ -77,12 +81,11 @@ class Document:
         return tuple(
             each
             for each in self.figures
-            if not each.reference
+            if not (each.reference or self.is_in_hidden(each))
             and (each.id in chosen or not each.hidden)
-            and not self.is_in_hidden_group(each)
         )
 
-    def is_in_hidden_group(self, figure: Figure) -> bool:
+    def is_in_hidden(self, figure: Figure) -> bool:
         """Tell whether a group that a figure is in is hidden at all times."""
         return any(group.hidden for group in self.groups_around(figure.group))
 
@@ -204,6 +207,14 @@ class Document:
                 )
                 taken[identity] = choice.name
 
+    def _refuse_circle(self, circle: Sequence[Figure], frame: float) -> NoReturn:
+        """Refuse figures each of which hangs on the next one, the last one being the first."""
+        links = ", ".join(f"{one.name!r} on {other.name!r}" for one, other in pairwise(circle))
+        when = f" at frame {frame:g}" if any(len(figure.joints) > 1 for figure in circle) else ""
+        raise LissomError(
+            f"{circle[0].name!r} would hang on itself{when}: {links}; detach one of them first."
+        )
+
     def _check_groups(self) -> None:
         known: set[str] = set()
         for group in self.groups:
@@ -218,14 +229,6 @@ class Document:
                 not figure.group or figure.group in known,
                 f"{figure.name!r} is in the group {figure.group!r}, which is not there.",
             )
-
-    def _refuse_circle(self, circle: Sequence[Figure], frame: float) -> NoReturn:
-        """Refuse figures each of which hangs on the next one, the last one being the first."""
-        links = ", ".join(f"{one.name!r} on {other.name!r}" for one, other in pairwise(circle))
-        when = f" at frame {frame:g}" if any(len(figure.joints) > 1 for figure in circle) else ""
-        raise LissomError(
-            f"{circle[0].name!r} would hang on itself{when}: {links}; detach one of them first."
-        )
 
     def _check_clocks(self, figure: Figure) -> None:
         """Refuse what does not come round in a loop."""

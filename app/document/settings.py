@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from typing import Final, Literal, NamedTuple, Self, get_args
 
 from app.document.checks import NOTHING, Unknown, require, require_size
-from app.export_formats import EXPORT_FORMATS, FormatSettings
+from app.export_formats import EXPORT_FORMATS, FormatSettings, full_colour
 from engine.domain import MOST_TRIANGLES
 from engine.domain.outline import Detail
 from engine.maps import Bounds
@@ -118,6 +118,7 @@ class FormatPictures:
     background: str
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "background", full_colour(self.background))
         _require_pictures(self.format, self.size, self.background)
 
 
@@ -130,7 +131,7 @@ def _require_pictures(name: str, size: tuple[int, int] | None, background: str) 
         require_size(size, "export")
     require(
         re.fullmatch(r"transparent|#[0-9a-fA-F]{6}", background) is not None,
-        f"The background is 'transparent' or a colour '#rrggbb', not {background!r}.",
+        f"The background is 'transparent' or a colour '#rrggbb' or '#rgb', not {background!r}.",
     )
 
 
@@ -168,6 +169,7 @@ class ExportSettings(FormatSettings):
     earlier: tuple[FormatPictures, ...] = ()
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "background", full_colour(self.background))
         _require_pictures(self.format, self.size, self.background)
         require(
             self.framing in FRAMINGS,

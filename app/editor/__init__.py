@@ -39,6 +39,7 @@ from app.editor.session import (
     with_project as with_project,
 )
 from app.editor.timeline_view import (
+    CycleDrag as CycleDrag,
     Edge as Edge,
     EdgeDrag as EdgeDrag,
     KeyBox as KeyBox,
@@ -49,6 +50,7 @@ from app.editor.timeline_view import (
     Scrub as Scrub,
     Strip as Strip,
     SwitchDrag as SwitchDrag,
+    TimeDrag as TimeDrag,
     TimeGesture as TimeGesture,
     TrackRow as TrackRow,
     figure_of as figure_of,

@@ -18,9 +18,11 @@ from app.document import (
     Playhead,
     Pose,
     Track,
+    TreeRow,
     UnkeyedPose,
     Variant,
     clip_of,
+    layer_tree,
 )
 from app.editor.timeline_view import KeyRow, KeysOf, Timing, TrackRow, row_of
 from app.editor.work import Afterwards, Carry, Derived, Promise, Pull, Take
@@ -64,12 +66,13 @@ class Flip:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PoseBlend:
-    """A pose of the library, by its name, that is mixed into the one at a frame.
+    """A pose of a figure's library, by its name, that is mixed into the one at a frame.
 
     Its `share` goes from 0 to 1; all that is mixed in one gesture is one step of undo.
     """
 
     name: str
+    owner: int
     gesture: object
     share: float = 0.0
 
@@ -197,6 +200,11 @@ class Project:
     flip: Flip | None = None
     blend: PoseBlend | None = None
     picked_pose: str | None = None  # of the library
+    # The ids of layers that are chosen beside the one that is posed, and of those that alone are
+    # looked at, if any.
+    beside: frozenset[int] = frozenset()
+    solo: frozenset[int] = frozenset()
+    toggled: frozenset[str] = frozenset()  # rows of the tree of layers, open or closed by hand
     listed: int | None = None  # the figure that the list of layers was scrolled to
 
     @property
@@ -215,10 +223,21 @@ class Project:
         return self.document.figure(self.active)
 
     @property
+    def tree(self) -> tuple[TreeRow, ...]:
+        """The rows of the layers that are listed, the one in front on top."""
+        return layer_tree(self.document, self.toggled, self.active)
+
+    @property
+    def layers(self) -> tuple[int, ...]:
+        """The ids of the chosen layers, from front to back; the one that is posed is among them."""
+        chosen = self.beside | {self.active}
+        return tuple(each.id for each in reversed(self.document.figures) if each.id in chosen)
+
+    @property
     def rows(self) -> list[KeyRow]:
         """The rows of the timeline from top to bottom: the figure in front comes first."""
         rows: list[KeyRow] = []
-        for figure in reversed(self.document.figures):
+        for figure in (row.figure for row in self.tree if row.figure):
             rows.append(figure.id)
             if figure.id in self.timing.unfolded:
                 rows += [row_of(figure, track) for track in figure.tracks]
@@ -301,7 +320,8 @@ class Project:
         unkeyed = self.history.unkeyed
         if unkeyed is None or unkeyed.figure != self.active or self.playhead.since is not None:
             return None
-        return unkeyed.pose if unkeyed.frame == self.playhead.frame else None
+        here = self.figure.source_of(self.playhead.frame)
+        return unkeyed.pose if unkeyed.frame == here else None
 
     @property
     def pulls(self) -> list[Pull]:
@@ -318,7 +338,7 @@ class Project:
         """The one on its way that is shown of the figure that is posed."""
         if self.playhead.since is not None:
             return None
-        here = (self.active, self.playhead.frame)
+        here = (self.active, self.figure.source_of(self.playhead.frame))
         mine = [pull for pull in self.pulls if (pull.figure, pull.frame) == here]
         return mine[-1] if mine else None
 

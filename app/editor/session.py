@@ -11,7 +11,6 @@ from app.document import Baseline, Document, Figure, Keyframe, Meshing, Track, T
 from app.editor.action import Action
 from app.editor.dialogs import Dialog, FileDialog
 from app.editor.project import Project
-from app.editor.timeline_view import TrackRow
 from app.editor.work import Jobs
 from app.errors import shown_name
 from app.export import ExportPlan, Poses
@@ -143,9 +142,9 @@ class CopiedKeys:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CopiedTrack:
-    """Keys of a track to be pasted, from its row, and the track as it was then."""
+    """Keys of a track to be pasted, and the track and its figure as they were then."""
 
-    row: TrackRow
+    figure: Figure
     track: Track
     keys: tuple[TrackKey, ...]
 

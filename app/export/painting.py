@@ -83,8 +83,8 @@ class Painter:
         poses: Mapping[int, Poses],
         plan: ExportPlan,
     ) -> None:
-        self._context, self._plan = context, plan
-        self._document, figures = document, document.exported
+        self._context, self._document, self._plan = context, document, plan
+        figures = document.exported
         self._clips = [clip_of(document, figure.id) for figure in figures]
         self._poses = [poses[figure.id] for figure in figures]
         self._background = Backdrop(colour=_colour(plan))

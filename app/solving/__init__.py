@@ -5,6 +5,7 @@ Out: certified poses.
 Imports: `app.motion`, `app.storage`.
 """
 
+from app.solving.carrying import Carriage as Carriage, Likeness as Likeness
 from app.solving.drag import Drag as Drag, Rig as Rig, pose_at as pose_at
 from app.solving.flipping import flip_poses as flip_poses, flipped_targets as flipped_targets
 from app.solving.renewal import Renewal as Renewal, go_on as go_on

@@ -12,6 +12,7 @@ from app.document import (
     NATURAL,
     VARIANTS,
     Bone,
+    Cycle,
     Easing,
     Passing,
     Spring,
@@ -19,7 +20,7 @@ from app.document import (
     Variant,
 )
 from app.errors import LissomError
-from app.solving.script_clocks import parse_springs, parse_tracks, require_rounds
+from app.solving.script_clocks import parse_cycles, parse_springs, parse_tracks, require_rounds
 from app.solving.script_fields import (
     fields_in,
     frame_of,
@@ -46,7 +47,7 @@ from engine.maps import Bounds
 SCHEMA = 1
 LARGEST = 32 * 1024 * 1024  # bytes
 SCENE_FIELDS = ("schema", "fps", "loop", "variant", "bounds", "still")
-OWN_FIELDS = ("anchor", "handles", "keys", "tracks", "springs", "stiff")
+OWN_FIELDS = ("anchor", "handles", "keys", "tracks", "springs", "cycles", "stiff")
 STAGE_FIELDS = ("figures", "choices")
 FIGURE_FIELDS = ("layer", "variant", "bounds", "still", *OWN_FIELDS, "attach", "visible")
 HANDLE_FIELDS = ("at", "front", "extent", "still")
@@ -93,6 +94,7 @@ class FigureScript:
     still: bool = True
     tracks: tuple[Track, ...] = ()
     springs: tuple[Spring, ...] = ()
+    cycles: tuple[Cycle, ...] = ()
     parts: tuple[StiffPart, ...] = ()
     bones: tuple[Bone, ...] = ()
     attach: tuple[ScriptJoint, ...] = ()
@@ -101,8 +103,10 @@ class FigureScript:
 
     @property
     def last(self) -> int:
-        """The frame of the last key, those of tracks among them."""
-        return max([self.keys[-1].frame, *(track.keys[-1].frame for track in self.tracks)])
+        """The frame of the last key, those of tracks among them, or at which repeats end."""
+        ends = [track.keys[-1].frame for track in self.tracks]
+        ends += [cycle.last if cycle.until is None else cycle.until for cycle in self.cycles]
+        return max([self.keys[-1].frame, *ends])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -205,6 +209,9 @@ def _figure(script: JsonObject, where: str, usual: Mapping[str, Any]) -> FigureS
         own["visible"] = _switches(script["visible"], f"{where}visible")
     own["tracks"] = parse_tracks(script.get("tracks", []), f"{where}tracks", tuple(handles))
     own["springs"] = parse_springs(script.get("springs", []), f"{where}springs", tuple(handles))
+    own["cycles"] = parse_cycles(
+        script.get("cycles", []), f"{where}cycles", [key.frame for key in parsed]
+    )
     own["parts"], own["bones"] = parse_material(
         script.get("stiff", []), f"{where}stiff", tuple(handles)
     )

@@ -1,8 +1,11 @@
 """From a new document and a pose script to an animation, solved as the window would solve it."""
 
+import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+
+import numpy as np
 
 from app.document import (
     Document,
@@ -14,7 +17,6 @@ from app.document import (
     Target,
     brushed_stiffness,
     find_shortfall,
-    group_commands,
     handle_commands,
     layer_commands,
     material_commands,
@@ -74,7 +76,8 @@ def pose_document(
     )
     for identity, part in named.items():
         with _whose(part):
-            document = _prepared(document, identity, part)
+            with _among(document, identity, part):
+                document = _prepared(document, identity, part)
             document, told = _with_material(document, identity, part)
         notices += told
     if script.figures[0].layer is not None:
@@ -101,6 +104,27 @@ def _whose(part: FigureScript) -> Iterator[None]:
         raise LissomError(f"layer {part.layer!r}: {error}") from error
 
 
+@contextmanager
+def _among(document: Document, identity: int, part: FigureScript) -> Iterator[None]:
+    """Tell in errors which layer a script took that names none, and how it names them."""
+    try:
+        yield
+    except (LissomError, EngineError) as error:
+        figure = document.figure(identity)
+        names = [repr(each.name) for each in document.figures if each is not figure]
+        places = [handle.at for handle in part.handles.values()]
+        places += [] if part.anchor is None else [part.anchor]
+        are_on_it = figure.covers(np.array(places, dtype=np.complex128)).all()
+        if part.layer is not None or not names or are_on_it:
+            raise
+        own = figure.name
+        raise LissomError(
+            f"{error} The script names no layer, so that its handles are on {own!r}, the one in "
+            f"front. The drawing has also {', '.join(names)}: say which layer is meant in "
+            f'"figures": [{{"layer": {json.dumps(own, ensure_ascii=False)}, ...}}].'
+        ) from error
+
+
 def _by_figure(document: Document, script: PoseScript) -> dict[int, FigureScript]:
     """Return what the script says of the figures, by their ids."""
     named = {}
@@ -123,8 +147,6 @@ def _prepared(document: Document, identity: int, part: FigureScript) -> Document
         document = handle_commands.add_handle(identity, handle.at, name=name)(document)
         document = layer_commands.set_front(identity, added, handle.front, handle.extent)(document)
         document = handle_commands.free_handles(identity, {added}, free=not handle.still)(document)
-    if part.visible is not None:
-        document = group_commands.uncovered(document, [identity])
     figure = document.figure(identity)
     if part.visible is not None:
         # What the script says holds, whatever is hidden in the drawing.
@@ -185,9 +207,20 @@ def _posed(
     for key in part.keys:
         progress(f"solving {whose}the key at frame {key.frame}")
         pose, told = _solve(rig, pose, key)
-        if loop and key is part.keys[-1] and keys and _wishes_alike(rig, pose, keys[0].pose):
+        again = keys[0] if loop and key is part.keys[-1] and keys else _repeated(part, keys, key)
+        is_alike = again is not None and _wishes_alike(rig, pose, again.pose)
+        if again is not None and is_alike:
             # The same moment again, to the last digit.
-            pose, told = keys[0].pose, []
+            pose, told = again.pose, []
+        cycle = next((each for each in part.cycles if each.last == key.frame), None)
+        if again is not None and cycle is not None and cycle.until != cycle.last:
+            if not is_alike or key.fronts:
+                raise LissomError(
+                    f"the key at frame {key.frame} is where {cycle.told} begin again, but it is "
+                    f"not like the key at frame {again.frame}; leave it out, or let them end "
+                    "elsewhere"
+                )
+            continue
         notices += [f"{whose}{notice}" for notice in told]
         fronts = {identities[name]: front for name, front in key.fronts.items()}
         keys.append(
@@ -195,7 +228,16 @@ def _posed(
                 frame=key.frame, pose=pose, easing=key.ease, passing=key.passing, fronts=fronts
             )
         )
-    return replace(figure, keys=tuple(keys)), notices
+    return replace(figure, keys=tuple(keys), cycles=part.cycles), notices
+
+
+def _repeated(part: FigureScript, keys: Sequence[Keyframe], key: PoseKey) -> Keyframe | None:
+    """Return the key of a cycle that is shown again at another key; None where there is none."""
+    for cycle in part.cycles:
+        if key.frame >= cycle.last and cycle.covers(key.frame):
+            source = cycle.source(key.frame)
+            return next((each for each in keys if each.frame == source), None)
+    return None
 
 
 def _wishes_alike(rig: Rig, pose: Pose, other: Pose) -> bool:

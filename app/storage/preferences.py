@@ -11,6 +11,7 @@ from typing import Any, Literal
 
 from app.document import LINEAR, Easing
 from app.errors import LissomError
+from app.export_formats import full_colour
 from app.storage.files import read_file, write_atomically
 
 ThemeName = Literal["dark", "light"]
@@ -149,7 +150,7 @@ def _understood(content: dict[str, Any]) -> Preferences:
         Path(told) if isinstance(told := content.get(name), str) else None
         for name in ("folder", "exported")
     )
-    backdrop = str(content.get("backdrop"))
+    backdrop = full_colour(str(content.get("backdrop"))).lower()
     return Preferences(
         theme="light" if content.get("theme") == "light" else "dark",
         scale=float(number("scale", SMALLEST_SCALE, LARGEST_SCALE)),

@@ -33,7 +33,12 @@ def run(arguments: argparse.Namespace) -> int:
         for figure in document.figures
         if not figure.still
     }
-    print(_as_json(reports) if arguments.json else _as_tables(reports))
+    if arguments.json:
+        print(_as_json(reports))
+    else:
+        # Of one figure the table is all that there is to say.
+        parts = [_overview(reports)] if len(reports) != 1 else []
+        print("\n\n".join([*parts, *(_tables(reports) if arguments.details or not parts else [])]))
     return EXITS[_verdict(reports)]
 
 
@@ -51,10 +56,47 @@ def _as_json(reports: Mapping[str, Report]) -> str:
     return json.dumps(content, indent=2)
 
 
-def _as_tables(reports: Mapping[str, Report]) -> str:
+def _tables(reports: Mapping[str, Report]) -> list[str]:
     if len(reports) == 1:
-        return "".join(map(_as_table, reports.values()))
-    return "\n\n".join(f"{name}\n{_as_table(report)}" for name, report in reports.items())
+        return [_as_table(report) for report in reports.values()]
+    return [f"{name}\n{_as_table(report)}" for name, report in reports.items()]
+
+
+def _overview(reports: Mapping[str, Report]) -> str:
+    """Return the verdict of a scene, and a line for each figure: its worst, and where it is."""
+    if not reports:
+        return "All in all: proven: all that is there stands still."
+    verdict, count = _verdict(reports), len(reports)
+    worst = sum(report.verdict is verdict for report in reports.values())
+    whole = {
+        Verdict.PROVEN: f"all {count} figures are proven to keep their bounds at every moment",
+        Verdict.MEASURED: f"no in-between folds; that bounds are kept is measured only of {worst} "
+        f"of {count} figures",
+        Verdict.OVER: f"{worst} of {count} figures are beyond their bounds, or may fold",
+    }
+    lines = [f"All in all: {WORDS[verdict]}: {whole[verdict]}."]
+    width = max(map(len, reports))
+    lines.append(_line("", NAMES, width=width, cell=9))
+    for name, report in reports.items():
+        cells = [f"{value:.4f}" for value in _numbers(report.reached)]
+        where = ", ".join(_where(report))
+        told = f"{WORDS[report.verdict]}{f' at {where}' if where else ''}"
+        lines.append(_line(name, cells, told, width=width, cell=9))
+    return "\n".join([*lines, "Each figure's keys and intervals: --details."])
+
+
+def _where(report: Report) -> list[str]:
+    """Return what has the verdict of a whole figure, if that is not the best one."""
+    if report.verdict is Verdict.PROVEN:
+        return []
+    is_over = report.verdict is Verdict.OVER
+    found = [f"key {frame}" for frame, own in report.keys if is_over and not own.certified]
+    found += [
+        f"{each.first} to {each.last}"
+        for each in report.intervals
+        if each.verdict is report.verdict
+    ]
+    return found + ["own ways"] * (report.corrected_verdict is report.verdict)
 
 
 def _block(report: Report) -> dict[str, Any]:
@@ -133,6 +175,12 @@ def _as_table(report: Report) -> str:
         )
     for interval in report.intervals:
         lines += _interval_lines(interval)
+    lines += [
+        f"{cycle.told.capitalize()} repeat"
+        f"{'' if cycle.until is None else f' until frame {cycle.until}'}: every repeat is the same "
+        "motion, told once."
+        for cycle in report.cycles
+    ]
     lines += _corrected_lines(report)
     lines.append(
         "In brackets: the worse of the two keyframes; of what is proven, how far that is beyond it"
@@ -198,5 +246,8 @@ def _interval_lines(interval: IntervalReport) -> list[str]:
     return lines
 
 
-def _line(name: str, cells: Sequence[str], verdict: str = "") -> str:
-    return f"{name:<16} {' '.join(f'{cell:>18}' for cell in cells)}  {verdict}".rstrip()
+def _line(
+    name: str, cells: Sequence[str], verdict: str = "", *, width: int = 16, cell: int = 18
+) -> str:
+    told = " ".join(f"{each:>{cell}}" for each in cells)
+    return f"{name:<{width}} {told}  {verdict}".rstrip()

@@ -5,6 +5,9 @@ import argparse
 from app.cli.options import add_project, add_variant_option
 
 EPILOG = """\
+Of a scene of several figures one verdict comes first, then a line for each figure with the worst
+that it reaches, and where; --details has the tables that a drawing of one figure has at once.
+
 Keyframes are certified: their k, sigma_a and sigma_b hold at every point of the shape, not only at
 samples. For each interval between two keys the extremes of the in-betweens over time and space, as
 measured, stand beside the two keys' own; below them what is proven of every moment and every point.
@@ -26,6 +29,7 @@ its Equation (13) by least squares only.
 
 examples:
   lissom certify wave.lissom
+  lissom certify scene.lissom --details
   lissom certify wave.lissom --variant nu --json
 """
 
@@ -34,4 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options of `lissom certify`."""
     add_project(parser)
     add_variant_option(parser)
+    parser.add_argument(
+        "--details", action="store_true", help="print the tables of all figures of a scene, too"
+    )
     parser.add_argument("--json", action="store_true", help="print JSON instead of a table")

@@ -57,7 +57,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--size", metavar="WxH", type=_size, help="in pixels (default: as the framing needs)"
     )
     parser.add_argument(
-        "--background", metavar="COLOUR", help="transparent, or a colour such as #ffffff"
+        "--background", metavar="COLOUR", help="transparent, or a colour such as #fff or #ffffff"
     )
     parser.add_argument(
         "--framing", choices=FRAMINGS, help="the picture's own canvas, or all of the motion"

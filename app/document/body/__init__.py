@@ -14,7 +14,13 @@ from app.document.body.material import (
     usual_as_none as usual_as_none,
 )
 from app.document.body.pairs import (
+    PAIRS as PAIRS,
+    SIDES as SIDES,
+    SidePairs as SidePairs,
     mirrored_name as mirrored_name,
     pairs_by_name as pairs_by_name,
     partners_of as partners_of,
+    read_pairs as read_pairs,
+    require_pairs as require_pairs,
+    written_pairs as written_pairs,
 )

@@ -4,6 +4,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from itertools import pairwise
 
+from app.document.body import SidePairs
 from app.document.commands.command import command, numbered
 from app.document.commands.key_commands import stretched
 from app.document.commands.keys_in_time import require_factor, scaled
@@ -54,6 +55,12 @@ def set_loop(document: Document, *, loop: bool) -> Document:
 def set_export(document: Document, export: ExportSettings) -> Document:
     """Set what the next export makes."""
     return document if export == document.export else replace(document, export=export)
+
+
+@command("Set pairs of names")
+def set_pairs(document: Document, pairs: SidePairs) -> Document:
+    """Set which words, or whole names, tell layers and handles of the two sides apart."""
+    return document if pairs == document.pairs else replace(document, pairs=pairs)
 
 
 @command("Scale time")

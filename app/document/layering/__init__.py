@@ -1,6 +1,6 @@
 """How figures stand among each other: their groups, what they hang on, and when they are seen.
 
-In: ids of figures, paths of groups, and frames.
+In: ids of figures, and frames.
 Out: groups, joints, switches and choices.
 Imports: the values of `app.document`.
 """
@@ -9,7 +9,7 @@ from app.document.layering.attachment import (
     Attachment as Attachment,
     require_joints as require_joints,
 )
-from app.document.layering.grouping import (
+from app.document.layering.groups import (
     BLENDS as BLENDS,
     DEEPEST as DEEPEST,
     GROUP_BLENDS as GROUP_BLENDS,
@@ -17,6 +17,7 @@ from app.document.layering.grouping import (
     Group as Group,
     GroupBlend as GroupBlend,
     paths_to as paths_to,
+    require_path as require_path,
     shared_path as shared_path,
 )
 from app.document.layering.sight import (

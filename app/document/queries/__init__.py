@@ -8,8 +8,6 @@ Imports: the values of `app.document`.
 from app.document.queries.clips import (
     Clip as Clip,
     clip_of as clip_of,
-    closes as closes,
-    intervals as intervals,
 )
 from app.document.queries.compositing import Composite as Composite, composed as composed
 from app.document.queries.fronts import (
@@ -17,6 +15,7 @@ from app.document.queries.fronts import (
     Front as Front,
     fronts_at as fronts_at,
 )
+from app.document.queries.layer_tree import TreeRow as TreeRow, layer_tree as layer_tree
 from app.document.queries.material import (
     are_as_stiff as are_as_stiff,
     brushed_stiffness as brushed_stiffness,
@@ -30,7 +29,14 @@ from app.document.queries.shortfall import (
     falls_short as falls_short,
     find_shortfall as find_shortfall,
 )
-from app.document.queries.sight import is_visible as is_visible
+from app.document.queries.sight import is_visible as is_visible, sights_of as sights_of
+from app.document.queries.spans import (
+    KeySpan as KeySpan,
+    closing_span as closing_span,
+    intervals as intervals,
+    place_at as place_at,
+    spans as spans,
+)
 from app.document.queries.timeline import (
     Moment as Moment,
     changed_stretches as changed_stretches,
@@ -47,6 +53,7 @@ from app.document.queries.tracks import (
 )
 from app.document.queries.transits import (
     Transit as Transit,
-    comes_round as comes_round,
+    are_alike as are_alike,
+    passings_of as passings_of,
     transits as transits,
 )

@@ -1,14 +1,16 @@
-"""The figure's library: poses under names, which are put on the timeline or blended in."""
+"""Libraries: poses under names, which are put on the timeline or blended in."""
 
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
+from typing import NamedTuple
 
-from app.document import Figure, Keyframe, Pose, Target, pose_commands
+from app.document import Figure, KeptPose, Keyframe, Pose, Target, pose_commands
 from app.editor.actions import editing, playback, posing
-from app.editor.poses import putting
+from app.editor.poses import pasting, putting
+from app.editor.poses.receiving import Landing, landing_on
 from app.editor.project import PoseBlend, Project
-from app.editor.session import Session, with_project
+from app.editor.session import CopiedKeys, Session, with_project
 from app.editor.work import Kind, Start
 
 KEEPING = Kind("Keeping a pose", "The pose could not be kept", "hand")
@@ -30,30 +32,68 @@ def _keep(session: Session, project: Project, figure: Figure, pose: Pose) -> Non
     project.picked_pose = project.figure.library[-1].name
 
 
-@with_project
-def apply(session: Session, project: Project, name: str) -> None:
-    """Put a pose of the library into a key at the present frame."""
-    _put(session, project, name, putting.stand_at_frame(session, project))
+class PoseOffer(NamedTuple):
+    """A pose of a library that the figure that is posed can take, and whose it is."""
+
+    owner: Figure
+    kept: KeptPose
+
+
+def offers(project: Project) -> list[PoseOffer]:
+    """Return the poses of the figure's own library, then those of others with its handles' names.
+
+    They come to it as they do by pasting.
+    """
+    own = project.figure
+    figures = [own, *(each for each in project.document.figures if each is not own)]
+    return [
+        PoseOffer(each, kept)
+        for each in figures
+        for kept in each.library
+        if not _landing(project, PoseOffer(each, kept)).hindrance
+    ]
 
 
 @with_project
-def apply_at(session: Session, project: Project, name: str, frame: int) -> None:
-    """Put a pose of the library into a key at a frame, and go there."""
+def apply(session: Session, project: Project, name: str, owner: int | None = None) -> None:
+    """Put a pose of a library into a key at the present frame; by default the figure's own."""
+    _put(session, project, _offer(project, name, owner), putting.stand_at_frame(session, project))
+
+
+@with_project
+def apply_at(
+    session: Session, project: Project, name: str, frame: int, owner: int | None = None
+) -> None:
+    """Put a pose of a library into a key at a frame, and go there."""
     putting.stand_at_frame(session, project)
-    _put(session, project, name, frame)
+    _put(session, project, _offer(project, name, owner), frame)
     playback.seek(session, frame)
 
 
-def _put(session: Session, project: Project, name: str, frame: int) -> None:
-    pose = project.figure.kept_pose(name).pose
-    project.picked_pose = name
-    keys = {project.active: [Keyframe(frame=0, pose=pose)]}
-    putting.put(session, project, frame, keys, label="Use pose")
+def _offer(project: Project, name: str, owner: int | None) -> PoseOffer:
+    figure = project.figure if owner is None else project.document.figure(owner)
+    return PoseOffer(figure, figure.kept_pose(name))
+
+
+def _landing(project: Project, offer: PoseOffer) -> Landing:
+    copied = CopiedKeys(offer.owner, (Keyframe(frame=0, pose=offer.kept.pose),))
+    return landing_on(project.document, copied, project.figure, "as it is")
+
+
+def _put(session: Session, project: Project, offer: PoseOffer, frame: int) -> None:
+    landing = _landing(project, offer)
+    if landing.hindrance:
+        session.tell(landing.hindrance)
+        return
+    project.picked_pose = offer.kept.name
+    pasting.bring(session, project, [landing], "as it is", frame, label="Use pose")
 
 
 @with_project
-def blend(session: Session, project: Project, name: str, share: float) -> None:
-    """Mix a pose of the library into the one that is shown, as it was when this began.
+def blend(
+    session: Session, project: Project, name: str, share: float, owner: int | None = None
+) -> None:
+    """Mix a pose of a library into the one that is shown, as it was when this began.
 
     Parameters
     ----------
@@ -61,20 +101,24 @@ def blend(session: Session, project: Project, name: str, share: float) -> None:
     share : float
         Of the pose in the library: 0 changes nothing, 1 is that pose itself. Between them the
         handles are on the way, and the shape follows within its limits.
+    owner : int, optional
+        Whose pose it is; by default the figure's own.
     """
-    pose = project.figure.kept_pose(name).pose
-    if project.blend is None or project.blend.name != name:
-        project.blend = PoseBlend(name=name, gesture=object())
-    project.blend = replace(project.blend, share=share)
+    offer = _offer(project, name, owner)
+    begun = project.blend
+    if begun is None or (begun.name, begun.owner) != (name, offer.owner.id):
+        project.blend = begun = PoseBlend(name=name, owner=offer.owner.id, gesture=object())
+    project.blend = replace(begun, share=share)
+    wishes = pasting.wishes_of(project, _landing(project, offer), "as it is")
 
     def mix(start: Start, _: Mapping[int, Target]) -> Mapping[int, Target]:
         return {
             identity: _between(start.targets[identity], target, share)
-            for identity, target in pose.targets.items()
+            for identity, target in wishes.items()
             if identity in start.targets
         }
 
-    posing.pull(session, mix, gesture=project.blend.gesture)
+    posing.pull(session, mix, gesture=begun.gesture)
 
 
 @with_project
@@ -82,7 +126,7 @@ def end_blend(session: Session, project: Project) -> None:
     """Let the pose be as it is mixed now; wholly mixed in, it is that of the library itself."""
     blend, project.blend = project.blend, None
     posing.let_go(session)
-    if blend is not None and blend.share >= 1.0:
+    if blend is not None and blend.share >= 1.0 and blend.owner == project.active:
         for pull in [pull for pull in project.pulls if blend.gesture in pull.wishes]:
             pose = project.document.figure(pull.figure).kept_pose(blend.name).pose
             posing.end_at(session, project, pull, pose)

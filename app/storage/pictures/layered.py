@@ -179,6 +179,9 @@ def _trimmed(layer: Layer) -> _Trimmed:
     drawn = picture.rgba[..., 3] > 0
     top, bottom = np.flatnonzero(drawn.any(axis=1))[[0, -1]].tolist()
     left, right = np.flatnonzero(drawn.any(axis=0))[[0, -1]].tolist()
+    # One more each way: what is opaque all over would be a picture that stands still.
+    top, left = max(top - 1, 0), max(left - 1, 0)
+    bottom, right = min(bottom + 1, height - 1), min(right + 1, width - 1)
     if (right - left + 1) * (bottom - top + 1) > CUT_OFF * width * height:
         return _Trimmed(layer.data, picture, 0j)
     rgba = readonly(picture.rgba[top : bottom + 1, left : right + 1])

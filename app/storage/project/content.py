@@ -10,9 +10,11 @@ import numpy as np
 
 from app.document import (
     FRAME_NAMES,
+    PAIRS,
     Attachment,
     Bone,
     Choice,
+    Cycle,
     Document,
     Easing,
     ExportSettings,
@@ -181,6 +183,12 @@ SPRING = record(
     Field("strength", NUMBER, usual=1.0),
     Field("enabled", FLAG, usual=True),
 )
+CYCLE = record(
+    Cycle,
+    Field("first", WHOLE),
+    Field("last", WHOLE),
+    Field("until", optional(WHOLE)),
+)
 BONE = record(
     Bone,
     Field("ends", pair(WHOLE, WHOLE, "two handles")),
@@ -247,6 +255,7 @@ FIGURE = record(
     Field("stillness", FLAG, usual=False),
     Field("tracks", several(TRACK), usual=()),
     Field("springs", several(SPRING), usual=()),
+    Field("cycles", several(CYCLE), usual=()),
     Field("bones", several(BONE), usual=()),
     Field("stiffness", FLAG, lambda figure: figure.stiffness is not None, usual=False),
     Field("variant", TEXT),
@@ -266,9 +275,7 @@ FIGURE = record(
     Field("clipped", FLAG, usual=False),
     Field("group", TEXT, usual=""),
     # Its joints: the first one, and those that come later.
-    Field(
-        "attachment", optional(ATTACHMENT), lambda each: next(iter(each.joints), None), usual=None
-    ),
+    Field("attachment", optional(ATTACHMENT), lambda each: (*each.joints, None)[0], usual=None),
     Field("handovers", several(ATTACHMENT), lambda each: each.joints[1:], usual=()),
 )
 CHOICE = record(
@@ -289,8 +296,9 @@ DOCUMENT = record(
     Field("loop", FLAG),
     Field("export", EXPORT),
     Field("size", optional(SIZE), usual=None),
-    Field("groups", several(GROUP), usual=()),
+    Field("pairs", several(pair(TEXT, TEXT, "two words")), usual=PAIRS),
     Field("choices", several(CHOICE), usual=()),
+    Field("groups", several(GROUP), usual=()),
 )
 
 

@@ -1,21 +1,22 @@
 """The library of poses: pictures that are clicked, dragged onto the timeline or blended in."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from itertools import groupby
 
 from imgui_bundle import ImVec2, imgui
 
-from app.document import KeptPose, Pose
+from app.document import KeptPose, Pose, written_pairs
 from app.editor import Action, Project, Session, do
 from app.editor.actions import viewing
-from app.editor.poses import flipping, library
+from app.editor.poses import flipping, library, pasting
 from app.ui.shortcuts import bound_button, bound_text_button
 from app.ui.style import (
-    FILL,
     POSE_PAYLOAD,
     SMALL,
     Look,
     Scale,
     at_end,
+    beside,
     density,
     heading,
     ink,
@@ -32,7 +33,7 @@ from app.ui.style import (
 
 TILE, LEAST_GAP = 6.6, 0.6  # em: side of a picture, and between two
 SHARES = Scale(left=0.0, right=1.0)
-Pictures = Callable[[Pose, int], int | None]
+Pictures = Callable[[int, Pose, int], int | None]
 
 
 def draw(session: Session, look: Look, project: Project, pictures: Pictures) -> list[Action]:
@@ -42,8 +43,9 @@ def draw(session: Session, look: Look, project: Project, pictures: Pictures) -> 
     heading(look, "Poses", framed=True)
     at_end(1.15 * imgui.get_frame_height())
     actions = bound_button(session, look, "keep pose")
-    if project.figure.library:
-        actions += _tiles(look, project, pictures)
+    offers = library.offers(project)
+    if offers:
+        actions += _libraries(look, project, offers, pictures)
         small(
             look,
             "Click a pose to use it at this frame, drag it onto the timeline, or drag the bar "
@@ -55,42 +57,69 @@ def draw(session: Session, look: Look, project: Project, pictures: Pictures) -> 
     return actions + _flip(session, look, project)
 
 
-def _tiles(look: Look, project: Project, pictures: Pictures) -> list[Action]:
+def _libraries(
+    look: Look, project: Project, offers: Sequence[library.PoseOffer], pictures: Pictures
+) -> list[Action]:
+    """Draw the figure's own poses, then those of each other layer below its name."""
+    actions: list[Action] = []
+    numbered = enumerate(offers)
+    for owner, group in groupby(numbered, key=lambda each: each[1].owner.id):
+        if owner != project.active:
+            name = project.document.figure(owner).name
+            title = f"Of {shortened(name, imgui.get_content_region_avail().x - 4 * look.em)}"
+            if not imgui.tree_node_ex(f"{title}###of {owner}", imgui.TreeNodeFlags_.default_open):
+                continue
+        imgui.push_id(owner)
+        actions += _tiles(look, project, list(group), pictures)
+        imgui.pop_id()
+        if owner != project.active:
+            imgui.tree_pop()
+    return actions
+
+
+def _tiles(
+    look: Look,
+    project: Project,
+    offers: Sequence[tuple[int, library.PoseOffer]],
+    pictures: Pictures,
+) -> list[Action]:
     actions: list[Action] = []
     room, em = imgui.get_content_region_avail().x, look.em
     side = TILE * em
     columns = max(1, int((room + LEAST_GAP * em) // (side + LEAST_GAP * em)))
     gap = (room - columns * side) / max(columns - 1, 1)
     left = imgui.get_cursor_pos_x()
-    for index, kept in enumerate(project.figure.library):
-        if index % columns:
-            imgui.same_line(left + (index % columns) * (side + gap))
+    for place, (index, (owner, kept)) in enumerate(offers):
+        if place % columns:
+            imgui.same_line(left + (place % columns) * (side + gap))
         imgui.begin_group()
         imgui.push_id(kept.name)
-        actions += _tile(look, project, kept, index, pictures)
-        actions += _blend(look, project, kept, side)
-        taken = (other.name for other in project.figure.library if other is not kept)
-        name = name_popup(look, "name", kept.name, taken, "pose")
-        if name is not None:
-            actions.append(do(library.rename, kept.name, name))
+        texture = pictures(owner.id, kept.pose, round(TILE * em * density()))
+        actions += _tile(look, project, library.PoseOffer(owner, kept), index, texture)
+        actions += _blend(look, project, library.PoseOffer(owner, kept), side)
+        if owner.id == project.active:
+            taken = (other.name for other in owner.library if other is not kept)
+            name = name_popup(look, "name", kept.name, taken, "pose")
+            if name is not None:
+                actions.append(do(library.rename, kept.name, name))
         imgui.pop_id()
         imgui.end_group()
     return actions
 
 
 def _tile(
-    look: Look, project: Project, kept: KeptPose, index: int, pictures: Pictures
+    look: Look, project: Project, offer: library.PoseOffer, index: int, texture: int | None
 ) -> list[Action]:
+    owner, kept = offer
     palette, draw_list, em = look.palette, imgui.get_window_draw_list(), look.em
     actions: list[Action] = []
     low = imgui.get_cursor_screen_pos()
     size = ImVec2(TILE * em, (TILE + 1.1) * em)
     if imgui.invisible_button(f"pose {kept.name}", size):
-        actions.append(do(library.apply, kept.name))
+        actions.append(do(library.apply, kept.name, owner.id))
     hot = imgui.is_item_hovered()
     high = low + ImVec2(TILE * em, TILE * em)
     draw_list.add_rect_filled(low, high, ink(palette.desk), 0.4 * em)
-    texture = pictures(kept.pose, round(TILE * em * density()))
     if texture is not None:
         _show(texture, low, high, 0.4 * em)
     is_picked = kept.name == project.picked_pose
@@ -109,7 +138,7 @@ def _tile(
             _show(texture, corner, imgui.get_item_rect_max(), 0.2 * em)
         imgui.end_drag_drop_source()
     tip(f"{kept.name}: click to use it at this frame, right click for more")
-    return actions + _menu(kept)
+    return actions + _menu(kept, owner.id, is_own=owner.id == project.active)
 
 
 def _show(texture: int, low: ImVec2, high: ImVec2, rounding: float) -> None:
@@ -124,27 +153,28 @@ def _show(texture: int, low: ImVec2, high: ImVec2, rounding: float) -> None:
     )
 
 
-def _blend(look: Look, project: Project, kept: KeptPose, width: float) -> list[Action]:
-    begun = project.blend
-    share = begun.share if begun is not None and begun.name == kept.name else 0.0
+def _blend(look: Look, project: Project, offer: library.PoseOffer, width: float) -> list[Action]:
+    begun, name, owner = project.blend, offer.kept.name, offer.owner.id
+    is_this = begun is not None and (begun.name, begun.owner) == (name, owner)
+    share = begun.share if begun is not None and is_this else 0.0
     # Near the name above it.
     imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - 0.5 * look.em)
     moved = track(look, "blend", share, SHARES, width, colour=look.palette.accent)
     tip(f"{100 * share:.0f}% blended in" if share else "Drag to blend it into the present pose")
     if moved is None:
         return []
-    actions = [do(library.blend, kept.name, moved.value)]
+    actions = [do(library.blend, name, moved.value, owner)]
     return [*actions, do(library.end_blend)] if moved.is_final else actions
 
 
-def _menu(kept: KeptPose) -> list[Action]:
+def _menu(kept: KeptPose, owner: int, *, is_own: bool) -> list[Action]:
     actions: list[Action] = []
     asks = False
     if imgui.begin_popup_context_item("menu"):
         if imgui.menu_item_simple("Use at this frame", "Click"):
-            actions.append(do(library.apply, kept.name))
-        asks = imgui.menu_item_simple("Rename…")
-        if imgui.menu_item_simple("Delete"):
+            actions.append(do(library.apply, kept.name, owner))
+        asks = is_own and imgui.menu_item_simple("Rename…")
+        if is_own and imgui.menu_item_simple("Delete"):
             actions.append(do(library.delete, kept.name))
         imgui.end_popup()
     if asks:
@@ -153,7 +183,10 @@ def _menu(kept: KeptPose) -> list[Action]:
 
 
 def _flip(session: Session, look: Look, project: Project) -> list[Action]:
-    figure, actions = project.figure, bound_text_button(session, "paste flipped", FILL)
+    figure, actions = project.figure, list[Action]()
+    widths = beside(2)
+    for name in ("paste flipped", "paste swapped"):
+        actions += bound_text_button(session, name, next(widths))
     label(look, "Axis")
     if imgui.checkbox("##axis", session.overlays.mirror)[0]:
         actions.append(do(viewing.toggle, "mirror"))
@@ -170,9 +203,14 @@ def _flip(session: Session, look: Look, project: Project) -> list[Action]:
     hint = "Put the axis in the middle of the pairs of handles, or of the shape"
     if text_button("Middle", button, hint, enabled=figure.mirror is not None):
         actions.append(do(flipping.place_axis, None))
+    label(look, "Pairs")
+    _, text = imgui.input_text("##pairs", written_pairs(project.document.pairs))
+    if imgui.is_item_deactivated_after_edit():
+        actions.append(do(pasting.set_pairs, text))
+    tip("Words that tell two sides apart, or two whole names, with a slash between: L/R, near/far")
     small(
         look,
-        "Handles are pairs by their names, such as “paw.L” and “paw.R” or “left ear” and "
-        "“right ear”, or by their places.",
+        "Layers and handles are pairs by their names, such as “paw.L” and “paw.R”, or by their "
+        "places. Flipped mirrors, swapped does not.",
     )
     return actions

@@ -28,6 +28,8 @@ class Binding:
     # What it would do now, in words that follow the label in its menu.
     detail: Callable[[Session, Project], str] | None = None
     possible: Test | None = None  # whether it can be done now; always where there is none
+    # Why it cannot be done now, in a sentence; empty where it can. In place of `possible`.
+    why_not: Callable[[Session, Project], str] | None = None
     active: Callable[[Session], object] | None = None  # whether what it switches is on
     repeats: bool = False  # whether it is done again while the key is held
 
@@ -50,7 +52,14 @@ class Binding:
         """Tell whether it can be done now."""
         if session.project is None:
             return not self.needs_project
+        if self.why_not is not None:
+            return not self.why_not(session, session.project)
         return self.possible is None or bool(self.possible(session, session.project))
+
+    def hindrance(self, session: Session) -> str:
+        """Return in a sentence why it cannot be done now; empty where it can, or nothing says."""
+        project = session.project
+        return "" if project is None or self.why_not is None else self.why_not(session, project)
 
     def is_active(self, session: Session) -> bool:
         """Tell whether what it switches is on, also where it cannot be switched now."""

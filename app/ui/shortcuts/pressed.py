@@ -26,8 +26,12 @@ def pressed(session: Session) -> list[Action]:
         flags = imgui.InputFlags_.route_always
         if binding.repeats:
             flags |= imgui.InputFlags_.repeat
-        if any(imgui.shortcut(chord, flags) for chord in keys) and binding.is_possible(session):
+        if not any(imgui.shortcut(chord, flags) for chord in keys):
+            continue
+        if binding.is_possible(session):
             actions.append(binding.action)
+        elif reason := binding.hindrance(session):
+            actions.append(do(Session.tell, reason))
     return actions + _nudges(session) + _space(session)
 
 

@@ -1,5 +1,6 @@
 """All actions that have a name, in the order of the menus: adding one is adding it here."""
 
+from functools import partial
 from typing import Any
 
 from imgui_bundle import hello_imgui, icons_fontawesome_6 as icons
@@ -9,6 +10,7 @@ from app.editor import Project, Session, do, layering, with_project
 from app.editor.actions import (
     OverlayName,
     cutting,
+    cycles,
     editing,
     exporting,
     files,
@@ -22,7 +24,7 @@ from app.editor.actions import (
     tracks,
     viewing,
 )
-from app.editor.poses import copying, flipping, library
+from app.editor.poses import copying, library, pasting, receiving
 from app.editor.tools import moving
 from app.ui.panel import bring_to_front
 from app.ui.shortcuts.binding import Binding
@@ -41,6 +43,19 @@ def _redo_label(_: Session, project: Project) -> str:
 def _copied(session: Session, project: Project) -> str:
     count = project.count_chosen if copying.copies_keys(session, project) else 0
     return f"{count} keys" if count > 1 else "pose"
+
+
+def _stretch(_: Session, project: Project) -> str:
+    stretch = cycles.chosen_stretch(project)
+    return "" if stretch is None else f"frames {stretch[0]} to {stretch[1]}"
+
+
+def _onto(session: Session, project: Project, way: receiving.PasteWay) -> str:
+    """Tell onto which layers is pasted, where that is not the one that is posed alone."""
+    onto = [each.figure for each in receiving.landings(session, project, way)]
+    if len(onto) > 1:
+        return f"onto {len(onto)} layers"
+    return "".join(f"onto {figure.name}" for figure in onto if figure.id != project.active)
 
 
 def _all(session: Session, _: Project) -> str:
@@ -157,26 +172,49 @@ MENUS: dict[str, dict[str, Binding]] = {
             detail=_redo_label,
         ),
         "copy": Binding("Copy", do(copying.copy), "Ctrl+C", parted=True, detail=_copied),
-        "paste": Binding("Paste", do(copying.paste), "Ctrl+V", possible=copying.can_paste),
+        "copy all": Binding(
+            "Copy poses of all layers",
+            do(copying.copy_all),
+            "Ctrl+Alt+C",
+            possible=lambda _, project: len(project.document.figures) > 1,
+        ),
+        "paste": Binding(
+            "Paste",
+            do(pasting.paste),
+            "Ctrl+V",
+            detail=partial(_onto, way="as it is"),
+            why_not=partial(pasting.why_not, way="as it is"),
+        ),
         "paste flipped": Binding(
             "Paste flipped",
-            do(flipping.paste),
+            do(pasting.paste, "flipped"),
             "Ctrl+Shift+V",
             icon=icons.ICON_FA_PASTE,
-            hint="Put the copied pose in a key at this frame, left and right exchanged",
-            possible=copying.copied_here,
+            hint="Put what was copied in a key at this frame, mirrored: left and right exchange",
+            detail=partial(_onto, way="flipped"),
+            why_not=partial(pasting.why_not, way="flipped"),
+        ),
+        "paste swapped": Binding(
+            "Paste swapped",
+            do(pasting.paste, "swapped"),
+            "Ctrl+Shift+X",
+            icon=icons.ICON_FA_RIGHT_LEFT,
+            hint="Put what was copied in a key at this frame: near and far, or left and right, "
+            "exchange, and nothing is mirrored",
+            detail=partial(_onto, way="swapped"),
+            why_not=partial(pasting.why_not, way="swapped"),
         ),
         "paste on selected": Binding(
             "Paste on selected handles",
-            do(copying.paste_on_selected),
+            do(pasting.paste_on_selected),
             "Ctrl+Alt+V",
-            possible=copying.copied_for_selected,
+            why_not=partial(pasting.why_not_on_selected, way="as it is"),
         ),
         "flip on selected": Binding(
             "Paste flipped on selected",
-            do(flipping.paste_on_selected),
+            do(pasting.paste_on_selected, "flipped"),
             "Ctrl+Alt+Shift+V",
-            possible=copying.copied_for_selected,
+            why_not=partial(pasting.why_not_on_selected, way="flipped"),
         ),
         "keep pose": Binding(
             "Keep pose",
@@ -507,6 +545,17 @@ MENUS: dict[str, dict[str, Binding]] = {
         "ease in": Binding("Ease in", do(keys.ease, PRESETS["in"]), "Shift+F9"),
         "ease out": Binding("Ease out", do(keys.ease, PRESETS["out"]), "Ctrl+Shift+F9"),
         "ease not": Binding("Linear", do(keys.ease, LINEAR), "Alt+F9"),
+        "repeat": Binding(
+            "Repeat",
+            do(cycles.repeat),
+            detail=_stretch,
+            possible=lambda _, project: cycles.chosen_stretch(project),
+            parted=True,
+        ),
+        "repeats into keys": Binding(
+            "Make repeats into keys", do(cycles.make_keys), possible=cycles.cycle_here
+        ),
+        "repeat no more": Binding("Stop repeating", do(cycles.stop), possible=cycles.cycle_here),
     },
     "Help": {
         "shortcuts": Binding(

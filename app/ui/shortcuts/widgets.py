@@ -4,7 +4,7 @@ from imgui_bundle import imgui, imgui_ctx
 
 from app.editor import Action, Session
 from app.ui.shortcuts.table import BINDINGS
-from app.ui.style import Look, icon_button, text_button
+from app.ui.style import Look, icon_button, text_button, tip
 
 
 def bound_item(session: Session, name: str) -> list[Action]:
@@ -16,6 +16,9 @@ def bound_item(session: Session, name: str) -> list[Action]:
         binding.is_active(session),
         binding.is_possible(session),
     )
+    reason = binding.hindrance(session)
+    if reason:
+        tip(reason)
     return [binding.action] if clicked else []
 
 
@@ -28,7 +31,7 @@ def bound_text_button(session: Session, name: str, width: float) -> list[Action]
         is_pressed = text_button(
             f"{binding.icon}  {binding.label}###{name}",
             width,
-            binding.hint or binding.label,
+            binding.hindrance(session) or binding.hint or binding.label,
             binding.keys_in_words,
             enabled=binding.is_possible(session),
         )

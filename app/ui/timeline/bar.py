@@ -85,6 +85,8 @@ def _key_buttons(session: Session, look: Look, project: Project) -> list[Action]
     actions += _to_key(look, *previous)
     imgui.same_line(0, TIGHT * look.em)
     frame = playback.current_frame(session, project)
+    if project.chosen_track is None:
+        frame = playback.posed_frame(session, project)
     is_free = project.unkeyed is not None or frame not in playback.keyed_frames(project)
     imgui.begin_disabled(not is_free)
     actions += bound_button(session, look, "insert key")

@@ -12,8 +12,10 @@ from app.ui.timeline.bands import Bands, tag
 def draw_dropped(bands: Bands) -> list[Action]:
     """Show where a pose that is dragged here would make a key; make it where it is let go."""
     payload = imgui.get_drag_drop_payload_py_id()
-    kept = bands.project.figure.library
-    if payload is None or payload.type != POSE_PAYLOAD or payload.data_id >= len(kept):
+    if payload is None or payload.type != POSE_PAYLOAD:
+        return []
+    offers = library.offers(bands.project)
+    if payload.data_id >= len(offers):
         return []
     if imgui.is_key_pressed(imgui.Key.escape):
         imgui.internal.clear_drag_drop()
@@ -28,5 +30,6 @@ def draw_dropped(bands: Bands) -> list[Action]:
     draw_list.add_line(ImVec2(x, bands.track_top), ImVec2(x, bands.track_bottom), accent, 2.0)
     tag(bands, x, f"{frame}")
     if imgui.is_mouse_released(imgui.MouseButton_.left):
-        return [do(library.apply_at, kept[payload.data_id].name, frame)]
+        owner, kept = offers[payload.data_id]
+        return [do(library.apply_at, kept.name, frame, owner.id)]
     return []

@@ -4,7 +4,7 @@ from itertools import pairwise
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
-from app.document import Document, Figure, Switch, is_visible, layer_commands
+from app.document import Document, Figure, Switch, is_visible, layer_commands, sights_of
 from app.editor import Action, SwitchDrag, do
 from app.editor.actions import editing, timeline_pointing
 from app.ui.style import CHOSEN, SMALL, begin_tip, in_hand, ink, is_pressed, shortened, sized
@@ -93,9 +93,7 @@ def _draw_scrolled(bands: Bands) -> None:
 
 def _hidden(document: Document, figure: Figure) -> list[tuple[int | None, int | None]]:
     """Return the stretches in which a figure is hidden; None is where there is no end to them."""
-    if figure.hidden or document.is_in_hidden_group(figure):
-        return [(None, None)]
-    switches = figure.switches
+    switches = sights_of(document, figure)
     stretches: list[tuple[int | None, int | None]] = [
         (switch.frame, after.frame) for switch, after in pairwise(switches) if not switch.visible
     ]

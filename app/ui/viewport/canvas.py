@@ -66,7 +66,7 @@ class Canvas:
         self._fit_targets(session.screen, 1 + is_split)
         if self._drawing is None:
             self._drawing = Drawing(self._renderer, project)
-        posable = partial(self._drawing.drawn_mesh, project.active, number=SMALL_PICTURE)
+        posable = partial(self._drawing.drawn_mesh, number=SMALL_PICTURE)
         self.pose_pictures.draw(session, project, posable)
         inputs = _inputs(session, project)
         if inputs != self._drawn:
@@ -129,6 +129,8 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
         session.tint,
         project.document.figures,
         project.document.groups,
+        project.document.choices,
+        project.solo,
         session.overlays,
         session.export_frame,
         session.preferences,
@@ -208,6 +210,8 @@ def _posed(
     for figure in document.figures:
         shown = shows[figure.id]
         if shown is None or not is_visible(document, figure, shown.frame):
+            continue
+        if project.solo and figure.id not in project.solo:
             continue
         pose = drawing.drawn_mesh(figure.id, shown.mesh, number).pose(
             shown.vertices, placement=shown.placement

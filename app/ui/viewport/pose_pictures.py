@@ -1,4 +1,4 @@
-"""Small pictures of the poses in a figure's library."""
+"""Small pictures of the poses in figures' libraries."""
 
 from collections.abc import Callable
 
@@ -14,50 +14,54 @@ MARGIN = 0.06  # of the side, left free around the shape
 
 
 class PosePictures:
-    """Owner of one small texture for each pose that was asked for."""
+    """Owner of one small texture for each pose of a figure, by its id, that was asked for."""
 
     def __init__(self, renderer: Renderer) -> None:
         self._renderer = renderer
-        self._targets: dict[Pose, RenderTarget] = {}
-        self._wanted: set[Pose] = set()
-        # Of all that is drawn: the figure's mesh, how large, and in which theme.
+        self._targets: dict[tuple[int, Pose], RenderTarget] = {}
+        self._wanted: set[tuple[int, Pose]] = set()
+        # Of all that is drawn: the figures' meshes, how large, and in which theme.
         self._kind: tuple[object, ...] = ()
         self._side = 1
 
-    def get(self, pose: Pose, side: int) -> int | None:
+    def get(self, figure: int, pose: Pose, side: int) -> int | None:
         """Return the texture of a pose, so many pixels wide and high; None before it is drawn."""
-        self._wanted.add(pose)
+        self._wanted.add((figure, pose))
         self._side = side
-        target = self._targets.get(pose)
+        target = self._targets.get((figure, pose))
         return None if target is None else target.texture.glo
 
     def draw(
-        self, session: Session, project: Project, posable: Callable[[PosableMesh], DrawnMesh]
+        self, session: Session, project: Project, posable: Callable[[int, PosableMesh], DrawnMesh]
     ) -> None:
         """Draw what was asked for in this frame, and let all else go.
 
-        From `posable` comes a mesh on the graphics card that can be posed.
+        From `posable` comes a figure's mesh on the graphics card that can be posed.
         """
-        mesh = project.puppet.store.mesh
-        kind = (mesh, self._side, session.preferences.theme)
+        meshes = {
+            figure: project.puppets[figure].store.mesh
+            for figure, _ in self._wanted
+            if figure in project.puppets
+        }
+        kind = (meshes, self._side, session.preferences.theme)
         if kind != self._kind:
             self.release()
             self._kind = kind
-        for pose in self._targets.keys() - self._wanted:
-            self._targets.pop(pose).release()
-        known = set(project.figure.poses) & self._wanted
-        for pose in known - self._targets.keys():
+        for each in self._targets.keys() - self._wanted:
+            self._targets.pop(each).release()
+        desk = Backdrop(colour=plain(PALETTES[session.preferences.theme].desk))
+        for figure, pose in self._wanted - self._targets.keys():
+            if figure not in meshes or pose not in project.document.figure(figure).poses:
+                continue
+            mesh = meshes[figure]
             positions = mesh.posed(pose)
             vertices = Placed(positions=positions, triangles=mesh.domain.mesh.triangles)
             size = (self._side, self._side)
             view = fit_view(*box_around(positions), size, margin=MARGIN * self._side)
-            desk = plain(PALETTES[session.preferences.theme].desk)
-            meshes = (posable(mesh).pose(vertices),)
             target = RenderTarget(self._renderer.programs, size)
-            self._renderer.draw(
-                target, view, Scene(background=Backdrop(colour=desk), meshes=meshes)
-            )
-            self._targets[pose] = target
+            scene = Scene(background=desk, meshes=(posable(figure, mesh).pose(vertices),))
+            self._renderer.draw(target, view, scene)
+            self._targets[figure, pose] = target
         self._wanted.clear()
 
     def release(self) -> None:

@@ -244,8 +244,8 @@ class Window:
         pictures = SplitTextures(self._canvas.texture, self._canvas.twin_texture)
         return viewport.draw(session, look, project, pictures)
 
-    def _pose_picture(self, pose: Pose, side: int) -> int | None:
-        return self._canvas.pose_pictures.get(pose, side) if self._canvas else None
+    def _pose_picture(self, figure: int, pose: Pose, side: int) -> int | None:
+        return self._canvas.pose_pictures.get(figure, pose, side) if self._canvas else None
 
     def _layer_picture(self, identity: int, small: Bytes) -> Thumbnail | None:
         return self._layer_pictures.get(identity, small) if self._layer_pictures else None

@@ -123,6 +123,7 @@ def test_a_background_is_told_by_its_colour(photo, tmp_path, capsys):
     for words, expected, said in (
         ([], [True, True, True], "kept as a whole rectangle"),
         (["--background", "none"], [True, True, True], ""),
+        (["--background", "#f0f"], [True, True, True], "no background of the colour #ff00ff"),
         (["--background", "#28a046"], [True, False, True], "background removed"),
         (["--background", "#ff00ff"], [True, True, True], "no background of the colour #ff00ff"),
         (["--background", "#28a046", "--tolerance", "145"], [True, False, False], "removed"),

@@ -1,6 +1,7 @@
 """A drawing on layers, from its script to frames, as a person does it in a shell."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,7 +11,8 @@ from PIL import Image, ImageDraw
 from app.cli.main import main
 from app.document import is_visible
 from app.motion import Joints
-from app.storage.project_file import load_project
+from app.storage.project_file import load_project, save_project
+from engine.maps import Bounds
 
 WIDTH, HEIGHT = 240, 200
 STACK = "".join(
@@ -98,7 +100,36 @@ def test_certify_tells_of_each_figure(project, capsys):
     assert set(figures) == {"body", "arm", "patch"}
     assert all(block["certified"] for block in figures.values())
     assert main(["certify", str(project)]) == 0
-    assert "\narm\n" in capsys.readouterr().out
+    first, header, *lines, more = capsys.readouterr().out.splitlines()
+    assert first == (
+        "All in all: proven: all 3 figures are proven to keep their bounds at every moment."
+    )
+    assert header.split() == ["k", "sigma_a", "sigma_b"]
+    assert [line.split()[0] for line in lines] == ["body", "arm", "patch"]
+    for line in lines:
+        name, *values, verdict = line.split()
+        block, worst = figures[name], (max, max, min)
+        parts = [*block["keys"], *block["intervals"], *filter(None, [block["corrected"]])]
+        for column, value, extreme in zip(("k", "sigma_a", "sigma_b"), values, worst, strict=True):
+            assert float(value) == pytest.approx(extreme(p[column] for p in parts), abs=1e-4)
+        assert verdict == "proven"
+    assert "--details" in more
+    assert main(["certify", str(project), "--details"]) == 0
+    detailed = capsys.readouterr().out
+    assert detailed.startswith(first)
+    assert "\narm\n" in detailed
+
+
+def test_certify_names_what_is_over_first(project, capsys, tmp_path):
+    document = load_project(project)
+    arm = next(figure for figure in document.figures if figure.name == "arm")
+    narrow = replace(arm, bounds=Bounds(k=0.01, sigma_a=1.01, sigma_b=0.99))
+    save_project(tmp_path / "over.lissom", document.with_figure(narrow))
+    assert main(["certify", str(tmp_path / "over.lissom")]) == 1
+    first, _, _, line, *_ = capsys.readouterr().out.splitlines()
+    assert first == "All in all: OVER: 1 of 3 figures are beyond their bounds, or may fold."
+    assert line.split()[0] == "arm"
+    assert "OVER at key 8" in line
 
 
 def frame(project, name, *options):
@@ -193,6 +224,57 @@ def test_what_a_drawing_does_not_have_is_told(folder, change, words, capsys):
     assert refused.value.code == 2
     assert words in capsys.readouterr().err
     assert not (folder / "bad.lissom").exists()
+
+
+def refused(folder, script, capsys):
+    """Return what is said where a script cannot be followed."""
+    path = folder / "bad.json"
+    path.write_text(json.dumps(script))
+    arguments = [str(folder / "man.ora"), str(path), "--out", str(folder / "bad.lissom")]
+    with pytest.raises(SystemExit):
+        main(["pose", *arguments, "--triangles", "4000"])
+    return capsys.readouterr().err
+
+
+def test_a_script_of_one_figure_is_told_which_layer_it_took(folder, capsys):
+    script = {"schema": 1, "handles": {"foot": [80, 40]}, "keys": [{"frame": 0}]}
+    told = refused(folder, script, capsys)
+    assert "The handle 'foot' at (80, 40) lies outside" in told
+    assert "on 'patch', the one in front" in told
+    assert "also 'wall', 'body', 'arm'" in told
+    assert '"figures": [{"layer": "patch", ...}]' in told
+    # What is wrong with it on any layer says nothing of others.
+    on_it = {**script, "handles": {"spot": {"at": [180, 120], "front": 3}}}
+    assert "figures" not in refused(folder, on_it, capsys)
+
+
+def test_what_hangs_by_an_anchor_elsewhere_comes_to_its_parent_as_the_help_says(folder):
+    """Its targets are told as if it hung on nothing."""
+    body, arm, _ = SCRIPT["figures"]
+    elsewhere = {**arm, "anchor": [190, 120], "handles": {"hand": [100, 120]}}
+    keys = [{"frame": 0}, {"frame": 8, "targets": {"hand": [104, 132]}}]
+    script = {**SCRIPT, "figures": [body, {**elsewhere, "keys": keys}]}
+    path, out = folder / "elsewhere.json", folder / "elsewhere.lissom"
+    path.write_text(json.dumps(script))
+    arguments = [str(folder / "man.ora"), str(path), "--out", str(out), "--triangles", "4000"]
+    assert main(["pose", *arguments]) == 0
+    document = load_project(out)
+    figures = {figure.name: figure for figure in document.figures}
+    arm, body, joints = figures["arm"], figures["body"], Joints(document)
+    assert arm.keys[1].pose.targets[0].position == 104 + 132j
+    for frame, index in ((0, 0), (8, 1)):
+        f, g = (each.map_of(each.keys[index].pose) for each in (arm, body))
+        at = np.array([95 + 120j])
+        own = joints.placement(arm.id, frame)
+        here = own.on(f(np.array([190 + 120j])))[0]
+        assert abs(here - g(at)[0]) < 1e-9 * WIDTH
+        fz = g.derivatives(at)[0][0]
+        assert abs(own.factor - fz / abs(fz)) < 1e-12
+
+
+def test_a_short_colour_is_one(project):
+    short = frame(project, "short", "--frames", "5:5", "--background", "#fA0", "--figure", "patch")
+    assert (short.reshape(-1, short.shape[-1])[:, :3] == (255, 170, 0)).all()
 
 
 def test_a_figure_that_is_not_there_is_told(project, folder, capsys):

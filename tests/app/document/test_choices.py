@@ -6,7 +6,12 @@ import numpy as np
 import pytest
 from documents import disc_document, disc_domain, random_command
 
-from app.document.commands import choice_commands as choices, layer_commands, scene_commands
+from app.document.commands import (
+    choice_commands as choices,
+    group_commands as groups,
+    layer_commands,
+    scene_commands,
+)
 from app.document.layering import Choice, Switch, Turn
 from app.document.queries import is_visible
 from app.errors import LissomError
@@ -146,3 +151,17 @@ def test_after_any_commands_one_of_each_choice_is_seen():
 def test_what_was_hidden_is_shown_from_a_frame_on(mouths):
     document = layer_commands.switch_at(1, 12, visible=True)(mouths)
     assert [1 in now for now in seen(document, (0, 11, 12, 30))] == [False, False, True, True]
+
+
+def test_what_a_group_hides_comes_to_be_seen_alone(mouths):
+    document = groups.put_in_group((0, 2), "face/mouth")(mouths)
+    document = groups.set_group_hidden("face", hidden=True)(document)
+    assert seen(document, (0, 40)) == [[], []]
+    shown = layer_commands.switch_at(2, 10, visible=True)(document)
+    assert seen(shown, (0, 9, 10, 40)) == [[], [], [2], [2]]
+    chosen = choices.form_choice("mouth", (1, 2))(document)
+    assert seen(chosen, (0, 40)) == [[1], [1]]
+    # A group that is hidden later hides what takes turns, too.
+    chosen = choices.choose_at(2, 10)(chosen)
+    hidden = groups.set_group_hidden("face", hidden=True)(chosen)
+    assert seen(hidden, (0, 10)) == [[1], []]

@@ -3,11 +3,7 @@ from dataclasses import replace
 import pytest
 from documents import disc_document
 
-from app.document import (
-    choice_commands as choices,
-    group_commands as groups,
-    layer_commands as layers,
-)
+from app.document import group_commands as groups, layer_commands as layers
 from app.document.layering import Group
 from app.document.queries.compositing import Composite, composed
 from app.document.queries.sight import is_visible
@@ -216,18 +212,3 @@ def test_a_group_is_clipped_and_cuts():
     assert parts == (Composite(("arm", *cut), 0.5),)
     free = replace(document, groups=(Group(name="a"),))
     assert composed(free, names)[1] == Composite(("one", "two", Composite(("hat",), clipped=True)))
-
-
-def test_a_choice_is_seen_whatever_groups_of_the_file_hide():
-    document = grouped("a/closed a/b/open a/nose a/b/lip sky", "a", "a/b")
-    hide = [groups.set_group_hidden(path, hidden=True) for path in ("a", "a/b")]
-    for command in hide:
-        document = command(document)
-    mouth = choices.form_choice("mouth", (0, 1))(document)
-    seen = [is_visible(mouth, figure, 0) for figure in mouth.figures]
-    # Of the two the one in front.
-    assert seen == [False, True, False, False, True]
-    assert is_visible(choices.choose_at(0, 5)(mouth), mouth.figures[0], 5)
-    assert [group.hidden for group in mouth.groups] == [False, False]
-    # Hidden by hand, a group hides what takes turns in it, too.
-    assert not is_visible(hide[0](mouth), mouth.figures[1], 0)

@@ -108,8 +108,8 @@ def test_a_layer_is_seen_as_its_switches_say():
         Switch(0, visible=True),
         Switch(20, visible=True),
     )
-    document = disc_document()
-    assert is_visible(document, document.figures[0], 5)
+    fresh = disc_document()
+    assert is_visible(fresh, fresh.figures[0], 5)
 
 
 def test_what_is_seen_when_moves_and_is_stretched_with_all_time():

@@ -29,10 +29,12 @@ def drawing(tmp_path):
 def test_what_is_empty_around_a_layer_is_cut_off(drawing):
     opened = open_layered(drawing, Meshing(triangles=4_000))
     full, right, left = opened.document.figures
-    assert right.picture.size == (60, 90)
-    assert (left.corner, right.corner) == (110 + 140j, 170 + 140j)
-    assert_array_equal(opened.pictures[left.id].rgba, np.asarray(blob(60, 90)))
-    assert_array_equal(decode_picture(left.picture.data, "").rgba, np.asarray(blob(60, 90)))
+    # But for one row and column each way, so that a plain box is none that stands still.
+    assert right.picture.size == (62, 92)
+    assert (left.corner, right.corner) == (109 + 139j, 169 + 139j)
+    wanted = np.pad(np.asarray(blob(60, 90)), ((1, 1), (1, 1), (0, 0)))
+    assert_array_equal(opened.pictures[left.id].rgba, wanted)
+    assert_array_equal(decode_picture(left.picture.data, "").rgba, wanted)
     # Where it would save little, the file stays as it is.
     assert (full.picture.size, full.corner) == ((390, 290), 5 + 4j)
     middle = 110 + 30 + 1j * (140 + 45)
@@ -50,3 +52,12 @@ def test_layers_that_share_a_picture_share_it_once_it_is_saved_too(drawing, tmp_
     assert left.picture is right.picture is not full.picture
     shown = files._decoded(again, "a")
     assert shown.puppets[left.id].picture is shown.puppets[right.id].picture
+
+
+def test_a_box_on_an_empty_canvas_can_be_posed(tmp_path):
+    box = Image.new("RGBA", SIZE)
+    box.paste((200, 60, 30, 255), (150, 100, 220, 180))
+    path = tmp_path / "box.ora"
+    path.write_bytes(openraster(SIZE, '<layer name="box" src="data/0.png"/>', [box]))
+    (figure,) = open_layered(path, Meshing(triangles=4_000)).document.figures
+    assert (figure.still, figure.picture.size) == (False, (72, 82))

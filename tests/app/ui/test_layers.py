@@ -20,7 +20,7 @@ from app.editor.actions import (
     saving,
     timeline_pointing,
 )
-from app.editor.poses import copying
+from app.editor.poses import pasting
 from app.editor.timeline_view import Strip
 from app.storage import load_project
 from app.ui.panel import is_in_front
@@ -255,6 +255,7 @@ def test_the_menu_of_a_layer(window, scene, listed):
     window.act(layering.choose, body)
     joined = scene.document
     listed(lambda rows: rows.menu(body, "Delete"))
+    window.settle()
     assert scene.document.figure(arm).joints == ()
     assert scene.figure.name == "wall"
     window.act(editing.undo)
@@ -648,13 +649,12 @@ def test_keys_of_several_rows_are_copied_and_pasted_each_on_its_own(window, keye
     assert (frames_of(keyed, "arm"), frames_of(keyed, "body")) == ((0, 12, 24, 42), (0, 18, 30, 48))
     assert keyed.document.figure(arm).key(42).turns == 1
     assert keyed.chosen_of == {arm: {42}, body: {30, 48}}
-    assert not copying.copied_here(window.session, window.session.project)
     window.act(editing.undo)
     assert keyed.document is before
     # The rest can be pasted where one of the layers is gone.
     window.act(layering.remove, body)
     window.act(playback.seek, 40)
-    window.act(copying.paste)
+    window.act(pasting.paste)
     assert frames_of(keyed, "arm") == (0, 12, 24, 40)
 
 

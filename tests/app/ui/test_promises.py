@@ -23,7 +23,7 @@ from app.editor.actions import (
     viewing,
 )
 from app.editor.dialogs import Question
-from app.editor.poses import copying, flipping, library
+from app.editor.poses import copying, library, pasting
 from app.storage import load_project
 from engine.maps import Bounds
 
@@ -52,7 +52,7 @@ FOLLOWS = {
     "copy and paste flipped": lambda session: (
         copying.copy(session),
         playback.scrub(session, 40),
-        flipping.paste(session),
+        pasting.paste(session, "flipped"),
     ),
     "limits": lambda session: rebuilding.choose_bounds(
         session, loosened(session.project.figure.bounds)
@@ -414,7 +414,7 @@ def test_undo_takes_back_first_a_paste_that_still_waits_and_nothing_is_lost(
         goal = drag_bar(window, bent)
         copying.copy(window.session)
         playback.scrub(window.session, 40)
-        flipping.paste(window.session)
+        pasting.paste(window.session, "flipped")
         assert [each.what for each in bent.afterwards] == ["Paste flipped"]
         editing.undo(window.session)
         assert not bent.afterwards

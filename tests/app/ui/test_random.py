@@ -30,7 +30,7 @@ from app.editor.actions import (
     timeline_pointing,
     viewing,
 )
-from app.editor.poses import copying, flipping, library
+from app.editor.poses import copying, flipping, library, pasting
 from app.editor.timeline_view import Strip
 from app.editor.work import jobs
 from app.export_formats import EXPORT_FORMATS
@@ -423,10 +423,10 @@ class Walk:
         self.act(rebuilding.cancel)
 
     def copy_and_paste(self) -> None:
-        verbs = (copying.copy, copying.paste, copying.paste_on_selected)
         if len(self.project.figure.keys) < MOST_KEYS:
-            verb = self.choice((*verbs, flipping.paste, flipping.paste_on_selected))
-            self.act(verb)
+            way = self.choice(("as it is", "swapped", "flipped"))
+            pastes = ((pasting.paste, way), (pasting.paste_on_selected, way))
+            self.act(*self.choice(((copying.copy,), (copying.copy_all,), *pastes)))
 
     def use_library(self) -> None:
         figure = self.project.figure

@@ -1,11 +1,12 @@
-"""Commands on what is seen when, and on groups.
+"""Commands on figures as layers: their order, groups and joints, and when each is seen.
 
 In: a document, and ids of its figures.
 Out: the changed document.
-Imports: the values of `app.document`, `app.document.commands.command`.
+Imports: the values of `app.document`, commands on handles and keys.
 """
 
 from app.document.commands.staging import (
     choice_commands as choice_commands,
     group_commands as group_commands,
+    layer_commands as layer_commands,
 )

@@ -4,10 +4,10 @@ from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
 
 from app.document.commands.command import command
-from app.document.commands.staging.group_commands import uncovered
-from app.document.layering import Choice, Switch, Turn
+from app.document.commands.staging.showing import revealed
+from app.document.layering import Choice, Turn
 from app.document.model import Document
-from app.document.queries import is_visible
+from app.document.queries import is_visible, sights_of
 from app.errors import LissomError
 
 
@@ -18,7 +18,6 @@ def form_choice(document: Document, name: str, figures: Sequence[int]) -> Docume
     Where they were shown and hidden at frames of their own, the one in front of those that were
     seen is seen; where none was, the last one still is.
     """
-    document = uncovered(document, figures)
     members = [document.figure(identity) for identity in figures]
     starts = {switch.frame for figure in members for switch in figure.switches}
     front = [figure for figure in reversed(document.figures) if figure in members]
@@ -30,7 +29,7 @@ def form_choice(document: Document, name: str, figures: Sequence[int]) -> Docume
     if [turn.figure for turn in turns] == list(figures[:1]):
         turns = []  # the first one, at all times
     for figure in members:
-        document = document.with_figure(replace(figure, switches=(), hidden=False))
+        document = _unswitched(document, figure.id)
     choice = Choice(name=name.strip(), figures=tuple(figures), turns=tuple(turns))
     return replace(document, choices=(*document.choices, choice))
 
@@ -79,8 +78,7 @@ def join_choice(document: Document, name: str, identity: int) -> Document:
     choice, figure = document.choice(name), document.figure(identity)
     if identity in choice.figures:
         return document
-    document = uncovered(document, [identity])
-    document = document.with_figure(replace(figure, switches=(), hidden=False))
+    document = _unswitched(document, figure.id)
     return _exchange(document, choice, replace(choice, figures=(*choice.figures, identity)))
 
 
@@ -111,6 +109,13 @@ def let_go(document: Document, identity: int) -> Document:
     return _exchange(document, choice, rest, freed=() if rest else choice.figures)
 
 
+def _unswitched(document: Document, identity: int) -> Document:
+    """Return a document in which nothing but a choice decides when a figure is seen."""
+    document = revealed(document, identity)
+    figure = document.figure(identity)
+    return document.with_figure(replace(figure, switches=())) if figure.switches else document
+
+
 def _without(choice: Choice, identity: int) -> Choice | None:
     figures = tuple(figure for figure in choice.figures if figure != identity)
     turns = _plain(turn for turn in choice.turns if turn.figure != identity)
@@ -123,25 +128,14 @@ def _exchange(
     """Return a document with another choice, or none, and figures that are seen as it had them."""
     if changed == choice:
         return document
+    # Whatever groups hide.
+    visible = replace(document, groups=tuple(replace(g, hidden=False) for g in document.groups))
     figures = tuple(
-        replace(each, switches=_switches(document, choice, each.id), hidden=False)
-        if each.id in freed
-        else each
+        replace(each, switches=sights_of(visible, each), hidden=False) if each.id in freed else each
         for each in document.figures
     )
     choices = (changed if each is choice else each for each in document.choices)
     return replace(document, figures=figures, choices=tuple(filter(None, choices)))
-
-
-def _switches(document: Document, choice: Choice, identity: int) -> tuple[Switch, ...]:
-    """Return the switches by which a figure is seen when its choice has it."""
-    switches: list[Switch] = []
-    first = document.frames.first
-    for frame in (first, *(turn.frame for turn in choice.turns if turn.frame > first)):
-        visible = choice.at(frame) == identity
-        if not switches or switches[-1].visible != visible:
-            switches.append(Switch(frame, visible))
-    return () if switches == [Switch(first, visible=True)] else tuple(switches)
 
 
 def _put(turns: Iterable[Turn], new: Turn) -> tuple[Turn, ...]:

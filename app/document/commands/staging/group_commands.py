@@ -4,7 +4,8 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from app.document.commands.command import command, numbered
+from app.document.commands.command import command
+from app.document.commands.staging.layer_commands import numbered_name, without_empty_groups
 from app.document.figure import Figure
 from app.document.layering import Group, GroupBlend, paths_to, shared_path
 from app.document.model import Document
@@ -69,8 +70,7 @@ def ungroup(document: Document, path: str) -> Document:
     for group in document.groups:
         outer, _, name = group.name.rpartition("/")
         if outer == path:
-            free = f"{around}/{name}" if around else name
-            to[group.name] = numbered(free, taken, 2) if free in taken else free
+            to[group.name] = numbered_name(f"{around}/{name}" if around else name, taken)
             taken.add(to[group.name])
 
     def freed(each: Figure | Group) -> dict[str, Any]:
@@ -104,48 +104,6 @@ def set_group_hidden(document: Document, path: str, *, hidden: bool) -> Document
 def set_group_blend(document: Document, path: str, blend: GroupBlend) -> Document:
     """Set how the colours of a group meet those behind it."""
     return _changed(document, path, blend=blend)
-
-
-def without_empty_groups(document: Document) -> Document:
-    """Return the document without groups that no figure is in any more."""
-    filled = {path for figure in document.figures for path in paths_to(figure.group)}
-    groups = tuple(group for group in document.groups if group.name in filled)
-    return document if groups == document.groups else replace(document, groups=groups)
-
-
-def group_at(others: Sequence[Figure], index: int, figure: Figure) -> str:
-    """Return the group that a figure is in which is put at an index among others."""
-    own, beside = figure.group, [each.group for each in others[max(index - 1, 0) : index + 1]]
-    amid = shared_path(*beside) if len(beside) == 2 else ""
-    if amid and amid not in paths_to(own):
-        return amid
-    stays = max((shared_path(own, group) for group in beside), key=len, default="")
-    shared = max((shared_path(own, each.group) for each in others), key=len, default="")
-    # With all of what else is in its groups elsewhere, it leaves them; alone in one, it keeps it.
-    return own if stays == shared else stays
-
-
-def uncovered(document: Document, identities: Collection[int]) -> Document:
-    """Return a document whose groups hide none of these figures; others in them hide themselves."""
-    shown = {
-        path
-        for figure in document.figures
-        if figure.id in identities
-        for path in paths_to(figure.group)
-    }
-    opened = {group.name for group in document.groups if group.hidden and group.name in shown}
-    if not opened:
-        return document
-    figures = tuple(
-        replace(figure, hidden=True)
-        if figure.id not in identities and not opened.isdisjoint(paths_to(figure.group))
-        else figure
-        for figure in document.figures
-    )
-    groups = tuple(
-        replace(group, hidden=False) if group.name in opened else group for group in document.groups
-    )
-    return replace(document, figures=figures, groups=groups)
 
 
 def _missing_groups(document: Document, path: str) -> list[Group]:

@@ -98,7 +98,8 @@ def _take_suggestions_back(
 @with_project
 def mirror_handles(session: Session, project: Project) -> None:
     """Give each selected handle a partner on the other side of the mirror axis, named to match."""
-    figure, pairs = project.figure, pairs_by_name(project.figure.handles)
+    figure, words = project.figure, project.document.pairs
+    pairs = pairs_by_name(figure.handles, words)
     alone = [handle for handle in figure.handles if handle.id in project.selected - pairs.keys()]
     gesture, outside = object(), 0
     partners: list[Handle] = []
@@ -108,11 +109,11 @@ def mirror_handles(session: Session, project: Project) -> None:
             outside += 1
             continue
         name = handle.name
-        if mirrored_name(name) is None:
+        if mirrored_name(name, words) is None:
             name += ".L" if handle.position.real < figure.axis else ".R"
             command = handle_commands.rename_handle(project.active, handle.id, name)
             project.history.do(command, gesture=gesture)
-        partners.append(replace(handle, name=mirrored_name(name) or name, position=place))
+        partners.append(replace(handle, name=mirrored_name(name, words) or name, position=place))
     if partners:
         _change_handles(project, handle_commands.add_handles(project.active, partners), gesture)
     if outside:

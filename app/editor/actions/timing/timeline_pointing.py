@@ -8,6 +8,7 @@ from app.document import (
     Command,
     Document,
     FrameRange,
+    cycle_commands,
     key_commands,
     layer_commands,
     scene_commands,
@@ -18,6 +19,7 @@ from app.editor.actions.timing.keys import retime
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.timeline_view import (
+    CycleDrag,
     EdgeDrag,
     KeyBox,
     KeyDrag,
@@ -34,6 +36,7 @@ from app.editor.timeline_view import (
     keys_in,
     seen_at,
 )
+from app.errors import LissomError
 
 MOVE = editing.KeyVerb(key_commands.move_keys, track_commands.move_track_keys)
 COPY = editing.KeyVerb(key_commands.copy_keys, track_commands.copy_track_keys)
@@ -173,7 +176,12 @@ def _drag(session: Session, project: Project, drag: TimeDrag, frame: float) -> N
         end(session)
         return
     drag, command = moved
-    _become(session, command(drag.before), command.label)
+    try:
+        document = command(drag.before)
+    except LissomError:
+        # Keys stay where they are before what repeats.
+        return
+    _become(session, document, command.label)
     if isinstance(drag, KeyDrag):
         by = drag.by
         chosen = {i: frozenset(key + by for key in frames) for i, frames in drag.keys.items()}
@@ -201,6 +209,12 @@ def _moved(drag: TimeDrag, frame: float) -> tuple[TimeDrag, Command] | None:
             others = {each.frame for each in before.markers} - {marker}
             command = scene_commands.move_marker(marker, at)
             return None if at in others | {drag.at} else (replace(drag, at=at), command)
+        case CycleDrag(figure=figure, first=first):
+            cycle = cycle_commands.cycle_from(before.figure(figure), first)
+            end = cycle_commands.nearest_end(
+                before.figure(figure), cycle, round(frame), before.frames.last
+            )
+            return drag, cycle_commands.repeat(figure, first, cycle.last, end)
         case SwitchDrag(figure=figure, switch=switch):
             at = before.frames.clamp(switch + by)
             others = {each.frame for each in before.figure(figure).switches} - {switch}

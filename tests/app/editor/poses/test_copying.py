@@ -13,7 +13,7 @@ from app.document import HOLD
 from app.document.commands import figure_commands, handle_commands, key_commands
 from app.document.settings import NATURAL
 from app.editor.actions import editing, posing
-from app.editor.poses import copying
+from app.editor.poses import copying, pasting
 from app.storage import Preferences
 from engine.maps import Boundary, certify
 
@@ -27,13 +27,13 @@ def session(tmp_path):
 
 def test_a_pose_is_pasted_at_another_frame_as_one_step(session):
     project, before = session.project, session.project.document
-    assert not copying.copied_for(session, session.project)
+    assert pasting.why_not(session, project, "as it is") == "Copy a pose or keys first."
     go(session, 6)
     copying.copy(session)
     bent = project.figure.key(6).pose
     for frame, frames in ((3, {0, 3, 6}), (0, {0, 6})):
         go(session, frame)
-        copying.paste(session)
+        pasting.paste(session)
         assert project.figure.key_frames == frames
         pose = project.figure.key(frame).pose
         assert (pose.phi is bent.phi, pose.psi is bent.psi) == (True, True)
@@ -57,7 +57,7 @@ def test_several_keys_are_pasted_with_their_ways_and_distances(session):
     editing.choose_keys(session, frozenset({0, 6}))
     copying.copy_keys(session)
     go(session, 4)
-    copying.paste(session)
+    pasting.paste(session)
     assert project.figure.key_frames == {0, 4, 6, 10}
     assert project.chosen == {4, 10}
     assert project.figure.key(4).pose is project.figure.key(0).pose
@@ -75,9 +75,9 @@ def test_only_the_selected_handles_take_what_was_copied(session):
     copying.copy(session)
     bent = project.figure.key(6).pose.targets
     go(session, 0)
-    assert not copying.copied_for_selected(session, session.project)
+    assert "Select" in pasting.why_not_on_selected(session, project, "as it is")
     editing.select(session, frozenset({1}))
-    copying.paste_on_selected(session)
+    pasting.paste_on_selected(session)
     settle(session)
     targets = project.figure.key(0).pose.targets
     assert targets[1].position == bent[1].position
@@ -91,7 +91,7 @@ def test_an_in_between_is_copied_as_the_nearest_pose(session):
     copying.copy(session)
     settle(session)
     go(session, 0)
-    copying.paste(session)
+    pasting.paste(session)
     settle(session)
     size = np.ptp(between.real)
     np.testing.assert_allclose(
@@ -105,7 +105,7 @@ def test_a_pose_is_pasted_with_the_handles_of_now(session):
     copying.copy(session)
     editing.edit(session, handle_commands.add_handle(0, 40 + 45j))
     editing.edit(session, handle_commands.remove_handles(0, frozenset({0})))
-    copying.paste(session)
+    pasting.paste(session)
     pose = project.figure.key(6).pose
     assert set(pose.targets) == {1}
     assert project.figure.lags(pose)[1] == pytest.approx(0.0, abs=1e-9)
@@ -118,7 +118,7 @@ def test_a_pose_is_proven_against_the_limits_of_now(session):
     tighter = replace(NATURAL.bounds, sigma_a=1.01)
     editing.edit_figure(session, figure_commands.set_bounds, tighter)
     go(session, 3)
-    copying.paste(session)
+    pasting.paste(session)
     figure = project.figure
     pose = figure.key(3).pose
     boundary = Boundary.sample(figure.domain.outline, figure.domain.cage)
@@ -131,8 +131,8 @@ def test_a_pose_of_another_shape_cannot_be_pasted(session):
     session.project = project_of(moving_document(), BLANK, "other")
     before = session.project.document
     settle(session)
-    assert not copying.copied_for(session, session.project)
-    copying.paste(session)
+    assert "no handle called" in pasting.why_not(session, session.project, "as it is")
+    pasting.paste(session)
     assert session.project.document is before
 
 
@@ -147,7 +147,7 @@ def test_a_pose_that_no_key_holds_is_copied_and_gives_way_to_a_pasted_one(sessio
     settle(session)
     unkeyed = project.unkeyed
     assert unkeyed is not None
-    copying.paste(session)
+    pasting.paste(session)
     assert project.unkeyed is None
     editing.undo(session)
     assert project.unkeyed is unkeyed

@@ -9,7 +9,7 @@ from sessions import session_of, settle
 
 from app.document import Keyframe, handle_commands
 from app.editor.actions import editing, playback
-from app.editor.poses import copying, flipping
+from app.editor.poses import copying, flipping, pasting
 
 
 @pytest.fixture
@@ -31,7 +31,7 @@ def test_keys_are_flipped_with_their_turns_and_what_is_in_front(session):
     editing.choose_keys(session, frozenset({0, 6}))
     copying.copy_keys(session)
     playback.scrub(session, 20)
-    flipping.paste(session)
+    pasting.paste(session, "flipped")
     settle(session)
     assert project.chosen == {20, 26}
     assert (project.figure.key(20).turns, project.figure.key(26).turns) == (-2, 1)
@@ -45,7 +45,7 @@ def test_keys_are_flipped_with_their_turns_and_what_is_in_front(session):
 
 def test_a_flip_that_comes_too_late_is_told(session):
     copying.copy(session)
-    flipping.paste(session)
+    pasting.paste(session, "flipped")
     editing.edit_figure(session, handle_commands.remove_handles, {0})
     before = session.project.document
     settle(session)

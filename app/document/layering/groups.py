@@ -1,4 +1,4 @@
-"""Groups of figures, and how their colours meet those of what lies behind."""
+"""Groups of figures, and how colours meet."""
 
 from dataclasses import dataclass, field
 from typing import Literal, get_args

@@ -1,6 +1,6 @@
 """Commands on the figures as layers: which there are, in what order, seen when, hung on what."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -8,10 +8,11 @@ import numpy as np
 from app.document.commands.command import command, figure_command, numbered
 from app.document.commands.handle_commands import with_handles
 from app.document.commands.key_commands import exchange
-from app.document.commands.staging import choice_commands, group_commands
+from app.document.commands.staging import choice_commands
+from app.document.commands.staging.showing import revealed
 from app.document.figure import Figure
 from app.document.keyframe import Pose, Target
-from app.document.layering import Attachment, BlendMode, Switch
+from app.document.layering import Attachment, BlendMode, Switch, paths_to, shared_path
 from app.document.model import Document
 from app.errors import LissomError
 
@@ -24,7 +25,7 @@ def add_figure(document: Document, figure: Figure, index: int | None = None) -> 
     """
     figures = list(document.figures)
     place = len(figures) if index is None else index
-    group, name = group_commands.group_at(figures, place, figure), free_name(document, figure.name)
+    group, name = _group_at(figures, place, figure), free_name(document, figure.name)
     figures.insert(place, replace(figure, name=name, group=group))
     # A canvas that was one picture's stays what it was.
     return replace(document, figures=tuple(figures), size=document.canvas)
@@ -89,8 +90,7 @@ def remove_figure(document: Document, identity: int) -> Document:
         for each in document.figures
         if each.id != identity
     )
-    left = replace(document, figures=figures, size=document.canvas)
-    return group_commands.without_empty_groups(left)
+    return without_empty_groups(replace(document, figures=figures, size=document.canvas))
 
 
 @command("Move layer")
@@ -106,10 +106,10 @@ def move_figure(document: Document, identity: int, index: int) -> Document:
         raise LissomError(f"There are {len(others) + 1} layers; none can be number {index + 1}.")
     if document.figures[index] is figure:
         return document
-    group = group_commands.group_at(others, index, figure)
+    group = _group_at(others, index, figure)
     others.insert(index, figure if group == figure.group else replace(figure, group=group))
     moved = replace(document, figures=tuple(others), size=document.canvas)
-    return group_commands.without_empty_groups(moved)
+    return without_empty_groups(moved)
 
 
 @command("Rename layer")
@@ -154,23 +154,26 @@ def set_reference(document: Document, identity: int, *, reference: bool) -> Docu
     return _with(document, identity, reference=reference)
 
 
-@figure_command("Show or hide from here on")
-def switch_at(figure: Figure, frame: int, *, visible: bool | None) -> Figure:
+@command("Show or hide from here on")
+def switch_at(document: Document, identity: int, frame: int, *, visible: bool | None) -> Document:
     """Show or hide a figure from a frame on; None takes back what was said at that frame.
 
     One that was hidden at all times is shown there, and hidden until then.
     """
-    if figure.hidden and visible:
-        switches = figure.switches or (Switch(0, visible=False),)
-        figure = replace(figure, hidden=False, switches=switches)
-    others = [switch for switch in figure.switches if switch.frame != frame]
+    figure = document.figure(identity)
+    switches = figure.switches
+    if visible and (figure.hidden or document.is_in_hidden(figure)):
+        document = revealed(document, identity)
+        figure = document.figure(identity)
+        switches = switches or (Switch(0, visible=False),)
+    others = [switch for switch in switches if switch.frame != frame]
     if visible is not None:
-        if not others and not figure.switches and frame > 0:
+        if not others and not switches and frame > 0:
             # What was seen before stays so.
             others = [Switch(0, not visible)]
         others.append(Switch(frame, visible))
     switches = tuple(sorted(others, key=lambda switch: switch.frame))
-    return figure if switches == figure.switches else replace(figure, switches=switches)
+    return _with(document, identity, switches=switches)
 
 
 @figure_command("Move visibility")
@@ -269,6 +272,25 @@ def free_name(document: Document, name: str) -> str:
 def numbered_name(name: str, taken: Collection[str]) -> str:
     """Return a name that is not taken: this one, or this one with a number."""
     return numbered(name, taken, 2) if name in taken else name
+
+
+def without_empty_groups(document: Document) -> Document:
+    """Return the document without groups that no figure is in any more."""
+    filled = {path for figure in document.figures for path in paths_to(figure.group)}
+    groups = tuple(group for group in document.groups if group.name in filled)
+    return document if groups == document.groups else replace(document, groups=groups)
+
+
+def _group_at(others: Sequence[Figure], index: int, figure: Figure) -> str:
+    """Return the group that a figure is in which is put at an index among others."""
+    own, beside = figure.group, [each.group for each in others[max(index - 1, 0) : index + 1]]
+    amid = shared_path(*beside) if len(beside) == 2 else ""
+    if amid and amid not in paths_to(own):
+        return amid
+    stays = max((shared_path(own, group) for group in beside), key=len, default="")
+    shared = max((shared_path(own, each.group) for each in others), key=len, default="")
+    # With all of what else is in its groups elsewhere, it leaves them; alone in one, it keeps it.
+    return own if stays == shared else stays
 
 
 def _with(document: Document, identity: int, **changes: object) -> Document:

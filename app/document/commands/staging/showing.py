@@ -1,0 +1,38 @@
+"""Showing what is hidden."""
+
+from dataclasses import replace
+
+from app.document.layering import paths_to
+from app.document.model import Document
+
+
+def revealed(document: Document, identity: int) -> Document:
+    """Return a document in which neither a figure nor a group that it is in is hidden.
+
+    What such a group has in it besides is hidden by itself then: the figure alone comes to be seen.
+    """
+    figure = document.figure(identity)
+    around = paths_to(figure.group)
+    hidden = {path for path in around if document.group(path).hidden}
+    if not (hidden or figure.hidden):
+        return document
+
+    def was_hidden(path: str) -> bool:
+        """Tell whether what lies in a group at a path is hidden no more, but for the figure."""
+        return path in around and not hidden.isdisjoint(paths_to(path))
+
+    figures = tuple(
+        replace(each, hidden=each is not figure)
+        if each is figure or was_hidden(each.group)
+        else each
+        for each in document.figures
+    )
+    groups = tuple(
+        replace(group, hidden=False)
+        if group.name in hidden
+        else replace(group, hidden=True)
+        if group.name not in around and was_hidden(group.name.rpartition("/")[0])
+        else group
+        for group in document.groups
+    )
+    return replace(document, figures=figures, groups=groups)

@@ -1,0 +1,322 @@
+"""Pasting what was copied: as it is, with sides exchanged, or flipped; by names onto any layer."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+
+from app.document import (
+    Keyframe,
+    Pose,
+    Target,
+    Track,
+    clip_of,
+    pairs_by_name,
+    read_pairs,
+    scene_commands,
+    track_commands,
+)
+from app.editor import promises
+from app.editor.action import do
+from app.editor.actions import editing, playback, posing
+from app.editor.poses import putting
+from app.editor.poses.receiving import (
+    Landing,
+    PasteWay,
+    hindrance,
+    landing_here,
+    landings,
+    left_out,
+)
+from app.editor.project import Flip, Project
+from app.editor.session import CopiedTrack, Session, with_project
+from app.editor.timeline_view import TrackRow, seen_at
+from app.editor.work import Kind
+from app.solving import Rig, flip_poses, flipped_targets, pose_at
+
+LABELS: Mapping[PasteWay, str] = {"swapped": "Paste swapped", "flipped": "Paste flipped"}
+CARRYING = Kind("Pasting", "The poses could not be pasted", "hand")
+FLIPPING = Kind("Flipping", "The pose could not be flipped", "hand")
+
+
+def why_not(session: Session, project: Project, way: PasteWay) -> str:
+    """Return in a sentence why nothing that was copied can be pasted; empty where it can."""
+    tracks = tracks_here(session, project, way)
+    return "" if tracks else hindrance(session, project, way)
+
+
+def why_not_on_selected(session: Session, project: Project, way: PasteWay) -> str:
+    """Return in a sentence why the selected handles can take nothing over; empty where they can."""
+    landing = landing_here(session, project, way)
+    if landing is None:
+        return hindrance(session, project, way) or "Choose a layer first that was copied."
+    if not project.selected:
+        return "Select the handles first that are to take it over."
+    return landing.hindrance
+
+
+@with_project
+def paste(session: Session, project: Project, way: PasteWay = "as it is") -> None:
+    """Put what was copied into a key at the present frame: of several keys, the first one."""
+    frame = putting.stand_at_frame(session, project)
+    promises.once_settled(session, do(_paste, frame, way), LABELS.get(way, "Paste"))
+
+
+@with_project
+def _paste(session: Session, project: Project, frame: int, way: PasteWay) -> None:
+    if why_not(session, project, way):
+        return
+    tracks = tracks_here(session, project, way)
+    found = [each for each in landings(session, project, way) if each.copied.keys]
+    starts = [key.frame for each in found for key in each.copied.keys]
+    starts += [seen_at(project.document, c.track, k.frame) for c in tracks.values() for k in c.keys]
+    by, gesture = frame - min(starts), object()
+    told = left_out(session, project, way)
+
+    def then() -> None:
+        for row, each in tracks.items():
+            _paste_track(session, project, row, each, by, gesture)
+        for reason in told:
+            session.tell(reason)
+        names = [each.figure.name for each in found]
+        if any(each.figure.id != project.active for each in found):
+            whose = f"{len(names)} layers" if len(names) > 1 else names[0]
+            session.tell(f"Pasted onto {whose}.", topic="paste")
+
+    project.chosen_of = {}
+    if found:
+        bring(session, project, found, way, by, gesture=gesture, then=then)
+    else:
+        then()
+
+
+def bring(
+    session: Session,
+    project: Project,
+    found: Sequence[Landing],
+    way: PasteWay,
+    by: int,
+    *,
+    label: str | None = None,
+    gesture: object | None = None,
+    then: Callable[[], None] = lambda: None,
+) -> None:
+    """Put keys onto the figures that take them over, so many frames later than they were.
+
+    What is no figure's own pose is solved by the worker; all of it comes as one step.
+
+    Parameters
+    ----------
+    found : sequence of Landing
+    way : str
+    by : int
+    label : str, optional
+        What this does in words; by default it pastes.
+    gesture : object, optional
+        What is one step of undo together.
+    then : callable, optional
+        Done after the keys are there.
+    """
+    gesture, label = gesture or object(), label or LABELS.get(way)
+    keys = {each.figure.id: _fitted(project, each) for each in found if each.is_direct(way)}
+    works = {
+        each.figure.id: _solving(project, each, way, by)
+        for each in found
+        if each.figure.id not in keys
+    }
+    frame = min(key.frame for each in found for key in each.copied.keys) + by
+
+    def put(solved: Mapping[int, Sequence[Keyframe]]) -> None:
+        everything = {each.figure.id: {**keys, **solved}[each.figure.id] for each in found}
+        putting.put(session, project, frame, everything, label=label, gesture=gesture)
+        if way == "flipped" and len(found) == 1 and found[0].is_own:
+            _note_flip(project, found[0], everything[found[0].figure.id])
+        then()
+
+    def done(solved: Mapping[int, Sequence[Keyframe]]) -> None:
+        if not all(_is_as_it_was(project, each) for each in found):
+            session.tell(
+                "The pose was not pasted: a layer, its shape or its handles changed. Paste again."
+            )
+            return
+        put(solved)
+        if playback.current_frame(session, project) != frame:
+            playback.seek(session, frame)
+
+    if works:
+        kind = FLIPPING if way == "flipped" else CARRYING
+        promises.begin(
+            session, project, kind, lambda: {i: work() for i, work in works.items()}, done
+        )
+    else:
+        put({})
+
+
+def set_pairs(session: Session, text: str) -> None:
+    """Set which words, or whole names, tell layers and handles of the two sides apart."""
+    editing.edit(session, scene_commands.set_pairs(read_pairs(text)))
+
+
+@with_project
+def paste_on_selected(session: Session, project: Project, way: PasteWay = "as it is") -> None:
+    """Let the selected handles go where they, or their partners, were, and the shape follow."""
+    if not why_not_on_selected(session, project, way):
+        landing = landing_here(session, project, way)
+        if landing is not None:
+            wishes = wishes_of(project, landing, way)
+            posing.wish(session, {i: wishes[i] for i in project.selected if i in wishes})
+
+
+def wishes_of(project: Project, landing: Landing, way: PasteWay) -> Mapping[int, Target]:
+    """Return where a figure's handles are wanted by the first of some keys, by their ids."""
+    if landing.is_own:
+        pose, figure = _fitted(project, landing)[0].pose, landing.figure
+        if way == "flipped":
+            return flipped_targets(figure, pose, figure.axis, project.document.pairs)
+        if landing.is_direct(way):
+            return pose.targets
+    return landing.carriage(way).targets(landing.figure, landing.copied.keys[0].pose)
+
+
+def _is_as_it_was(project: Project, landing: Landing) -> bool:
+    """Tell whether a figure still has the shape and the handles that poses were solved for."""
+    was = landing.figure
+    return any(
+        each.id == was.id and each.domain is was.domain and each.handles == was.handles
+        for each in project.document.figures
+    )
+
+
+def _fitted(project: Project, landing: Landing) -> list[Keyframe]:
+    copied = landing.copied
+    return putting.fitted(project, landing.figure.id, copied.keys, copied.figure.bounds)
+
+
+def _solving(
+    project: Project, landing: Landing, way: PasteWay, by: int
+) -> Callable[[], Sequence[Keyframe]]:
+    """Return what solves the poses for a figure, on the worker's thread."""
+    figure, puppet = landing.figure, project.puppets[landing.figure.id]
+    earlier, sibling = puppet.rig, puppet.store.sampler
+    if landing.is_own and way == "flipped":
+        keys, pairs = _fitted(project, landing), project.document.pairs
+
+        def flip() -> Sequence[Keyframe]:
+            rig = Rig.of(figure, earlier)
+            poses = flip_poses(rig, [key.pose for key in keys], figure.axis, pairs)
+            partners = pairs_by_name(figure.handles, pairs)
+            own = {handle.id: partners.get(handle.id, handle.id) for handle in figure.handles}
+            return [
+                _carried(key, own, turns=-1, pose=pose)
+                for key, pose in zip(keys, poses, strict=True)
+            ]
+
+        return flip
+    carriage, clip = landing.carriage(way), clip_of(project.document, figure.id)
+    turns = -1 if carriage.likeness.mirrors else 1
+    # What is in front is not what moves: within one layer it stays where it is.
+    fronts = {handle.id: handle.id for handle in figure.handles}
+    fronts = fronts if landing.is_own else dict(landing.pairs)
+
+    def carry() -> Sequence[Keyframe]:
+        rig = Rig.of(figure, earlier)
+        is_whole = {handle.id for handle in rig.handles} <= landing.pairs.keys()
+        solved = []
+        for key in landing.copied.keys:
+            present = None if is_whole else pose_at(rig, clip, key.frame + by, sibling)
+            pose = carriage.carry(rig, key.pose, present)
+            solved.append(_carried(key, fronts, turns=turns, pose=pose))
+        return solved
+
+    return carry
+
+
+def _carried(key: Keyframe, fronts: Mapping[int, int], *, turns: int, pose: Pose) -> Keyframe:
+    """Return a key with another pose, and what is in front at handles as it is at others."""
+    known = {i: key.fronts[other] for i, other in fronts.items() if other in key.fronts}
+    return replace(key, pose=pose, turns=turns * key.turns, fronts=known)
+
+
+def _note_flip(project: Project, landing: Landing, flipped: Sequence[Keyframe]) -> None:
+    """Note what was flipped, so that it is flipped again where the axis is moved."""
+    figure = landing.figure.id
+    project.flip = Flip(
+        figure=figure,
+        keys=tuple(_fitted(project, landing)),
+        frames=project.chosen_of.get(figure, frozenset()),
+        poses=tuple(key.pose for key in flipped),
+    )
+
+
+def tracks_here(
+    session: Session, project: Project, way: PasteWay
+) -> Mapping[TrackRow, CopiedTrack]:
+    """Return what was copied of each track, by the row on which it can be pasted.
+
+    Keys of one track go to that which is chosen; else they go with those of poses, by names.
+    """
+    copied, chosen = session.copied_tracks, project.chosen_track
+    if way == "as it is" and len(copied) == 1 and chosen is not None:
+        return {TrackRow(project.active, chosen): copied[0]}
+    carried = {}
+    for landing in landings(session, project, way):
+        ours = {other: identity for identity, other in landing.pairs.items()}
+        for each in copied:
+            handles = tuple(ours[each_id] for each_id in each.track.handles if each_id in ours)
+            if each.figure.id == landing.copied.figure.id and each.track.handles[0] in ours:
+                track = _carried_track(landing, each, way, handles)
+                carried[TrackRow(landing.figure.id, handles[0])] = track
+    return carried
+
+
+def _carried_track(
+    landing: Landing, copied: CopiedTrack, way: PasteWay, handles: tuple[int, ...]
+) -> CopiedTrack:
+    """Return a track that was copied as one of a figure's handles."""
+    likeness = landing.carriage(way).likeness
+    old = landing.copied.figure.handle(copied.track.handles[0]).position
+    new = landing.figure.handle(handles[0]).position
+    # Beside the pose ways count, and in the picture places, with what the handle is beside them.
+    start = -likeness.shift if not copied.track.planted else new - likeness.to(old)
+    keys = tuple(
+        replace(
+            key,
+            place=likeness.to(key.place) + start,
+            turn=-key.turn if likeness.mirrors else key.turn,
+            velocity=None if key.velocity is None else likeness.to(key.velocity) - likeness.shift,
+        )
+        for key in copied.keys
+    )
+    if landing.is_direct(way):
+        keys = copied.keys
+    return replace(copied, track=replace(copied.track, handles=handles), keys=keys)
+
+
+def _paste_track(
+    session: Session, project: Project, row: TrackRow, copied: CopiedTrack, by: int, gesture: object
+) -> None:
+    """Put keys of a track into that of a row so many frames later; these are chosen then."""
+    figure = project.document.figure(row.figure)
+    track, name = figure.track_of(row.handle), figure.handle(row.handle).name
+    if track is not None and track.planted != copied.track.planted:
+        session.tell(
+            f"The keys that were copied are {_kind(copied.track)}, those of {name} are "
+            f"{_kind(track)}. Set both alike in the Handle tab, then copy again."
+        )
+        return
+    by += copied.track.delay - (0 if track is None else track.delay)
+    keys = tuple(replace(key, frame=key.frame + by) for key in copied.keys)
+    if keys[0].frame < 0:
+        session.tell(f"The track of {name} is too late for a key at this frame.")
+        return
+    if track is None:
+        handles = copied.track.handles if copied.track.handles[0] == row.handle else (row.handle,)
+        track = replace(copied.track, handles=handles, keys=keys)
+        command = track_commands.put_track(row.figure, track)
+    else:
+        command = track_commands.put_track_keys(*row, keys)
+    project.history.do(command, gesture=gesture)
+    frames = frozenset(key.frame for key in keys)
+    project.selected, project.chosen_of = frozenset(), {**project.chosen_of, row: frames}
+
+
+def _kind(track: Track) -> str:
+    return "planted" if track.planted else "with the pose"

@@ -1,0 +1,239 @@
+"""Poses that are carried from one figure to another, or to its own other side, by a similarity."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+
+from app.document import Figure, Pose, Target
+from app.solving.drag import Rig, fit_map, pins_of
+from engine.arrays import Complexes
+from engine.geometry import contains
+from engine.maps import HarmonicMap, certify
+
+MOST_STEPS = 600  # for one pose
+# Of a shape that counts as like another one, the part at least that lies on that one's image.
+ALIKE = 0.9
+ENOUGH = 2_000  # vertices by which that is told
+# A part is drawn mirrored where its handles are this far from the likeness that mirrors nothing,
+# over their spread, and this many times nearer to the one that does.
+ODD, CLEARER = 0.1, 4.0
+
+
+@dataclass(frozen=True, slots=True)
+class Likeness:
+    """A similarity S of the plane: z ↦ factor · z + shift, of conj(z) where it mirrors."""
+
+    factor: complex = 1.0 + 0j
+    shift: complex = 0j
+    mirrors: bool = False
+
+    @classmethod
+    def reflection(cls, axis: float) -> Self:
+        """Return the reflection at an upright axis, R(z) = 2a − conj(z)."""
+        return cls(-1.0 + 0j, complex(2 * axis), mirrors=True)
+
+    @classmethod
+    def of(cls, places: Complexes, images: Complexes, *, mirrors: bool | None = None) -> Self:
+        """Return the likeness by which some places come next to others.
+
+        Its scale is that of their spreads, so that the way back is its inverse. One place alone is
+        moved, and mirrored at an upright axis.
+
+        Parameters
+        ----------
+        places, images : complex128, shape (n,)
+            At least one.
+        mirrors : bool, optional
+            Whether it mirrors; by default only where the images clearly are mirrored.
+        """
+        if mirrors is not None:
+            return cls._nearest(places, images, mirrors=mirrors)
+        plain = cls._nearest(places, images, mirrors=False)
+        mirrored = cls._nearest(places, images, mirrors=True)
+        off, off_mirrored = (np.abs(each.on(places) - images).max() for each in (plain, mirrored))
+        spread = np.abs(images - images.mean()).max()
+        return mirrored if off > max(ODD * spread, CLEARER * off_mirrored) else plain
+
+    @classmethod
+    def _nearest(cls, places: Complexes, images: Complexes, *, mirrors: bool) -> Self:
+        points = places.conj() if mirrors else places
+        spread, other = points - points.mean(), images - images.mean()
+        turn, size = np.vdot(spread, other), np.linalg.norm(spread)
+        factor = -1.0 + 0j if mirrors else 1.0 + 0j
+        if size > 0 and abs(turn) > 0:
+            factor = complex(np.linalg.norm(other) / size * turn / abs(turn))
+        return cls(factor, complex(images.mean() - factor * points.mean()), mirrors)
+
+    def on(self, places: Complexes) -> Complexes:
+        """Return where places (n,) come to."""
+        return self.factor * (places.conj() if self.mirrors else places) + self.shift
+
+    def to(self, place: complex) -> complex:
+        """Return where one place comes to."""
+        return complex(self.on(np.array([place]))[0])
+
+    def back(self, places: Complexes) -> Complexes:
+        """Return which places (n,) come to some."""
+        points: Complexes = (places - self.shift) / self.factor
+        return points.conj() if self.mirrors else points
+
+    def turned(self, turn: complex) -> complex:
+        """Return by what the image of a shape turns that turns by this."""
+        return turn.conjugate() if self.mirrors else turn
+
+    def moved(
+        self,
+        shape: HarmonicMap,
+        place: complex,
+        wished: complex,
+        point: complex,
+        turn: complex | None = None,
+    ) -> complex:
+        """Return where a point goes if it moves as the image of a place with a target.
+
+        The image of the motion f is S ∘ f ∘ S⁻¹. A place p comes to one beside the point; what f
+        does at p is done to S(p), and the point is taken along as a rigid body would be:
+
+            S(f(p)) + u (point − S(p)),  u the turn of the image at p
+
+        or by another `turn` of f than that at the place. So the drawing at rest stays at rest
+        whatever the places are, a shape that is turned as a whole is turned alike, and the way back
+        changes nothing.
+        """
+        if turn is None:
+            (fz,), _ = shape.derivatives(np.array([place]))
+            turn = complex(fz / abs(fz))
+        return self.to(wished) + self.turned(turn) * (point - self.to(place))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Carriage:
+    """The way from one figure's poses to another's.
+
+    Parameters
+    ----------
+    source : Figure
+        As it was when its poses were.
+    pairs : mapping of int to int
+        Of the other figure's handles, those that take over, and from which of the source's.
+    likeness : Likeness
+    """
+
+    source: Figure
+    pairs: Mapping[int, int]
+    likeness: Likeness
+    # Whether sides exchange within one figure: what is far apart turns only as the whole does.
+    is_within: bool = False
+
+    def targets(self, figure: Figure, pose: Pose) -> dict[int, Target]:
+        """Return where a figure's handles are wanted by a pose of the source, by their ids."""
+        shape, carried = self.source.map_of(pose), {}
+        whole = whole_turn(self.source, shape) if self.is_within else None
+        for identity, other in self.pairs.items():
+            target, place = pose.targets[other], self.source.handle(other).position
+            point = figure.handle(identity).position
+            turn = target.rotation
+            carried[identity] = Target(
+                position=self.likeness.moved(shape, place, target.position, point, whole),
+                rotation=-turn if turn is not None and self.likeness.mirrors else turn,
+            )
+        return carried
+
+    def carry(self, rig: Rig, pose: Pose, present: Pose | None = None) -> Pose:
+        """Return a pose of the source as one of a rig's figure, solved within its bounds.
+
+        Parameters
+        ----------
+        rig : Rig
+        pose : Pose
+            Of the source.
+        present : Pose, optional
+            Where the handles stay that take nothing over; none is needed where all do.
+        """
+        figure, targets = rig.figure, self.targets(rig.figure, pose)
+        if present is not None:
+            targets, pins = {**present.targets, **targets}, pins_of(figure, present)
+            return solve_from(rig, figure.map_of(present), targets, pins)
+        begin = begin_like(rig, self.source, pose, self.likeness, targets)
+        # What follows by a spring needs a target, too, which is not heeded.
+        rest = {handle.id: Target(position=handle.position) for handle in figure.handles}
+        return solve_from(rig, begin, {**rest, **targets}, self._pins(rig, pose))
+
+    def _pins(self, rig: Rig, pose: Pose) -> list[Target]:
+        """Return where the joints of a rig's figure are held, as is done next to them."""
+        shape = self.source.map_of(pose)
+        held = [self.source.handle(other).position for other in self.pairs.values()]
+        if self.source.joints and self.source.anchor is not None:
+            held.append(self.source.anchor)
+        pins = []
+        for joint in rig.pins:
+            beside = min(held, key=lambda place: abs(self.likeness.to(place) - joint))
+            wished = complex(shape(np.array([beside]))[0])
+            pins.append(Target(position=self.likeness.moved(shape, beside, wished, joint)))
+        return pins
+
+
+def solve_from(
+    rig: Rig, begin: HarmonicMap, targets: Mapping[int, Target], pins: Sequence[Target]
+) -> Pose:
+    """Return the pose with these wishes that is found from a map."""
+    deformer = rig.deformer
+    state = rig.beginning_at(begin)
+    state, _ = deformer.settle(state, rig.wish(targets, tuple(pins)), at_most=MOST_STEPS)
+    # Steps that walk into the bounds are proven for wider ones.
+    proven = certify(state.map, deformer.boundary, deformer.bounds)
+    return rig.pose(state.map, targets, proven)
+
+
+def begin_like(
+    rig: Rig, source: Figure, pose: Pose, likeness: Likeness, targets: Mapping[int, Target]
+) -> HarmonicMap:
+    """Return the map with which the solver begins that is to find the image of a pose.
+
+    It is the map nearest to S ∘ f ∘ S⁻¹ where the two drawings are alike, else the rest, turned as
+    a whole as that is.
+    """
+    shape = source.map_of(pose)
+    if is_alike(rig.figure, source, likeness):
+        return _image(rig, source, shape, likeness)
+    turn = likeness.turned(whole_turn(source, shape))
+    apart = [
+        target.position - turn * rig.figure.handle(identity).position
+        for identity, target in targets.items()
+    ]
+    return rig.deformer.at_rest.moved(turn, complex(np.mean(apart)) if apart else 0j)
+
+
+def whole_turn(figure: Figure, shape: HarmonicMap) -> complex:
+    """Return by what a figure is turned as a whole, of modulus 1."""
+    fz, _ = shape.derivatives(_some(figure.domain.mesh.vertices))
+    turn = complex(fz.sum())
+    return turn / abs(turn) if turn else 1.0 + 0j
+
+
+def is_alike(figure: Figure, source: Figure, likeness: Likeness) -> bool:
+    """Tell whether nearly all of a figure lies on another one's image."""
+    found = source.covers(likeness.back(_some(figure.domain.mesh.vertices)))
+    return bool(found.mean() >= ALIKE)
+
+
+def _some(vertices: Complexes) -> Complexes:
+    return vertices[:: max(1, len(vertices) // ENOUGH)]
+
+
+def _image(rig: Rig, source: Figure, shape: HarmonicMap, likeness: Likeness) -> HarmonicMap:
+    """Return the map that is nearest to S ∘ f ∘ S⁻¹."""
+    boundary = rig.deformer.boundary
+    places = likeness.back(boundary.points)
+    cage, *inner = source.domain.cages
+    inside = contains(cage, places, holes=inner)
+    points = places[inside]
+    fz, fzbar = shape.derivatives(points)
+    # With d S⁻¹ = dw/a, or its conjugate: (S ∘ f ∘ S⁻¹)_w = f_z, and its other derivative is
+    # f_z̄ a/conj(a), both conjugated before they are turned where S mirrors.
+    if likeness.mirrors:
+        fz, fzbar = fz.conj(), fzbar.conj()
+    turned = likeness.factor / likeness.factor.conjugate()
+    return fit_map(boundary, fz, turned * fzbar, likeness.on(shape(points)), inside=inside)

@@ -1,0 +1,402 @@
+"""Poses and keys that go to other layers, by the names of layers and of their handles."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from invariants import check_invariants
+from sessions import go, session_of, settle
+from walkers import AXIS, FAR, leg, walker
+
+from app.document import (
+    PRESETS,
+    Document,
+    Passing,
+    Target,
+    handle_commands,
+    key_commands,
+    layer_commands,
+    track_commands,
+)
+from app.editor import layering
+from app.editor.actions import editing, playback, posing
+from app.editor.actions.upkeep import maintain
+from app.editor.poses import copying, library, pasting, receiving
+from app.editor.session import CopiedKeys
+from app.editor.timeline_view import TrackRow
+
+SWAPPED, FLIPPED, PLAIN = "swapped", "flipped", "as it is"
+
+
+def walking(folder, document):
+    """A session of somebody whose first layer in front is bent at frame 0."""
+    first = Document(figures=document.figures[:1], size=document.size)
+    height, width = document.size[1], document.size[0]
+    session = session_of(first, folder, np.zeros((height, width, 4), np.uint8))
+    for figure in document.figures[1:]:
+        editing.edit(session, layer_commands.add_figure(figure))
+    settle(session)
+    (near,) = (each.id for each in document.figures if each.id == 0)
+    layering.choose(session, near)
+    return session
+
+
+def pull(session, name, **ways):
+    """Pull handles of a layer, which is chosen then, at the present frame."""
+    layering.choose(session, identity(session, name))
+    ids = {handle.name: handle.id for handle in session.project.figure.handles}
+    settle(session)
+    for handle, way in ways.items():
+        editing.select(session, frozenset({ids[handle]}))
+        posing.nudge(session, way)
+        settle(session)
+    editing.select(session, frozenset())
+
+
+def identity(session, name):
+    return next(each.id for each in session.project.document.figures if each.name == name)
+
+
+def figure(session, name):
+    return session.project.document.figure(identity(session, name))
+
+
+def ways(session, name, frame):
+    """Return how far a key has taken a layer's handles, by their names."""
+    one = figure(session, name)
+    targets = one.key(frame).pose.targets
+    return {each.name: targets[each.id].position - each.position for each in one.handles}
+
+
+@pytest.fixture
+def session(tmp_path):
+    """Near leg raised at frame 0; the far leg, which is drawn elsewhere, and the body at rest."""
+    session = walking(tmp_path, walker())
+    pull(session, "near leg", knee=18 + 8j, foot=-20 + 30j)
+    return session
+
+
+def near_and_far(session, frame):
+    return ways(session, "near leg", frame), ways(session, "far leg", frame)
+
+
+def close(one, other):
+    assert one.keys() == other.keys()
+    for name, way in one.items():
+        assert way == pytest.approx(other[name], abs=1e-6), name
+
+
+def test_a_pose_is_pasted_onto_another_layer_as_one_step(session):
+    project = session.project
+    copying.copy(session)
+    layering.choose(session, identity(session, "far leg"))
+    before = project.document
+    go(session, 12)
+    pasting.paste(session)
+    settle(session)
+    check_invariants(session)
+    close(ways(session, "far leg", 12), ways(session, "near leg", 0))
+    assert figure(session, "far leg").key(12).pose.certificate.certified
+    assert project.chosen == {12}
+    assert figure(session, "near leg").key_frames == {0}
+    editing.undo(session)
+    assert project.document is before
+
+
+def test_keys_take_their_ways_passings_turns_and_fronts_along(session):
+    near, knee = identity(session, "near leg"), 1
+    editing.edit(
+        session, key_commands.insert_key(near, 8, figure(session, "near leg").keys[0].pose)
+    )
+    editing.edit(session, key_commands.set_easing(near, {0}, PRESETS["in-out"]))
+    editing.edit(session, key_commands.set_passing(near, {8}, Passing.STOP))
+    editing.edit(session, key_commands.set_turns(near, {0}, 1))
+    editing.edit(session, layer_commands.key_front(near, 0, knee, 0.5))
+    editing.choose_keys(session, frozenset({0, 8}))
+    copying.copy_keys(session)
+    layering.choose(session, identity(session, "far leg"))
+    go(session, 12)
+    pasting.paste(session)
+    settle(session)
+    far = figure(session, "far leg")
+    assert far.key_frames == {0, 12, 20}
+    one, other = far.key(12), far.key(20)
+    assert (one.easing, one.turns, dict(one.fronts)) == (PRESETS["in-out"], 1, {knee: 0.5})
+    assert other.passing is Passing.STOP
+    close(ways(session, "far leg", 20), ways(session, "near leg", 8))
+
+
+def test_the_step_of_all_layers_is_pasted_swapped_and_nothing_is_mirrored(session):
+    project = session.project
+    layering.choose(session, identity(session, "body"))
+    copying.copy_all(session)
+    settle(session)
+    before = project.document
+    go(session, 12)
+    assert pasting.why_not(session, project, SWAPPED) == ""
+    pasting.paste(session, SWAPPED)
+    settle(session)
+    near, far = near_and_far(session, 12)
+    first_near, first_far = near_and_far(session, 0)
+    close(far, first_near)
+    close(near, first_far)
+    body = figure(session, "body")
+    assert body.key(12).pose.phi is body.key(0).pose.phi
+    assert {row: set(at) for row, at in project.chosen_of.items()} == {0: {12}, 1: {12}, 2: {12}}
+    editing.undo(session)
+    assert project.document is before
+    # Once more is the step itself again.
+    editing.redo(session)
+    copying.copy_all(session)
+    go(session, 24)
+    pasting.paste(session, SWAPPED)
+    settle(session)
+    for name in ("near leg", "far leg"):
+        close(ways(session, name, 24), ways(session, name, 0))
+
+
+def test_left_and_right_layers_exchange_mirrored_when_flipped(tmp_path):
+    mirrored = leg("leg.R", 2, mirrored=True)
+    document = Document(figures=(mirrored, leg("leg.L", 0)), size=(240, 200))
+    session = walking(tmp_path, document)
+    pull(session, "leg.L", knee=18 + 8j, foot=-20 + 30j)
+    editing.edit(session, key_commands.set_turns(0, {0}, 2))
+    copying.copy_all(session)
+    go(session, 12)
+    pasting.paste(session, FLIPPED)
+    settle(session)
+    was = ways(session, "leg.L", 0)
+    close(ways(session, "leg.R", 12), {name: -way.conjugate() for name, way in was.items()})
+    close(ways(session, "leg.L", 12), dict.fromkeys(was, 0j))
+    assert mirrored.axis > AXIS
+
+
+def test_one_layer_gives_its_pose_to_its_partner_where_sides_exchange(session):
+    project = session.project
+    copying.copy(session)
+    go(session, 12)
+    (landing,) = receiving.landings(session, project, SWAPPED)
+    assert landing.figure.name == "far leg"
+    pasting.paste(session, SWAPPED)
+    settle(session)
+    close(ways(session, "far leg", 12), ways(session, "near leg", 0))
+    assert figure(session, "near leg").key_frames == {0}
+
+
+def test_words_for_sides_are_edited_and_whole_names_are_partners(session):
+    project = session.project
+    for name, to in (("near leg", "Spielbein"), ("far leg", "Standbein")):
+        layering.rename(session, identity(session, name), to)
+    copying.copy_all(session)
+    go(session, 12)
+    assert "Nothing changes sides" in pasting.why_not(session, project, SWAPPED)
+    before = project.document
+    pasting.paste(session, SWAPPED)
+    settle(session)
+    assert project.document is before
+    pasting.set_pairs(session, "L/R, Spielbein/Standbein")
+    assert pasting.why_not(session, project, SWAPPED) == ""
+    pasting.paste(session, SWAPPED)
+    settle(session)
+    close(ways(session, "Standbein", 12), ways(session, "Spielbein", 0))
+    assert project.document.pairs == (("L", "R"), ("Spielbein", "Standbein"))
+
+
+def test_why_nothing_can_be_pasted_is_said(session):
+    project = session.project
+    assert pasting.why_not(session, project, PLAIN) == "Copy a pose or keys first."
+    copying.copy(session)
+    layering.choose(session, identity(session, "body"))
+    before = project.document
+    assert pasting.why_not(session, project, PLAIN) == (
+        "“body” has no handle called hip, knee or foot."
+    )
+    for way in (PLAIN, SWAPPED, FLIPPED):
+        pasting.paste(session, way)
+    settle(session)
+    assert project.document is before
+    layering.stand_still(session, identity(session, "body"))
+    settle(session)
+    assert "still picture" in pasting.why_not(session, project, PLAIN)
+
+
+def test_layers_without_a_common_name_are_left_out_and_told(session):
+    far = identity(session, "far leg")
+    for handle in figure(session, "far leg").handles:
+        command = handle_commands.rename_handle(far, handle.id, f"point {handle.id}")
+        editing.edit(session, command)
+    copying.copy_all(session)
+    go(session, 12)
+    # What remains are layers that only take back their own.
+    assert pasting.why_not(session, session.project, SWAPPED) != ""
+    pasting.paste(session, FLIPPED)
+    settle(session)
+    assert figure(session, "body").key_frames == {0, 12}
+    assert figure(session, "far leg").key_frames == {0}
+    told = [toast.text for toast in session.toasts]
+    assert "“far leg” has no handle called hip, knee or foot." in told
+
+
+def test_handles_that_are_not_copied_stay_where_the_motion_has_them(session):
+    far = identity(session, "far leg")
+    editing.edit(session, handle_commands.add_handle(far, 74 + 120j + FAR.shift, name="shin"))
+    settle(session)
+    go(session, 24)
+    pull(session, "far leg", shin=10 + 6j)
+    layering.choose(session, identity(session, "near leg"))
+    go(session, 0)
+    copying.copy(session)
+    layering.choose(session, far)
+    go(session, 12)
+    shown = session.project.puppet.shown
+    names = [handle.name for handle in shown.clip.figure.handles]
+    here = complex(shown.handle_places[names.index("shin")])
+    pasting.paste(session)
+    settle(session)
+    shin = next(each for each in figure(session, "far leg").handles if each.name == "shin")
+    wished = figure(session, "far leg").key(12).pose.targets[shin.id].position
+    assert wished == pytest.approx(here, abs=0.5)
+    close(
+        {k: w for k, w in ways(session, "far leg", 12).items() if k != "shin"},
+        ways(session, "near leg", 0),
+    )
+
+
+def test_selected_handles_alone_take_over_from_another_layer(session):
+    copying.copy(session)
+    layering.choose(session, identity(session, "far leg"))
+    go(session, 0)
+    foot = next(each.id for each in session.project.figure.handles if each.name == "foot")
+    editing.select(session, frozenset({foot}))
+    pasting.paste_on_selected(session)
+    settle(session)
+    now, was = ways(session, "far leg", 0), ways(session, "near leg", 0)
+    assert now["foot"] == pytest.approx(was["foot"], abs=1e-6)
+    assert now["knee"] != pytest.approx(was["knee"], abs=1)
+
+
+def test_a_paste_waits_for_a_pose_that_is_on_its_way(session):
+    editing.select(session, frozenset({2}))
+    posing.nudge(session, 13 + 3j)
+    (promised,) = session.project.pulls
+    while promised.kept is None:
+        maintain(session)
+        assert session.jobs.settle()
+        session.jobs.deliver()
+    assert not promised.is_settled
+    copying.copy(session)
+    layering.choose(session, identity(session, "far leg"))
+    pasting.paste(session)
+    settle(session)
+    # What was copied has come to rest in the copy, too.
+    close(ways(session, "far leg", 0), ways(session, "near leg", 0))
+
+
+def test_a_layer_that_changes_meanwhile_is_told(session):
+    copying.copy(session)
+    layering.choose(session, identity(session, "far leg"))
+    pasting.paste(session)
+    editing.edit_figure(session, handle_commands.remove_handles, {0})
+    before = session.project.document
+    settle(session)
+    assert session.project.document is before
+    assert "Paste again" in session.toasts[-1].text
+
+
+def test_poses_of_a_library_are_offered_to_layers_with_the_same_names(session):
+    project = session.project
+    library.keep(session)
+    settle(session)
+    near = identity(session, "near leg")
+    layering.choose(session, identity(session, "body"))
+    assert library.offers(project) == []
+    layering.choose(session, identity(session, "far leg"))
+    ((owner, kept),) = library.offers(project)
+    assert (owner.id, kept.name) == (near, "Pose 1")
+    library.apply_at(session, kept.name, 12, near)
+    settle(session)
+    close(ways(session, "far leg", 12), ways(session, "near leg", 0))
+    assert playback.current_frame(session, project) == 12
+    assert project.history.undo_label == "Use pose"
+    go(session, 0)
+    library.blend(session, kept.name, 0.5, near)
+    settle(session)
+    library.end_blend(session)
+    settle(session)
+    half = {name: way / 2 for name, way in ways(session, "near leg", 0).items()}
+    close(ways(session, "far leg", 0), half)
+
+
+def test_keys_of_several_layers_come_back_by_name_in_another_project(session, tmp_path):
+    copying.copy_all(session)
+    other = walking(tmp_path, walker())
+    other.copied = session.copied
+    go(other, 6)
+    pasting.paste(other)
+    settle(other)
+    close(ways(other, "near leg", 6), ways(session, "near leg", 0))
+    (one,) = [each for each in session.copied if each.figure.name == "near leg"]
+    other.copied = (replace(one, figure=replace(one.figure, name="nobody")), *other.copied[1:])
+
+
+def test_handles_of_one_layer_are_swapped_within_it(tmp_path):
+    document = walker()
+    body = next(each for each in document.figures if each.name == "body")
+    for name, place in (("near hand", 60 + 160j), ("far hand", 140 + 160j)):
+        scene = handle_commands.add_handle(1, place, name=name)(Document(figures=(body,)))
+        (body,) = scene.figures
+    session = session_of(Document(figures=(body,)), tmp_path, np.zeros((200, 240, 4), np.uint8))
+    pull(session, "body", **{"near hand": 6 + 10j})
+    copying.copy(session)
+    go(session, 12)
+    pasting.paste(session, SWAPPED)
+    settle(session)
+    now = ways(session, "body", 12)
+    # All of it has turned by an eighth by the pull, which takes the hands along, 80 pixels apart.
+    assert now["far hand"] == pytest.approx(6 + 10j, abs=8)
+    assert now["near hand"] == pytest.approx(0, abs=8)
+    assert now["chest"] == pytest.approx(0, abs=1e-6)
+
+
+def test_what_is_turned_as_a_whole_stays_turned_where_its_sides_are_swapped():
+    document = walker()
+    body = next(each for each in document.figures if each.name == "body")
+    for name, place in (("near hand", 60 + 160j), ("far hand", 140 + 160j)):
+        scene = handle_commands.add_handle(1, place, name=name)(Document(figures=(body,)))
+        (body,) = scene.figures
+    turn, key = np.exp(0.7j), body.keys[0]
+    targets = {each.id: Target(position=turn * each.position) for each in body.handles}
+    pose = replace(key.pose, targets=targets, phi=turn * body.domain.cage)
+    copied = CopiedKeys(body, (replace(key, pose=pose),))
+    landing = receiving.landing_on(scene, copied, body, SWAPPED)
+    wished = landing.carriage(SWAPPED).targets(body, pose)
+    for handle in body.handles:
+        assert wished[handle.id].position == pytest.approx(targets[handle.id].position, abs=1e-9)
+
+
+@pytest.mark.parametrize(("way", "mirrors"), [(SWAPPED, False), (FLIPPED, True)])
+def test_keys_of_tracks_go_to_the_handles_of_the_partner(session, way, mirrors):
+    near, far = identity(session, "near leg"), identity(session, "far leg")
+    foot = 2
+    for frame, place in ((0, 4 + 2j), (6, -3 + 5j)):
+        command = track_commands.put_track_key(near, foot, frame, place, velocity=1 + 2j)
+        editing.edit(session, command)
+    settle(session)
+    editing.choose_keys_of(session, {TrackRow(near, foot): frozenset({0, 6})})
+    copying.copy_keys(session)
+    go(session, 12)
+    before = session.project.document
+    pasting.paste(session, way)
+    settle(session)
+    track = figure(session, "far leg").track_of(foot)
+    assert [key.frame for key in track.keys] == [12, 18]
+    for key, place in zip(track.keys, (4 + 2j, -3 + 5j), strict=True):
+        ways = [place, 1 + 2j]
+        wanted = [-each.conjugate() for each in ways] if mirrors else ways
+        # The mirror at which an oblique leg takes over is oblique; it turns no length into another.
+        assert abs(key.place) == pytest.approx(abs(wanted[0]))
+        if not mirrors:
+            assert [key.place, key.velocity] == pytest.approx(wanted)
+    assert session.project.chosen_of == {TrackRow(far, foot): frozenset({12, 18})}
+    editing.undo(session)
+    assert session.project.document is before

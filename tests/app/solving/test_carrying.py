@@ -1,0 +1,172 @@
+"""Poses carried from one figure to another by a similarity of their handles."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, strategies as st
+from invariants import check_pose
+from walkers import AXIS, FAR, HANDLES, leg
+
+from app.document import Document, Target, handle_commands
+from app.solving import Carriage, Likeness, Rig
+from app.solving.drag import Drag
+
+PLACES = np.array([3 + 1j, 40 - 7j, 12 + 90j, -55 + 20j])
+FACTORS = st.builds(lambda r, t: r * np.exp(1j * t), st.floats(0.1, 10), st.floats(-3.1, 3.1))
+SHIFTS = st.complex_numbers(max_magnitude=1e3)
+
+
+@given(factor=FACTORS, shift=SHIFTS, mirrors=st.booleans())
+def test_a_likeness_is_found_by_its_images_and_mirrors_where_they_do(factor, shift, mirrors):
+    likeness = Likeness(factor, shift, mirrors)
+    found = Likeness.of(PLACES, likeness.on(PLACES))
+    assert found.mirrors == mirrors
+    size = abs(factor) * 100 + abs(shift)
+    np.testing.assert_allclose(found.on(PLACES), likeness.on(PLACES), rtol=0, atol=1e-9 * size)
+    back = Likeness.of(likeness.on(PLACES), PLACES)
+    np.testing.assert_allclose(back.on(found.on(PLACES)), PLACES, rtol=0, atol=1e-9 * (size + 100))
+    np.testing.assert_allclose(found.back(found.on(PLACES)), PLACES, rtol=0, atol=1e-6)
+
+
+def test_places_that_are_no_images_are_scaled_by_their_spread_both_ways():
+    images = np.array([0j, 9 + 2j, 4 - 30j, 7 + 7j])
+    there, back = Likeness.of(PLACES, images), Likeness.of(images, PLACES)
+    if there.mirrors == back.mirrors:
+        np.testing.assert_allclose(back.on(there.on(PLACES)), PLACES, rtol=0, atol=1e-9)
+    spread = np.linalg.norm(images - images.mean()) / np.linalg.norm(PLACES - PLACES.mean())
+    assert abs(there.factor) == pytest.approx(spread)
+
+
+@pytest.mark.parametrize(("mirrors", "factor"), [(None, 1), (False, 1), (True, -1)])
+def test_one_place_is_only_moved_or_mirrored_upright(mirrors, factor):
+    likeness = Likeness.of(np.array([3 + 4j]), np.array([10 + 1j]), mirrors=mirrors)
+    assert likeness.factor == factor
+    assert likeness.to(3 + 4j) == 10 + 1j
+
+
+def test_a_straight_limb_is_mirrored_only_where_that_is_asked():
+    straight = np.array([10 + 90j, 10 + 50j, 10 + 5j])
+    for mirrors in (None, True):
+        likeness = Likeness.of(straight, straight + 30, mirrors=mirrors)
+        assert likeness.to(15 + 50j) == pytest.approx(35 + 50j if mirrors else 45 + 50j)
+
+
+def by_names(figure, source):
+    names = {handle.name: handle.id for handle in source.handles}
+    return {each.id: names[each.name] for each in figure.handles if each.name in names}
+
+
+def carriage(source, figure, mirrors=None):
+    pairs = by_names(figure, source)
+    places = np.array([source.handle(other).position for other in pairs.values()])
+    images = np.array([figure.handle(one).position for one in pairs])
+    likeness = Likeness.of(places, images, mirrors=mirrors)
+    return Carriage(source=source, pairs=pairs, likeness=likeness)
+
+
+def raised(figure):
+    """The leg with its knee bent and its foot back, as the solver has it."""
+    rig, pose = Rig.of(figure), figure.keys[0].pose
+    names = {handle.name: handle.id for handle in figure.handles}
+    targets = dict(pose.targets)
+    for name, way in (("knee", 18 + 8j), ("foot", -20 + 30j)):
+        old = targets[names[name]]
+        targets[names[name]] = Target(position=old.position + way)
+    return Drag.begin(rig, pose).towards(targets, 600).pose(targets)
+
+
+@pytest.fixture(scope="module")
+def near():
+    figure = leg("near leg", 0)
+    return figure, raised(figure)
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_a_leg_that_is_drawn_elsewhere_or_mirrored_does_the_same(near, mirrored):
+    source, pose = near
+    figure = leg("far leg", 1, 0j if mirrored else FAR.shift, mirrored=mirrored)
+    way = carriage(source, figure)
+    assert way.likeness.mirrors == mirrored
+    carried = way.carry(Rig.of(figure), pose)
+    check_pose(figure, carried)
+    assert carried.certificate.certified
+    for handle in figure.handles:
+        wished = pose.targets[way.pairs[handle.id]].position
+        image = 2 * AXIS - wished.conjugate() if mirrored else wished + FAR.shift
+        assert carried.targets[handle.id].position == pytest.approx(image, abs=1e-9)
+    # Not its handles alone: all of it is the image, as near as two cages have it.
+    points = source.domain.mesh.vertices
+    images = way.likeness.on(points)
+    inside = figure.covers(images)
+    apart = figure.map_of(carried)(images) - way.likeness.on(source.map_of(pose)(points))
+    assert np.abs(apart[inside]).max() < 0.05 * np.abs(source.map_of(pose)(points) - points).max()
+
+
+def test_there_and_back_wishes_are_what_they_were(near):
+    source, pose = near
+    figure = leg("far leg", 1, FAR.shift)
+    carried = carriage(source, figure).carry(Rig.of(figure), pose)
+    back = carriage(figure, source).targets(source, carried)
+    for identity, target in pose.targets.items():
+        assert back[identity].position == pytest.approx(target.position, abs=1e-6)
+
+
+def other_leg(**places):
+    """A leg drawn elsewhere, whose handles are moved from where they would be alike."""
+    figure = leg("far leg", 1, FAR.shift)
+    handles = tuple(
+        replace(each, position=each.position + places.get(each.name, 0)) for each in figure.handles
+    )
+    keys = [
+        replace(
+            key,
+            pose=replace(
+                key.pose, targets={each.id: Target(position=each.position) for each in handles}
+            ),
+        )
+        for key in figure.keys
+    ]
+    return replace(figure, handles=handles, keys=tuple(keys))
+
+
+@pytest.mark.parametrize("mirrors", [False, True])
+def test_rest_stays_rest_and_a_turn_of_the_whole_is_as_great_in_any_proportions(near, mirrors):
+    source, _ = near
+    figure = other_leg(knee=6 - 9j, foot=-8 + 3j)
+    way = carriage(source, figure, mirrors=mirrors)
+    at_rest = way.targets(figure, source.keys[0].pose)
+    for handle in figure.handles:
+        assert at_rest[handle.id].position == pytest.approx(handle.position, abs=1e-9)
+    turn, centre = np.exp(2.8j), HANDLES["hip"]
+    rest = source.keys[0].pose
+    turned = replace(
+        rest,
+        targets={
+            each.id: Target(position=centre + turn * (each.position - centre), rotation=2.8)
+            for each in source.handles
+        },
+        phi=centre + turn * (source.domain.cage - centre),
+    )
+    carried = way.carry(Rig.of(figure), turned)
+    image = turn.conjugate() if mirrors else turn
+    fz, fzbar = figure.map_of(carried).derivatives(figure.domain.mesh.vertices)
+    np.testing.assert_allclose(fz, image, rtol=0, atol=1e-6)
+    np.testing.assert_allclose(fzbar, 0, rtol=0, atol=1e-6)
+    assert all(t.rotation == (-2.8 if mirrors else 2.8) for t in carried.targets.values())
+
+
+def test_handles_that_take_nothing_over_stay_where_they_are(near):
+    source, pose = near
+    figure = leg("far leg", 1, FAR.shift)
+    add = handle_commands.add_handle(1, HANDLES["hip"] + FAR.shift + 4 - 60j, name="shin")
+    (added,) = add(Document(figures=(figure,))).figures
+    present = added.keys[0].pose
+    carried = carriage(source, added).carry(Rig.of(added), pose, present)
+    shin = next(each.id for each in added.handles if each.name == "shin")
+    assert carried.targets[shin].position == present.targets[shin].position
+    foot = next(each for each in added.handles if each.name == "foot")
+    wished = carriage(source, figure).targets(figure, pose)
+    named = {figure.handle(i).name: target for i, target in wished.items()}
+    assert carried.targets[foot.id].position == pytest.approx(named["foot"].position)
+    check_pose(added, carried)
