@@ -25,6 +25,7 @@ from app.document.commands import (
     figure_commands as figure_commands,
     group_commands as group_commands,
     handle_commands as handle_commands,
+    in_turn as in_turn,
     key_commands as key_commands,
     layer_commands as layer_commands,
     material_commands as material_commands,
@@ -59,6 +60,7 @@ from app.document.layering import (
     Switch as Switch,
     Turn as Turn,
     paths_to as paths_to,
+    shared_path as shared_path,
 )
 from app.document.model import Document as Document
 from app.document.playhead import Playhead as Playhead
@@ -73,6 +75,7 @@ from app.document.queries import (
     Shortfall as Shortfall,
     TrackPlace as TrackPlace,
     Transit as Transit,
+    TreeRow as TreeRow,
     are_as_stiff as are_as_stiff,
     brushed_stiffness as brushed_stiffness,
     changed_stretches as changed_stretches,
@@ -87,6 +90,7 @@ from app.document.queries import (
     fronts_at as fronts_at,
     intervals as intervals,
     is_visible as is_visible,
+    layer_tree as layer_tree,
     limb_of as limb_of,
     passings_of as passings_of,
     place_at as place_at,

@@ -286,6 +286,8 @@ def follow_figures(project: Project) -> None:
 def _forget_what_is_gone(project: Project) -> None:
     document = project.document
     follow_figures(project)
+    project.beside &= project.puppets.keys()
+    project.solo &= project.puppets.keys()
     project.selected &= {handle.id for handle in project.figure.handles}
     chosen = {row: at & frames_in(document, row) for row, at in project.chosen_of.items()}
     project.chosen_of = {row: frames for row, frames in chosen.items() if frames}
