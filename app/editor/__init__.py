@@ -53,6 +53,7 @@ from app.editor.timeline_view import (
     TimeDrag as TimeDrag,
     TimeGesture as TimeGesture,
     TrackRow as TrackRow,
+    TurnDrag as TurnDrag,
     figure_of as figure_of,
     frames_in as frames_in,
     row_of as row_of,

@@ -199,6 +199,15 @@ class CycleDrag(TimeDrag):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class TurnDrag(TimeDrag):
+    """The pointer moves where a layer of a choice comes to be seen, from `turn` to `at`."""
+
+    choice: str
+    turn: int
+    at: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class KeyBox:
     """The pointer spans a stretch of time and rows to choose the keys there."""
 

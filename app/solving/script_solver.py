@@ -228,6 +228,10 @@ def _posed(
                 frame=key.frame, pose=pose, easing=key.ease, passing=key.passing, fronts=fronts
             )
         )
+    keyed = [key.frame for key in keys] + [switch.frame for switch in figure.switches]
+    for cycle in part.cycles:
+        if not (any(map(cycle.has, keyed)) or any(map(cycle.takes, figure.tracks))):
+            notices.append(f"{whose}nothing is keyed in {cycle.told}: there is nothing to repeat")
     return replace(figure, keys=tuple(keys), cycles=part.cycles), notices
 
 

@@ -8,7 +8,7 @@ from app.document.figure import Figure
 from app.document.keyframe import Pose
 from app.document.model import Document
 from app.document.queries.clips import Clip, clip_of
-from app.document.queries.spans import intervals, place_at, spans
+from app.document.queries.spans import place_at, spans
 from app.document.queries.tracks import track_at
 from app.document.queries.transits import transits
 from app.document.settings import FrameRange
@@ -35,11 +35,10 @@ def time_of(clip: Clip, frame: float) -> Moment:
     again; frames beyond the ends come round. In a cycle it is that of the frame that repeats there.
     Fractions lie between frames.
     """
-    found = spans(clip)
-    if not found:
+    if len(clip.keys) == 1:
         return Moment(0, 0.0)
-    interval, share = place_at(clip, frame)
-    eased = clip.keys[found[interval].first].easing(share)
+    interval, span, share = place_at(clip, frame)
+    eased = clip.keys[span.first].easing(share)
     return Moment(interval, transits(clip)[interval].weight(eased))
 
 
@@ -48,7 +47,7 @@ def resting_pose(clip: Clip, moment: Moment) -> Pose | None:
     keys = clip.keys
     if moment.weight not in (0.0, 1.0) or len(keys) == 1:
         return None if len(keys) > 1 else keys[0].pose
-    return keys[intervals(clip)[moment.interval][moment.weight == 1.0]].pose
+    return keys[spans(clip)[moment.interval][moment.weight == 1.0]].pose
 
 
 def changed_stretches(before: Document, after: Document) -> list[FrameRange]:

@@ -12,6 +12,7 @@ from app.editor import (
     SwitchDrag,
     TimeDrag,
     TimeGesture,
+    TurnDrag,
     do,
     layering,
     seen_at,
@@ -131,6 +132,8 @@ def _click(bands: Bands, gesture: TimeGesture) -> list[Action]:
             chosen = {row: frozenset({frame})}
             return [do(editing.choose_keys_of, chosen), do(playback.scrub, seen)]
         case MarkerDrag(marker=frame):
+            return [do(playback.scrub, frame)]
+        case TurnDrag(turn=frame):
             return [do(playback.scrub, frame)]
         case SwitchDrag(figure=figure, switch=frame):
             return [do(layering.choose, figure), do(playback.scrub, frame)]

@@ -13,8 +13,8 @@ from app.document.keyframe import Handle, Passing, Target
 from app.document.layering import Switch
 from app.document.queries.clips import clip_of
 from app.document.queries.fronts import fronts_at
-from app.document.queries.sight import is_visible
 from app.document.queries.spans import intervals
+from app.document.queries.stage.sight import is_visible
 from app.document.queries.timeline import exported_frames, time_of
 from app.document.settings import FrameRange
 from app.document.timing import Cycle, Track, TrackKey

@@ -8,6 +8,7 @@ from app.document import (
     Command,
     Document,
     FrameRange,
+    choice_commands,
     cycle_commands,
     key_commands,
     layer_commands,
@@ -31,6 +32,7 @@ from app.editor.timeline_view import (
     SwitchDrag,
     TimeDrag,
     TimeGesture,
+    TurnDrag,
     figure_of,
     frames_in,
     keys_in,
@@ -220,6 +222,12 @@ def _moved(drag: TimeDrag, frame: float) -> tuple[TimeDrag, Command] | None:
             others = {each.frame for each in before.figure(figure).switches} - {switch}
             command = layer_commands.move_switch(figure, switch, at)
             return None if at in others | {drag.at} else (replace(drag, at=at), command)
+        case TurnDrag(choice=choice, turn=turn):
+            at = before.frames.clamp(turn + by)
+            others = {each.frame for each in before.choice(choice).turns} - {turn}
+            is_taken = at in others or at == before.frames.first
+            command = choice_commands.move_turn(choice, turn, at)
+            return None if is_taken or at == drag.at else (replace(drag, at=at), command)
     raise AssertionError("unreachable: there are no other drags")
 
 
