@@ -205,6 +205,7 @@ class Project:
     beside: frozenset[int] = frozenset()
     solo: frozenset[int] = frozenset()
     toggled: frozenset[str] = frozenset()  # rows of the tree of layers, open or closed by hand
+    declined: frozenset[str] = frozenset()  # groups of which no choice is to be made
     listed: int | None = None  # the figure that the list of layers was scrolled to
 
     @property
