@@ -41,6 +41,7 @@ from app.document.queries.stage import (
     composed as composed,
     is_visible as is_visible,
     layer_tree as layer_tree,
+    repeated as repeated,
     sights_of as sights_of,
 )
 from app.document.queries.timeline import (
