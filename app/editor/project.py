@@ -121,7 +121,9 @@ class Puppet:
             is_opaque=picture.is_opaque,
             file=clip.figure.picture,
             store=IntervalStore(mesh=PosableMesh.coarse(clip.figure.domain, among=among)),
-            cut=Derived(cut_picture(picture, clip.figure.cut_out), clip.figure.cut_out),
+            cut=Derived(
+                cut_picture(picture, clip.figure.cut_out, is_alone=among == 1), clip.figure.cut_out
+            ),
         )
 
 

@@ -227,7 +227,12 @@ def _scene(drawing: LayeredPicture, meshing: Meshing, *, is_cut_out: bool) -> Op
         enumerate(drawing.layers),
         (layer.picture.size for layer in drawing.layers),
     )
-    figures = tuple(figure for figure, _ in made)
+    # Layers that share a picture share its file.
+    files: dict[int, PictureFile] = {}
+    figures = tuple(
+        replace(figure, picture=files.setdefault(id(layer.picture), figure.picture))
+        for layer, (figure, _) in zip(drawing.layers, made, strict=True)
+    )
     if all(figure.still for figure in figures):
         raise LissomError("none of its layers can be posed: there is no shape on any of them")
     pictures = {index: layer.picture for index, layer in enumerate(drawing.layers)}

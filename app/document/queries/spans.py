@@ -149,12 +149,11 @@ def place_at(clip: Clip, frame: float) -> tuple[int, KeySpan, float]:
         frame = clip.frames.first + (frame - clip.frames.first) % clip.period
     found, rings, closing = layout(clip)
     ring = next((ring for ring in rings if ring.has(frame)), None)
-    if ring is None and rings:
+    if ring is None and rings and closing is None:
         first, last = rings[0], rings[-1]
-        over = found[-1].start + found[-1].frames
-        if first.keys[0] == 0 and frame < first.cycle.first and closing is None:
+        if first.keys[0] == 0 and frame < first.cycle.first:
             ring, frame = first, first.cycle.first
-        elif last.keys[-1] == len(clip.keys) - 1 and frame > max(last.end, over):
+        elif last.keys[-1] == len(clip.keys) - 1 and frame > last.end:
             ring, frame = last, last.end
     if ring is not None and ring.spans:
         source = ring.cycle.source(frame)

@@ -150,7 +150,8 @@ def test_where_a_turn_begins_is_dragged_in_the_timeline(window, scene, ids):
     assert [turn.frame for turn in scene.document.choices[0].turns][-1] == 12
 
 
-def test_rows_stay_where_they_are_when_another_layer_is_chosen(window, scene, ids):
+@pytest.mark.usefixtures("scene")
+def test_rows_stay_where_they_are_when_another_layer_is_chosen(window, ids):
     tops = []
 
     def look(robot):
