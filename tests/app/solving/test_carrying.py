@@ -202,7 +202,7 @@ def test_the_solver_begins_with_the_image_of_the_whole_map(near, mirrored):
     source, pose = near
     figure = leg("far leg", 1, mirrored=mirrored, turned=True)
     likeness = carriage(source, figure).likeness
-    begin = begin_like(Rig.of(figure), source, pose, likeness, {})
+    begin, _ = begin_like(Rig.of(figure), source, pose, likeness, {})
     points = source.domain.mesh.vertices
     images, shape = likeness.on(points), source.map_of(pose)
     inside = figure.covers(images)
