@@ -21,6 +21,7 @@ from app.document import (
     UnkeyedPose,
     Variant,
     clip_of,
+    movement_at,
 )
 from app.editor.timeline_view import KeyRow, KeysOf, Timing, TrackRow, row_of
 from app.editor.work import Afterwards, Carry, Derived, Promise, Pull, Take
@@ -42,7 +43,7 @@ from app.solving import Renewal, Rig
 from app.storage import Cut, Hold, Origin, Picture, cut_picture
 from engine.arrays import Bytes
 from engine.domain import CutOut
-from engine.geometry import HERE, RigidMotion
+from engine.geometry import RigidMotion
 from engine.maps import Bounds
 
 EXTENTS = 32  # of the motion, which are remembered for undo and redo
@@ -347,7 +348,7 @@ class Project:
     def placements(self, frames: Iterable[int], unknown: RigidMotion) -> list[RigidMotion]:
         """Return where the figure that is posed is at some frames: `unknown` till that is known."""
         if not self.figure.joints:
-            return [HERE for _ in frames]
+            return [movement_at(self.document, self.figure, each) for each in frames]
         joints = self.hung
         return [unknown if joints is None else joints.placement(self.active, f) for f in frames]
 

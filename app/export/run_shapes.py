@@ -39,6 +39,7 @@ class ShapeExport:
         plan: ExportPlan,
     ) -> None:
         self._plan = plan
+        self._changing, self._films = document.exported, bool(document.camera)
         self._work = moving_shapes(document, pictures, poses, plan)
         self._share = 0.0
         self.shapes: list[MovingShape] = []
@@ -106,6 +107,11 @@ class ShapeExport:
                     f"what lies in front of what changes in {shape.name}; a {format_.label} keeps "
                     "what is so at first"
                 )
+        constant = [f"the opacity of {each.name}" for each in self._changing if each.opacities]
+        constant += [f"the order of {each.name}" for each in self._changing if each.placings]
+        constant += ["the camera"] if self._films and not format_.has_frame else []
+        if constant:
+            found.append(f"in a {format_.label} these do not change: {', '.join(constant)}")
         return tuple(found)
 
     def _write(self, cancellation: Cancellation) -> None:

@@ -1,15 +1,15 @@
 """Tracks and springs of a pose script: clocks of single handles."""
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from math import radians
-from typing import Any, TypeVar
 
 from app.document import HOLD, SPRINGS, Passing, Spring, Track, TrackKey
 from app.errors import LissomError
 from app.solving.script_fields import (
     fields_in,
     frame_of,
+    made_of,
     passage_of,
     require_handle,
     require_order,
@@ -21,8 +21,6 @@ TRACK_KEY_FIELDS = ("frame", "offset", "at", "velocity", "turn", "ease", "passin
 SPRING_FIELDS = ("handle", "preset", "frequency", "damping", "lag", "strength")
 # What the places of a track's keys are called, by what it goes with.
 PLACES = {"pose": "offset", "picture": "at"}
-
-Made = TypeVar("Made")
 
 
 def parse_tracks(content: object, where: str, handles: Sequence[str]) -> tuple[Track, ...]:
@@ -78,7 +76,7 @@ def _track(content: object, where: str, handles: Mapping[str, int]) -> Track:
         for index, key in enumerate(keys)
     )
     require_order([key.frame for key in parsed], f"{where}.keys are")
-    return _made(
+    return made_of(
         Track,
         where,
         handles=_numbers(track, where, handles),
@@ -105,7 +103,7 @@ def _track_key(content: object, where: str, place: str) -> TrackKey:
             f'{where} has a velocity, which is of keys that are passed through; give it "passing": '
             '"through", or leave the velocity out'
         )
-    return _made(
+    return made_of(
         TrackKey,
         where,
         frame=frame_of(key, where),
@@ -133,7 +131,7 @@ def _spring(content: object, where: str, handles: Mapping[str, int]) -> Spring:
         raise LissomError(
             f"{where} needs a preset, one of {', '.join(SPRINGS)}, or a frequency and a damping"
         )
-    return _made(
+    return made_of(
         Spring, where, handle=_number(spring["handle"], f"{where}.handle", handles), **given
     )
 
@@ -155,14 +153,6 @@ def _number(name: object, where: str, handles: Mapping[str, int]) -> int:
     read = as_text(name, where)
     require_handle(read, handles, where)
     return handles[read]
-
-
-def _made(kind: Callable[..., Made], where: str, **fields: Any) -> Made:
-    """Return a value of these fields; what it refuses is told with the place in the script."""
-    try:
-        return kind(**fields)
-    except LissomError as error:
-        raise LissomError(f"{where}: {error}") from error
 
 
 def _require_one_each(

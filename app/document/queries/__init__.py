@@ -30,7 +30,15 @@ from app.document.queries.shortfall import (
     falls_short as falls_short,
     find_shortfall as find_shortfall,
 )
-from app.document.queries.sight import is_visible as is_visible, sights_of as sights_of
+from app.document.queries.sight import (
+    Shot as Shot,
+    camera_at as camera_at,
+    in_order as in_order,
+    is_visible as is_visible,
+    movement_at as movement_at,
+    opacity_at as opacity_at,
+    sights_of as sights_of,
+)
 from app.document.queries.timeline import (
     Moment as Moment,
     changed_stretches as changed_stretches,

@@ -217,7 +217,8 @@ def _posed(
             drawing.tint(pose, _tinted(session, project, drawing, figure, shown))
         elif heat_map != "none":
             drawing.heat(pose, shown, heat_map)
-    return composed(document, poses)
+    frame = max((shown.frame for shown in shows.values() if shown), default=0)
+    return composed(document, poses, frame)
 
 
 def _tinted(
