@@ -32,7 +32,7 @@ from app.document.layering import (
     require_rising,
 )
 from app.document.settings import NATURAL, VARIANTS, Meshing
-from app.document.timing import Spring, Track
+from app.document.timing import Cycle, Spring, Track, require_apart, require_repeatable
 from app.errors import LissomError
 from engine.arrays import Booleans, Complexes, Floats, readonly
 from engine.deform import MOST_HANDLES
@@ -83,6 +83,7 @@ class Figure:
     stillness: bool = True
     tracks: tuple[Track, ...] = ()  # no handle has two
     springs: tuple[Spring, ...] = ()  # no handle has two
+    cycles: tuple[Cycle, ...] = ()  # in the order of their frames
     # float64 (p,): How stiff it is painted, at the vertices of the domain's loops; None is the
     # usual material, 1 everywhere.
     stiffness: Floats | None = field(default=None, hash=False)
@@ -171,12 +172,23 @@ class Figure:
 
     @property
     def ends(self) -> tuple[int, int]:
-        """The frames of the first key and of the last one, of whatever moves between keys."""
+        """The first and the last frame of what is keyed, or repeats."""
         frames = [key.frame for key in self.keys]
         frames += [key.frame for track in self.tracks for key in track.keys]
         frames += [key.frame for key in self.movement]
         frames += [key.frame for key in self.opacities]
+        for cycle in self.cycles:
+            frames += [cycle.first, cycle.last if cycle.until is None else cycle.until]
         return min(frames), max(frames)
+
+    def cycle_at(self, frame: float) -> Cycle | None:
+        """Return the cycle that a frame is in, be it in its stretch or in its repeats."""
+        return next((cycle for cycle in self.cycles if cycle.covers(frame)), None)
+
+    def source_of(self, frame: int) -> int:
+        """Return the frame at which what a frame shows is keyed: another one where it repeats."""
+        cycle = self.cycle_at(frame)
+        return frame if cycle is None or frame in self.key_frames else int(cycle.source(frame))
 
     @property
     def pivot(self) -> complex:
@@ -353,6 +365,9 @@ class Figure:
                 key.fronts.keys() <= key.pose.targets.keys(),
                 f"The key at frame {key.frame} puts a handle in front that is not there.",
             )
+        require_apart(self.cycles)
+        for cycle in self.cycles:
+            require_repeatable(cycle, [key.frame for key in self.keys])
 
     def _check_library(self) -> None:
         require_distinct((kept.name for kept in self.library), "Two poses have the name {!r}.")

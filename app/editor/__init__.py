@@ -39,6 +39,7 @@ from app.editor.session import (
     with_project as with_project,
 )
 from app.editor.timeline_view import (
+    CycleDrag as CycleDrag,
     Edge as Edge,
     EdgeDrag as EdgeDrag,
     KeyBox as KeyBox,
@@ -49,8 +50,10 @@ from app.editor.timeline_view import (
     Scrub as Scrub,
     Strip as Strip,
     SwitchDrag as SwitchDrag,
+    TimeDrag as TimeDrag,
     TimeGesture as TimeGesture,
     TrackRow as TrackRow,
+    TurnDrag as TurnDrag,
     figure_of as figure_of,
     frames_in as frames_in,
     row_of as row_of,

@@ -1,6 +1,6 @@
 """The project that is open: its document, what the window has of it, and what is under way."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from math import inf
 from pathlib import Path
@@ -18,9 +18,11 @@ from app.document import (
     Playhead,
     Pose,
     Track,
+    TreeRow,
     UnkeyedPose,
     Variant,
     clip_of,
+    layer_tree,
     movement_at,
 )
 from app.editor.timeline_view import KeyRow, KeysOf, Timing, TrackRow, row_of
@@ -197,6 +199,11 @@ class Project:
     flip: Flip | None = None
     blend: PoseBlend | None = None
     picked_pose: str | None = None  # of the library
+    # The ids of layers that are chosen beside the one that is posed, and of those that alone are
+    # looked at, if any.
+    beside: frozenset[int] = frozenset()
+    solo: frozenset[int] = frozenset()
+    toggled: frozenset[str] = frozenset()  # rows of the tree of layers, open or closed by hand
     listed: int | None = None  # the figure that the list of layers was scrolled to
 
     @property
@@ -215,10 +222,21 @@ class Project:
         return self.document.figure(self.active)
 
     @property
+    def tree(self) -> tuple[TreeRow, ...]:
+        """The rows of the layers that are listed, the one in front on top."""
+        return layer_tree(self.document, self.toggled, self.active)
+
+    @property
+    def layers(self) -> tuple[int, ...]:
+        """The ids of the chosen layers, from front to back; the one that is posed is among them."""
+        chosen = self.beside | {self.active}
+        return tuple(each.id for each in reversed(self.document.figures) if each.id in chosen)
+
+    @property
     def rows(self) -> list[KeyRow]:
         """The rows of the timeline from top to bottom: the figure in front comes first."""
         rows: list[KeyRow] = []
-        for figure in reversed(self.document.figures):
+        for figure in (row.figure for row in self.tree if row.figure):
             rows.append(figure.id)
             if figure.id in self.timing.unfolded:
                 rows += [row_of(figure, track) for track in figure.tracks]
@@ -301,7 +319,8 @@ class Project:
         unkeyed = self.history.unkeyed
         if unkeyed is None or unkeyed.figure != self.active or self.playhead.since is not None:
             return None
-        return unkeyed.pose if unkeyed.frame == self.playhead.frame else None
+        here = self.figure.source_of(self.playhead.frame)
+        return unkeyed.pose if unkeyed.frame == here else None
 
     @property
     def pulls(self) -> list[Pull]:
@@ -318,7 +337,7 @@ class Project:
         """The one on its way that is shown of the figure that is posed."""
         if self.playhead.since is not None:
             return None
-        here = (self.active, self.playhead.frame)
+        here = (self.active, self.figure.source_of(self.playhead.frame))
         mine = [pull for pull in self.pulls if (pull.figure, pull.frame) == here]
         return mine[-1] if mine else None
 
@@ -347,10 +366,32 @@ class Project:
 
     def placements(self, frames: Iterable[int], unknown: RigidMotion) -> list[RigidMotion]:
         """Return where the figure that is posed is at some frames: `unknown` till that is known."""
-        if not self.figure.joints:
-            return [movement_at(self.document, self.figure, each) for each in frames]
-        joints = self.hung
-        return [unknown if joints is None else joints.placement(self.active, f) for f in frames]
+        frames = list(frames)
+        return self.placed_at(self.active, frames) or [unknown for _ in frames]
+
+    def placed_at(self, figure: int, frames: Sequence[int]) -> list[RigidMotion] | None:
+        """Return where a figure, by its id, is at some frames; None till that is known.
+
+        While it is posed itself, it hangs as before: its joint holds.
+        """
+        own, joints = self.document.figure(figure), self.hung
+        if not own.joints:
+            return [movement_at(self.document, own, frame) for frame in frames]
+        if joints is None and (before := self.joints.value) is not None:
+            joints = before if self._hangs_as_in(before.document, own) else None
+        return None if joints is None else [joints.placement(figure, frame) for frame in frames]
+
+    def _hangs_as_in(self, before: Document, figure: Figure) -> bool:
+        """Tell whether a figure hangs on the very same others as in an earlier document."""
+        was = {each.id: each for each in before.figures}
+        document, own = self.document, was.get(figure.id)
+        return (
+            own is not None
+            and (before.frames, before.loop) == (document.frames, document.loop)
+            and (own.joints, own.anchor, own.domain, own.movement)
+            == (figure.joints, figure.anchor, figure.domain, figure.movement)
+            and all(was.get(each.id) is each for each in document.all_carriers(figure.id))
+        )
 
     def pair_up(self, method: Variant | Baseline | None) -> None:
         """Let each figure have a twin by a method, or none."""

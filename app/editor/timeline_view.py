@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 from typing import Literal, NamedTuple, Self
 
 from app.document import (
+    Cycle,
     Document,
     Figure,
     FrameRange,
@@ -62,17 +63,29 @@ def frames_in(document: Document, row: KeyRow) -> frozenset[int]:
 def seen_at(document: Document, track: Track | None, frame: int) -> int:
     """Return the frame at which a key is seen: a track's is late by its delay.
 
-    In a loop it comes round.
+    In a loop it comes round, and so it does in a cycle that takes the track.
     """
     seen = frame + (0 if track is None else track.delay)
+    cycle = None if track is None else _cycle_of(document, track)
+    if cycle is not None:
+        return seen if seen <= cycle.last else int(cycle.source(seen))
     first, last = document.frames.first, document.frames.last
     return seen - (last - first) if document.loop and seen > last else seen
+
+
+def _cycle_of(document: Document, track: Track) -> Cycle | None:
+    """Return the cycle with which a track repeats, if there is one."""
+    figure = next((each for each in document.figures if track in each.tracks), None)
+    cycles = () if figure is None else figure.cycles
+    return next((cycle for cycle in cycles if cycle.takes(track)), None)
 
 
 def own_frame(document: Document, track: Track, seen: int) -> int | None:
     """Return the frame of the key of a track that is seen at a frame; None where none can be."""
     first, last = document.frames.first, document.frames.last
-    own = seen - track.delay
+    own, cycle = seen - track.delay, _cycle_of(document, track)
+    if cycle is not None and cycle.covers(seen):
+        return own if own in track.key_frames else int(cycle.source(own))
     if own < first and document.loop:
         own += last - first
     return None if own < first else own
@@ -174,6 +187,23 @@ class SwitchDrag(TimeDrag):
 
     figure: int
     switch: int
+    at: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class CycleDrag(TimeDrag):
+    """The pointer moves the end of what repeats from a frame on."""
+
+    figure: int
+    first: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class TurnDrag(TimeDrag):
+    """The pointer moves where a layer of a choice comes to be seen, from `turn` to `at`."""
+
+    choice: str
+    turn: int
     at: int
 
 

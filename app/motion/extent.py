@@ -42,6 +42,7 @@ def extent_source(document: Document) -> tuple[object, ...]:
         (
             figure.domain,
             figure.keys,
+            figure.cycles,
             figure.anchor,
             figure.variant,
             figure.bounds,

@@ -7,7 +7,7 @@ from functools import reduce
 
 import numpy as np
 
-from app.document import HOLD, Clip, Extremes, Transit, Variant, intervals, time_of, transits
+from app.document import HOLD, Clip, Cycle, Extremes, Transit, Variant, spans, transits
 from app.motion import Animation, Carried
 from app.reports.corrected_frames import CorrectedReport, report_corrected
 from engine.arrays import Floats
@@ -105,6 +105,7 @@ class Report:
     keys: tuple[tuple[int, Certificate], ...]
     intervals: tuple[IntervalReport, ...]
     corrected: CorrectedReport | None = None
+    cycles: tuple[Cycle, ...] = ()  # of which the intervals stand for all repeats
 
     @property
     def verdict(self) -> Verdict:
@@ -168,22 +169,23 @@ def certify_clip(
     )
     animation = Animation(clip, variant, points=boundary.points)
     reports = tuple(
-        _interval_report(clip, animation, boundary, pair, transit)
-        for pair, transit in zip(intervals(clip), transits(clip), strict=True)
+        _interval_report(clip, animation, boundary, number, transit)
+        for number, transit in enumerate(transits(clip))
     )
     every = [each.limits for each in reports]
     every += [Extremes(own.k, own.sigma_a, own.sigma_b) for _, own in keys]
     bounds = Extremes(figure.bounds.k, figure.bounds.sigma_a, figure.bounds.sigma_b)
     limits = reduce(Extremes.joined, every, bounds)
     corrected = report_corrected(clip, boundary, limits, variant, carried)
-    return Report(keys=keys, intervals=reports, corrected=corrected)
+    return Report(keys=keys, intervals=reports, corrected=corrected, cycles=figure.cycles)
 
 
 def _interval_report(
-    clip: Clip, animation: Animation, boundary: Boundary, pair: tuple[int, int], transit: Transit
+    clip: Clip, animation: Animation, boundary: Boundary, number: int, transit: Transit
 ) -> IntervalReport:
-    """Prove and measure one interval, between the keys of these indices."""
-    figure, (start, end) = clip.figure, (clip.keys[index] for index in pair)
+    """Prove and measure the interval of this number."""
+    figure, span = clip.figure, spans(clip)[number]
+    start, end, last = clip.keys[span.first], clip.keys[span.last], span.start + span.frames
     # A key that is held is all that is seen until the next one.
     held = start.easing == HOLD
     ends = [
@@ -202,15 +204,15 @@ def _interval_report(
     )
     proof = prove(inbetweens)
     return IntervalReport(
-        first=start.frame,
-        last=end.frame,
+        first=span.start,
+        last=last if last <= clip.frames.last else end.frame,
         reached=bound.joined(_measured(inbetweens)),
         keys=bound,
         correction=inbetweens.correction,
         limits=limits,
         proof=proof,
-        unsettled=_frames(clip, pair[0], proof.unsettled),
-        loose=_frames(clip, pair[0], proof.loose),
+        unsettled=_frames(clip, number, proof.unsettled),
+        loose=_frames(clip, number, proof.loose),
     )
 
 
@@ -237,15 +239,12 @@ def _frames(
     clip: Clip, interval: int, stretches: tuple[tuple[float, float], ...]
 ) -> tuple[int, ...]:
     """Return the frames of an interval nearest to which stretches of its time, [0, 1], are."""
-    start = clip.keys[interval].frame
-    following = clip.keys[(interval + 1) % len(clip.keys)].frame
-    end = following if following > start else following + (clip.period or 0)
+    span, transit = spans(clip)[interval], transits(clip)[interval]
+    start, end = span.start, span.start + span.frames
     found = []
     for frame in range(start, end + 1):
-        ends = max(frame - 0.5, start), min(frame + 0.5, end)
-        since, until = (
-            1.0 if at == end else time_of(clip, at).weight if at > start else 0.0 for at in ends
-        )
+        ends = (span.share(max(frame - 0.5, start)), span.share(min(frame + 0.5, end)))
+        since, until = (transit.weight(clip.keys[span.first].easing(share)) for share in ends)
         if any(first <= until and last >= since for first, last in stretches):
             found.append(frame)
     return tuple(found)

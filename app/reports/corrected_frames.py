@@ -97,15 +97,18 @@ def report_corrected(
     corrections = {frame: animation.corrections.at(frame) for frame in frames}
     found = {frame: each for frame, each in corrections.items() if each is not None}
     solved = [frame for frame, each in found.items() if each.phi is not None]
-    proofs = {frame: _proven(animation, boundary, frame, limits) for frame in solved}
+    # Repeats of a cycle have the very same corrections; each is looked at once.
+    same = {frame: (id(found[frame]), time_of(clip, frame)) for frame in solved}
+    once = {each: frame for frame, each in reversed(same.items())}
+    proofs = {at: _proven(animation, boundary, frame, limits) for at, frame in once.items()}
     reached = [
-        _measured(animation, frame) if proof is None else proof for frame, proof in proofs.items()
+        _measured(animation, once[at]) if proof is None else proof for at, proof in proofs.items()
     ]
-    between = [frame + 0.5 for frame in solved if frame < clip.frames.last]
+    between = [frame + 0.5 for frame in once.values() if frame < clip.frames.last]
     return CorrectedReport(
         frames=len(found),
         solved=len(solved),
-        proven=sum(proof is not None for proof in proofs.values()),
+        proven=sum(proofs[each] is not None for each in same.values()),
         points=len(points),
         reached=reduce(Extremes.joined, reached, NOTHING),
         between=reduce(Extremes.joined, (_measured(animation, at) for at in between), NOTHING),

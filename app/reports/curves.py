@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.document import Clip, Extremes, intervals, transits
+from app.document import Clip, Extremes, spans, transits
 from app.motion import AnyInbetweens, CorrectedFrames
 from app.storage import write_atomically
 from engine.arrays import Complexes, Floats
@@ -36,7 +36,10 @@ class Curves:
 
     def extremes_at(self, frame: float) -> Extremes:
         """Return the extremes at a frame, between those that were measured around it."""
-        if frame < self.frames[0] and self.clip.loop:
+        cycle = self.clip.figure.cycle_at(frame)
+        if cycle is not None and frame >= cycle.last:
+            frame = cycle.source(frame)
+        elif frame < self.frames[0] and self.clip.loop:
             frame += self.clip.period
         return Extremes(*(float(np.interp(frame, self.frames, row)) for row in self.extremes.T))
 
@@ -78,22 +81,17 @@ def measure_curves(
     corrected : CorrectedAt, optional
         Whole frames alone are measured with it: it is known of them.
     """
-    keys = clip.keys
-    period = clip.period
     frames, ks, taus, extremes = [], [], [], []
-    every = zip(intervals(clip), transits(clip), inbetweens, strict=True)
-    for (first, last), transit, between in every:
-        start = keys[first].frame
-        end = keys[last].frame if last > first else keys[last].frame + period
+    for span, transit, between in zip(spans(clip), transits(clip), inbetweens, strict=True):
         for share in np.linspace(0.0, 1.0, TIMES):
             if corrected is not None:
-                share = round(share * (end - start)) / (end - start)  # noqa: PLW2901
-            t = transit.weight(keys[first].easing(float(share)))
+                share = round(share * span.frames) / span.frames  # noqa: PLW2901
+            t = transit.weight(clip.keys[span.first].easing(float(share)))
             blended = between.frame(t)
-            frames.append(start + share * (end - start))
+            frames.append(span.start + share * span.frames)
             if corrected is not None:
                 shown = round(frames[-1])
-                shown -= period if shown > clip.frames.last else 0
+                shown -= clip.period if shown > clip.frames.last else 0
                 blended = corrected.of(clip, shown, blended)
             ks.append(distortion.k(blended.fz, blended.fzbar))
             taus.append(distortion.tau(blended.fz, blended.fzbar))

@@ -9,12 +9,13 @@ import numpy as np
 from app.document import Figure, Pose, Target
 from app.solving.drag import Rig, fit_map, pins_of
 from engine.arrays import Complexes
-from engine.geometry import contains
+from engine.geometry import box_diagonal, contains
 from engine.maps import HarmonicMap, certify
 
 MOST_STEPS = 600  # for one pose
 # Of a shape that counts as like another one, the part at least that lies on that one's image.
 ALIKE = 0.9
+BESIDE = 0.005  # of the shape's diagonal: so near to it is on it
 ENOUGH = 2_000  # vertices by which that is told
 # A part is drawn mirrored where its handles are this far from the likeness that mirrors nothing,
 # over their spread, and this many times nearer to the one that does.
@@ -215,7 +216,9 @@ def whole_turn(figure: Figure, shape: HarmonicMap) -> complex:
 
 def is_alike(figure: Figure, source: Figure, likeness: Likeness) -> bool:
     """Tell whether nearly all of a figure lies on another one's image."""
-    found = source.covers(likeness.back(_some(figure.domain.mesh.vertices)))
+    places = likeness.back(_some(figure.domain.mesh.vertices))
+    # Many vertices of a coarse mesh are on its outline, and so beside the image of another one.
+    found = source.covers(places, tolerance=BESIDE * box_diagonal(source.domain.outline))
     return bool(found.mean() >= ALIKE)
 
 

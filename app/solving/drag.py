@@ -13,6 +13,7 @@ from app.document import (
     Pose,
     Target,
     are_as_stiff,
+    intervals,
     resting_pose,
     stiffened,
     time_of,
@@ -279,7 +280,7 @@ def pose_at(rig: Rig, clip: Clip, frame: float, sibling: PoseSampler | None = No
         return resting
     keys = clip.keys
     after = moment.weight > 0.5
-    near = keys[(moment.interval + after) % len(keys)].pose
+    near = keys[intervals(clip)[moment.interval][after]].pose
     sampler = PoseSampler(
         figure.domain, anchor=figure.anchor, points=boundary.points, sibling=sibling
     )

@@ -13,6 +13,7 @@ from app.document import (
     VARIANTS,
     Bone,
     CameraKey,
+    Cycle,
     Easing,
     MoveKey,
     OpacityKey,
@@ -22,7 +23,7 @@ from app.document import (
     Variant,
 )
 from app.errors import LissomError
-from app.solving.script_clocks import parse_springs, parse_tracks, require_rounds
+from app.solving.script_clocks import parse_cycles, parse_springs, parse_tracks, require_rounds
 from app.solving.script_fields import (
     fields_in,
     frame_of,
@@ -60,7 +61,8 @@ from engine.maps import Bounds
 SCHEMA = 1
 LARGEST = 32 * 1024 * 1024  # bytes
 SCENE_FIELDS = ("schema", "fps", "loop", "variant", "bounds", "still", "camera", "canvas")
-OWN_FIELDS = ("anchor", "handles", "keys", "tracks", "springs", "stiff", "movement", "opacity")
+MOVING_FIELDS = ("keys", "tracks", "springs", "cycles", "movement", "opacity")
+OWN_FIELDS = ("anchor", "handles", *MOVING_FIELDS, "stiff")
 STAGE_FIELDS = ("figures", "choices")
 FIGURE_FIELDS = ("layer", "variant", "bounds", "still", *OWN_FIELDS, "attach", "visible", "order")
 HANDLE_FIELDS = ("at", "front", "extent", "still")
@@ -107,6 +109,7 @@ class FigureScript:
     still: bool = True
     tracks: tuple[Track, ...] = ()
     springs: tuple[Spring, ...] = ()
+    cycles: tuple[Cycle, ...] = ()
     parts: tuple[StiffPart, ...] = ()
     bones: tuple[Bone, ...] = ()
     attach: tuple[ScriptJoint, ...] = ()
@@ -118,8 +121,9 @@ class FigureScript:
 
     @property
     def last(self) -> int:
-        """The frame of the last key, of whatever moves between keys."""
+        """The frame of the last key, of whatever moves between keys, or at which repeats end."""
         frames = [self.keys[-1].frame, *(track.keys[-1].frame for track in self.tracks)]
+        frames += [cycle.last if cycle.until is None else cycle.until for cycle in self.cycles]
         frames += [key.frame for key in self.movement]
         if isinstance(self.opacity, tuple):
             frames += [key.frame for key in self.opacity]
@@ -236,6 +240,9 @@ def _figure(script: JsonObject, where: str, usual: Mapping[str, Any]) -> FigureS
     own["order"] = parse_order(script.get("order", []), f"{where}order")
     own["tracks"] = parse_tracks(script.get("tracks", []), f"{where}tracks", tuple(handles))
     own["springs"] = parse_springs(script.get("springs", []), f"{where}springs", tuple(handles))
+    own["cycles"] = parse_cycles(
+        script.get("cycles", []), f"{where}cycles", [key.frame for key in parsed]
+    )
     own["parts"], own["bones"] = parse_material(
         script.get("stiff", []), f"{where}stiff", tuple(handles)
     )

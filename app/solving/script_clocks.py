@@ -1,10 +1,20 @@
-"""Tracks and springs of a pose script: clocks of single handles."""
+"""Clocks of a pose script: tracks and springs of single handles, and cycles of all of a figure."""
 
 import json
 from collections.abc import Mapping, Sequence
 from math import radians
 
-from app.document import HOLD, SPRINGS, Passing, Spring, Track, TrackKey
+from app.document import (
+    HOLD,
+    SPRINGS,
+    Cycle,
+    Passing,
+    Spring,
+    Track,
+    TrackKey,
+    require_apart,
+    require_repeatable,
+)
 from app.errors import LissomError
 from app.solving.script_fields import (
     fields_in,
@@ -19,6 +29,7 @@ from app.storage import JsonObject, as_list, as_number, as_point, as_text, as_wh
 TRACK_FIELDS = ("handle", "handles", "with", "keys", "delay", "reach")
 TRACK_KEY_FIELDS = ("frame", "offset", "at", "velocity", "turn", "ease", "passing")
 SPRING_FIELDS = ("handle", "preset", "frequency", "damping", "lag", "strength")
+CYCLE_FIELDS = ("from", "to", "until")
 # What the places of a track's keys are called, by what it goes with.
 PLACES = {"pose": "offset", "picture": "at"}
 
@@ -43,6 +54,23 @@ def parse_springs(content: object, where: str, handles: Sequence[str]) -> tuple[
     )
     _require_one_each([(spring.handle,) for spring in springs], where, handles)
     return springs
+
+
+def parse_cycles(content: object, where: str, keys: Sequence[int]) -> tuple[Cycle, ...]:
+    """Return the cycles of a figure with keys at some frames, in the order of their own frames."""
+    cycles = [
+        _cycle(each, f"{where}[{index}]") for index, each in enumerate(as_list(content, where))
+    ]
+    cycles.sort(key=lambda cycle: cycle.first)
+    # A key at the end of a stretch may be its first one again.
+    seams = {cycle.last for cycle in cycles if cycle.until != cycle.last}
+    try:
+        require_apart(cycles)
+        for cycle in cycles:
+            require_repeatable(cycle, [key for key in keys if key not in seams])
+    except LissomError as error:
+        raise LissomError(f"{where}: {error}") from error
+    return tuple(cycles)
 
 
 def require_rounds(
@@ -86,6 +114,13 @@ def _track(content: object, where: str, handles: Mapping[str, int]) -> Track:
         reach=as_number(track.get("reach", 1.0), f"{where}.reach"),
         turns=any("turn" in key for key in keys),
     )
+
+
+def _cycle(content: object, where: str) -> Cycle:
+    cycle = fields_in(content, where, CYCLE_FIELDS)
+    first, last = (frame_of(cycle, where, name) for name in ("from", "to"))
+    until = None if cycle.get("until") is None else frame_of(cycle, where, "until")
+    return made_of(Cycle, where, first=first, last=last, until=until)
 
 
 def _track_key(content: object, where: str, place: str) -> TrackKey:

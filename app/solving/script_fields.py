@@ -21,12 +21,12 @@ def fields_in(content: object, where: str, fields: tuple[str, ...]) -> JsonObjec
     return read
 
 
-def frame_of(key: JsonObject, where: str) -> int:
-    """Return the frame of a key."""
-    frame = key.get("frame")
+def frame_of(key: JsonObject, where: str, name: str = "frame") -> int:
+    """Return the frame that a key, or another object, has under a name."""
+    frame = key.get(name)
     if not isinstance(frame, int) or isinstance(frame, bool) or not 0 <= frame <= LAST_FRAME:
         raise LissomError(
-            f"{where}.frame must be a whole number from 0 to {LAST_FRAME}, not {json.dumps(frame)}"
+            f"{where}.{name} must be a whole number from 0 to {LAST_FRAME}, not {json.dumps(frame)}"
         )
     return frame
 

@@ -222,9 +222,20 @@ def _posed(
     for key in part.keys:
         progress(f"solving {whose}the key at frame {key.frame}")
         pose, told = _solve(rig, pose, key)
-        if loop and key is part.keys[-1] and keys and _wishes_alike(rig, pose, keys[0].pose):
+        again = keys[0] if loop and key is part.keys[-1] and keys else _repeated(part, keys, key)
+        is_alike = again is not None and _wishes_alike(rig, pose, again.pose)
+        if again is not None and is_alike:
             # The same moment again, to the last digit.
-            pose, told = keys[0].pose, []
+            pose, told = again.pose, []
+        cycle = next((each for each in part.cycles if each.last == key.frame), None)
+        if again is not None and cycle is not None and cycle.until != cycle.last:
+            if not is_alike or key.fronts:
+                raise LissomError(
+                    f"the key at frame {key.frame} is where {cycle.told} begin again, but it is "
+                    f"not like the key at frame {again.frame}; leave it out, or let them end "
+                    "elsewhere"
+                )
+            continue
         notices += [f"{whose}{notice}" for notice in told]
         fronts = {identities[name]: front for name, front in key.fronts.items()}
         keys.append(
@@ -232,7 +243,20 @@ def _posed(
                 frame=key.frame, pose=pose, easing=key.ease, passing=key.passing, fronts=fronts
             )
         )
-    return replace(figure, keys=tuple(keys)), notices
+    keyed = [key.frame for key in keys] + [switch.frame for switch in figure.switches]
+    for cycle in part.cycles:
+        if not (any(map(cycle.has, keyed)) or any(map(cycle.takes, figure.tracks))):
+            notices.append(f"{whose}nothing is keyed in {cycle.told}: there is nothing to repeat")
+    return replace(figure, keys=tuple(keys), cycles=part.cycles), notices
+
+
+def _repeated(part: FigureScript, keys: Sequence[Keyframe], key: PoseKey) -> Keyframe | None:
+    """Return the key of a cycle that is shown again at another key; None where there is none."""
+    for cycle in part.cycles:
+        if key.frame >= cycle.last and cycle.covers(key.frame):
+            source = cycle.source(key.frame)
+            return next((each for each in keys if each.frame == source), None)
+    return None
 
 
 def _wishes_alike(rig: Rig, pose: Pose, other: Pose) -> bool:

@@ -12,6 +12,7 @@ from engine.interpolation.courses import (
     End as End,
     Joint as Joint,
     Tangent as Tangent,
+    windows_of as windows_of,
 )
 from engine.interpolation.inbetweens import Frame as Frame, Inbetweens as Inbetweens
 from engine.interpolation.one_interval import (

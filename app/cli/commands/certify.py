@@ -175,6 +175,12 @@ def _as_table(report: Report) -> str:
         )
     for interval in report.intervals:
         lines += _interval_lines(interval)
+    lines += [
+        f"{cycle.told.capitalize()} repeat"
+        f"{'' if cycle.until is None else f' until frame {cycle.until}'}: every repeat is the same "
+        "motion, told once."
+        for cycle in report.cycles
+    ]
     lines += _corrected_lines(report)
     lines.append(
         "In brackets: the worse of the two keyframes; of what is proven, how far that is beyond it"

@@ -46,11 +46,21 @@ the first and the last one the handle comes from rest and to rest, unless they m
 that is passed through may say at which velocity, in pixels a frame in the axes of its offset or of
 the canvas ("velocity": [2, -0.5]). Left out, with is "pose", delay 0 frames (in a loop it comes
 round), and reach 1: from 0 to 1, how far around the handle the body gives. The last key, of poses
-or of a track, is where the animation ends.
+or of a track, or the end of what repeats, is where the animation ends.
 
 A spring lets a handle follow the motion late and swing: frequency in Hz; damping, 1 where it comes
 back without swinging over; lag 0 frames, and strength 1. The presets are tail, ear, hair, cloth and
 jelly. Keys do not hold what follows: in poses it goes where the body carries it.
+
+A stretch of time repeats with
+
+   "cycles": [{"from": 0, "to": 24, "until": 96}]
+
+Its last frame is the same moment as its first one, as in a loop: keys are from frame 0 up to 23,
+and one at 24 must be like that at 0. Every repeat is the same motion, through the seams too;
+without until it goes on to the end of the animation. Tracks of which all keys are in the stretch
+repeat with it, and so do "front" and "visible". Keys before lead to its first key; keys after go on
+from what is shown at the end, which must be one of its keys. Cycles do not overlap.
 
 A handle may say what is painted in front around it, from -1 (behind) to 1, and how far around, in
 pixels: {"at": [120, 880], "front": 0.5, "extent": 60}; a key with "front": {"nose": 1} says it from
@@ -68,7 +78,7 @@ logarithms of sigma_a and sigma_b are there at most those of the bounds over the
 
 DRAWING may have layers (OpenRaster .ora, or .psd where psd-tools is installed). Coordinates are
 pixels of the canvas then, and a script of several figures has, instead of anchor, handles, keys,
-tracks, springs and stiff:
+tracks, springs, cycles and stiff:
 
    "figures": [{"layer": "body", "handles": {}, "keys": [{"frame": 0}]},
                {"layer": "arm", "handles": {"hand": [310, 240]},
@@ -77,12 +87,13 @@ tracks, springs and stiff:
                 "visible": [[0, true], [40, false]]}],
    "choices": [{"name": "mouth", "layers": ["closed", "ah"], "keys": [[0, "closed"], [8, "ah"]]}]
 
-Each may have a variant, bounds, an anchor, tracks, springs and stiff of its own. What is attached
-is moved as a whole, in every frame, so that its anchor comes to where the point "at" of its parent
-has come; with turn, which is true where left out, it turns with the parent there. "at" is a point
-of the parent as it is drawn; where no anchor is given it is the anchor, too, and is on both layers.
-Handles and targets are told as if it hung on nothing. A list lets it change hands, each entry from
-its frame on: with "keep" nothing jumps then, and at may be left out; "to": null lets go:
+Each may have a variant, bounds, an anchor, tracks, springs, cycles and stiff of its own. What is
+attached is moved as a whole, in every frame, so that its anchor comes to where the point "at" of
+its parent has come; with turn, which is true where left out, it turns with the parent there. "at"
+is a point of the parent as it is drawn; where no anchor is given it is the anchor, too, and is on
+both layers. Handles and targets are told as if it hung on nothing. A list lets it change hands,
+each entry from its frame on: with "keep" nothing jumps then, and at may be left out; "to": null
+lets go:
 
    "attach": [{"to": "hand A", "at": [310, 240]}, {"frame": 80, "to": "hand B", "keep": true}]
 

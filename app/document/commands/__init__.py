@@ -6,6 +6,7 @@ Imports: the values of `app.document`.
 """
 
 from app.document.commands import (
+    cycle_commands as cycle_commands,
     figure_commands as figure_commands,
     handle_commands as handle_commands,
     key_commands as key_commands,
@@ -14,7 +15,7 @@ from app.document.commands import (
     scene_commands as scene_commands,
     track_commands as track_commands,
 )
-from app.document.commands.command import Command as Command
+from app.document.commands.command import Command as Command, in_turn as in_turn
 from app.document.commands.pose_commands import Settled as Settled, exchanged as exchanged
 from app.document.commands.staging import (
     choice_commands as choice_commands,

@@ -15,7 +15,7 @@ it changes nothing.
 """
 
 import functools
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass
 from typing import Concatenate, ParamSpec
 
@@ -59,6 +59,18 @@ def command(
         return bind
 
     return make
+
+
+def in_turn(label: str, commands: Iterable[Command]) -> Command:
+    """Return the command that runs others one after the other, as one step."""
+    given = tuple(commands)
+
+    def change(document: Document) -> Document:
+        for each in given:
+            document = each(document)
+        return document
+
+    return Command(label, change)
 
 
 def figure_command(

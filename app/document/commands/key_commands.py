@@ -1,6 +1,6 @@
 """Commands on keys: posing, inserting, and moving them about in time."""
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import replace
 
 from app.document.commands import keys_in_time
@@ -8,7 +8,7 @@ from app.document.commands.command import figure_command
 from app.document.figure import Figure
 from app.document.keyframe import Keyframe, Pose
 from app.document.layering import moved_in_time
-from app.document.timing import LINEAR, Easing, Passing
+from app.document.timing import LINEAR, Cycle, Easing, Passing
 from app.errors import LissomError
 
 
@@ -46,8 +46,12 @@ def put_keys(figure: Figure, keys: Sequence[Keyframe]) -> Figure:
 
 @figure_command("Move keys")
 def move_keys(figure: Figure, frames: Collection[int], by: int) -> Figure:
-    """Move the keys at some frames by a number of frames."""
-    return _with_keys(figure, keys_in_time.moved(figure.keys, frames, by))
+    """Move the keys at some frames by a number of frames, and what repeats with all of its keys."""
+    return _with_keys(
+        figure,
+        keys_in_time.moved(figure.keys, frames, by),
+        _carried(figure, frames, lambda frame: frame + by),
+    )
 
 
 @figure_command("Copy keys")
@@ -58,11 +62,14 @@ def copy_keys(figure: Figure, frames: Collection[int], by: int) -> Figure:
 
 @figure_command("Delete keys")
 def delete_keys(figure: Figure, frames: Collection[int]) -> Figure:
-    """Delete the keys at some frames; one key must remain."""
+    """Delete the keys at some frames; one key must remain. What has no keys repeats no longer."""
     keys = keys_in_time.without(figure.keys, frames)
     if not keys:
         raise LissomError("An animation has at least one key; pose the last one instead.")
-    return _with_keys(figure, keys)
+    kept = {key.frame for key in keys}
+    gone = {cycle for cycle in figure.cycles if not any(map(cycle.has, kept))}
+    gone &= {cycle for cycle in figure.cycles if any(map(cycle.has, frames))}
+    return _with_keys(figure, keys, tuple(each for each in figure.cycles if each not in gone))
 
 
 @figure_command("Reverse keys")
@@ -94,7 +101,14 @@ def scale_keys(
     first : int, optional
         The frame that stays; by default that of the first key.
     """
-    return _with_keys(figure, keys_in_time.spread(figure.keys, frames, factor, first))
+    keys, stays = keys_in_time.spread(figure.keys, frames, factor, first), first
+    if stays is None:
+        stays = min(frames, default=0)
+
+    def to(frame: int) -> int:
+        return keys_in_time.scaled(frame, stays, factor)
+
+    return _with_keys(figure, keys, _carried(figure, frames, to))
 
 
 @figure_command("Make last key equal first")
@@ -139,8 +153,23 @@ def exchange(figure: Figure, changed: dict[int, Keyframe]) -> Figure:
     return _with_keys(figure, keys_in_time.exchanged(figure.keys, changed))
 
 
-def _with_keys(figure: Figure, keys: tuple[Keyframe, ...]) -> Figure:
-    return figure if keys is figure.keys else replace(figure, keys=keys)
+def _with_keys(
+    figure: Figure, keys: tuple[Keyframe, ...], cycles: tuple[Cycle, ...] | None = None
+) -> Figure:
+    if keys is figure.keys:
+        return figure
+    return replace(figure, keys=keys, cycles=figure.cycles if cycles is None else cycles)
+
+
+def _carried(
+    figure: Figure, frames: Collection[int], to: Callable[[int], int]
+) -> tuple[Cycle, ...]:
+    """Return a figure's cycles; those of which all keys are among some go with them."""
+    cycles = []
+    for cycle in figure.cycles:
+        own = {frame for frame in figure.key_frames if cycle.has(frame)}
+        cycles.append(cycle.moved(to) if own and own <= set(frames) else cycle)
+    return tuple(sorted(cycles, key=lambda cycle: cycle.first))
 
 
 def stretched(figure: Figure, first: int, factor: float) -> Figure:
@@ -163,6 +192,7 @@ def stretched(figure: Figure, first: int, factor: float) -> Figure:
         switches=tuple(replace(switch, frame=at) for at, switch in switches.items()),
         joints=tuple(replace(joint, frame=at) for at, joint in joints.items()),
         keys=all_to(figure.keys),
+        cycles=tuple(cycle.moved(to) for cycle in figure.cycles),
         tracks=tuple(
             replace(track, keys=all_to(track.keys), delay=round(factor * track.delay))
             for track in figure.tracks

@@ -8,10 +8,7 @@ Imports: the values of `app.document`.
 from app.document.queries.clips import (
     Clip as Clip,
     clip_of as clip_of,
-    closes as closes,
-    intervals as intervals,
 )
-from app.document.queries.compositing import Composite as Composite, composed as composed
 from app.document.queries.fronts import (
     USUAL_EXTENT as USUAL_EXTENT,
     Front as Front,
@@ -30,11 +27,22 @@ from app.document.queries.shortfall import (
     falls_short as falls_short,
     find_shortfall as find_shortfall,
 )
-from app.document.queries.sight import (
+from app.document.queries.spans import (
+    KeySpan as KeySpan,
+    closing_span as closing_span,
+    intervals as intervals,
+    place_at as place_at,
+    spans as spans,
+)
+from app.document.queries.stage import (
+    Composite as Composite,
     Shot as Shot,
+    TreeRow as TreeRow,
     camera_at as camera_at,
+    composed as composed,
     in_order as in_order,
     is_visible as is_visible,
+    layer_tree as layer_tree,
     movement_at as movement_at,
     opacity_at as opacity_at,
     sights_of as sights_of,
@@ -55,6 +63,7 @@ from app.document.queries.tracks import (
 )
 from app.document.queries.transits import (
     Transit as Transit,
-    comes_round as comes_round,
+    are_alike as are_alike,
+    passings_of as passings_of,
     transits as transits,
 )

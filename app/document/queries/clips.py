@@ -1,4 +1,4 @@
-"""A figure in the time of its scene, and the intervals between its keys."""
+"""A figure in the time of its scene."""
 
 from dataclasses import dataclass, replace
 
@@ -48,16 +48,3 @@ def clip_of(document: Document, figure: int) -> Clip:
 
     carriers = document.all_carriers(figure) if any(feels) else ()
     return replace(by_itself(own), carriers=tuple(by_itself(each) for each in carriers))
-
-
-def closes(clip: Clip) -> bool:
-    """Tell whether there are frames that blend the last key into the first one."""
-    between = clip.keys[-1].frame - clip.keys[0].frame
-    return clip.loop and 0 < between < clip.period
-
-
-def intervals(clip: Clip) -> tuple[tuple[int, int], ...]:
-    """Return the indices of the two keys of each interval, in the order of `Moment.interval`."""
-    count = len(clip.keys)
-    pairs = tuple((index, index + 1) for index in range(count - 1))
-    return (*pairs, (count - 1, 0)) if closes(clip) else pairs

@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 from app.document.queries.clips import Clip
+from app.document.queries.spans import has_been
 from engine.geometry import box_diagonal
 
 # Of the drawing's diagonal: how far a depth reaches that is given no extent.
@@ -21,7 +22,8 @@ def fronts_at(clip: Clip, frame: float) -> tuple[Front, ...]:
     """Return what is in front, or behind, at a frame; what is neither is left out.
 
     A key's depths hold from its frame on until another key gives others; before the first one the
-    handles' own do, or in a loop what the last one left.
+    handles' own do, or in a loop what the last one left. In a cycle each repeat begins with what
+    was in front before the first one.
     """
     figure = clip.figure
     depths = {handle.id: handle.front for handle in figure.handles}
@@ -29,7 +31,7 @@ def fronts_at(clip: Clip, frame: float) -> tuple[Front, ...]:
         frame = clip.frames.first + (frame - clip.frames.first) % clip.period
     is_before_all = clip.loop and frame < clip.keys[0].frame
     for key in clip.keys:
-        if key.frame <= frame or is_before_all:
+        if is_before_all or has_been(figure, key.frame, frame):
             depths.update(key.fronts)
     usual = USUAL_EXTENT * box_diagonal(figure.domain.outline)
     return tuple(

@@ -3,7 +3,7 @@
 Between two keys, what moves is a cubic Hermite polynomial of the eased time.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import inf, isfinite
 from typing import Generic, NamedTuple, Protocol, TypeVar
@@ -73,33 +73,9 @@ class Passages(Generic[Key]):
 
     def ends(self, index: int) -> tuple[Passed, Passed]:
         """Return how a key is reached, and how it is left."""
-        keys = self.keys
-        before, after = self._moving(self.arriving(index)), self._moving(self.leaving(index))
-        reached = keys[index if before is None else before.last]
-        left = keys[index if after is None else after.first]
-        end_pace = 1.0 if before is None else keys[before.first].easing.paces[1]
-        start_pace = 1.0 if after is None else left.easing.paces[0]
-        stops = _rest(end_pace), _rest(start_pace)
-        if before and after and reached.passing is left.passing is Passing.THROUGH:
-            if self.is_same(left, keys[before.first]) or self.is_same(left, keys[after.last]):
-                # What is given twice is meant to be kept: past it the motion would swing beyond.
-                return stops
-            joint = Joint(before.frames, after.frames)
-            if end_pace == start_pace == 0.0:
-                return joint, joint
-            if 0.0 in (end_pace, start_pace):
-                return stops
-            if isfinite(end_pace) and isfinite(start_pace):
-                joint = joint._replace(end_pace=end_pace, start_pace=start_pace)
-                return joint, joint
-            return 1.0, 1.0
-        resting = {Passing.STOP}
-        if self.ends_rest and None in (self.arriving(index), self.leaving(index)):
-            resting.add(Passing.THROUGH)
-        return (
-            stops[0] if reached.passing in resting else 1.0,
-            stops[1] if left.passing in resting else 1.0,
-        )
+        before, after = self.arriving(index), self.leaving(index)
+        is_end = self.ends_rest and None in (before, after)
+        return passed(self.keys, index, before, after, self.is_same, is_end=is_end)
 
     def arriving(self, index: int) -> Leg | None:
         """Return the leg that leads to a key."""
@@ -119,12 +95,60 @@ class Passages(Generic[Key]):
             return None
         return Leg(last, 0, self.gap) if self.gap else self.leaving(0)
 
-    def _moving(self, leg: Leg | None) -> Leg | None:
-        """Return a leg, unless there is no motion in it."""
-        return None if leg is None or self.keys[leg.first].easing == HOLD else leg
+
+def passed(
+    keys: Sequence[Key],
+    index: int,
+    before: Leg | None,
+    after: Leg | None,
+    is_same: Callable[[Key, Key], bool],
+    *,
+    is_end: bool = False,
+) -> tuple[Passed, Passed]:
+    """Return how one of some keys is reached by a leg, and how it is left by another one.
+
+    Parameters
+    ----------
+    keys : sequence of Key
+    index : int
+    before, after : Leg or None
+    is_same : callable
+        Tells whether two keys have what moves alike.
+    is_end : bool
+        Whether the motion comes from rest or to rest there, where it would pass through.
+    """
+    before, after = _moving(keys, before), _moving(keys, after)
+    reached = keys[index if before is None else before.last]
+    left = keys[index if after is None else after.first]
+    end_pace = 1.0 if before is None else keys[before.first].easing.paces[1]
+    start_pace = 1.0 if after is None else left.easing.paces[0]
+    stops = rest(end_pace), rest(start_pace)
+    if before and after and reached.passing is left.passing is Passing.THROUGH:
+        if is_same(left, keys[before.first]) or is_same(left, keys[after.last]):
+            # What is given twice is meant to be kept: past it the motion would swing beyond.
+            return stops
+        joint = Joint(before.frames, after.frames)
+        if end_pace == start_pace == 0.0:
+            return joint, joint
+        if 0.0 in (end_pace, start_pace):
+            return stops
+        if isfinite(end_pace) and isfinite(start_pace):
+            joint = joint._replace(end_pace=end_pace, start_pace=start_pace)
+            return joint, joint
+        return 1.0, 1.0
+    resting = {Passing.STOP, Passing.THROUGH} if is_end else {Passing.STOP}
+    return (
+        stops[0] if reached.passing in resting else 1.0,
+        stops[1] if left.passing in resting else 1.0,
+    )
 
 
-def _rest(pace: float) -> float:
+def _moving(keys: Sequence[Timed], leg: Leg | None) -> Leg | None:
+    """Return a leg, unless there is no motion in it."""
+    return None if leg is None or keys[leg.first].easing == HOLD else leg
+
+
+def rest(pace: float) -> float:
     """Return 0 where a blend must stop at a key, and 1 where its easing stops there by itself."""
     return 1.0 if pace == 0.0 else 0.0
 

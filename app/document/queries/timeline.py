@@ -1,6 +1,5 @@
 """Which two keys a moment lies between, and how far it is from one to the other."""
 
-from bisect import bisect_right
 from fractions import Fraction
 from itertools import pairwise
 from typing import NamedTuple
@@ -8,8 +7,9 @@ from typing import NamedTuple
 from app.document.figure import Figure
 from app.document.keyframe import Pose
 from app.document.model import Document
-from app.document.queries.clips import Clip, clip_of, closes
-from app.document.queries.sight import camera_at, movement_at, opacity_at
+from app.document.queries.clips import Clip, clip_of
+from app.document.queries.spans import place_at, spans
+from app.document.queries.stage import camera_at, movement_at, opacity_at
 from app.document.queries.tracks import track_at
 from app.document.queries.transits import transits
 from app.document.settings import FrameRange
@@ -20,7 +20,7 @@ SAME_PLACE = 1e-6
 
 
 class Moment(NamedTuple):
-    """A place between key `interval` and the key after it (the first one after the last)."""
+    """A place between the two keys of an interval, of which `intervals` tells."""
 
     interval: int
     # How far it is from the former, 0, to the latter, 1: the time of the interval's in-betweens.
@@ -33,35 +33,22 @@ def time_of(clip: Clip, frame: float) -> Moment:
 
     Before the first key and after the last one their poses stand still. In a loop the last key
     leads on to the first one across the end of the animation, whose last frame is its first one
-    again; frames beyond the ends come round. Fractions lie between frames.
+    again; frames beyond the ends come round. In a cycle it is that of the frame that repeats there.
+    Fractions lie between frames.
     """
-    keys = clip.keys
-    period = clip.period
-    if clip.loop and period and frame not in clip.frames:
-        frame = clip.frames.first + (frame - clip.frames.first) % period
-    first, last = keys[0].frame, keys[-1].frame
-    if len(keys) == 1:
+    if len(clip.keys) == 1:
         return Moment(0, 0.0)
-    if first <= frame < last:
-        index = bisect_right(keys, frame, key=lambda key: key.frame) - 1
-        start, end = keys[index].frame, keys[index + 1].frame
-    elif closes(clip) and frame != last:
-        index, start, end = len(keys) - 1, last, first + period
-        frame = frame if frame > last else frame + period
-    else:
-        return Moment(0, 0.0) if frame < first else Moment(len(keys) - 2, 1.0)
-    share = keys[index].easing((frame - start) / (end - start))
-    return Moment(index, transits(clip)[index].weight(share))
+    interval, span, share = place_at(clip, frame)
+    eased = clip.keys[span.first].easing(share)
+    return Moment(interval, transits(clip)[interval].weight(eased))
 
 
 def resting_pose(clip: Clip, moment: Moment) -> Pose | None:
     """Return the pose of the one key that a moment shows unblended; None where it blends two."""
     keys = clip.keys
-    if moment.weight == 0.0:
-        return keys[moment.interval].pose
-    if moment.weight == 1.0:
-        return keys[(moment.interval + 1) % len(keys)].pose
-    return None
+    if moment.weight not in (0.0, 1.0) or len(keys) == 1:
+        return None if len(keys) > 1 else keys[0].pose
+    return keys[spans(clip)[moment.interval][moment.weight == 1.0]].pose
 
 
 def changed_stretches(before: Document, after: Document) -> list[FrameRange]:
@@ -77,6 +64,8 @@ def changed_stretches(before: Document, after: Document) -> list[FrameRange]:
         if other and is_alike and other.keys is not figure.keys:
             stretches += _changed_keys(other, figure)
         if other:
+            changed = {*other.cycles} ^ {*figure.cycles}
+            stretches += [FrameRange(each.first, each.until or each.last) for each in changed]
             frames = {after.frames.clamp(frame) for frame in _changed_in_tracks(other, figure)}
             stretches += [FrameRange(frame, frame) for frame in sorted(frames)]
     marks = set(before.markers) ^ set(after.markers)

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from app.document.queries.clips import Clip
 from app.document.queries.passages import Leg, Moved, Passages, Value, slopes_on, value_on
-from app.document.timing import LINEAR, Track, TrackKey
+from app.document.timing import LINEAR, Cycle, Track, TrackKey
 
 # By how much two keys may differ that want the same: pixels, and radians.
 SAME_PLACE, SAME_TURN = 0.01, 1e-4
@@ -22,7 +22,8 @@ def track_at(track: Track, clip: Clip, frame: float) -> TrackPlace | None:
     """Return what a track wants of its handles at a frame; None where it does not act.
 
     It acts from its first key to its last one, both included, later by its delay. In a loop frames
-    come round, and the last frame is the first one again. What a key wants is given to the bit.
+    come round, and the last frame is the first one again; so they do in a cycle that takes the
+    track, and nowhere else is it then. What a key wants is given to the bit.
 
     Between two keys place and turn have the passings of keys as whole poses have them
     (`app.document.queries.passages.value_on`), each by itself. Through its first key and its last
@@ -68,14 +69,23 @@ TURN = Moved[TrackKey, float](lambda key: key.turn, SAME_TURN)
 def _time(track: Track, clip: Clip, frame: float) -> float | None:
     """Return the frame among the track's keys that a frame of the scene shows, if there is one."""
     first, last = track.keys[0].frame, track.keys[-1].frame
-    period = clip.period if clip.loop else 0
+    cycle, period = _cycle(track, clip), clip.period if clip.loop else 0
     if period and frame not in clip.frames:
         frame = clip.frames.first + (frame - clip.frames.first) % period
     time = frame - track.delay
+    if cycle is not None:
+        if not cycle.covers(frame):
+            return None
+        time, period = cycle.source(time), cycle.period
     for at in (time, time + period, time - period):
         if first <= at <= last:
             return at
     return None
+
+
+def _cycle(track: Track, clip: Clip) -> Cycle | None:
+    """Return the cycle with which a track repeats, if there is one."""
+    return next((cycle for cycle in clip.figure.cycles if cycle.takes(track)), None)
 
 
 def _interval(track: Track, time: float) -> int:
@@ -85,7 +95,9 @@ def _interval(track: Track, time: float) -> int:
 
 def _passages(track: Track, clip: Clip, moved: Moved[TrackKey, Value]) -> Passages[TrackKey]:
     keys = track.keys
-    is_whole = clip.loop and 0 < keys[-1].frame - keys[0].frame == clip.period
+    cycle = _cycle(track, clip)
+    period = cycle.period if cycle else clip.period if clip.loop else 0
+    is_whole = 0 < keys[-1].frame - keys[0].frame == period
     gap = 0 if is_whole and moved.is_same(keys[0], keys[-1]) else None
     return Passages(keys=keys, gap=gap, is_same=moved.is_same, ends_rest=True)
 

@@ -1,16 +1,20 @@
 """How the motion of a clip leaves its keys and reaches them, by their passings and easings."""
 
 from dataclasses import dataclass
+from math import inf
+from typing import NamedTuple
 
 import numpy as np
 
 from app.document.figure import Figure
 from app.document.keyframe import Keyframe
-from app.document.queries.clips import Clip, closes, intervals
-from app.document.queries.passages import Passages, Passed
+from app.document.queries.clips import Clip
+from app.document.queries.passages import Leg, Passed, passed, rest
 from app.document.queries.remembered import remembered
+from app.document.queries.spans import KeySpan, PlacedCycle, layout, spans
 from app.document.settings import FrameRange
-from engine.interpolation import Joint
+from app.document.timing import Passing
+from engine.interpolation import Joint, windows_of
 from engine.variant import Baseline
 
 # Pixels by which the coefficients of two maps may differ that are the same to the eye: the solver
@@ -23,15 +27,28 @@ class Transit:
     """How a clip goes from one key to the next."""
 
     # The two; with the one before where `start` is a joint, and the one after where `end` is one.
+    # Then those that joints apart have in place of one of the two, as `engine.interpolation` orders
+    # them.
     keys: tuple[Keyframe, ...]
     turns: tuple[int, ...]  # whole turns on the way from each of them to the next
     start: Passed
     end: Passed
+    # Whether the joints are of a cycle that this is no part of: the one after the first key, and
+    # the one before the second key, are others then.
+    apart: tuple[bool, bool] = (False, False)
 
     @property
     def is_joined(self) -> bool:
         """Whether it depends on other keys than the two."""
         return len(self.keys) > 2
+
+    @property
+    def windows(self) -> tuple[list[int], list[int]]:
+        """The indices among the keys of those that its joints are of, the key passed in the middle.
+
+        Of an end without a joint they say nothing.
+        """
+        return windows_of(isinstance(self.start, Joint), isinstance(self.end, Joint), self.apart)
 
     @property
     def is_even(self) -> bool:
@@ -67,38 +84,113 @@ def _transits(
     baseline: Baseline | None,
 ) -> tuple[Transit, ...]:
     clip = Clip(figure=figure, frames=frames, loop=loop, fps=1.0, baseline=baseline)
-    passages = _passages(clip)
-    passed = [passages.ends(index) for index in range(len(clip.keys))]
-    found = []
-    for first, last in intervals(clip):
-        start, end = passed[first][1], passed[last][0]
-        window, turns = [clip.keys[first], clip.keys[last]], [clip.keys[first].turns]
-        before, after = passages.arriving(first), passages.leaving(last)
-        if isinstance(start, Joint) and before:
-            window.insert(0, clip.keys[before.first])
-            turns.insert(0, clip.keys[before.first].turns)
-        if isinstance(end, Joint) and after:
-            window.append(clip.keys[after.last])
-            turns.append(clip.keys[after.first].turns)
-        found.append(Transit(keys=tuple(window), turns=tuple(turns), start=start, end=end))
-    return tuple(found)
+    return tuple(_transit(clip, number, *around) for number, around in enumerate(passings_of(clip)))
 
 
-def comes_round(clip: Clip) -> bool:
-    """Tell whether the motion goes on from the last key to the first one."""
-    return _passages(clip).gap is not None
+def _transit(clip: Clip, number: int, at_start: "KeyPassing", at_end: "KeyPassing") -> Transit:
+    """Return the transit of one of a clip's spans."""
+    keys, found = clip.keys, spans(clip)
+    first, last, _, _ = found[number]
+    start, end = _end(clip, number, at_start, side=1), _end(clip, number, at_end, side=0)
+    window, turns, apart = [keys[first], keys[last]], [keys[first].turns], [False, False]
+    others: list[tuple[Keyframe, int]] = []
+    if isinstance(start, Joint) and at_start.before is not None and at_start.after is not None:
+        before, after = keys[found[at_start.before].first], found[at_start.after]
+        window.insert(0, before)
+        turns.insert(0, before.turns)
+        if at_start.after != number:
+            apart[0] = True
+            others.append((keys[after.last], keys[after.first].turns))
+    if isinstance(end, Joint) and at_end.before is not None and at_end.after is not None:
+        before, after = keys[found[at_end.before].first], found[at_end.after]
+        window.append(keys[after.last])
+        turns.append(keys[after.first].turns)
+        if at_end.before != number:
+            apart[1] = True
+            others.append((before, before.turns))
+    return Transit(
+        keys=(*window, *(key for key, _ in others)),
+        turns=(*turns, *(turns for _, turns in others)),
+        start=start,
+        end=end,
+        apart=(apart[0], apart[1]),
+    )
 
 
-def _passages(clip: Clip) -> Passages[Keyframe]:
-    first, last = clip.keys[0], clip.keys[-1]
-    frames = last.frame - first.frame
-    gap = clip.period - frames if closes(clip) else None
-    if clip.loop and first is not last and frames == clip.period and _is_same(first, last):
-        gap = 0
-    return Passages(keys=clip.keys, gap=gap, is_same=_is_same)
+class KeyPassing(NamedTuple):
+    """By which spans, by their numbers, the motion reaches a key and leaves it, if it does."""
+
+    before: int | None
+    after: int | None
 
 
-def _is_same(key: Keyframe, other_key: Keyframe) -> bool:
+def passings_of(clip: Clip) -> list[tuple[KeyPassing, KeyPassing]]:
+    """Return by which spans the motion passes the two keys of each of a clip's spans.
+
+    Keys of a cycle are passed as in every repeat, also by what leads to it and on from it.
+    """
+    found, rings, _ = layout(clip)
+    ways = {span.first: number for number, span in enumerate(found) if span.first != span.last}
+    ends = {span.last: number for number, span in enumerate(found) if span.first != span.last}
+    known = {index: KeyPassing(ends.get(index), ways.get(index)) for index in range(len(clip.keys))}
+    last = len(clip.keys) - 1
+    is_whole = clip.loop and clip.keys[last].frame - clip.keys[0].frame == clip.period
+    if is_whole and are_alike(clip.keys[0], clip.keys[last]):
+        known[0] = known[last] = KeyPassing(ends.get(last), ways.get(0))
+    for ring in rings:
+        for place, (index, number) in enumerate(zip(ring.keys, ring.spans, strict=False)):
+            known[index] = KeyPassing(ring.spans[place - 1], number)
+    for ring in rings:
+        _go_on(clip, ring, known)
+    held = {ring.keys[0] for ring in rings if not ring.spans}
+    return [
+        (
+            KeyPassing(None, number) if span.first in held else known[span.first],
+            KeyPassing(number, None) if span.last in held else known[span.last],
+        )
+        for number, span in enumerate(found)
+    ]
+
+
+def _go_on(clip: Clip, ring: PlacedCycle, known: dict[int, KeyPassing]) -> None:
+    """Let a key at the end of a cycle that has the pose shown there go on from the cycle."""
+    keys, following = clip.keys, ring.keys.stop
+    if ring.shows_end or following in ring.keys:
+        return
+    source = ring.cycle.source(ring.end)
+    shown = next((index for index in ring.keys if keys[index].frame == source), None)
+    if shown is None or not ring.spans or not are_alike(keys[shown], keys[following]):
+        return
+    if known[following].before is None:
+        after = known[following].after
+        is_through = keys[following].passing is Passing.THROUGH
+        known[following] = known[shown]._replace(after=known[shown].after if is_through else after)
+
+
+def _end(clip: Clip, number: int, at: KeyPassing, *, side: int) -> Passed:
+    """Return how a span reaches its second key or, on side 1, leaves its first one."""
+    keys, found = clip.keys, spans(clip)
+    span, index = found[number], found[number][1 - side]
+    legs = [None if each is None else _leg(found[each]) for each in at]
+    end = passed(keys, index, legs[0], legs[1], are_alike)[side]
+    own, other = _leg(span), legs[side]
+    if other is None or at[side] == number:
+        return end
+    # A key of a cycle: the velocity is that in it, the time to come to it or go on is the span's.
+    pace, usual = (keys[leg.first].easing.paces[1 - side] for leg in (own, other))
+    if not isinstance(end, Joint) or usual == 0.0:
+        return rest(pace) if 0.0 in (end, usual) else 1.0
+    if not 0.0 < pace < inf:
+        return 1.0
+    lengthened = pace * other.frames / own.frames
+    return end._replace(start_pace=lengthened) if side else end._replace(end_pace=lengthened)
+
+
+def _leg(span: KeySpan) -> Leg:
+    return Leg(span.first, span.last, span.frames)
+
+
+def are_alike(key: Keyframe, other_key: Keyframe) -> bool:
     """Tell whether two keys' poses have the same map."""
     pose, other = key.pose, other_key.pose
     if pose is other or pose.phi is other.phi:

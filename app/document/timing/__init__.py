@@ -5,6 +5,11 @@ Out: frozen values, checked as they are made.
 Imports: `app.errors`, and the checks of `app.document`.
 """
 
+from app.document.timing.cycles import (
+    Cycle as Cycle,
+    require_apart as require_apart,
+    require_repeatable as require_repeatable,
+)
 from app.document.timing.easing import (
     HOLD as HOLD,
     LINEAR as LINEAR,

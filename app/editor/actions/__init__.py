@@ -22,6 +22,7 @@ from app.editor.actions.body import (
     rebuilding as rebuilding,
 )
 from app.editor.actions.timing import (
+    cycles as cycles,
     keys as keys,
     springs as springs,
     timeline_pointing as timeline_pointing,

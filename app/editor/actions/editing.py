@@ -286,6 +286,8 @@ def follow_figures(project: Project) -> None:
 def _forget_what_is_gone(project: Project) -> None:
     document = project.document
     follow_figures(project)
+    project.beside &= project.puppets.keys()
+    project.solo &= project.puppets.keys()
     project.selected &= {handle.id for handle in project.figure.handles}
     chosen = {row: at & frames_in(document, row) for row, at in project.chosen_of.items()}
     project.chosen_of = {row: frames for row, frames in chosen.items() if frames}
@@ -303,7 +305,7 @@ def depth_now(session: Session, project: Project, handle: Handle) -> float:
 def set_depth(session: Session, project: Project, identity: int, front: float) -> None:
     """Set what is painted in front around a handle, in the present key if it says so already."""
     if identity in _fronts_here(session, project):
-        frame = playback.current_frame(session, project)
+        frame = playback.posed_frame(session, project)
         edit_figure(session, layer_commands.key_front, frame, identity, front)
     else:
         extent = project.figure.handle(identity).extent
@@ -312,5 +314,5 @@ def set_depth(session: Session, project: Project, identity: int, front: float) -
 
 def _fronts_here(session: Session, project: Project) -> Mapping[int, float]:
     """Return what the key at the present frame says, if there is one."""
-    frame, figure = playback.current_frame(session, project), project.figure
+    frame, figure = playback.posed_frame(session, project), project.figure
     return figure.key(frame).fronts if frame in figure.key_frames else {}

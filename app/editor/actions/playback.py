@@ -107,3 +107,11 @@ def set_speed(session: Session, project: Project, speed: float) -> None:
 def current_frame(session: Session, project: Project) -> int:
     """Return the frame that is shown now."""
     return project.playhead.frame_at(project.document, session.clock())
+
+
+def posed_frame(session: Session, project: Project) -> int:
+    """Return the frame at which what the figure that is posed shows now is keyed.
+
+    It is another one than the present frame where a stretch repeats.
+    """
+    return project.figure.source_of(current_frame(session, project))

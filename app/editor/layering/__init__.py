@@ -8,28 +8,41 @@ Imports: `app.editor`, `app.document`, `app.motion`, `app.solving`, `app.storage
 from app.editor.layering.arranging import (
     ask_name as ask_name,
     blend as blend,
-    choose as choose,
     clip as clip,
     duplicate as duplicate,
     fade as fade,
     fade_group as fade_group,
     figure_at as figure_at,
+    group as group,
+    group_together as group_together,
     is_at as is_at,
     list_active as list_active,
     lock as lock,
     move as move,
     refer as refer,
-    remove as remove,
     rename as rename,
+    rename_group as rename_group,
     show as show,
     show_group as show_group,
     switch_here as switch_here,
+    ungroup as ungroup,
     unswitch_here as unswitch_here,
 )
+from app.editor.layering.choosing import (
+    choose as choose,
+    choose_all as choose_all,
+    choose_too as choose_too,
+    choose_up_to as choose_up_to,
+    look_at_alone as look_at_alone,
+    toggle as toggle,
+)
 from app.editor.layering.hanging import (
+    hand_over as hand_over,
     hang as hang,
     hangs_on as hangs_on,
     let_hang as let_hang,
+    remove as remove,
+    take_back_joint as take_back_joint,
     turn_with as turn_with,
 )
 from app.editor.layering.pictures import (
@@ -41,4 +54,12 @@ from app.editor.layering.pictures import (
     replace_picture as replace_picture,
     stand_still as stand_still,
     stand_up as stand_up,
+)
+from app.editor.layering.turns import (
+    dissolve as dissolve,
+    form as form,
+    join as join,
+    leave as leave,
+    rename_choice as rename_choice,
+    show_here as show_here,
 )

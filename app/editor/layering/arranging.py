@@ -1,31 +1,24 @@
 """Which layer is posed, in what order they lie, and when they are seen."""
 
+from collections.abc import Sequence
+from functools import reduce
+
 import numpy as np
 
 from app.document import (
     BlendMode,
     choice_commands,
     group_commands,
+    in_turn,
     is_visible,
     layer_commands,
+    shared_path,
 )
-from app.editor.actions import editing, playback, posing
+from app.editor.actions import editing, playback
+from app.editor.layering.choosing import choose
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from engine.geometry import contains
-
-
-@with_project
-def choose(session: Session, project: Project, identity: int) -> None:
-    """Let a figure be the one whose handles and keys are shown and changed."""
-    if identity == project.active:
-        return
-    posing.let_go(session)
-    project.active = identity
-    project.selected = project.chosen = frozenset()
-    project.chosen_track = None
-    project.meshing = project.drafted_bounds = None
-    session.hovered = None
 
 
 def figure_at(
@@ -59,6 +52,8 @@ def is_at(project: Project, identity: int, place: complex) -> bool:
     document = project.document
     if shown is None or not is_visible(document, document.figure(identity), shown.frame):
         return False
+    if project.solo and identity not in project.solo:
+        return False
     outline = shown.positions[: len(shown.mesh.domain.outline)]
     return bool(contains(outline, np.array([shown.placement.back(place)]))[0])
 
@@ -75,17 +70,48 @@ def move(session: Session, identity: int, index: int) -> None:
 
 
 @with_project
-def show(session: Session, project: Project, identity: int) -> None:
-    """Hide a layer, or show it again."""
-    hidden = project.document.figure(identity).hidden
-    editing.edit(session, layer_commands.set_hidden(identity, hidden=not hidden))
+def show(session: Session, project: Project, *identities: int) -> None:
+    """Hide layers, or show them again: the other way than the first of them is."""
+    hidden = not project.document.figure(identities[0]).hidden
+    commands = [layer_commands.set_hidden(each, hidden=hidden) for each in identities]
+    editing.edit(session, in_turn(_of("Hide" if hidden else "Show", identities), commands))
 
 
 @with_project
-def lock(session: Session, project: Project, identity: int) -> None:
-    """Let clicks on the drawing pass through a layer, or stop at it again."""
-    locked = project.document.figure(identity).locked
-    editing.edit(session, layer_commands.set_locked(identity, locked=not locked))
+def lock(session: Session, project: Project, *identities: int) -> None:
+    """Let clicks on the drawing pass through layers, or stop at them: other than at the first."""
+    locked = not project.document.figure(identities[0]).locked
+    commands = [layer_commands.set_locked(each, locked=locked) for each in identities]
+    editing.edit(session, in_turn(_of("Lock" if locked else "Unlock", identities), commands))
+
+
+def group(session: Session, path: str, *identities: int) -> None:
+    """Put layers in a group, or with "" out of all groups."""
+    editing.edit(session, group_commands.put_in_group(identities, path))
+
+
+@with_project
+def group_together(session: Session, project: Project) -> None:
+    """Put the chosen layers in a new group, in the innermost one that all of them are in."""
+    document, chosen = project.document, project.layers
+    around = reduce(shared_path, (document.figure(each).group for each in chosen))
+    taken = {each.name for each in document.groups}
+    free = layer_commands.numbered_name(f"{around}/group".removeprefix("/"), taken)
+    group(session, free, *chosen)
+
+
+def ungroup(session: Session, path: str) -> None:
+    """Let the layers of a group be by themselves."""
+    editing.edit(session, group_commands.ungroup(path))
+
+
+def rename_group(session: Session, path: str, name: str) -> None:
+    """Give a group another name."""
+    editing.edit(session, group_commands.rename_group(path, name))
+
+
+def _of(verb: str, identities: Sequence[int]) -> str:
+    return f"{verb} {'layer' if len(identities) == 1 else f'{len(identities)} layers'}"
 
 
 @with_project
@@ -163,13 +189,3 @@ def duplicate(session: Session, project: Project, identity: int) -> None:
     free = layer_commands.free_identity(project.document)
     editing.edit(session, layer_commands.duplicate_figure(identity))
     choose(session, free)
-
-
-@with_project
-def remove(session: Session, project: Project, identity: int) -> None:
-    """Delete a layer; where it was the one that is posed, its neighbour is now."""
-    order = [figure.id for figure in project.document.figures]
-    index, was_active = order.index(identity), identity == project.active
-    editing.edit(session, layer_commands.remove_figure(identity))
-    if was_active:
-        choose(session, (order[:index][-1:] or order[index + 1 :])[0])

@@ -1,15 +1,21 @@
 """Hanging one layer on another, and letting it go."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Sequence
 
-from app.document import Attachment, layer_commands
+from app.document import Attachment, Command, in_turn, layer_commands
 from app.editor import promises
 from app.editor.action import do
 from app.editor.actions import editing, playback
+from app.editor.layering.choosing import choose
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work import Kind
-from app.motion import Joints, hang as joint_at_rest
+from app.motion import (
+    Joints,
+    anchor_of,
+    hand_over as joint_that_keeps,
+    hang as joint_at_rest,
+)
 
 HANGING = Kind("Hanging a layer", "The layers cannot be joined")
 
@@ -89,9 +95,16 @@ def _join(
 
 @with_project
 def let_hang(session: Session, project: Project, child: int) -> None:
-    """Let a layer hang on nothing any more; nothing moves at the present frame."""
-    shown = project.puppets[child].shown
-    if shown is not None:
+    """Let a layer hang on nothing any more; nothing moves at the present frame.
+
+    One that hangs on others at other times is let go as long as the present joint holds.
+    """
+    shown, figure = project.puppets[child].shown, project.document.figure(child)
+    joint = figure.joint_at(playback.current_frame(session, project))
+    if joint is not None and len(figure.joints) > 1:
+        free = Attachment(to=None, frame=joint.frame, keeps=True)
+        editing.edit(session, layer_commands.attach(child, anchor_of(figure), free))
+    elif shown is not None:
         editing.edit(session, layer_commands.detach(child, *shown.placement))
 
 
@@ -102,3 +115,89 @@ def turn_with(session: Session, project: Project, child: int, turns: bool) -> No
     joint = project.document.figure(child).joint_at(frame)
     if joint is not None and joint.to is not None and turns != joint.turns:
         hang(session, child, joint.to, turns)
+
+
+@with_project
+def hand_over(session: Session, project: Project, child: int, parent: int | None) -> None:
+    """Let a layer hang on another one, or on none, from the present frame on; nothing jumps."""
+    frame = playback.current_frame(session, project)
+    figure = project.document.figure(child)
+    if parent is None:
+        anchor, joint = anchor_of(figure), Attachment(to=None, frame=frame, keeps=True)
+        editing.edit(session, layer_commands.attach(child, anchor, joint))
+        return
+
+    def find(joints: Joints) -> tuple[complex, Attachment]:
+        held = figure.joint_at(frame)
+        turns = held is None or held.turns
+        return anchor_of(figure), joint_that_keeps(joints, child, parent, frame, turns=turns)
+
+    joining = do(_join, child, parent, find)
+    promises.once_settled(session, joining, "Hand the layer over")
+
+
+@with_project
+def take_back_joint(session: Session, _: Project, child: int, frame: int) -> None:
+    """Let a layer hang on what it hung on before a frame, from there on, too."""
+    editing.edit(session, layer_commands.unjoin(child, frame))
+
+
+@with_project
+def remove(session: Session, project: Project, *identities: int) -> None:
+    """Delete layers. What hung on them hangs on what they hung on, and nothing moves now."""
+    gone, figures = set(identities), project.document.figures
+    if len(gone) == len(figures):
+        session.tell("A scene has at least one layer. Add another one first.", tone="error")
+    elif any(joint.to in gone for figure in figures for joint in figure.joints):
+        promises.once_settled(session, do(_hand_down, *identities), "Delete the layer")
+    else:
+        _remove(session, identities, [])
+
+
+@with_project
+def _hand_down(session: Session, project: Project, *identities: int) -> None:
+    """Find where what hangs on layers that go is to hang, and delete them."""
+    document, siblings = project.document, project.samplers
+    frame = playback.current_frame(session, project)
+
+    def find() -> list[Command]:
+        joints = Joints(document, siblings)
+        figures = [figure.id for figure in document.figures if figure.id not in identities]
+        return [_inherit(joints, child, identities, frame) for child in figures]
+
+    def done(inherited: list[Command]) -> None:
+        if project.document is document:
+            _remove(session, identities, inherited)
+        else:
+            session.tell("Nothing was deleted: the project changed meanwhile. Try again.")
+
+    promises.begin(session, project, HANGING, find, done)
+
+
+def _inherit(joints: Joints, child: int, gone: Collection[int], frame: int) -> Command:
+    """Return the command by which a figure hangs on what carries those that go."""
+    document = joints.document
+    figure, (_, *carriers) = document.figure(child), document.carriers(child, frame)
+    joint = figure.joint_at(frame)
+    if joint is not None and joint.to in gone:
+        heir = next((each.id for each in carriers if each.id not in gone), None)
+        if heir is not None:
+            held = joint_at_rest(joints, child, heir, frame, turns=joint.turns)
+            return layer_commands.attach(child, *held)
+        if all(each.to in gone for each in figure.joints):
+            return layer_commands.detach(child, *joints.placement(child, frame))
+    return in_turn("Attach", ())
+
+
+@with_project
+def _remove(
+    session: Session, project: Project, identities: Sequence[int], inherited: Sequence[Command]
+) -> None:
+    order = [figure.id for figure in project.document.figures]
+    removals = [layer_commands.remove_figure(identity) for identity in identities]
+    label = "Delete layer" if len(identities) == 1 else f"Delete {len(identities)} layers"
+    was_active, index = project.active in identities, order.index(project.active)
+    editing.edit(session, in_turn(label, [*inherited, *removals]))
+    if was_active:
+        near = [*order[:index][::-1], *order[index + 1 :]]
+        choose(session, next(each for each in near if each not in identities))

@@ -19,7 +19,7 @@ from app.editor.action import Action, do
 from app.editor.actions import editing, files, rebuilding
 from app.editor.dialogs import Question
 from app.editor.failures import sentence
-from app.editor.layering.arranging import choose
+from app.editor.layering.choosing import choose
 from app.editor.project import Project, Puppet
 from app.editor.session import Session, with_project
 from app.editor.work import Kind

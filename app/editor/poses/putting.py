@@ -41,14 +41,16 @@ def put(
         What is one step of undo together.
     """
     gesture = gesture or object()
-    by = frame - min(key.frame for keys in keys_of.values() for key in keys)
+    first = min(key.frame for keys in keys_of.values() for key in keys)
     chosen_of: dict[KeyRow, frozenset[int]] = {}
     is_pose = sum(map(len, keys_of.values())) == 1
     for figure, keys in keys_of.items():
-        moved = [replace(key, frame=key.frame + by) for key in keys]
+        # One pose changes all repeats; several keys have no place in them.
+        at = project.document.figure(figure).source_of(frame) if is_pose else frame
+        moved = [replace(key, frame=key.frame + at - first) for key in keys]
         if is_pose:
             easing = session.preferences.easing
-            command = key_commands.put_pose(figure, frame, moved[0].pose, easing)
+            command = key_commands.put_pose(figure, at, moved[0].pose, easing)
         else:
             command = key_commands.put_keys(figure, moved)
         project.history.do(replace(command, label=label or command.label), gesture=gesture)

@@ -50,7 +50,7 @@ def have_one_ground(clip: Clip, other: Clip) -> bool:
     def source(of: Clip) -> tuple[object, ...]:
         figure = of.figure
         return (
-            *(figure.id, figure.domain, figure.handles, figure.keys, figure.anchor),
+            *(figure.id, figure.domain, figure.handles, figure.keys, figure.cycles, figure.anchor),
             *(figure.joints, figure.stillness, figure.springs, figure.variant, figure.bounds),
             *(id(figure.stiffness), figure.bones),
             *(of.frames, of.loop, of.fps, of.baseline, of.carriers),

@@ -13,7 +13,7 @@ def pair_of(clip: Clip, interval: int, variant: Variant | None = None) -> Pair:
     # As numbers, which are hashed far sooner than the dataclass.
     bounds = (figure.bounds.k, figure.bounds.sigma_a, figure.bounds.sigma_b)
     maps = [identity for key in transit.keys for identity in (id(key.pose.phi), id(key.pose.psi))]
-    joined = (transit.start, transit.end, bounds) if transit.is_joined else ()
+    joined = (transit.start, transit.end, transit.apart, bounds) if transit.is_joined else ()
     if clip.baseline is None:
         return *maps, *transit.turns, *joined, figure.anchor, variant or figure.variant
     rest = (bounds, tuple(handle.position for handle in figure.handles), clip.frames)

@@ -8,7 +8,7 @@ import numpy as np
 from app.document import Pose, Transit, Variant
 from app.errors import tell
 from app.motion.inbetweens.correction import FrameCorrection
-from engine.arrays import Complexes
+from engine.arrays import Complexes, freeze
 from engine.dirichlet import Extension, HilbertTransform
 from engine.domain import Domain
 from engine.interpolation import (
@@ -144,17 +144,14 @@ class PoseSampler:
         self, first: Pose, second: Pose, variant: Variant, *, turns: int = 0
     ) -> Inbetweens:
         """Return the in-betweens of two poses alone, with whole turns beyond the shorter way."""
-        poses, course = (first, second), Course.straight()
-        interval = self._interval(poses, (turns,), course, variant, Bounds())
+        samples = [self.samples(first), self.samples(second)]
+        sheets = root_sheets(np.array([sample.anchor_fz for sample in samples]), (turns,))
+        interval = self._interval(Passage.of(samples, sheets), variant, Bounds())
         return prepare_inbetweens(variant, interval)
 
     def inbetweens_of(self, transit: Transit, bounds: Bounds, variant: Variant) -> Inbetweens:
         """Return the in-betweens of a clip's interval; the motion through keys obeys the bounds."""
-        poses = tuple(key.pose for key in transit.keys)
-        course = self._course(transit, bounds, variant)
-        obeyed = bounds if transit.is_joined else Bounds()
-        interval = self._interval(poses, transit.turns, course, variant, obeyed)
-        return prepare_inbetweens(variant, interval)
+        return prepare_inbetweens(variant, self._interval_of(transit, bounds, variant))
 
     def makes_single_frames(self, variant: Variant) -> bool:
         """Tell whether one in-between alone takes less time than all of its interval."""
@@ -170,17 +167,7 @@ class PoseSampler:
         weight : float
             Its time from one key to the other, in [0, 1].
         """
-        poses = tuple(key.pose for key in transit.keys)
-        course = self._course(transit, bounds, variant)
-        obeyed = bounds if transit.is_joined else Bounds()
-        return frame_at(
-            weight, variant, self._interval(poses, transit.turns, course, variant, obeyed)
-        )
-
-    def _course(self, transit: Transit, bounds: Bounds, variant: Variant) -> Course:
-        if not transit.is_joined:
-            return Course.straight()
-        return Course.between(*self._ends(transit, bounds, variant))
+        return frame_at(weight, variant, self._interval_of(transit, bounds, variant))
 
     def kept(self, transit: Transit, bounds: Bounds, variant: Variant) -> tuple[float, float]:
         """Return how much of its velocity the bounds leave to the motion at both keys.
@@ -194,11 +181,11 @@ class PoseSampler:
         return start, end
 
     def _ends(self, transit: Transit, bounds: Bounds, variant: Variant) -> list[End]:
-        poses = [key.pose for key in transit.keys]
-        windows = (transit.start, poses[:3]), (transit.end, poses[-3:])
         return [
-            self._tangent(window, end, bounds, variant) if isinstance(end, Joint) else end
-            for end, window in windows
+            self._tangent([transit.keys[index].pose for index in window], end, bounds, variant)
+            if isinstance(end, Joint)
+            else end
+            for end, window in zip((transit.start, transit.end), transit.windows, strict=True)
         ]
 
     def _tangent(
@@ -213,19 +200,30 @@ class PoseSampler:
                 )
             return self._tangents[key]
 
-    def _interval(
-        self,
-        poses: tuple[Pose, ...],
-        turns: tuple[int, ...],
-        course: Course,
-        variant: Variant,
-        bounds: Bounds,
-    ) -> Interval:
-        samples = [self.samples(pose) for pose in poses]
-        sheets = root_sheets(np.array([sample.anchor_fz for sample in samples]), turns)
+    def _interval_of(self, transit: Transit, bounds: Bounds, variant: Variant) -> Interval:
+        samples = [self.samples(key.pose) for key in transit.keys]
+        anchors = np.array([sample.anchor_fz for sample in samples])
+        if not transit.is_joined:
+            passage = Passage.of(samples, root_sheets(anchors, transit.turns))
+            return self._interval(passage, variant, Bounds())
+        course = Course.between(*self._ends(transit, bounds, variant), apart=transit.apart)
+        count = len(samples) - sum(transit.apart)
+        sheets = [*root_sheets(anchors[:count], transit.turns[: count - 1])]
+        # Those apart are reached from the key in the middle of their windows.
+        others = iter(zip(range(count, len(samples)), transit.turns[count - 1 :], strict=True))
+        for side, (_, middle, _) in enumerate(transit.windows):
+            if transit.apart[side]:
+                other, turns = next(others)
+                pair = [middle, other] if side == 0 else [other, middle]
+                change = int(root_sheets(anchors[pair], (turns,))[1])
+                sheets.append(sheets[middle] + (change if side == 0 else -change))
+        passage = Passage.of(samples, freeze(np.array(sheets, np.int32)), course)
+        return self._interval(passage, variant, bounds)
+
+    def _interval(self, passage: Passage, variant: Variant, bounds: Bounds) -> Interval:
         return Interval(
             sites=self.sites,
-            passage=Passage.of(samples, sheets, course),
+            passage=passage,
             bounds=bounds,
             transform=self.extension if variant.needs_transform else None,
         )

@@ -16,8 +16,9 @@ from app.document import (
     HOLD,
     Clip,
     Moment,
-    comes_round,
-    intervals,
+    passings_of,
+    place_at,
+    spans,
     time_of,
     transits,
 )
@@ -26,15 +27,6 @@ from engine.arrays import Booleans, Complexes, Floats
 
 SAME = 0.5  # pixels between two targets that are at one place
 RARELY = 1e-12  # a weight below it is none
-
-
-class KeySpan(NamedTuple):
-    """From one key to the next: their indices, and in how many frames."""
-
-    first: int
-    last: int
-    start: int
-    frames: int
 
 
 class Lack(NamedTuple):
@@ -52,24 +44,14 @@ class Lack(NamedTuple):
     weights: Floats
 
 
-def spans_of(clip: Clip) -> list[KeySpan]:
-    """Return the spans of a clip's intervals, in their order."""
-    keys, found = clip.keys, []
-    for first, last in intervals(clip):
-        start, end = keys[first].frame, keys[last].frame
-        frames = end - start if last > first else end + clip.period - start
-        found.append(KeySpan(first, last, start, frames))
-    return found
-
-
 def still_handles(clip: Clip) -> Booleans:
     """Return which handles (k, h) are still in which of the clip's spans."""
-    figure, keys, spans = clip.figure, clip.keys, spans_of(clip)
+    figure, keys = clip.figure, clip.keys
     following = {spring.handle for spring in figure.springs if spring.enabled}
-    still = np.zeros((len(spans), len(figure.handles)), dtype=bool)
+    still = np.zeros((len(spans(clip)), len(figure.handles)), dtype=bool)
     if not figure.stillness or clip.baseline is not None:
         return still
-    for number, span in enumerate(spans):
+    for number, span in enumerate(spans(clip)):
         one, other = keys[span.first], keys[span.last]
         # A whole turn between equal targets is meant: it would be unwound.
         if one.easing == HOLD or one.turns:
@@ -96,7 +78,7 @@ class Stillness:
     def __init__(self, motion: BaseMotion, places: slice) -> None:
         clip = motion.clip
         self._clip = clip
-        self._spans = spans_of(clip)
+        self._spans = spans(clip)
         self._still = still_handles(clip)
         shape = (len(self._spans), 2, self._still.shape[1])
         self._ends = np.zeros(shape, dtype=np.complex128)
@@ -115,8 +97,8 @@ class Stillness:
                     velocities[number, side] = pace * speed
         self._weights = np.zeros(shape)
         self._slopes = np.zeros(shape, dtype=np.complex128)
-        for number in range(len(self._spans)):
-            for side, other in enumerate((self._before(number), self._after(number))):
+        for number, (at_start, at_end) in enumerate(passings_of(clip)):
+            for side, other in enumerate((at_start.before, at_end.after)):
                 if other is not None:
                     there, here = self._still[other], self._still[number]
                     self._weights[number, side] = there & ~here
@@ -133,8 +115,7 @@ class Stillness:
             self._still[moment.interval].any() or self._weights[moment.interval].any()
         ):
             return None
-        span = self._spans[moment.interval]
-        share = self._share(span, frame)
+        _, span, share = place_at(self._clip, frame)
         if moment.weight in (0.0, 1.0) or not 0.0 < share < 1.0:
             side = int(moment.weight == 1.0)
             there = self._still[moment.interval] | (self._weights[moment.interval, side] > 0)
@@ -150,20 +131,3 @@ class Stillness:
         weights = np.where(still, 1.0, rest**3 * before + share**3 * after)
         offsets = np.where(still, goal - places, moving)
         return Lack(offsets, np.where(weights > RARELY, weights, 0.0))
-
-    def _share(self, span: KeySpan, frame: float) -> float:
-        """Return which share of a span's frames is over at a frame."""
-        since = frame - span.start
-        if self._clip.loop and self._clip.period and not 0 <= since <= span.frames:
-            since %= self._clip.period
-        return since / span.frames
-
-    def _before(self, number: int) -> int | None:
-        if number > 0:
-            return number - 1
-        return len(self._spans) - 1 if comes_round(self._clip) else None
-
-    def _after(self, number: int) -> int | None:
-        if number + 1 < len(self._spans):
-            return number + 1
-        return 0 if comes_round(self._clip) else None

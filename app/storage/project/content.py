@@ -15,6 +15,7 @@ from app.document import (
     Bone,
     CameraKey,
     Choice,
+    Cycle,
     Document,
     Easing,
     ExportSettings,
@@ -185,6 +186,12 @@ SPRING = record(
     Field("strength", NUMBER, usual=1.0),
     Field("enabled", FLAG, usual=True),
 )
+CYCLE = record(
+    Cycle,
+    Field("first", WHOLE),
+    Field("last", WHOLE),
+    Field("until", optional(WHOLE)),
+)
 BONE = record(
     Bone,
     Field("ends", pair(WHOLE, WHOLE, "two handles")),
@@ -265,6 +272,7 @@ FIGURE = record(
     Field("stillness", FLAG, usual=False),
     Field("tracks", several(TRACK), usual=()),
     Field("springs", several(SPRING), usual=()),
+    Field("cycles", several(CYCLE), usual=()),
     Field("bones", several(BONE), usual=()),
     Field("stiffness", FLAG, lambda figure: figure.stiffness is not None, usual=False),
     Field("variant", TEXT),

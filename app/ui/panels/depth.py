@@ -14,7 +14,7 @@ DEPTHS = Scale(left=-1.0, right=1.0)
 def draw(session: Session, look: Look, project: Project, handle: Handle) -> list[Action]:
     """Draw the depth of a handle, its extent, and from which key on it holds."""
     heading(look, "In front")
-    figure, frame = project.figure, playback.current_frame(session, project)
+    figure, frame = project.figure, playback.posed_frame(session, project)
     key = figure.key(frame) if frame in figure.key_frames else None
     imgui.begin_group()
     actions = _depth(session, look, project, handle) + _extent(look, figure, handle)

@@ -10,6 +10,7 @@ from app.editor import Project, Session, do, layering, with_project
 from app.editor.actions import (
     OverlayName,
     cutting,
+    cycles,
     editing,
     exporting,
     files,
@@ -42,6 +43,11 @@ def _redo_label(_: Session, project: Project) -> str:
 def _copied(session: Session, project: Project) -> str:
     count = project.count_chosen if copying.copies_keys(session, project) else 0
     return f"{count} keys" if count > 1 else "pose"
+
+
+def _stretch(_: Session, project: Project) -> str:
+    stretch = cycles.chosen_stretch(project)
+    return "" if stretch is None else f"frames {stretch[0]} to {stretch[1]}"
 
 
 def _onto(session: Session, project: Project, way: receiving.PasteWay) -> str:
@@ -539,6 +545,17 @@ MENUS: dict[str, dict[str, Binding]] = {
         "ease in": Binding("Ease in", do(keys.ease, PRESETS["in"]), "Shift+F9"),
         "ease out": Binding("Ease out", do(keys.ease, PRESETS["out"]), "Ctrl+Shift+F9"),
         "ease not": Binding("Linear", do(keys.ease, LINEAR), "Alt+F9"),
+        "repeat": Binding(
+            "Repeat",
+            do(cycles.repeat),
+            detail=_stretch,
+            possible=lambda _, project: cycles.chosen_stretch(project),
+            parted=True,
+        ),
+        "repeats into keys": Binding(
+            "Make repeats into keys", do(cycles.make_keys), possible=cycles.cycle_here
+        ),
+        "repeat no more": Binding("Stop repeating", do(cycles.stop), possible=cycles.cycle_here),
     },
     "Help": {
         "shortcuts": Binding(

@@ -85,6 +85,8 @@ def _key_buttons(session: Session, look: Look, project: Project) -> list[Action]
     actions += _to_key(look, *previous)
     imgui.same_line(0, TIGHT * look.em)
     frame = playback.current_frame(session, project)
+    if project.chosen_track is None:
+        frame = playback.posed_frame(session, project)
     is_free = project.unkeyed is not None or frame not in playback.keyed_frames(project)
     imgui.begin_disabled(not is_free)
     actions += bound_button(session, look, "insert key")
@@ -215,6 +217,10 @@ def _onion_skin(session: Session, look: Look) -> list[Action]:
         values[index] = imgui.slider_int(name, values[index], low, high)[1]
     if values != before:
         actions.append(do(viewing.set_ghosts, *values))
+    changed, in_front = imgui.checkbox("In front of the drawing", preferences.ghosts_in_front)
+    tip("Over all layers, and not behind those that are posed")
+    if changed:
+        actions.append(do(viewing.put_ghosts_in_front, in_front))
     imgui.end_popup()
     return actions
 

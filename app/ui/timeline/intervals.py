@@ -1,20 +1,25 @@
-"""The way from key to key: a bar with its easing curve, which opens the easing's editor."""
+"""The way from key to key: a bar with its easing curve, and where such ways repeat, hatched.
+
+A click on a bar opens the easing's editor; the end of repeats can be dragged.
+"""
 
 from dataclasses import dataclass
-from itertools import pairwise
 
 from imgui_bundle import ImVec2, imgui
 
-from app.document import HOLD, LINEAR, Keyframe, Transit, closes, transits
-from app.editor import Action, do
-from app.editor.actions import tracks
-from app.ui.style import SMALL, in_hand, ink, is_pressed, sized, tip
-from app.ui.timeline.bands import ROUNDING, Bands
+from app.document import HOLD, LINEAR, Cycle, Keyframe, Transit, closing_span, spans, transits
+from app.editor import Action, CycleDrag, do
+from app.editor.actions import timeline_pointing, tracks
+from app.ui.style import SMALL, begin_tip, in_hand, ink, is_pressed, sized, tip
+from app.ui.timeline.bands import ROUNDING, Bands, FigureRow, tag
 from app.ui.timeline.easing_curve import draw_curve, easing_popup, fill_curve
 from app.ui.timeline.keys import begin_box, is_plain_click
 
 LEAST = 0.6  # em: narrower bars are not drawn
 INSET = 0.35  # em: between the curve and the bar's edge
+HATCH = 0.55  # em: between the lines over repeats
+GRIP = 0.35  # em: on both sides of their end
+AGAIN = 0.26  # em: of a repeated key
 NAMES = {"linear": "linear", "in": "ease in", "out": "ease out", "in-out": "ease in-out"}
 
 
@@ -53,38 +58,28 @@ def draw_intervals(bands: Bands) -> list[Action]:
 
 
 def _bars(bands: Bands) -> list[_Bar]:
-    clip = bands.project.clip
-    keys, ways = clip.keys, transits(clip)
-    bars = [
-        _Bar(
-            name=f"interval {key.frame}",
-            key=key,
-            begin=key.frame,
-            end=following.frame,
-            low=key.frame,
-            high=following.frame,
-            way=way,
-        )
-        for (key, following), way in zip(pairwise(keys), ways, strict=False)
-    ]
-    if closes(clip):
-        frames, last, period = clip.frames, keys[-1], clip.period
-        end = keys[0].frame + period
-        for name, shift, low, high in (
-            ("", 0, last.frame, frames.last),
-            (" again", -period, frames.first, keys[0].frame),
-        ):
-            bars.append(
-                _Bar(
-                    name=f"interval {last.frame}{name}",
-                    key=last,
-                    begin=last.frame + shift,
-                    end=end + shift,
-                    low=low,
-                    high=high,
-                    way=ways[-1],
-                )
+    clip, bars = bands.project.clip, list[_Bar]()
+    for span, way in zip(spans(clip), transits(clip), strict=True):
+        if span.first == span.last:
+            continue
+        key, end = clip.keys[span.first], span.start + span.frames
+        # What goes on from a cycle begins elsewhere than at its key.
+        name = f"interval {key.frame}" + " on" * (span.start != key.frame)
+        parts = [(name, 0, span.start, min(end, clip.frames.last))]
+        if span == closing_span(clip):
+            parts.append((f"{name} again", -clip.period, clip.frames.first, clip.keys[0].frame))
+        bars += [
+            _Bar(
+                name=part,
+                key=key,
+                begin=span.start + shift,
+                end=end + shift,
+                low=low,
+                high=high,
+                way=way,
             )
+            for part, shift, low, high in parts
+        ]
     return bars
 
 
@@ -92,7 +87,7 @@ def _draw_still(bands: Bands) -> None:
     """Draw a line where a pose stands still: before the first key and after the last one."""
     clip = bands.project.clip
     ends = [(clip.frames.first, clip.frames.last)]
-    if not closes(clip):
+    if closing_span(clip) is None:
         first, last = clip.keys[0].frame, clip.keys[-1].frame
         ends = [(clip.frames.first, first), (last, clip.frames.last)]
         colour = ink(bands.look.palette.dim, 0.35)
@@ -121,7 +116,7 @@ def _interval(bands: Bands, bar: _Bar, left: float, right: float) -> list[Action
         tip(f"{bar.told.capitalize()}: click to change how time runs here")
     _draw_bar(bands, bar, low, high, hot=hot)
     _label(bands, bar.told, bar.key.turns, low, high)
-    if not bar.name.endswith("again"):
+    if bar.name.split()[-1].isdecimal():
         actions += easing_popup(popup, bands.look, bands.project, bar.key)
     return actions
 
@@ -158,3 +153,80 @@ def _label(bands: Bands, name: str, turns: int, low: ImVec2, high: ImVec2) -> No
         if left + 2.2 * imgui.calc_text_size(text).x + em < min(high.x, bands.right):
             place, colour = (left, low.y + 0.25 * em), ink(bands.look.palette.dim)
             imgui.get_window_draw_list().add_text(place, colour, text)
+
+
+def draw_cycles(bands: Bands) -> list[Action]:
+    """Draw the repeats of all figures, and take what the pointer does to their ends."""
+    actions: list[Action] = []
+    bands.push_clip()
+    for row in bands.rows:
+        for cycle in row.figure.cycles:
+            end = bands.project.document.frames.last if cycle.until is None else cycle.until
+            _hatch(bands, row, cycle, end)
+            if row.is_active:
+                actions += _end_of_cycle(bands, row, cycle, end)
+    imgui.pop_clip_rect()
+    return actions
+
+
+def _hatch(bands: Bands, row: FigureRow, cycle: Cycle, end: int) -> None:
+    """Draw where a stretch repeats, with its seams and where its keys are again."""
+    draw_list, em, accent = imgui.get_window_draw_list(), bands.look.em, bands.look.palette.accent
+    left, right = max(bands.x(cycle.last), bands.left), min(bands.x(end), bands.right)
+    if right <= left:
+        return
+    half = (bands.bar_bottom - bands.bar_top if row.is_active else row.bottom - row.top) / 2 - 1
+    low, high = ImVec2(left, row.middle - half), ImVec2(right, row.middle + half)
+    draw_list.add_rect_filled(low, high, ink(accent, 0.07))
+    imgui.push_clip_rect(low, high, intersect_with_current_clip_rect=True)
+    # The lines stay where they are in time while the timeline is scrolled.
+    first, gap = bands.x(0), HATCH * em
+    x = first + ((left - first) // gap) * gap
+    while x < right + 2 * half:
+        draw_list.add_line(ImVec2(x, low.y), ImVec2(x - 2 * half, high.y), ink(accent, 0.28))
+        x += gap
+    for start in range(cycle.last, end + 1, cycle.period):
+        x = bands.x(start)
+        draw_list.add_line(ImVec2(x, low.y), ImVec2(x, high.y), ink(accent, 0.6))
+        for frame in row.figure.key_frames if cycle.period * bands.strip.scale > 1 else ():
+            again = bands.x(start + frame - cycle.first)
+            if cycle.has(frame) and bands.shows(again - em, again + em):
+                colour = ink(bands.look.palette.dim, 0.9)
+                draw_list.add_circle(ImVec2(again, row.middle), AGAIN * em, colour, 0, 1.5)
+    imgui.pop_clip_rect()
+
+
+def _end_of_cycle(bands: Bands, row: FigureRow, cycle: Cycle, end: int) -> list[Action]:
+    """Draw the end of the repeats, and take what the pointer does to it."""
+    x, half = bands.x(end), GRIP * bands.look.em
+    if not bands.shows(x - half, x + half):
+        return []
+    gesture = bands.project.timing.gesture
+    is_dragged = isinstance(gesture, CycleDrag) and gesture.first == cycle.first
+    low, high = ImVec2(x - half, bands.bar_top), ImVec2(x + half, bands.bar_bottom)
+    bands.button(f"repeats of {cycle.first}", low, high)
+    is_hot = in_hand() or is_dragged
+    colour = ink(bands.look.palette.accent, 1.0 if is_hot else 0.75)
+    draw_list, top, bottom = imgui.get_window_draw_list(), bands.bar_top, bands.bar_bottom
+    draw_list.add_line(ImVec2(x, top), ImVec2(x, bottom), colour, 3.0 if is_hot else 2.0)
+    for y in (top, bottom):
+        draw_list.add_line(ImVec2(x - half, y), ImVec2(x, y), colour, 2.0)
+    if is_hot:
+        imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
+    if is_dragged:
+        tag(bands, x, "to the end" if cycle.until is None else f"until {end}")
+    elif gesture is None and begin_tip():
+        until = "to the end of the scene" if cycle.until is None else f"until frame {end}"
+        imgui.text_unformatted(f"{cycle.told.capitalize()} repeat {until}")
+        imgui.text_disabled("Drag to end them elsewhere, right click on them for more")
+        imgui.end_tooltip()
+    if not is_pressed():
+        return []
+    drag = CycleDrag(
+        figure=row.figure.id,
+        first=cycle.first,
+        start=bands.pointed,
+        before=bands.project.document,
+        after=bands.project.document,
+    )
+    return [do(timeline_pointing.begin, drag, bands.strip)]

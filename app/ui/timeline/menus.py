@@ -3,8 +3,8 @@
 from imgui_bundle import imgui
 
 from app.document import PRESETS, Keyframe, Passing, TrackKey, track_commands
-from app.editor import Action, KeyRow, Project, Session, do, frames_in, seen_at
-from app.editor.actions import editing, keys, playback, tracks
+from app.editor import Action, KeyRow, Project, Session, TrackRow, do, frames_in, seen_at
+from app.editor.actions import cycles, editing, keys, playback, tracks
 from app.editor.poses import copying
 from app.ui.shortcuts import BINDINGS, bound_item
 from app.ui.style import Look, shortened, tip
@@ -52,6 +52,7 @@ def key_menu(bands: Bands, row: KeyRow, key: Keyframe | TrackKey) -> list[Action
             if imgui.menu_item(LABELS[name], "", key.easing == preset)[0]:
                 actions.append(do(keys.set_easing, taken, preset))
         imgui.end_menu()
+    actions += _cycle_items(bands, key.frame)
     imgui.separator()
     actions += _time_items(bands.session, bands.look, project)
     imgui.end_popup()
@@ -86,6 +87,7 @@ def track_menu(bands: Bands) -> list[Action]:
     actions += _paste_items(bands.session, frame)
     if imgui.menu_item_simple(f"Add marker at frame {frame}###Add marker"):
         actions.append(do(keys.add_marker, frame))
+    actions += _cycle_items(bands, frame)
     imgui.separator()
     actions += _time_items(bands.session, bands.look, bands.project)
     if track is not None:
@@ -105,8 +107,24 @@ def time_menu(session: Session, look: Look, project: Project) -> list[Action]:
     return actions
 
 
+def _cycle_items(bands: Bands, frame: int) -> list[Action]:
+    """Draw what can be done with what repeats at a frame."""
+    actions: list[Action] = []
+    cycle = cycles.cycle_here(bands.session, bands.project, frame)
+    if cycle is None or isinstance(bands.project.row, TrackRow):
+        return actions
+    imgui.separator()
+    if imgui.menu_item_simple("Make repeats into keys"):
+        actions.append(do(cycles.make_keys, frame))
+    tip(f"{cycle.told.capitalize()} are edited in one place; then each repeat is by itself")
+    if imgui.menu_item_simple("Stop repeating"):
+        actions.append(do(cycles.stop, frame))
+    return actions
+
+
 def _time_items(session: Session, look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
+    actions += bound_item(session, "repeat")
     count, chosen = len(frames_in(project.document, project.row)), project.count_chosen
     several = f"{chosen} keys" if chosen > 1 else "all keys"
     # The time of a scene is scaled as a whole, but not reversed.

@@ -4,14 +4,15 @@ from imgui_bundle import ImVec2, imgui
 
 from app.editor import (
     Action,
-    EdgeDrag,
     KeyDrag,
     MarkerDrag,
     Project,
     Scrub,
     Session,
     SwitchDrag,
+    TimeDrag,
     TimeGesture,
+    TurnDrag,
     do,
     layering,
     seen_at,
@@ -23,7 +24,7 @@ from app.ui.style import Look
 from app.ui.timeline.bands import THIN, Bands, TrackLane, in_seconds, was_dragged
 from app.ui.timeline.bar import draw_bar
 from app.ui.timeline.dropping import draw_dropped
-from app.ui.timeline.intervals import draw_intervals
+from app.ui.timeline.intervals import draw_cycles, draw_intervals
 from app.ui.timeline.keys import draw_box, draw_ground, draw_keys
 from app.ui.timeline.rows import draw_rows
 from app.ui.timeline.ruler import (
@@ -59,6 +60,7 @@ def _draw_track(bands: Bands, frame: int) -> list[Action]:
     actions += draw_rows(bands, frame)
     actions += _navigate(bands)
     actions += draw_intervals(bands)
+    actions += draw_cycles(bands)
     actions += draw_edges(bands)
     actions += draw_markers(bands)
     actions += draw_playhead(bands, frame)
@@ -131,6 +133,8 @@ def _click(bands: Bands, gesture: TimeGesture) -> list[Action]:
             return [do(editing.choose_keys_of, chosen), do(playback.scrub, seen)]
         case MarkerDrag(marker=frame):
             return [do(playback.scrub, frame)]
+        case TurnDrag(turn=frame):
+            return [do(playback.scrub, frame)]
         case SwitchDrag(figure=figure, switch=frame):
             return [do(layering.choose, figure), do(playback.scrub, frame)]
         case _:
@@ -144,7 +148,7 @@ def _pull(bands: Bands) -> list[Action]:
     if not beyond:
         return []
     strip = bands.strip.panned(PULL * beyond / bands.look.em)
-    if isinstance(bands.project.timing.gesture, KeyDrag | EdgeDrag | MarkerDrag | SwitchDrag):
+    if isinstance(bands.project.timing.gesture, TimeDrag):
         return [do(timeline_pointing.look_at, strip)] if strip.frame(bands.width / 2) > 0 else []
     return [
         do(timeline_pointing.look_at, strip.kept_near(bands.project.document.frames, bands.width))
@@ -185,9 +189,7 @@ def _hint(bands: Bands) -> str:
         seconds = in_seconds(gesture.by, bands.project.document.fps)
         return f"{what} by {gesture.by:+d} frames, {seconds}: Esc takes it back"
     if gesture is not None:
-        return (
-            "Esc takes it back" if isinstance(gesture, EdgeDrag | MarkerDrag | SwitchDrag) else ""
-        )
+        return "Esc takes it back" if isinstance(gesture, TimeDrag) else ""
     return _hint_of_place(bands)
 
 

@@ -74,13 +74,10 @@ def _controls(trace: Floats, eta: Complexes, course: Course, bounds: Bounds) -> 
     if full is None:
         return trace
     controls: Floats = full @ trace
-    start, end = course.ends
-    if isinstance(start, Tangent):
-        left = curbed(trace[:3], eta[:3], start, bounds)
-        controls[1] = trace[1] + start.joint.arms[1] * left
-    if isinstance(end, Tangent):
-        left = curbed(trace[-3:], eta[-3:], end, bounds)
-        controls[2] = trace[-2] + end.joint.arms[0] * left
+    for row, end, window, arm in zip((1, 2), course.ends, course.windows, (1, 0), strict=True):
+        if isinstance(end, Tangent):
+            left = curbed(trace[window], eta[window], end, bounds)
+            controls[row] = trace[window[1]] + end.joint.arms[arm] * left
     return controls
 
 
@@ -112,7 +109,7 @@ def control_curves(
     for index, (end, arm) in enumerate(zip(course.ends, (1, 0), strict=True)):
         if not isinstance(end, Tangent):
             continue
-        own = slice(0, 3) if index == 0 else slice(-3, None)
+        own = course.windows[index]
         here = trace.of(own)
         velocity, error = _velocity(here, eta.of(own), end, bounds)
         reach = end.joint.arms[arm]

@@ -10,6 +10,7 @@ from engine.interpolation.courses.course import (
     End as End,
     Joint as Joint,
     Tangent as Tangent,
+    windows_of as windows_of,
 )
 from engine.interpolation.courses.tangents import (
     Range as Range,

@@ -77,16 +77,21 @@ class Course:
     ----------
     controls : float64, shape (4, q), or None
         The control values as weights of the q keyframes: the two of the interval, with one before
-        them and one after them where there are tangents. None for a linear blend of two.
+        them and one after them where there are tangents, and behind all of these the ones that
+        tangents apart have in place of the interval's other keyframe. None for a linear blend of
+        two.
     first : int
         Index of the keyframe at time 0; that at time 1 comes after it.
     ends : tuple of End
         What it was built from.
+    apart : tuple of bool
+        Whether the tangents are of a motion that the interval only comes from, or leads to.
     """
 
     controls: Floats | None
     first: int
     ends: tuple[End, End]
+    apart: tuple[bool, bool] = (False, False)
 
     @classmethod
     def straight(cls) -> Self:
@@ -99,23 +104,30 @@ class Course:
         return cls(controls=freeze(np.eye(4)), first=0, ends=(1.0, 1.0))
 
     @classmethod
-    def between(cls, start: End, end: End) -> Self:
+    def between(cls, start: End, end: End, *, apart: tuple[bool, bool] = (False, False)) -> Self:
         """Return the course of an interval that leaves one keyframe and reaches the next one so."""
         if start == end == 1.0:
             return cls.straight()
         first = int(isinstance(start, Tangent))
-        count = first + 2 + isinstance(end, Tangent)
+        count = first + 2 + isinstance(end, Tangent) + sum(apart)
         controls = np.zeros((4, count))
         controls[:2, first] = controls[2:, first + 1] = 1.0
+        windows = windows_of(isinstance(start, Tangent), isinstance(end, Tangent), apart)
         if isinstance(start, Tangent):
-            controls[1, :3] += start.length * start.joint.arms[1] * start.joint.velocity
+            controls[1, windows[0]] += start.length * start.joint.arms[1] * start.joint.velocity
         else:
             controls[1, first : first + 2] += start / 3 * np.array([-1.0, 1.0])
         if isinstance(end, Tangent):
-            controls[2, first:] += end.length * end.joint.arms[0] * end.joint.velocity
+            controls[2, windows[1]] += end.length * end.joint.arms[0] * end.joint.velocity
         else:
             controls[2, first : first + 2] += end / 3 * np.array([1.0, -1.0])
-        return cls(controls=freeze(controls), first=first, ends=(start, end))
+        return cls(controls=freeze(controls), first=first, ends=(start, end), apart=apart)
+
+    @property
+    def windows(self) -> tuple[list[int], list[int]]:
+        """The indices of the three keyframes of both tangents, where there are any."""
+        start, end = (isinstance(end, Tangent) for end in self.ends)
+        return windows_of(start, end, self.apart)
 
     @property
     def full(self) -> Self:
@@ -124,7 +136,7 @@ class Course:
         ends = (
             e._replace(length=1.0) if isinstance(e, Tangent) and e.kept else e for e in self.ends
         )
-        return type(self).between(*ends)
+        return type(self).between(*ends, apart=self.apart)
 
     @property
     def count(self) -> int:
@@ -173,6 +185,20 @@ class Course:
             )
         found: Floats = np.einsum("dkc,kq->cdq", np.array(weights), self.controls)
         return found
+
+
+def windows_of(
+    start: bool,  # noqa: FBT001 - one for each end
+    end: bool,  # noqa: FBT001
+    apart: tuple[bool, bool],
+) -> tuple[list[int], list[int]]:
+    """Return the indices of the keyframes of the tangents that an interval has at its ends.
+
+    Three at each end, with its own keyframe in the middle; of an end without one they say nothing.
+    """
+    first, count = int(start), start + 2 + end
+    after, before = count if apart[0] else first + 1, count + apart[0] if apart[1] else first
+    return [first - 1, first, after], [before, first + 1, first + 2]
 
 
 def bernstein(times: Floats) -> Floats:

@@ -43,7 +43,7 @@ class EdgeCurves(NamedTuple, Generic[number]):
         """Return those of some of the pieces."""
         return EdgeCurves(self.controls[which], self.errors[which])
 
-    def of(self, keyframes: slice) -> "EdgeCurves[number]":
+    def of(self, keyframes: list[int]) -> "EdgeCurves[number]":
         """Return those of some of the keyframes."""
         return EdgeCurves(self.controls[:, keyframes], self.errors[:, keyframes])
 

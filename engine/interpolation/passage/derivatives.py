@@ -34,7 +34,7 @@ class Passage:
     Parameters
     ----------
     keyframes : tuple of KeyframeSamples, length q
-        The two, with the one before them and the one after them where the course asks for it.
+        The two, with those around them for which the course asks.
     sheets : int32, shape (q,)
         Branch of each logarithm, from `root_sheets`.
     course : Course
@@ -64,7 +64,7 @@ class Passage:
         """
         course = Course.straight() if course is None else course
         if not len(keyframes) == len(sheets) == course.count:
-            wanted = {2: "two", 3: "three", 4: "four"}[course.count]
+            wanted = ("two", "three", "four", "five", "six")[course.count - 2]
             raise EngineError(
                 f"An interval of this course has {wanted} keyframes, not {len(keyframes)} with "
                 f"{len(sheets)} sheets."

@@ -5,8 +5,8 @@ from documents import disc_document
 
 from app.document import group_commands as groups, layer_commands as layers
 from app.document.layering import Group
-from app.document.queries.compositing import Composite, composed
-from app.document.queries.sight import is_visible
+from app.document.queries.stage.compositing import Composite, composed
+from app.document.queries.stage.sight import is_visible
 from app.errors import LissomError
 
 

@@ -2,59 +2,19 @@
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
 from animations import moving_document
 from documents import altered
+from key_rows import jump, prepared, row
 from numpy.testing import assert_allclose
 
 from app.document.commands import key_commands
-from app.document.keyframe import Keyframe, Passing
+from app.document.keyframe import Passing
 from app.document.queries.clips import clip_of
-from app.document.settings import FrameRange
 from app.document.timing import LINEAR, PRESETS, Easing
 from app.errors import LissomError, told_to
 from app.motion.inbetweens import Animation, PoseSampler
-from app.motion.interval_store import IntervalStore
-from app.motion.posable_mesh import PosableMesh
 from engine.maps import Bounds
-
-TURNS = (1.0, np.exp(0.3j), np.exp(-0.4j), np.exp(0.2j), np.exp(0.5j), np.exp(-0.1j), np.exp(0.1j))
-
-
-def row(count, *, loop=False, **settings):
-    """Return a document with keys 10 frames apart, between others of which the motion passes."""
-    document = moving_document(10)
-    last = document.figures[0].keys[-1]
-    keys = tuple(
-        Keyframe(frame=10 * i, pose=replace(last.pose, phi=turn * last.pose.phi))
-        for i, turn in enumerate(TURNS[:count])
-    )
-    frames = FrameRange(0, 10 * (count if loop else count - 1))
-    settings = {"variant": "nu", "bounds": Bounds(k=0.9, sigma_a=9, sigma_b=0.1)} | settings
-    return altered(document, keys=keys, frames=frames, loop=loop, **settings)
-
-
-def prepared(document, store=None):
-    """Return a store that has all in-betweens of a document, and how many were prepared for it."""
-    clip = clip_of(document, 0)
-    store = store or IntervalStore(mesh=PosableMesh.coarse(clip.figure.domain))
-    lacking = store.missing(clip, 0)
-    store.take(store.preparing(clip, lacking)())
-    assert store.has(clip)
-    return store, len(lacking)
-
-
-def jump(animation, frame):
-    """Return the change of velocity at a frame, and the velocity, in the widest sense."""
-    e = 1e-4
-
-    def velocity(sign):
-        p = [animation.positions(frame + sign * s * e) for s in (0, 1, 2)]
-        return sign * (-3 * p[0] + 4 * p[1] - p[2]) / (2 * e)
-
-    after, before = velocity(1), velocity(-1)
-    return np.abs(after - before).max(), np.abs(after).max()
 
 
 @pytest.mark.parametrize("easing", [LINEAR, PRESETS["in-out"], Easing((0.3, 0.1, 0.6, 0.9))])

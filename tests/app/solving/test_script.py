@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from animations import still_document
 
-from app.document.timing import HOLD, LINEAR, PRESETS, Passing, Spring, Track, TrackKey
+from app.document.timing import HOLD, LINEAR, PRESETS, Cycle, Passing, Spring, Track, TrackKey
 from app.errors import LissomError
 from app.solving import pose_document
 from app.solving.script import ScriptHandle, ScriptJoint, load_pose_script, parse_pose_script
@@ -454,3 +454,56 @@ def test_an_order_is_in_front_of_a_layer_or_behind_it(place):
     own = {"layer": "arm", "handles": {}, "keys": [{"frame": 0}], "order": [[3, place]]}
     with pytest.raises(LissomError, match=r"figures\[0\]\.order\[0\] must"):
         parse_pose_script({"schema": 1, "figures": [own]})
+
+
+ROUND = {"schema": 1, "handles": {"end": [210, 40], "start": [30, 40]}, "keys": [{"frame": 0}]}
+ROUND["keys"] += [{"frame": f, "targets": {"end": [210, y]}} for f, y in ((8, 60), (16, 20))]
+
+
+def test_a_script_says_what_repeats():
+    picture = np.zeros((80, 240, 4), np.uint8)
+    picture[20:60, 20:220] = 255
+    keys = [*ROUND["keys"], {"frame": 24, "targets": {"end": [210, 40]}}]
+    cycles = [{"from": 48, "to": 60}, {"from": 0, "to": 24, "until": 48}]
+    second = [{"frame": 48, "targets": {"end": [210, 40]}}, {"frame": 54, "targets": {}}]
+    script = parse_pose_script({**ROUND, "keys": keys + second, "cycles": cycles})
+    assert script.last == 60
+    document, _ = pose_document(still_document(picture), script, lambda _: None)
+    figure = document.figures[0]
+    # The key at 24 is the first one again, and what comes at 48 is like it to the last digit.
+    assert [key.frame for key in figure.keys] == [0, 8, 16, 48, 54]
+    assert figure.cycles == (Cycle(first=0, last=24, until=48), Cycle(first=48, last=60))
+    assert figure.key(48).pose is figure.key(0).pose
+    keys[-1] = {"frame": 24, "targets": {"end": [210, 50]}}
+    script = parse_pose_script({**ROUND, "keys": keys, "cycles": cycles[1:]})
+    with pytest.raises(LissomError, match="frame 24 is where frames 0 to 24 begin again, but it"):
+        pose_document(still_document(picture), script, lambda _: None)
+
+
+@pytest.mark.parametrize(
+    ("cycles", "message"),
+    [
+        ([{"from": 8, "to": 8}], r"cycles\[0\]: What repeats ends after .* begins, 8, not at 8"),
+        ([{"from": 8, "to": 0}], "begins, 8, not at 0"),
+        ([{"from": 0, "to": 24, "until": 20}], "cannot repeat until frame 20, which is before"),
+        (
+            [{"from": 8, "to": 24}, {"from": 0, "to": 8, "until": 16}],
+            "cycles: The repeats of frames 0 to 8 and of frames 8 to 24 overlap",
+        ),
+        ([{"from": 0, "to": 24}, {"from": 30, "to": 40}], "overlap; end the former at frame 30"),
+        ([{"from": 0, "to": 12, "until": 24}], "key at frame 16 is where frames 0 to 12 repeat"),
+        ([{"from": 9, "to": 12, "until": 12}], "no key in frames 9 to 12 that could repeat"),
+        ([{"from": 4, "to": 12, "until": 16}], "Frame 4 needs a key, to which the keys before"),
+        (
+            [{"from": 0, "to": 12, "until": 13}],
+            "At frame 13 the repeats .* nothing leads to the key at frame 16; .* frame 12 instead",
+        ),
+        ([{"from": 0}], r"cycles\[0\].to must be a whole number"),
+        ([{"from": 0, "to": 24.5}], r"cycles\[0\].to must be a whole number"),
+        ([{"from": 0, "to": 24, "til": 96}], "unknown field 'til'"),
+        ({"from": 0, "to": 24}, "cycles must be a list"),
+    ],
+)
+def test_what_cannot_repeat_is_refused(cycles, message):
+    with pytest.raises(LissomError, match=message):
+        parse_pose_script({**ROUND, "cycles": cycles})

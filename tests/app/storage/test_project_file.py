@@ -6,6 +6,7 @@ import tracemalloc
 import zipfile
 from dataclasses import astuple, replace
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 import pytest
@@ -22,6 +23,7 @@ from hypothesis import given, settings, strategies as st
 
 from app.document.commands import handle_commands, key_commands, layer_commands, track_commands
 from app.document.keyframe import Passing
+from app.document.timing import Cycle
 from app.errors import LissomError
 from app.storage.assets import sample_images
 from app.storage.project.archive import MIMETYPE, array_member
@@ -338,6 +340,20 @@ def test_two_bones_in_one_place_and_wild_stiffnesses_are_refused(tmp_path):
     del members[name]
     with pytest.raises(LissomError, match=r"lacks figures/0/stiffness\.npy"):
         load_project(pack(tmp_path / "b", members))
+
+
+def test_what_repeats_comes_back_and_is_written_where_it_is_there(tmp_path):
+    more = MappingProxyType({"colour": "#123456"})
+    cycles = (Cycle(first=0, last=24, until=40, unknown=more), Cycle(first=40, last=48))
+    path = tmp_path / "a.lissom"
+    save_project(path, altered(disc_document(), cycles=cycles))
+    assert load_project(path).figures[0].cycles == cycles
+    members = read_members(path)
+    apart = with_json(members, "figures", 0, "cycles", 0, "until", value=41)
+    with pytest.raises(LissomError, match="repeats of frames 0 to 24 and of frames 40 to 48 overl"):
+        load_project(pack(tmp_path / "b", apart))
+    save_project(path, disc_document())
+    assert b'"cycles"' not in read_members(path)["project.json"]
 
 
 def test_a_spring_without_damping_is_refused_in_a_loop(tmp_path):

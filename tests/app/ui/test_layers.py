@@ -254,6 +254,7 @@ def test_the_menu_of_a_layer(window, scene, listed):
     window.act(layering.choose, body)
     joined = scene.document
     listed(lambda rows: rows.menu(body, "Delete"))
+    window.settle()
     assert scene.document.figure(arm).joints == ()
     assert scene.figure.name == "wall"
     window.act(editing.undo)

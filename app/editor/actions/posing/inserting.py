@@ -20,7 +20,7 @@ INSERTING = Kind("Inserting a key", "The key could not be inserted", "hand")
 def insert_key(session: Session, project: Project) -> None:
     """Insert a key of the pose that is shown, at the present frame."""
     playback.halt(session)
-    frame = playback.current_frame(session, project)
+    frame = playback.posed_frame(session, project)
     if any((pull.figure, pull.frame) == (project.active, frame) for pull in project.pulls):
         # What is on its way there may be a key itself.
         promises.once_settled(session, do(insert_key_at, project.active, frame), "The key")

@@ -165,7 +165,12 @@ def _once(session: Session, wish: WishFrom | Mapping[int, Target]) -> None:
 def _begin(session: Session, project: Project, gesture: object) -> Pull:
     """Begin a pull of the pose at the present frame."""
     playback.halt(session)
-    frame = playback.current_frame(session, project)
+    frame, shown = playback.posed_frame(session, project), playback.current_frame(session, project)
+    if frame != shown:
+        session.tell(
+            f"Frame {shown} repeats frame {frame}: posed here, it changes in every repeat.",
+            topic="repeat",
+        )
     here = (project.active, frame)
     pulls = [pull for pull in project.pulls if (pull.figure, pull.frame) == here]
     earlier = pulls[-1] if pulls else None

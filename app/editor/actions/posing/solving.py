@@ -63,8 +63,10 @@ def go_on(session: Session, project: Project) -> None:
 
 def is_here(session: Session, project: Project, pull: Pull) -> bool:
     """Tell whether the playhead rests on a pull's frame, where each of its poses is shown."""
-    is_playing = project.playhead.since is not None
-    return not is_playing and playback.current_frame(session, project) == pull.frame
+    frame = playback.current_frame(session, project)
+    if project.playhead.since is not None or pull.figure not in project.puppets:
+        return False
+    return project.document.figure(pull.figure).source_of(frame) == pull.frame
 
 
 def is_there(session: Session, project: Project) -> bool:

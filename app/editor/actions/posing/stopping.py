@@ -64,6 +64,6 @@ def _loosen(
     if figure != project.active:
         session.tell("Another layer is posed now. Choose the one that was pulled, and pull again.")
         return
-    if playback.current_frame(session, project) != frame:
+    if playback.posed_frame(session, project) != frame:
         playback.seek(session, frame)
     loosen(session, asked)

@@ -6,6 +6,7 @@ Imports: the other `app.editor.actions`.
 """
 
 from app.editor.actions.timing import (
+    cycles as cycles,
     keys as keys,
     springs as springs,
     timeline_pointing as timeline_pointing,

@@ -8,6 +8,8 @@ from app.document import (
     Command,
     Document,
     FrameRange,
+    choice_commands,
+    cycle_commands,
     key_commands,
     layer_commands,
     scene_commands,
@@ -18,6 +20,7 @@ from app.editor.actions.timing.keys import retime
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.timeline_view import (
+    CycleDrag,
     EdgeDrag,
     KeyBox,
     KeyDrag,
@@ -29,11 +32,13 @@ from app.editor.timeline_view import (
     SwitchDrag,
     TimeDrag,
     TimeGesture,
+    TurnDrag,
     figure_of,
     frames_in,
     keys_in,
     seen_at,
 )
+from app.errors import LissomError
 
 MOVE = editing.KeyVerb(key_commands.move_keys, track_commands.move_track_keys)
 COPY = editing.KeyVerb(key_commands.copy_keys, track_commands.copy_track_keys)
@@ -173,7 +178,12 @@ def _drag(session: Session, project: Project, drag: TimeDrag, frame: float) -> N
         end(session)
         return
     drag, command = moved
-    _become(session, command(drag.before), command.label)
+    try:
+        document = command(drag.before)
+    except LissomError:
+        # Keys stay where they are before what repeats.
+        return
+    _become(session, document, command.label)
     if isinstance(drag, KeyDrag):
         by = drag.by
         chosen = {i: frozenset(key + by for key in frames) for i, frames in drag.keys.items()}
@@ -201,11 +211,23 @@ def _moved(drag: TimeDrag, frame: float) -> tuple[TimeDrag, Command] | None:
             others = {each.frame for each in before.markers} - {marker}
             command = scene_commands.move_marker(marker, at)
             return None if at in others | {drag.at} else (replace(drag, at=at), command)
+        case CycleDrag(figure=figure, first=first):
+            cycle = cycle_commands.cycle_from(before.figure(figure), first)
+            end = cycle_commands.nearest_end(
+                before.figure(figure), cycle, round(frame), before.frames.last
+            )
+            return drag, cycle_commands.repeat(figure, first, cycle.last, end)
         case SwitchDrag(figure=figure, switch=switch):
             at = before.frames.clamp(switch + by)
             others = {each.frame for each in before.figure(figure).switches} - {switch}
             command = layer_commands.move_switch(figure, switch, at)
             return None if at in others | {drag.at} else (replace(drag, at=at), command)
+        case TurnDrag(choice=choice, turn=turn):
+            at = before.frames.clamp(turn + by)
+            others = {each.frame for each in before.choice(choice).turns} - {turn}
+            is_taken = at in others or at == before.frames.first
+            command = choice_commands.move_turn(choice, turn, at)
+            return None if is_taken or at == drag.at else (replace(drag, at=at), command)
     raise AssertionError("unreachable: there are no other drags")
 
 

@@ -53,7 +53,7 @@ def key_here(session: Session, project: Project, handles: Sequence[int]) -> None
     figure, gesture = project.figure, object()
     new = tuple(identity for identity in handles if figure.track_of(identity) is None)
     if new:
-        frame = playback.current_frame(session, project)
+        frame = playback.posed_frame(session, project)
         key = TrackKey(frame=frame, place=0j, easing=session.preferences.easing)
         command = track_commands.put_track(project.active, Track(handles=new, keys=(key,)))
         project.history.do(Command("Key handle", command.change), gesture=gesture)

@@ -12,7 +12,8 @@ from app.document.commands.handle_commands import add_handle
 from app.document.commands.key_commands import pose_key
 from app.document.keyframe import Keyframe, Passing, Target
 from app.document.playhead import Playhead
-from app.document.queries.clips import clip_of, closes, intervals
+from app.document.queries.clips import clip_of
+from app.document.queries.spans import closing_span, intervals
 from app.document.queries.timeline import Moment, exported_frames, frame_times, time_of
 from app.document.settings import FrameRange
 from app.document.timing import HOLD, PRESETS, Spring
@@ -54,7 +55,7 @@ def test_poses_stand_still_before_the_first_key_and_after_the_last(frame, moment
         (0, (2, 18 / 28)),
         (9, (2, 27 / 28)),
         (10, (0, 0.0)),
-        (30, (1, 1.0)),
+        (30, (2, 0.0)),
         (31, (2, 1 / 28)),
         (48, (2, 18 / 28)),
     ],
@@ -70,7 +71,7 @@ def test_a_loop_comes_round_beyond_its_ends_but_shows_both_of_them():
     assert time_of(clip_of(document, 0), 48) == (1, 1.0)
     assert time_of(clip_of(document, 0), 49) == time_of(clip_of(document, 0), 1)
     assert time_of(clip_of(document, 0), -1) == time_of(clip_of(document, 0), 47)
-    assert not closes(clip_of(document, 0))
+    assert closing_span(clip_of(document, 0)) is None
 
 
 @given(

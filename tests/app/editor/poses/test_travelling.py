@@ -9,6 +9,7 @@ from sessions import go, session_of, settle
 from walkers import AXIS, FAR, leg, walker
 
 from app.document import (
+    PAIRS,
     PRESETS,
     Document,
     Passing,
@@ -161,10 +162,12 @@ def test_left_and_right_layers_exchange_mirrored_when_flipped(tmp_path):
     session = walking(tmp_path, document)
     pull(session, "leg.L", knee=18 + 8j, foot=-20 + 30j)
     editing.edit(session, key_commands.set_turns(0, {0}, 2))
-    copying.copy_all(session)
+    editing.choose_keys_of(session, {0: frozenset({0}), 2: frozenset({0})})
+    copying.copy_keys(session)
     go(session, 12)
     pasting.paste(session, FLIPPED)
     settle(session)
+    assert figure(session, "leg.R").key(12).turns == -2
     was = ways(session, "leg.L", 0)
     close(ways(session, "leg.R", 12), {name: -way.conjugate() for name, way in was.items()})
     close(ways(session, "leg.L", 12), dict.fromkeys(was, 0j))
@@ -200,6 +203,21 @@ def test_words_for_sides_are_edited_and_whole_names_are_partners(session):
     settle(session)
     close(ways(session, "Standbein", 12), ways(session, "Spielbein", 0))
     assert project.document.pairs == (("L", "R"), ("Spielbein", "Standbein"))
+
+
+def test_a_handle_whose_partner_takes_over_from_it_takes_nothing_over_from_itself():
+    one, both = (
+        replace(leg("leg", 0), handles=tuple(replace(h, name=n) for h, n in named))
+        for named in (
+            zip(leg("leg", 0).handles, ("hand.L", "knee", "foot"), strict=True),
+            zip(leg("leg", 0).handles, ("hand.L", "hand.R", "foot"), strict=True),
+        )
+    )
+    left, right, foot = (handle.id for handle in both.handles)
+    assert receiving.common_handles(one, both, PAIRS, SWAPPED) == {right: left, foot: foot}
+    other = replace(one, id=7)
+    assert receiving.common_handles(other, both, PAIRS, PLAIN) == {left: left, foot: foot}
+    assert receiving.common_handles(both, one, PAIRS, SWAPPED) == {left: right, foot: foot}
 
 
 def test_why_nothing_can_be_pasted_is_said(session):

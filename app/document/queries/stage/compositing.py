@@ -7,7 +7,7 @@ from typing import Generic, NamedTuple, TypeVar
 from app.document.figure import Figure
 from app.document.layering import BlendMode, paths_to
 from app.document.model import Document
-from app.document.queries.sight import in_order, opacity_at
+from app.document.queries.stage.moves import in_order, opacity_at
 
 Drawn = TypeVar("Drawn")
 

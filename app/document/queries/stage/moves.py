@@ -1,4 +1,4 @@
-"""What is seen at a frame: which figures, how opaque, in which order, where, by which camera."""
+"""What the camera shows at a frame, and where, how opaque and in which order figures are."""
 
 from bisect import bisect_right
 from math import exp, log
@@ -7,7 +7,7 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 
 from app.document.figure import Figure
-from app.document.layering import CameraKey, MoveKey, OpacityKey, Switch
+from app.document.layering import CameraKey, MoveKey, OpacityKey
 from app.document.model import Document
 from app.document.queries.passages import Leg, Moved, Passages, Value, value_on
 from engine.geometry import HERE, RigidMotion, Similarity
@@ -118,33 +118,3 @@ def _round(document: Document, keys: tuple[Key, ...], moved: Moved[Key, Value]) 
         if not gap and not moved.is_same(keys[0], keys[-1]):
             gap = None
     return Passages(keys=keys, gap=gap, is_same=moved.is_same, ends_rest=True)
-
-
-def is_visible(document: Document, figure: Figure, frame: float) -> bool:
-    """Tell whether a figure of a document is seen at a frame."""
-    switches = sights_of(document, figure)
-    shown = switches[0].visible if switches else True
-    for switch in switches:
-        if switch.frame <= frame:
-            shown = switch.visible
-    return shown
-
-
-def sights_of(document: Document, figure: Figure) -> tuple[Switch, ...]:
-    """Return when a figure comes to be seen or hidden; it begins as the first switch says.
-
-    Always seen without any. In a group that is hidden nothing is. A choice decides alone; other
-    figures are hidden, or shown and hidden by their switches.
-    """
-    if document.is_in_hidden(figure):
-        return (Switch(0, visible=False),)
-    choice = document.choice_of(figure.id)
-    if choice is None:
-        return (Switch(0, visible=False),) if figure.hidden else figure.switches
-    switches: list[Switch] = []
-    first = document.frames.first
-    for frame in (first, *(turn.frame for turn in choice.turns if turn.frame > first)):
-        visible = choice.at(frame) == figure.id
-        if not switches or switches[-1].visible != visible:
-            switches.append(Switch(frame, visible))
-    return () if switches == [Switch(first, visible=True)] else tuple(switches)

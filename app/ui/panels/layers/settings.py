@@ -1,19 +1,15 @@
-"""The layers of the scene: which there are, what is in front, what hangs on what."""
+"""The settings of the layer that is posed: how it is painted, when it is seen, what carries it."""
 
 from imgui_bundle import ImVec2, imgui
 
-from app.document import BLENDS, Document, Figure, Group, is_visible
-from app.editor import Action, Project, Session, do, layering
-from app.editor.actions import files, playback, rebuilding
-from app.ui.panels.layer_list import SmallPictures, draw_list
+from app.document import BLENDS, Choice, Document, Figure, Group, is_visible
+from app.editor import Action, Project, do, layering
 from app.ui.style import (
     FILL,
     LABEL_WIDTH,
     Look,
     Scale,
-    heading,
     label,
-    progress,
     shortened,
     slider,
     small,
@@ -23,44 +19,10 @@ from app.ui.style import (
 
 PERCENT = Scale(left=0, right=100)
 NOTHING = "nothing"
-_FOLD = imgui.TreeNodeFlags_.no_tree_push_on_open | imgui.TreeNodeFlags_.span_avail_width
 
 
-def draw(session: Session, look: Look, project: Project, pictures: SmallPictures) -> list[Action]:
-    """Draw the list of layers with their small pictures, and the settings of the chosen one."""
-    actions = _summary(look, project) + draw_list(session, look, project, pictures)
-    if len(project.document.figures) == 1:
-        small(look, "Drop another picture here, or open an .ora or .psd file, for more layers.")
-    renewal = project.renewal
-    if renewal is not None and renewal.replaces and progress(renewal.progress, renewal.now):
-        actions.append(do(rebuilding.cancel))
-    heading(look, shortened(project.figure.name, imgui.get_content_region_avail().x))
-    frame = playback.current_frame(session, project)
-    return actions + _settings(project, look, project.figure, frame)
-
-
-def _summary(look: Look, project: Project) -> list[Action]:
-    """Draw what opening the drawing told: what is lost first, and small matters folded."""
-    summary = project.summary
-    if not summary:
-        return []
-    count = len(summary.losses)
-    title = "Nothing looks different here" if not count else f"What looks different here: {count}"
-    imgui.set_next_item_open(project.shows_summary)
-    is_open = imgui.tree_node_ex(f"{title}###summary", _FOLD)
-    actions = [do(files.fold_summary)] if imgui.is_item_toggled_open() else []
-    if not is_open:
-        return actions
-    for loss in summary.losses:
-        small(look, loss, look.palette.text)
-    if summary.matters and imgui.tree_node_ex(f"Small matters: {len(summary.matters)}", _FOLD):
-        for matter in summary.matters:
-            small(look, matter)
-    imgui.separator()
-    return actions
-
-
-def _settings(project: Project, look: Look, figure: Figure, frame: int) -> list[Action]:
+def draw_settings(project: Project, look: Look, figure: Figure, frame: int) -> list[Action]:
+    """Draw the settings of a layer at a frame."""
     actions = []
     identity = figure.id
     label(look, "Name")
@@ -122,11 +84,20 @@ def _group(look: Look, group: Group) -> list[Action]:
 
 def _switch(document: Document, look: Look, figure: Figure, frame: int) -> list[Action]:
     """Draw what shows or hides a layer from the present frame on."""
+    choice = document.choice_of(figure.id)
+    if choice is not None:
+        return _turns(document, look, choice, figure, frame)
     actions = []
     is_seen = is_visible(document, figure, frame)
     text = f"{'Hide' if is_seen else 'Show'} from frame {frame} on"
-    hint = "For props that come and go; layers of one place take turns by a choice"
-    if text_button(text, FILL, hint, enabled=not (is_seen and document.choice_of(figure.id))):
+    is_put_away = figure.hidden or document.is_in_hidden(figure)
+    hint = (
+        "It is hidden at all times now: switched instead, it is hidden until here and seen from "
+        "here on"
+        if is_put_away
+        else "For props that come and go; what is in one place takes turns by a choice"
+    )
+    if text_button(text, FILL, hint):
         actions.append(do(layering.switch_here, figure.id))
     is_switched = any(switch.frame == frame for switch in figure.switches)
     if is_switched and imgui.button(f"No change at frame {frame}", ImVec2(FILL, 0)):
@@ -137,8 +108,28 @@ def _switch(document: Document, look: Look, figure: Figure, frame: int) -> list[
     return actions
 
 
+def _turns(
+    document: Document, look: Look, choice: Choice, figure: Figure, frame: int
+) -> list[Action]:
+    """Draw which layer of a choice is seen from the present frame on."""
+    actions = []
+    label(look, shortened(choice.name, (LABEL_WIDTH - 0.5) * look.em))
+    seen = choice.at(frame)
+    if imgui.begin_combo("##turn", document.figure(seen).name):
+        actions += [
+            do(layering.show_here, each)
+            for each in choice.figures
+            if imgui.selectable(f"{document.figure(each).name}###turn {each}", each == seen)[0]
+        ]
+        imgui.end_combo()
+    tip(f"Which of these layers is seen from frame {frame} on")
+    if text_button("Take it out of the choice", FILL, "It is seen when it was, by itself"):
+        actions.append(do(layering.leave, figure.id))
+    return actions
+
+
 def _joint(project: Project, look: Look, figure: Figure, frame: int) -> list[Action]:
-    """Draw what a layer hangs on."""
+    """Draw what a layer hangs on at the present frame, and from which frames on."""
     document = project.document
     others = [
         other for other in document.figures if not layering.hangs_on(project, other.id, figure.id)
@@ -149,8 +140,7 @@ def _joint(project: Project, look: Look, figure: Figure, frame: int) -> list[Act
     joint = figure.joint_at(frame)
     parent = None if joint is None or joint.to is None else document.figure(joint.to)
     label(look, "Attached to")
-    now = NOTHING if parent is None else parent.name
-    if imgui.begin_combo("##attached to", now):
+    if imgui.begin_combo("##attached to", NOTHING if parent is None else parent.name):
         if imgui.selectable(NOTHING, parent is None)[0] and parent is not None:
             actions.append(do(layering.let_hang, figure.id))
         actions += [
@@ -164,4 +154,35 @@ def _joint(project: Project, look: Look, figure: Figure, frame: int) -> list[Act
         changed, turns = imgui.checkbox("Turns with it", joint.turns)
         if changed:
             actions.append(do(layering.turn_with, figure.id, turns))
+    if frame > document.frames.first:
+        actions += _hand_over(project, look, figure, frame)
+    return actions
+
+
+def _hand_over(project: Project, look: Look, figure: Figure, frame: int) -> list[Action]:
+    """Draw what lets a layer hang on something else from the present frame on."""
+    actions: list[Action] = []
+    document, joint = project.document, figure.joint_at(frame)
+    now = None if joint is None else joint.to
+    if text_button(f"Hand over from frame {frame} on…", FILL, "Nothing jumps at that frame"):
+        imgui.open_popup("hand over")
+    if imgui.begin_popup("hand over"):
+        if imgui.menu_item_simple("Let it go", enabled=now is not None):
+            actions.append(do(layering.hand_over, figure.id, None))
+        for other in document.figures:
+            is_circle = any(each is figure for each in document.carriers(other.id, frame))
+            name = f"To {other.name}###to {other.id}"
+            if imgui.menu_item_simple(name, enabled=not is_circle and other.id != now):
+                actions.append(do(layering.hand_over, figure.id, other.id))
+        imgui.end_popup()
+    if joint is not None and joint.frame == frame and len(figure.joints) > 1:
+        hint = "What held it before goes on holding it"
+        if text_button(f"No change at frame {frame}###joint", FILL, hint):
+            actions.append(do(layering.take_back_joint, figure.id, frame))
+    if len(figure.joints) > 1:
+        told = (
+            f"{'nothing' if each.to is None else document.figure(each.to).name} from {each.frame}"
+            for each in figure.joints
+        )
+        small(look, "It hangs on " + ", ".join(told) + ".")
     return actions

@@ -1,0 +1,205 @@
+"""Commands on cycles: which stretches repeat, until when, and their repeats made into keys."""
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+from app.document.commands.command import figure_command
+from app.document.commands.keys_in_time import in_order
+from app.document.figure import Figure
+from app.document.keyframe import Keyframe
+from app.document.layering import Switch
+from app.document.queries import are_alike
+from app.document.timing import Cycle, Track, TrackKey
+from app.errors import LissomError
+
+# By how much the ends of a track may differ, in pixels and radians, that wants nothing there.
+NOWHERE = 1e-6
+
+
+@figure_command("Repeat stretch")
+def repeat(figure: Figure, first: int, last: int, until: int | None = None) -> Figure:
+    """Let a stretch of time repeat, until a frame or the end of the scene.
+
+    It takes the place of what repeated from its first frame on. A key at its end that is like the
+    one at its beginning is that moment again, and goes.
+
+    Raises
+    ------
+    LissomError
+        If it overlaps another one, or keys are in its way.
+    """
+    cycle = Cycle(first=first, last=last, until=until)
+    keys = figure.keys
+    if until != last and {first, last} <= figure.key_frames:
+        if not are_alike(figure.key(first), figure.key(last)):
+            raise LissomError(
+                f"Frames {first} and {last} show two poses, but what repeats ends as it began; "
+                "give the latter the pose of the former, or choose other keys."
+            )
+        keys = tuple(key for key in keys if key.frame != last)
+    others = (each for each in figure.cycles if each.first != first)
+    return replace(figure, keys=keys, cycles=_ordered((*others, cycle)))
+
+
+@figure_command("Stop repeating")
+def stop(figure: Figure, first: int) -> Figure:
+    """Let the stretch that begins at a frame be there once; it still ends as it began."""
+    cycle = cycle_from(figure, first)
+    cycles = tuple(each for each in figure.cycles if each is not cycle)
+    own = [key for key in figure.keys if cycle.has(key.frame)]
+    keys = figure.keys
+    if len(own) > 1 and own[0].frame == first and cycle.last not in figure.key_frames:
+        keys = in_order((*keys, replace(own[0], frame=cycle.last)))
+    return replace(figure, keys=keys, cycles=cycles)
+
+
+@figure_command("Make repeats into keys")
+def make_keys(figure: Figure, first: int, end: int) -> Figure:
+    """Make the repeats of the stretch that begins at a frame into keys of their own.
+
+    Only what leads to the stretch and on from it may pass its ends otherwise then. Less than a
+    whole repeat at the end goes on repeating the one before.
+
+    Parameters
+    ----------
+    figure : Figure
+    first : int
+    end : int
+        The last frame of the scene, where the repeats end there.
+
+    Raises
+    ------
+    LissomError
+        If a track acts in a part of the stretch only, and neither comes from nor leads to nothing.
+    """
+    cycle = cycle_from(figure, first)
+    until = max(cycle.last, end if cycle.until is None else cycle.until)
+    own = [key for key in figure.keys if cycle.has(key.frame)]
+    rounds = (until - first) // cycle.period
+    rest = (until - first) % cycle.period
+    left: tuple[Cycle, ...] = ()
+    if rest and own and own[0].frame == first:
+        shift = (rounds - 1) * cycle.period
+        moved = replace(cycle, first=first + shift, last=cycle.last + shift)
+        left = (moved,) if shift else (cycle,)
+    starts = [first + count * cycle.period for count in range(1, rounds)]
+    copies = [replace(key, frame=key.frame + at - first) for at in starts for key in own]
+    if not left and until not in figure.key_frames and len(own) > 1 and own[0].frame == first:
+        copies.append(replace(own[0], frame=first + rounds * cycle.period))
+    copies = [_with_fronts(figure, cycle, key) for key in copies]
+    others = (each for each in figure.cycles if each is not cycle)
+    return replace(
+        figure,
+        keys=in_order((*figure.keys, *copies)),
+        cycles=_ordered((*others, *left)),
+        tracks=tuple(
+            _repeated(figure, track, cycle, starts) if cycle.takes(track) else track
+            for track in figure.tracks
+        ),
+        switches=_repeated_switches(figure, cycle, [*starts, first + rounds * cycle.period]),
+    )
+
+
+def end_of_repeats(figure: Figure, first: int, last: int) -> int | None:
+    """Return until when a stretch can repeat: whole times if it can, or to the end of the scene.
+
+    Raises
+    ------
+    LissomError
+        If there is no room for a repeat before the next key.
+    """
+    after = [frame for frame in figure.key_frames if frame > last]
+    after += [cycle.first for cycle in figure.cycles if cycle.first > first]
+    if not after:
+        return None
+    period, limit = last - first, min(after)
+    whole = last + (limit - last) // period * period
+    own = [key.frame for key in figure.keys if first <= key.frame < last]
+    ends = [frame + period for frame in own if last < frame + period <= limit]
+    if whole == last and not ends:
+        raise LissomError(
+            f"There is no room for frames {first} to {last} to repeat before frame {limit}; move "
+            "the keys there further back first."
+        )
+    return whole if whole > last else max(ends)
+
+
+def nearest_end(figure: Figure, cycle: Cycle, frame: int, end: int) -> int | None:
+    """Return the frame next to another one until which a cycle can repeat; None is for ever.
+
+    It is one at which a key of the stretch is shown, or the end of the scene.
+    """
+    after = [each for each in figure.key_frames if each >= cycle.last]
+    after += [other.first for other in figure.cycles if other.first > cycle.first]
+    limit = min(after, default=end)
+    if not after and frame >= end:
+        return None
+    own = {each for each in figure.key_frames if cycle.has(each)} | {cycle.first}
+    rounds = range(1, (limit - cycle.first) // cycle.period + 1)
+    shown = {each + count * cycle.period for count in rounds for each in own}
+    fitting = {each for each in shown if cycle.last <= each <= limit} | {cycle.last}
+    return min(fitting, key=lambda each: abs(each - frame))
+
+
+def cycle_from(figure: Figure, first: int) -> Cycle:
+    """Return the cycle of a figure that begins at a frame."""
+    for cycle in figure.cycles:
+        if cycle.first == first:
+            return cycle
+    raise LissomError(f"Nothing of {figure.name!r} repeats from frame {first} on.")
+
+
+def _ordered(cycles: Iterable[Cycle]) -> tuple[Cycle, ...]:
+    return tuple(sorted(cycles, key=lambda cycle: cycle.first))
+
+
+def _with_fronts(figure: Figure, cycle: Cycle, copy: Keyframe) -> Keyframe:
+    """Return a copy of a key; where a repeat begins, it takes back what the last one ended with."""
+    own = [key for key in figure.keys if cycle.has(key.frame)]
+    if not own or (copy.frame - own[0].frame) % cycle.period:
+        return copy
+    changed = {handle for key in own for handle in key.fronts}
+    depths = {handle.id: handle.front for handle in figure.handles}
+    for key in figure.keys:
+        if key.frame <= own[0].frame:
+            depths.update(key.fronts)
+    return replace(copy, fronts={handle: depths[handle] for handle in changed})
+
+
+def _repeated_switches(figure: Figure, cycle: Cycle, starts: list[int]) -> tuple[Switch, ...]:
+    """Return a figure's switches with those of a stretch in each repeat, which begins as before.
+
+    The last of the starts is where the repeats end.
+    """
+    own = [each for each in figure.switches if cycle.first < each.frame < cycle.last]
+    if not own:
+        return figure.switches
+    before = [each for each in figure.switches if each.frame <= cycle.first]
+    shown = (before or figure.switches)[-1 if before else 0].visible
+    copies = [Switch(at, shown) for at in starts]
+    for at in starts[:-1]:
+        copies += [replace(each, frame=each.frame + at - cycle.first) for each in own]
+    switches = {each.frame: each for each in (*copies, *figure.switches)}
+    return tuple(switches[frame] for frame in sorted(switches))
+
+
+def _repeated(figure: Figure, track: Track, cycle: Cycle, starts: list[int]) -> Track:
+    """Return a track with its keys in each repeat."""
+    first, last = track.keys[0], track.keys[-1]
+    is_whole = first.frame == cycle.first and last.frame == cycle.last
+    acts = [max(abs(key.place), abs(key.turn)) > NOWHERE for key in (first, last)]
+    if not is_whole and starts and (track.planted or any(acts)):
+        raise LissomError(
+            f"The track of {figure.handle(track.handles[0]).name!r} acts in a part of "
+            f"{cycle.told} only, so that its repeats are no keys of one track; let it act from "
+            f"frame {cycle.first} to {cycle.last}, or begin and end where the pose has the handle."
+        )
+    # Where it fills the stretch, its last key is its first one again.
+    own = track.keys[:-1] if is_whole else track.keys
+    keys: list[TrackKey] = []
+    for at in (cycle.first, *starts):
+        keys += [replace(key, frame=key.frame + at - cycle.first) for key in own]
+    if is_whole:
+        shift = (starts or [cycle.first])[-1] - cycle.first
+        keys.append(replace(last, frame=last.frame + shift))
+    return replace(track, keys=in_order(keys))

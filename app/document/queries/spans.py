@@ -1,0 +1,183 @@
+"""The intervals between the keys of a clip: in a line, and round in its cycles.
+
+A cycle has the intervals between its keys once, and one more from its last key to its first one,
+however often it repeats. What leads to it ends at its first key, and what goes on from it begins
+at the key that it shows when its repeats end.
+"""
+
+from bisect import bisect_left, bisect_right
+from itertools import pairwise
+from typing import NamedTuple
+
+from app.document.figure import Figure
+from app.document.queries.clips import Clip
+from app.document.queries.remembered import remembered
+from app.document.settings import FrameRange
+from app.document.timing import Cycle
+
+
+class KeySpan(NamedTuple):
+    """From one key to the next: their indices, from which frame on, and in how many frames."""
+
+    first: int
+    last: int
+    start: int
+    frames: int
+
+    def share(self, frame: float) -> float:
+        """Return which share of its frames is over at a frame."""
+        return (frame - self.start) / self.frames
+
+
+class PlacedCycle(NamedTuple):
+    """A cycle in a clip: its keys by their indices, and the spans that lead around."""
+
+    cycle: Cycle
+    keys: range
+    end: int  # the frame at which its repeats end
+    shows_end: bool  # whether it shows that frame, too, and not a key that is there
+    spans: tuple[int, ...]  # each begins at the key of the same place in `keys`; or none
+
+    def has(self, frame: float) -> bool:
+        """Tell whether a frame is in the stretch or in its repeats."""
+        return self.cycle.first <= frame < self.end or (self.shows_end and frame == self.end)
+
+
+class Layout(NamedTuple):
+    """The spans of a clip, in the order of their frames, its cycles, and how a loop closes."""
+
+    spans: tuple[KeySpan, ...]
+    rings: tuple[PlacedCycle, ...]
+    closing: KeySpan | None  # from the last key to the first one
+
+
+def spans(clip: Clip) -> tuple[KeySpan, ...]:
+    """Return the spans of a clip's intervals, in the order of `Moment.interval`."""
+    return layout(clip).spans
+
+
+def intervals(clip: Clip) -> tuple[tuple[int, int], ...]:
+    """Return the indices of the two keys of each interval, in the order of `Moment.interval`."""
+    return tuple((span.first, span.last) for span in spans(clip))
+
+
+def closing_span(clip: Clip) -> KeySpan | None:
+    """Return the span in which a loop leads from its last key to its first one, if there is one."""
+    return layout(clip).closing
+
+
+def layout(clip: Clip) -> Layout:
+    """Return the spans of a clip, and its cycles."""
+    return _layout(clip.figure, clip.frames, clip.loop)
+
+
+@remembered
+def _layout(
+    figure: Figure,
+    frames: FrameRange,
+    loop: bool,  # noqa: FBT001 - a field of the clip
+) -> Layout:
+    at = [key.frame for key in figure.keys]
+    rings = [_ring(cycle, at, frames) for cycle in figure.cycles]
+    ring_of = {index: ring for ring in rings for index in ring.keys}
+    found = [span for ring in rings for span in _around(ring, at)]
+    for first, last in pairwise(range(len(at))):
+        ring = ring_of.get(first)
+        if ring is None or ring is not ring_of.get(last):
+            found += _on(ring, at, first, last, at[last])
+    closing: list[KeySpan] = []
+    if loop:
+        # A cycle that begins between two of its keys is not led to.
+        ring, round_ = ring_of.get(0), frames.last - frames.first
+        if ring is None or at[0] == ring.cycle.first:
+            closing = _on(ring_of.get(len(at) - 1), at, len(at) - 1, 0, at[0] + round_)
+            found += closing
+    led = {index for span in found for index in (span.first, span.last)}
+    if len(at) > 1:
+        found += [KeySpan(alone, alone, at[alone], 1) for alone in {*range(len(at))} - led]
+    found.sort(key=lambda span: span.start)
+    numbers = {span: number for number, span in enumerate(found)}
+    return Layout(
+        tuple(found),
+        tuple(
+            ring._replace(spans=tuple(numbers[span] for span in _around(ring, at)))
+            for ring in rings
+            if ring.keys
+        ),
+        closing[0] if closing else None,
+    )
+
+
+def _ring(cycle: Cycle, at: list[int], frames: FrameRange) -> PlacedCycle:
+    keys = range(bisect_left(at, cycle.first), bisect_left(at, cycle.last))
+    end = max(cycle.last, frames.last if cycle.until is None else cycle.until)
+    follows = keys.stop < len(at) and at[keys.stop] == end
+    return PlacedCycle(cycle=cycle, keys=keys, end=end, shows_end=not follows, spans=())
+
+
+def _around(ring: PlacedCycle, at: list[int]) -> list[KeySpan]:
+    """Return the spans of a cycle, none where it has a single key."""
+    if len(ring.keys) < 2:
+        return []
+    first, last = ring.keys[0], ring.keys[-1]
+    pairs = [KeySpan(i, j, at[i], at[j] - at[i]) for i, j in pairwise(ring.keys)]
+    return [*pairs, KeySpan(last, first, at[last], at[first] + ring.cycle.period - at[last])]
+
+
+def _on(ring: PlacedCycle | None, at: list[int], first: int, last: int, to: int) -> list[KeySpan]:
+    """Return the span that leads on from a key, or from the cycle that it is in, if there is one.
+
+    It ends at the key `last`, at the frame `to`.
+    """
+    start = at[first]
+    if ring is not None:
+        start, shown = ring.end, ring.cycle.source(ring.end)
+        if len(ring.keys) > 1:
+            first = next((index for index in ring.keys if at[index] == shown), -1)
+    # In a loop of one key there is nothing between that key and itself.
+    is_whole = first == last and ring is None
+    return [] if first < 0 or to <= start or is_whole else [KeySpan(first, last, start, to - start)]
+
+
+def place_at(clip: Clip, frame: float) -> tuple[int, KeySpan, float]:
+    """Return the span that a frame is in, after its number, and which share of it is over, 0 to 1.
+
+    Where nothing leads to a later key, or from an earlier one, the pose stands still. In a loop
+    frames beyond the ends come round. The clip has spans.
+    """
+    if clip.loop and clip.period and frame not in clip.frames:
+        frame = clip.frames.first + (frame - clip.frames.first) % clip.period
+    found, rings, closing = layout(clip)
+    ring = next((ring for ring in rings if ring.has(frame)), None)
+    if ring is None and rings:
+        first, last = rings[0], rings[-1]
+        over = found[-1].start + found[-1].frames
+        if first.keys[0] == 0 and frame < first.cycle.first and closing is None:
+            ring, frame = first, first.cycle.first
+        elif last.keys[-1] == len(clip.keys) - 1 and frame > max(last.end, over):
+            ring, frame = last, last.end
+    if ring is not None and ring.spans:
+        source = ring.cycle.source(frame)
+        place = bisect_right(ring.keys, source, key=lambda index: clip.keys[index].frame) - 1
+        number = ring.spans[place]
+        frame = source if place >= 0 else source + ring.cycle.period
+    elif ring is not None:
+        number = next(n for n, span in enumerate(found) if ring.keys[0] in span[:2])
+        return number, found[number], float(found[number].first != ring.keys[0])
+    else:
+        if frame < found[0].start and closing is not None:
+            frame += clip.period
+        number = max(0, bisect_right(found, frame, key=lambda span: span.start) - 1)
+    return number, found[number], min(max(found[number].share(frame), 0.0), 1.0)
+
+
+def has_been(figure: Figure, event: int, frame: float) -> bool:
+    """Tell whether an event of a figure's keys holds at a frame, as far as no later one does.
+
+    Those of a cycle hold until a repeat, or all of them, are over, and begin anew.
+    """
+    for cycle in figure.cycles:
+        if cycle.has(event):
+            end = frame if cycle.until is None else min(frame, cycle.until)
+            return event <= frame and event <= cycle.source(end)
+    return event <= frame

@@ -1,0 +1,127 @@
+"""The layers as a tree, as they are listed: groups and choices, and what is in them."""
+
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
+
+from app.document.figure import Figure
+from app.document.layering import Choice, Group, paths_to
+from app.document.model import Document
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class TreeRow:
+    """A row of the tree: a group, a choice, or a layer, of which one is given."""
+
+    key: str  # unique in the tree
+    depth: int  # in how many rows above it lies
+    figures: tuple[int, ...]  # the ids of the layers in it, from front to back
+    is_open: bool = True  # whether the rows in it are listed
+    group: Group | None = None
+    choice: Choice | None = None
+    figure: Figure | None = None
+
+    @property
+    def toggle(self) -> str:
+        """What tells whether it is open otherwise than usual; empty for a layer."""
+        if self.group is not None:
+            return f"group {self.group.name}"
+        return "" if self.choice is None else f"choice {self.choice.name}"
+
+    @property
+    def name(self) -> str:
+        """What it is called."""
+        if self.group is not None:
+            return self.group.name.rpartition("/")[2]
+        named = self.choice or self.figure
+        return "" if named is None else named.name
+
+
+def layer_tree(
+    document: Document, toggled: Collection[str] = (), kept: int | None = None
+) -> tuple[TreeRow, ...]:
+    """Return the rows of a document's layers, the one in front on top.
+
+    Groups are open and choices closed, unless they are among those that are toggled. Layers
+    that take turns are listed together where the foremost of them is; of a group each run without
+    others between is a row.
+
+    Parameters
+    ----------
+    document : Document
+    toggled : collection of str
+    kept : int, optional
+        The id of a layer that is listed even where a row around it is closed.
+    """
+    rows = _whole_tree(document, toggled)
+    listed: list[TreeRow] = []
+    closed: int | None = None  # the depth of the row around that is closed
+    for row in rows:
+        if closed is not None and row.depth > closed:
+            if row.figure is not None and row.figure.id == kept:
+                listed.append(row)
+            continue
+        closed = None if row.is_open else row.depth
+        listed.append(row)
+    return tuple(listed)
+
+
+def _whole_tree(document: Document, toggled: Collection[str]) -> Iterator[TreeRow]:
+    order = _in_order(document)
+    path: tuple[str, ...] = ()
+    told: Choice | None = None
+    for index, (figure, choice, where) in enumerate(order):
+        around = paths_to(where)
+        shared = sum(1 for one, other in zip(path, around, strict=False) if one == other)
+        for depth in range(shared, len(around)):
+            run = _run(order, index, around[depth])
+            key = f"group {around[depth]}"
+            yield TreeRow(
+                key=f"{key} {run[0]}",
+                depth=depth,
+                figures=run,
+                is_open=key not in toggled,
+                group=document.group(around[depth]),
+            )
+        path = around
+        if choice is not None and choice is not told:
+            yield TreeRow(
+                key=f"choice {choice.name}",
+                depth=len(around),
+                figures=tuple(each.id for each, other, _ in order if other is choice),
+                is_open=f"choice {choice.name}" in toggled,
+                choice=choice,
+            )
+        told = choice
+        depth = len(around) + (choice is not None)
+        yield TreeRow(key=f"{figure.id}", depth=depth, figures=(figure.id,), figure=figure)
+
+
+_Listed = tuple[Figure, Choice | None, str]
+
+
+def _in_order(document: Document) -> list[_Listed]:
+    """Return the layers from front to back, with the choices and the groups that they are in.
+
+    Those that take turns follow each other, where the foremost of them is.
+    """
+    order: list[_Listed] = []
+    told: set[str] = set()
+    for figure in reversed(document.figures):
+        choice = document.choice_of(figure.id)
+        if choice is None:
+            order.append((figure, None, figure.group))
+        elif choice.name not in told:
+            told.add(choice.name)
+            members = (each for each in reversed(document.figures) if each.id in choice.figures)
+            order += [(each, choice, figure.group) for each in members]
+    return order
+
+
+def _run(order: list[_Listed], first: int, path: str) -> tuple[int, ...]:
+    """Return the ids of the layers from one on that are in a group without others between."""
+    run = []
+    for figure, _, where in order[first:]:
+        if path not in paths_to(where):
+            break
+        run.append(figure.id)
+    return tuple(run)

@@ -1,0 +1,91 @@
+"""Stretches that repeat: made of chosen keys, ended, and made into keys."""
+
+from collections.abc import Callable
+
+from app.document import Command, Cycle, Document, cycle_commands
+from app.editor.actions import editing, playback
+from app.editor.project import Project
+from app.editor.session import Session, with_project
+from app.editor.timeline_view import figure_of, frames_in
+from app.errors import LissomError
+
+
+def chosen_stretch(project: Project) -> tuple[int, int] | None:
+    """Return the first and the last frame of the chosen keys, or of all of the row's.
+
+    None where there are fewer than two.
+    """
+    frames = set[int]().union(*project.chosen_of.values())
+    if len(frames) < 2:
+        frames = set(frames_in(project.document, project.row))
+    return (min(frames), max(frames)) if len(frames) > 1 else None
+
+
+def cycle_here(session: Session, project: Project, frame: int | None = None) -> Cycle | None:
+    """Return what repeats at a frame, by default the present one, of the figure that is posed."""
+    here = playback.current_frame(session, project) if frame is None else frame
+    return project.figure.cycle_at(here)
+
+
+@with_project
+def repeat(session: Session, project: Project) -> None:
+    """Let the stretch of the chosen keys repeat, in all layers that have some of them."""
+    stretch = chosen_stretch(project)
+    if stretch is None:
+        return
+    document, figures = project.document, _chosen_figures(project)
+    ends = [cycle_commands.end_of_repeats(document.figure(each), *stretch) for each in figures]
+    until = min((end for end in ends if end is not None), default=None)
+    commands = [cycle_commands.repeat(each, *stretch, until) for each in figures]
+    editing.edit(session, Command("Repeat stretch", lambda now: _all_of(commands, figures, now)))
+
+
+@with_project
+def stop(session: Session, project: Project, frame: int | None = None) -> None:
+    """Let what repeats at a frame, by default the present one, be there once."""
+    _change(session, project, frame, cycle_commands.stop)
+
+
+@with_project
+def make_keys(session: Session, project: Project, frame: int | None = None) -> None:
+    """Make the repeats at a frame, by default the present one, into keys of their own."""
+    last = project.document.frames.last
+    _change(
+        session, project, frame, lambda each, first: cycle_commands.make_keys(each, first, last)
+    )
+
+
+def _change(
+    session: Session,
+    project: Project,
+    frame: int | None,
+    command: Callable[[int, int], Command],
+) -> None:
+    """Change what repeats at a frame, and what begins with it in other layers of chosen keys."""
+    cycle = cycle_here(session, project, frame)
+    if cycle is None:
+        return
+    figures = [
+        each
+        for each in {project.active, *_chosen_figures(project)}
+        if any(cycle.first == other.first for other in project.document.figure(each).cycles)
+    ]
+    commands = [command(each, cycle.first) for each in figures]
+    label = commands[0].label
+    editing.edit(session, Command(label, lambda now: _all_of(commands, figures, now)))
+
+
+def _chosen_figures(project: Project) -> list[int]:
+    return sorted({figure_of(row) for row in project.chosen_of} or {project.active})
+
+
+def _all_of(commands: list[Command], figures: list[int], document: Document) -> Document:
+    """Run a command on each of some figures; of more than one, errors name the layer."""
+    for figure, command in zip(figures, commands, strict=True):
+        try:
+            document = command(document)
+        except LissomError as error:
+            if len(figures) == 1:
+                raise
+            raise LissomError(f"{document.figure(figure).name}: {error}") from error
+    return document

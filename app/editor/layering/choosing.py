@@ -1,0 +1,57 @@
+"""Which layer is posed, which are chosen beside it, and what of the layers is looked at."""
+
+from app.editor.actions import posing
+from app.editor.project import Project
+from app.editor.session import Session, with_project
+
+
+@with_project
+def choose(session: Session, project: Project, identity: int) -> None:
+    """Let a figure be the one whose handles and keys are shown and changed, and no other."""
+    project.beside = frozenset()
+    if identity == project.active:
+        return
+    posing.let_go(session)
+    project.active = identity
+    project.selected = project.chosen = frozenset()
+    project.chosen_track = None
+    project.meshing = project.drafted_bounds = None
+    session.hovered = None
+
+
+@with_project
+def choose_all(session: Session, project: Project, *identities: int) -> None:
+    """Choose layers together; the one that is posed goes on if it is among them."""
+    if project.active not in identities:
+        choose(session, identities[0])
+    project.beside = frozenset(identities) - {project.active}
+
+
+@with_project
+def choose_too(session: Session, project: Project, *identities: int) -> None:
+    """Choose layers beside those that are chosen, or no more where all of them are."""
+    chosen = frozenset(project.layers)
+    left = chosen - set(identities) if chosen.issuperset(identities) else chosen | set(identities)
+    if left:
+        ordered = [each for each in project.document.figures[::-1] if each.id in left]
+        choose_all(session, *(each.id for each in ordered))
+
+
+@with_project
+def choose_up_to(session: Session, project: Project, identity: int) -> None:
+    """Choose the layers that are listed from the one that is posed to another one."""
+    listed = [row.figure.id for row in project.tree if row.figure is not None]
+    ends = sorted((listed.index(project.active), listed.index(identity)))
+    choose_all(session, *listed[ends[0] : ends[1] + 1])
+
+
+@with_project
+def toggle(_: Session, project: Project, row: str) -> None:
+    """Open a row of the tree of layers, or close it again."""
+    project.toggled ^= {row}
+
+
+@with_project
+def look_at_alone(_: Session, project: Project, *identities: int) -> None:
+    """Show some layers alone while the person works, or all again; exports do not heed it."""
+    project.solo = frozenset() if project.solo == set(identities) else frozenset(identities)

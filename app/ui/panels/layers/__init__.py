@@ -1,0 +1,8 @@
+"""The tab of layers: their tree, and the settings of the one that is posed.
+
+In: a session.
+Out: actions.
+Imports: `app.ui.style`, `app.ui.shortcuts`.
+"""
+
+from app.ui.panels.layers.tab import draw as draw

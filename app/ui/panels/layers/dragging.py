@@ -1,0 +1,87 @@
+"""Rows of the tree of layers that are dragged: between others, or onto one."""
+
+from imgui_bundle import ImVec2, imgui
+
+from app.document import TreeRow
+from app.editor import Action, Project, do, layering
+from app.ui.style import Look, ink
+
+MOVED = "layer"  # what is dragged from row to row
+ONTO = 0.25  # of a row's height: from where on, at its edges, a drop is beside it
+PULL = 0.25  # em by which the list scrolls in each frame while a row is dragged at its edge
+
+
+def drag_row(look: Look, project: Project, row: TreeRow, low: ImVec2, high: ImVec2) -> list[Action]:
+    """Let a row, the last item, be dragged between two others, or onto one.
+
+    Onto a layer it hangs on it, in a group or a choice it is one of them.
+    """
+    actions: list[Action] = []
+    if row.figure is not None and imgui.begin_drag_drop_source():
+        imgui.set_drag_drop_payload_py_id(MOVED, row.figure.id)
+        imgui.text(row.figure.name)
+        imgui.end_drag_drop_source()
+    if not imgui.begin_drag_drop_target():
+        return actions
+    flags = imgui.DragDropFlags_
+    payload = imgui.accept_drag_drop_payload_py_id(
+        MOVED, flags.accept_before_delivery | flags.accept_no_draw_default_rect
+    )
+    if payload is not None and imgui.is_key_pressed(imgui.Key.escape):
+        imgui.internal.clear_drag_drop()
+    elif payload is not None:
+        share = (imgui.get_mouse_pos().y - low.y) / max(high.y - low.y, 1.0)
+        onto = _onto(project, row, payload.data_id)
+        is_onto = onto is not None and (ONTO < share < 1 - ONTO or row.figure is None)
+        _show(look, low, high, is_onto=is_onto, is_above=share < 0.5)
+        if imgui.is_mouse_released(imgui.MouseButton_.left):
+            if is_onto and onto is not None:
+                actions.append(onto)
+            elif row.figure is not None:
+                actions += _beside(project, row.figure.id, payload.data_id, is_above=share < 0.5)
+    imgui.end_drag_drop_target()
+    return actions
+
+
+def _onto(project: Project, row: TreeRow, dragged: int) -> Action | None:
+    """Return what a drop of a layer onto a row does; None where it can do nothing."""
+    if row.figures == (dragged,):
+        return None
+    if row.group is not None:
+        return do(layering.group, row.group.name, dragged)
+    if row.choice is not None:
+        return None if dragged in row.figures else do(layering.join, row.choice.name, dragged)
+    parent = row.figures[0]
+    is_circle = layering.hangs_on(project, parent, dragged)
+    return None if is_circle else do(layering.hang, dragged, parent)
+
+
+def _beside(project: Project, identity: int, dragged: int, *, is_above: bool) -> list[Action]:
+    """Return what a drop of a layer above or below another one does."""
+    others = [each.id for each in project.document.figures if each.id != dragged]
+    if identity not in others:
+        return []
+    return [do(layering.move, dragged, others.index(identity) + is_above)]
+
+
+def _show(look: Look, low: ImVec2, high: ImVec2, *, is_onto: bool, is_above: bool) -> None:
+    """Show where what is dragged comes: a frame around a row, or a line beside it."""
+    draw_list, colour = imgui.get_window_draw_list(), ink(look.palette.accent)
+    thick = 0.14 * look.em
+    if is_onto:
+        draw_list.add_rect(low, high, colour, 0.25 * look.em, thickness=thick)
+        return
+    y = (low.y if is_above else high.y) - 0.5
+    draw_list.add_line(ImVec2(low.x, y), ImVec2(high.x, y), colour, thick)
+
+
+def scroll_while_dragged(look: Look, height: float) -> None:
+    """Scroll the list where a row, so many em high, is dragged to its upper or lower edge."""
+    payload = imgui.get_drag_drop_payload_py_id()
+    if payload is None or payload.type != MOVED:
+        return
+    top, y = imgui.get_window_pos().y, imgui.get_mouse_pos().y
+    bottom, edge = top + imgui.get_window_height(), height / 2 * look.em
+    by = PULL * look.em * ((y > bottom - edge) - (y < top + edge))
+    if by:
+        imgui.set_scroll_y(min(max(imgui.get_scroll_y() + by, 0.0), imgui.get_scroll_max_y()))

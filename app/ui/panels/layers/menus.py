@@ -1,0 +1,111 @@
+"""The menus of rows in the tree of layers."""
+
+from imgui_bundle import icons_fontawesome_6 as icons, imgui
+
+from app.document import Choice, Figure, Group, TreeRow
+from app.editor import Action, Project, do, layering
+from app.ui.shortcuts import BINDINGS
+
+SOLO = icons.ICON_FA_BINOCULARS
+item = imgui.internal.menu_item_ex  # as menu_item_simple, with icons in a column
+
+
+def draw_menu(project: Project, row: TreeRow) -> tuple[list[Action], bool]:
+    """Draw the menu of a row, the last item; return also whether a name is asked for."""
+    if not imgui.begin_popup_context_item(f"menu of layer {row.key}"):
+        return [], False
+    asks = item("Rename…", icons.ICON_FA_PEN, BINDINGS["rename layer"].keys_in_words)
+    if row.figure is not None:
+        actions = _of_layer(project, row.figure)
+    elif row.choice is not None:
+        actions = _of_choice(project, row.choice)
+    else:
+        actions = [] if row.group is None else _of_group(project, row, row.group)
+    imgui.end_popup()
+    return actions, asks
+
+
+def _of_layer(project: Project, figure: Figure) -> list[Action]:
+    actions: list[Action] = []
+    identity, chosen = figure.id, project.layers
+    is_many = len(chosen) > 1 and identity in chosen
+    whom = chosen if is_many else (identity,)
+    many = f" {len(chosen)} layers" if is_many else ""
+    if not is_many:
+        if item("Duplicate", icons.ICON_FA_CLONE):
+            actions.append(do(layering.duplicate, identity))
+        if item("Replace picture…", icons.ICON_FA_FILE_IMAGE):
+            actions.append(do(layering.ask_replace, identity))
+    imgui.separator()
+    if item(("Show" if figure.hidden else "Hide") + many, icons.ICON_FA_EYE):
+        actions.append(do(layering.show, *whom))
+    if item(("Unlock" if figure.locked else "Lock") + many, icons.ICON_FA_LOCK):
+        actions.append(do(layering.lock, *whom))
+    alone = project.solo == set(whom)
+    if item("Look at all again" if alone else f"Look at{many or ' it'} alone", SOLO):
+        actions.append(do(layering.look_at_alone, *whom))
+    if not is_many:
+        actions += _kind(figure)
+    imgui.separator()
+    if item("Put in a group", icons.ICON_FA_FOLDER_PLUS, enabled=is_many or not project.beside):
+        actions.append(do(layering.choose_all, *whom))
+        actions.append(do(layering.group_together))
+    if figure.group and item("Take out of the group", icons.ICON_FA_FOLDER_MINUS):
+        actions.append(do(layering.group, figure.group.rpartition("/")[0], *whom))
+    free = is_many and all(project.document.choice_of(each) is None for each in chosen)
+    if item("Let them take turns", icons.ICON_FA_MASKS_THEATER, enabled=free):
+        actions.append(do(layering.form, *chosen))
+    if project.document.choice_of(identity) and item("Take out of the choice", icons.ICON_FA_XMARK):
+        actions.append(do(layering.leave, identity))
+    imgui.separator()
+    left = len(project.document.figures) > len(whom)
+    if item(f"Delete{many}", icons.ICON_FA_TRASH, enabled=left):
+        actions.append(do(layering.remove, *whom))
+    return actions
+
+
+def _kind(figure: Figure) -> list[Action]:
+    actions: list[Action] = []
+    if item("Take into exports" if figure.reference else "Reference only", icons.ICON_FA_BAN):
+        actions.append(do(layering.refer, figure.id))
+    if item("Let it be posed" if figure.still else "Make it a still picture", icons.ICON_FA_IMAGE):
+        turn = layering.stand_up if figure.still else layering.stand_still
+        actions.append(do(turn, figure.id))
+    return actions
+
+
+def _of_choice(project: Project, choice: Choice) -> list[Action]:
+    imgui.separator()
+    actions = [
+        do(layering.show_here, identity)
+        for identity in choice.figures
+        if item(f"Show {project.document.figure(identity).name}", icons.ICON_FA_CIRCLE_DOT)
+    ]
+    imgui.separator()
+    if item("Let them take turns no more", icons.ICON_FA_XMARK):
+        actions.append(do(layering.dissolve, choice.name))
+    return actions
+
+
+def _of_group(project: Project, row: TreeRow, group: Group) -> list[Action]:
+    actions: list[Action] = []
+    imgui.separator()
+    if item("Choose all layers in it", icons.ICON_FA_LIST_CHECK):
+        actions.append(do(layering.choose_all, *row.figures))
+    if item("Show" if group.hidden else "Hide", icons.ICON_FA_EYE):
+        actions.append(do(layering.show_group, group.name))
+    locked = all(project.document.figure(each).locked for each in row.figures)
+    if item("Unlock" if locked else "Lock", icons.ICON_FA_LOCK):
+        actions.append(do(layering.lock, *row.figures))
+    alone = project.solo == set(row.figures)
+    if item("Look at all again" if alone else "Look at it alone", SOLO):
+        actions.append(do(layering.look_at_alone, *row.figures))
+    free = len(row.figures) > 1 and all(
+        project.document.choice_of(each) is None for each in row.figures
+    )
+    if item("Let its layers take turns", icons.ICON_FA_MASKS_THEATER, enabled=free):
+        actions.append(do(layering.form, *row.figures, name=row.name))
+    imgui.separator()
+    if item("Ungroup", icons.ICON_FA_FOLDER_MINUS):
+        actions.append(do(layering.ungroup, group.name))
+    return actions

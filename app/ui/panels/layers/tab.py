@@ -1,0 +1,45 @@
+"""The layers of the scene: which there are, what is in front, what hangs on what."""
+
+from imgui_bundle import imgui
+
+from app.editor import Action, Project, Session, do
+from app.editor.actions import files, playback, rebuilding
+from app.ui.panels.layers.settings import draw_settings
+from app.ui.panels.layers.tree import SmallPictures, draw_tree
+from app.ui.style import Look, heading, progress, shortened, small
+
+_FOLD = imgui.TreeNodeFlags_.no_tree_push_on_open | imgui.TreeNodeFlags_.span_avail_width
+
+
+def draw(session: Session, look: Look, project: Project, pictures: SmallPictures) -> list[Action]:
+    """Draw the list of layers with their small pictures, and the settings of the chosen one."""
+    actions = _summary(look, project) + draw_tree(session, look, project, pictures)
+    if len(project.document.figures) == 1:
+        small(look, "Drop another picture here, or open an .ora or .psd file, for more layers.")
+    renewal = project.renewal
+    if renewal is not None and renewal.replaces and progress(renewal.progress, renewal.now):
+        actions.append(do(rebuilding.cancel))
+    heading(look, shortened(project.figure.name, imgui.get_content_region_avail().x))
+    frame = playback.current_frame(session, project)
+    return actions + draw_settings(project, look, project.figure, frame)
+
+
+def _summary(look: Look, project: Project) -> list[Action]:
+    """Draw what opening the drawing told: what is lost first, and small matters folded."""
+    summary = project.summary
+    if not summary:
+        return []
+    count = len(summary.losses)
+    title = "Nothing looks different here" if not count else f"What looks different here: {count}"
+    imgui.set_next_item_open(project.shows_summary)
+    is_open = imgui.tree_node_ex(f"{title}###summary", _FOLD)
+    actions = [do(files.fold_summary)] if imgui.is_item_toggled_open() else []
+    if not is_open:
+        return actions
+    for loss in summary.losses:
+        small(look, loss, look.palette.text)
+    if summary.matters and imgui.tree_node_ex(f"Small matters: {len(summary.matters)}", _FOLD):
+        for matter in summary.matters:
+            small(look, matter)
+    imgui.separator()
+    return actions

@@ -1,0 +1,352 @@
+"""The tree of layers, the one in front on top: chosen, named, hidden, locked, dragged about."""
+
+from collections.abc import Callable, Sequence
+
+from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
+
+from app.document import Document, Figure, TreeRow, is_visible
+from app.editor import Action, Project, Session, do, layering
+from app.editor.actions import playback
+from app.render import Thumbnail
+from app.ui.panels.layers.dragging import drag_row, scroll_while_dragged
+from app.ui.panels.layers.menus import draw_menu
+from app.ui.style import (
+    SMALL,
+    Look,
+    begin_tip,
+    icon_button,
+    in_hand,
+    ink,
+    name_popup,
+    shortened,
+    show_picture,
+    sized,
+    write_in,
+)
+from engine.arrays import Bytes
+
+ROW, WIDE, GAP = 2.1, 2.5, 0.35  # em: height of a row, width of its picture, room around that
+INDENT, FOLD = 0.9, 1.2  # em: by which rows in others lie to the right, and of the triangle
+DEEPEST_INDENT = 6  # rows that are deeper are not shifted any more
+FEWEST, OTHERS = 6.5, 20.0  # rows at least, and em that are left to the settings below
+HIDDEN = 0.35  # opacity of the pictures of layers that are not seen now
+PAPER = imgui.IM_COL32(128, 130, 136, 255)  # on which both dark and light drawings are seen
+SIGN = imgui.IM_COL32(12, 13, 16, 255)  # on the paper
+SmallPictures = Callable[[int, Bytes], Thumbnail | None]
+
+
+def draw_tree(
+    session: Session, look: Look, project: Project, pictures: SmallPictures
+) -> list[Action]:
+    """Draw the buttons for whole layers, and a row for each group, choice and layer."""
+    actions = _bar(look, project)
+    rows = project.tree
+    pitch = ROW * look.em + imgui.get_style().item_spacing.y
+    room = imgui.get_content_region_avail().y - OTHERS * look.em
+    shown = min(float(len(rows)), max(FEWEST, room / pitch))
+    imgui.begin_child("list", ImVec2(0, shown * pitch))
+    for row in rows:
+        actions += _row(session, look, project, row, pictures)
+    # An item: placing the cursor alone gives the list no height.
+    imgui.dummy(ImVec2(0, 0))
+    scroll_while_dragged(look, ROW)
+    imgui.end_child()
+    if project.listed != project.active:
+        actions.append(do(layering.list_active))
+    return actions
+
+
+def _bar(look: Look, project: Project) -> list[Action]:
+    """Draw the buttons for whole layers."""
+    actions: list[Action] = []
+    active, figures, chosen = project.active, project.document.figures, project.layers
+    index, last = figures.index(project.figure), len(figures) - 1
+
+    def button(icon: str, name: str, hint: str, action: Action, *, enabled: bool = True) -> None:
+        if icon_button(look, icon, name, hint, enabled=enabled):
+            actions.append(action)
+        imgui.same_line()
+
+    forward, back = (do(layering.move, active, index + by) for by in (1, -1))
+    replace = "Replace the layer's picture by another file: handles, keys and joints stay"
+    what = "the layer" if len(chosen) == 1 else f"the {len(chosen)} chosen layers"
+    delete = f"Delete {what}" if last else "A scene has at least one layer"
+    group = f"Put {what} in a group"
+    button(icons.ICON_FA_PLUS, "add layer", "Add a picture as a layer", do(layering.ask))
+    button(icons.ICON_FA_CLONE, "copy layer", "Duplicate the layer", do(layering.duplicate, active))
+    button(icons.ICON_FA_FILE_IMAGE, "replace picture", replace, do(layering.ask_replace, active))
+    button(
+        icons.ICON_FA_ARROW_UP, "raise", "Bring the layer forward", forward, enabled=index < last
+    )
+    button(icons.ICON_FA_ARROW_DOWN, "lower", "Send the layer back", back, enabled=index > 0)
+    button(icons.ICON_FA_FOLDER_PLUS, "group layers", group, do(layering.group_together))
+    button(
+        icons.ICON_FA_TRASH, "delete layer", delete, do(layering.remove, *chosen), enabled=last > 0
+    )
+    imgui.new_line()
+    return actions
+
+
+def _row(
+    session: Session, look: Look, project: Project, row: TreeRow, pictures: SmallPictures
+) -> list[Action]:
+    actions: list[Action] = []
+    em, figure = look.em, row.figure
+    corner, height = imgui.get_cursor_screen_pos(), ROW * em
+    # Below all that follows, which takes the pointer first.
+    flags = imgui.SelectableFlags_.allow_overlap | imgui.SelectableFlags_.allow_double_click
+    is_chosen = set(project.layers).issuperset(row.figures)
+    if imgui.selectable(f"###row {row.key}", is_chosen, flags, ImVec2(0, height))[0]:
+        actions.append(_chosen(row))
+    after = imgui.get_cursor_screen_pos()
+    low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
+    is_active = figure is not None and figure.id == project.active
+    if is_active and project.listed != project.active and not imgui.is_item_visible():
+        imgui.set_scroll_here_y(0.5)
+    if figure is not None and imgui.is_mouse_hovering_rect(low, high):
+        # While another program drags a file here, nothing else is hovered.
+        actions.append(do(layering.point_at, figure.id))
+    is_named = imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton_.left)
+    actions += drag_row(look, project, row, low, high)
+    _tell(project.document, row)
+    chosen, asks = draw_menu(project, row)
+    actions += chosen + _naming(session, look, project, row, low, asks=is_named or asks)
+    middle = (low.y + high.y) / 2
+    imgui.set_cursor_screen_pos(ImVec2(corner.x, middle - imgui.get_frame_height() / 2))
+    frame = playback.current_frame(session, project)
+    actions += _switches(look, project, row, frame)
+    left = imgui.get_item_rect_max().x + (GAP + INDENT * min(row.depth, DEEPEST_INDENT)) * em
+    is_seen = _is_seen(project, row, frame)
+    shown = _shown(project.document, row, frame)
+    if not row.toggle:
+        _picture(look, project, shown, ImVec2(left, middle), pictures, is_seen=is_seen)
+    else:
+        actions += _fold(look, row, ImVec2(left, middle))
+        left += FOLD * em
+        if row.choice is not None:
+            _picture(look, project, shown, ImVec2(left, middle), pictures, is_seen=is_seen)
+        else:
+            icon = icons.ICON_FA_FOLDER_OPEN if row.is_open else icons.ICON_FA_FOLDER
+            box = ImVec2(left, low.y), ImVec2(left + WIDE * em, high.y)
+            write_in(*box, icon, ink(look.palette.text if is_seen else look.palette.dim))
+    start = left + (WIDE + GAP) * em
+    _text(look, project, row, shown, start, ImVec2(high.x, middle), is_seen=is_seen)
+    imgui.set_cursor_screen_pos(after)
+    return actions
+
+
+def _chosen(row: TreeRow) -> Action:
+    """Return what a click on a row chooses: with Ctrl beside others, with Shift all up to there."""
+    io = imgui.get_io()
+    if io.key_ctrl:
+        return do(layering.choose_too, *row.figures)
+    if io.key_shift:
+        return do(layering.choose_up_to, row.figures[-1])
+    if row.figure is not None:
+        return do(layering.choose, row.figure.id)
+    return do(layering.choose_all, *row.figures)
+
+
+def _shown(document: Document, row: TreeRow, frame: int) -> Figure:
+    """Return the layer whose picture a row has: of a choice, the one that is seen."""
+    seen = row.figures[0] if row.choice is None else row.choice.at(frame)
+    return document.figure(seen)
+
+
+def _is_seen(project: Project, row: TreeRow, frame: int) -> bool:
+    """Tell whether anything in a row is seen now."""
+    document = project.document
+    return any(
+        is_visible(document, document.figure(each), frame)
+        and (not project.solo or each in project.solo)
+        for each in row.figures
+    )
+
+
+def _naming(
+    session: Session, look: Look, project: Project, row: TreeRow, low: ImVec2, *, asks: bool
+) -> list[Action]:
+    """Draw the field for another name of a row, where it is asked for."""
+    actions: list[Action] = []
+    document, figure = project.document, row.figure
+    if asks or (figure is not None and session.named_layer == figure.id):
+        imgui.open_popup(f"name {row.key}")
+        actions.append(do(layering.ask_name, None))
+    imgui.set_next_window_pos(low)
+    taken: Sequence[str] = ()
+    kind = "layer"
+    if figure is not None:
+        taken = [other.name for other in document.figures if other is not figure]
+    elif row.choice is not None:
+        kind = "choice"
+        taken = [other.name for other in document.choices if other is not row.choice]
+    name = name_popup(look, f"name {row.key}", row.name, taken, kind)
+    if name is None:
+        return actions
+    if figure is not None:
+        return [*actions, do(layering.rename, figure.id, name)]
+    if row.choice is not None:
+        return [*actions, do(layering.rename_choice, row.choice.name, name)]
+    if row.group is not None:
+        return [*actions, do(layering.rename_group, row.group.name, name)]
+    return actions
+
+
+def _tell(document: Document, row: TreeRow) -> None:
+    """Explain a row, the last item, in a tooltip; its name may be longer than there is room for."""
+    if imgui.get_drag_drop_payload_py_id() is not None or not begin_tip():
+        return
+    imgui.text_unformatted(row.name)
+    if row.figure is not None:
+        for joint in row.figure.joints:
+            to = "nothing" if joint.to is None else document.figure(joint.to).name
+            since = f" from frame {joint.frame} on" if len(row.figure.joints) > 1 else ""
+            imgui.text_unformatted(f"Hangs on {to}{since}")
+        imgui.text_disabled(
+            "Drag it to change the order, or onto another row to hang it there, double-click to "
+            "rename it, right click for more"
+        )
+    elif row.choice is not None:
+        imgui.text_disabled(
+            "These layers take turns: open it, and a click on a circle shows one from here on"
+        )
+    else:
+        imgui.text_disabled("Click to choose all layers in it, right click for more")
+    imgui.end_tooltip()
+
+
+def _fold(look: Look, row: TreeRow, left: ImVec2) -> list[Action]:
+    """Draw the triangle that opens and closes a row."""
+    em = look.em
+    low = ImVec2(left.x, left.y - ROW / 2 * em)
+    imgui.set_cursor_screen_pos(low)
+    imgui.set_next_item_allow_overlap()
+    clicked = imgui.invisible_button(f"fold {row.key}", ImVec2(FOLD * em, ROW * em))
+    icon = icons.ICON_FA_CARET_DOWN if row.is_open else icons.ICON_FA_CARET_RIGHT
+    colour = ink(look.palette.text if in_hand() else look.palette.dim)
+    write_in(low, low + ImVec2(FOLD * em, ROW * em), icon, colour)
+    return [do(layering.toggle, row.toggle)] if clicked else []
+
+
+def _switches(look: Look, project: Project, row: TreeRow, frame: int) -> list[Action]:
+    """Draw the eye and the lock of a row; where layers take turns, a circle for the eye."""
+    actions = []
+    document = project.document
+    figures = [document.figure(each) for each in row.figures]
+    choice = None if row.figure is None else document.choice_of(row.figure.id)
+    if choice is not None:
+        is_on = choice.at(frame) == row.figures[0]
+        icon = icons.ICON_FA_CIRCLE_DOT if is_on else icons.ICON_FA_CIRCLE
+        hint = f"Seen from frame {frame} on, in place of the others of {choice.name}"
+        if icon_button(look, icon, f"turn {row.key}", hint, active=is_on):
+            actions.append(do(layering.show_here, row.figures[0]))
+    elif row.choice is not None:
+        imgui.dummy(ImVec2(1.15 * imgui.get_frame_height(), imgui.get_frame_height()))
+    else:
+        group = row.group
+        hidden = figures[0].hidden if group is None else group.hidden
+        eye = icons.ICON_FA_EYE_SLASH if hidden else icons.ICON_FA_EYE
+        what = "the layer" if group is None else "the group"
+        hint = f"Show {what}" if hidden else f"Hide {what}, also in exports"
+        if icon_button(look, eye, f"eye {row.key}", hint, active=hidden):
+            actions.append(
+                do(layering.show, *_of_chosen(project, row))
+                if group is None
+                else do(layering.show_group, group.name)
+            )
+    imgui.same_line(0, 0)
+    locked = all(figure.locked for figure in figures)
+    key = icons.ICON_FA_LOCK if locked else icons.ICON_FA_LOCK_OPEN
+    hint = "Let clicks reach it" if locked else "Let clicks pass through it"
+    if icon_button(look, key, f"lock {row.key}", hint, active=locked):
+        actions.append(do(layering.lock, *_of_chosen(project, row)))
+    return actions
+
+
+def _of_chosen(project: Project, row: TreeRow) -> tuple[int, ...]:
+    """Return what a switch of a row is for: all chosen layers, if the row's are among them."""
+    chosen = project.layers
+    return chosen if set(row.figures).issubset(chosen) and len(chosen) > 1 else row.figures
+
+
+def _picture(
+    look: Look,
+    project: Project,
+    figure: Figure,
+    left: ImVec2,
+    pictures: SmallPictures,
+    *,
+    is_seen: bool,
+) -> None:
+    """Draw the small picture of a layer right of a point, or a sign where there is none yet."""
+    em = look.em
+    pad = 0.12 * em
+    half = ROW / 2 * em - pad
+    low = ImVec2(left.x, left.y - half)
+    high = ImVec2(left.x + WIDE * em, left.y + half)
+    draw_list = imgui.get_window_draw_list()
+    draw_list.add_rect_filled(low, high, PAPER, 0.25 * em)
+    pixels = project.puppets[figure.id].small.value
+    picture = None if pixels is None else pictures(figure.id, pixels)
+    if picture is None:
+        icon = icons.ICON_FA_IMAGE if figure.still else icons.ICON_FA_PERSON
+        write_in(low, high, icon, SIGN)
+        return
+    corner, room = low + ImVec2(pad, pad), high - low - ImVec2(2 * pad, 2 * pad)
+    opacity = 1.0 if is_seen else HIDDEN
+    show_picture(picture.texture, picture.size, corner, room, opacity=opacity)
+
+
+def _signs(project: Project, row: TreeRow) -> list[str]:
+    """Return what stands behind the name of a row."""
+    if row.figure is None:
+        opacity = 1.0 if row.group is None else row.group.opacity
+        return [f"{100 * opacity:.0f}%"] if opacity < 1 else []
+    figure = row.figure
+    signs = [f"{100 * figure.opacity:.0f}%"] if figure.opacity < 1 else []
+    signs += [icons.ICON_FA_LINK] if figure.hangs else []
+    signs += [icons.ICON_FA_IMAGE] if figure.still else []
+    signs += [icons.ICON_FA_BAN] if figure.reference else []
+    return signs + ([icons.ICON_FA_BINOCULARS] if figure.id in project.solo else [])
+
+
+def _text(
+    look: Look,
+    project: Project,
+    row: TreeRow,
+    shown: Figure,
+    left: float,
+    end: ImVec2,
+    *,
+    is_seen: bool,
+) -> None:
+    """Write a row's name up to a point, and before that what it is besides."""
+    palette, em = look.palette, look.em
+    draw_list, middle = imgui.get_window_draw_list(), end.y
+    right = end.x - GAP * em
+    with sized(SMALL):
+        for sign in reversed(_signs(project, row)):
+            size = imgui.calc_text_size(sign)
+            right -= size.x
+            draw_list.add_text(ImVec2(right, middle - size.y / 2), ink(palette.dim), sign)
+            right -= GAP * em
+    top = middle - imgui.get_text_line_height() / 2
+    name = shortened(row.name, right - left)
+    draw_list.add_text(ImVec2(left, top), ink(palette.text if is_seen else palette.dim), name)
+    left += imgui.calc_text_size(name).x + 2 * GAP * em
+    told = _told(project.document, row, shown)
+    with sized(SMALL):
+        size = imgui.calc_text_size(told)
+        if told and right - left > 2 * em:
+            told = shortened(told, right - left)
+            draw_list.add_text(ImVec2(left, middle - size.y / 2), ink(palette.dim), told)
+
+
+def _told(document: Document, row: TreeRow, shown: Figure) -> str:
+    """Return what is written behind a name: what is seen of a choice, what carries a layer."""
+    if row.choice is not None:
+        return shown.name
+    if row.group is not None:
+        return f"{len(row.figures)}"
+    parents = [document.figure(each.to).name for each in shown.joints if each.to is not None]
+    return f"on {parents[0]}" + ("…" if len(set(parents)) > 1 else "") if parents else ""

@@ -1,0 +1,106 @@
+"""Layers as a tree: groups and choices, and what is in them."""
+
+from dataclasses import replace
+
+import pytest
+from documents import disc_document, disc_domain
+
+from app.document.commands import (
+    choice_commands as choices,
+    group_commands as groups,
+    layer_commands as layers,
+)
+from app.document.queries import layer_tree
+
+
+@pytest.fixture
+def document():
+    """Six layers, from 0 behind all others to 5 in front."""
+    document = disc_document()
+    for number in range(1, 6):
+        figure = replace(
+            document.figures[0],
+            id=layers.free_identity(document),
+            name=f"layer {number}",
+            domain=disc_domain(),
+        )
+        document = layers.add_figure(figure)(document)
+    return document
+
+
+def told(document, *toggled, kept=None):
+    return [
+        "  " * row.depth + row.name + ("" if row.is_open else " +")
+        for row in layer_tree(document, toggled, kept)
+    ]
+
+
+def test_without_groups_and_choices_it_is_the_order_of_painting(document):
+    assert told(document) == ["layer 5", "layer 4", "layer 3", "layer 2", "layer 1", "figure"]
+    assert all(row.figures == (row.figure.id,) for row in layer_tree(document))
+
+
+def test_groups_hold_what_is_in_them(document):
+    document = groups.put_in_group((1, 2), "body/legs")(document)
+    document = groups.put_in_group((3,), "body")(document)
+    assert told(document) == [
+        "layer 5",
+        "layer 4",
+        "body",
+        "  layer 3",
+        "  legs",
+        "    layer 2",
+        "    layer 1",
+        "figure",
+    ]
+    rows = {row.name: row for row in layer_tree(document)}
+    assert rows["body"].figures == (3, 2, 1)
+    assert rows["legs"].figures == (2, 1)
+    assert told(document, "group body") == ["layer 5", "layer 4", "body +", "figure"]
+    # What is posed is listed all the same.
+    assert told(document, "group body", kept=1) == [
+        "layer 5",
+        "layer 4",
+        "body +",
+        "    layer 1",
+        "figure",
+    ]
+
+
+def test_layers_that_take_turns_are_one_row_where_the_foremost_is(document):
+    document = choices.form_choice("mouth", (1, 4))(document)
+    assert told(document) == ["layer 5", "mouth +", "layer 3", "layer 2", "figure"]
+    assert told(document, "choice mouth") == [
+        "layer 5",
+        "mouth",
+        "  layer 4",
+        "  layer 1",
+        "layer 3",
+        "layer 2",
+        "figure",
+    ]
+
+
+def test_a_choice_in_a_group(document):
+    document = groups.put_in_group((3, 4), "face")(document)
+    document = choices.form_choice("mouth", (2, 4))(document)
+    assert told(document, "choice mouth") == [
+        "layer 5",
+        "face",
+        "  mouth",
+        "    layer 4",
+        "    layer 2",
+        "  layer 3",
+        "layer 1",
+        "figure",
+    ]
+
+
+def test_a_group_that_others_lie_amid_has_a_row_for_each_run(document):
+    document = groups.put_in_group((1, 2, 3), "arm")(document)
+    document = layers.move_figure(5, 2)(document)
+    rows = [row for row in layer_tree(document) if row.group]
+    assert len({row.key for row in rows}) == len(rows)
+    assert sorted(figure for row in rows for figure in row.figures) == sorted(
+        each.id for each in document.figures if each.group == "arm"
+    )

@@ -1,0 +1,166 @@
+"""Commands on what repeats: where it begins and ends, and its repeats made into keys."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from documents import altered
+from key_rows import row
+from numpy.testing import assert_allclose
+
+from app.document.commands import cycle_commands, key_commands, scene_commands, track_commands
+from app.document.keyframe import Handle, Target
+from app.document.layering import Switch
+from app.document.queries.clips import clip_of
+from app.document.queries.fronts import fronts_at
+from app.document.queries.stage.sight import is_visible
+from app.document.queries.tracks import track_at
+from app.document.settings import FrameRange
+from app.document.timing import Cycle, Track, TrackKey
+from app.errors import LissomError
+from app.motion.inbetweens import Animation
+
+
+def with_keys(*frames, last=100, **changes):
+    """Return a document with keys at some frames; the one at 44 is like that at 20."""
+    document = row(6)
+    poses = [key.pose for key in document.figures[0].keys]
+    poses = dict(zip(sorted({*frames} - {44}), poses, strict=False))
+    keys = tuple(
+        replace(document.figures[0].keys[0], frame=frame, pose=poses[20 if frame == 44 else frame])
+        for frame in frames
+    )
+    return altered(document, keys=keys, frames=FrameRange(0, last), **changes)
+
+
+def moved(document, frames):
+    animation = Animation(clip_of(document, 0), points=document.figures[0].domain.outline)
+    return np.array([animation.positions(frame) for frame in frames])
+
+
+def frames_of(document):
+    return [key.frame for key in document.figures[0].keys]
+
+
+def test_a_stretch_repeats_and_its_last_key_is_its_first():
+    document = with_keys(4, 20, 28, 36, 44, 110, last=120)
+    figure = document.figures[0]
+    assert cycle_commands.end_of_repeats(figure, 20, 44) == 92
+    cycling = cycle_commands.repeat(0, 20, 44, 92)(document)
+    assert cycling.figures[0].cycles == (Cycle(first=20, last=44, until=92),)
+    assert frames_of(cycling) == [4, 20, 28, 36, 110]
+    again = cycle_commands.repeat(0, 20, 44, 68)(cycling)
+    assert again.figures[0].cycles == (Cycle(first=20, last=44, until=68),)
+    with pytest.raises(LissomError, match="Frames 4 and 28 show two poses"):
+        cycle_commands.repeat(0, 4, 28)(document)
+    with pytest.raises(LissomError, match="no room for frames 4 to 15 to repeat before frame 20"):
+        cycle_commands.end_of_repeats(figure, 4, 15)
+    with pytest.raises(LissomError, match="key at frame 110 is where frames 20 to 44 repeat"):
+        cycle_commands.repeat(0, 20, 44)(document)
+
+
+def test_what_stops_repeating_is_there_once_as_it_was():
+    document = with_keys(4, 20, 28, 36, 44)
+    cycling = cycle_commands.repeat(0, 20, 44)(document)
+    stopped = cycle_commands.stop(0, 20)(cycling)
+    assert not stopped.figures[0].cycles
+    assert frames_of(stopped) == frames_of(document)
+    figure = stopped.figures[0]
+    assert figure.key(44).pose is figure.key(20).pose
+    with pytest.raises(LissomError, match="Nothing of 'figure' repeats from frame 20 on"):
+        cycle_commands.stop(0, 20)(stopped)
+
+
+@pytest.mark.parametrize("loop", [False, True])
+def test_repeats_made_into_keys_move_as_before(loop):
+    document = cycle_commands.repeat(0, 20, 44, 92)(with_keys(4, 20, 28, 36, 44, 110, last=120))
+    document = altered(document, loop=loop)
+    keyed = cycle_commands.make_keys(0, 20, 120)(document)
+    assert not keyed.figures[0].cycles
+    assert frames_of(keyed) == [4, 20, 28, 36, 44, 52, 60, 68, 76, 84, 92, 110]
+    # Only beside 20 and 92 the motion is another one.
+    inside = [28, 31, 36, 43, 44, 50, 60, 66, 68, 75, 84]
+    assert_allclose(moved(keyed, inside), moved(document, inside), rtol=0, atol=1e-9)
+    assert np.abs(moved(keyed, [24]) - moved(document, [24])).max() > 1e-3
+
+
+def test_less_than_a_whole_repeat_still_repeats():
+    document = cycle_commands.repeat(0, 20, 44)(with_keys(20, 28, 36, 44, last=100))
+    keyed = cycle_commands.make_keys(0, 20, 100)(document)
+    assert frames_of(keyed) == [20, 28, 36, 44, 52, 60, 68, 76, 84]
+    assert keyed.figures[0].cycles == (Cycle(first=68, last=92),)
+    inside = range(28, 101, 3)
+    assert_allclose(moved(keyed, inside), moved(document, inside), rtol=0, atol=1e-9)
+
+
+def with_handle(document, front):
+    handle = Handle(id=0, name="tail", position=60 + 45j)
+
+    def keyed(key):
+        pose = replace(key.pose, targets={0: Target(position=60 + 45j)})
+        return replace(key, pose=pose, fronts={0: 1.0} if key.frame == front else {})
+
+    keys = tuple(map(keyed, document.figures[0].keys))
+    return altered(document, handles=(handle,), next_handle=1, keys=keys)
+
+
+def test_tracks_what_is_in_front_and_visibility_are_made_into_keys():
+    document = with_handle(cycle_commands.repeat(0, 20, 44)(with_keys(20, 28, 36, last=92)), 28)
+    wag = Track(
+        handles=(0,),
+        keys=(
+            TrackKey(frame=24, place=0j),
+            TrackKey(frame=30, place=4 + 3j),
+            TrackKey(frame=38, place=0j),
+        ),
+    )
+    document = altered(
+        document, tracks=(wag,), switches=(Switch(0, visible=True), Switch(30, visible=False))
+    )
+    keyed = cycle_commands.make_keys(0, 20, 92)(document)
+    before, after = clip_of(document, 0), clip_of(keyed, 0)
+    for frame in range(20, 93):
+        places = [
+            track_at(clip.figure.tracks[0], clip, frame) or (0j, 0.0) for clip in (before, after)
+        ]
+        assert abs(places[0][0] - places[1][0]) < 1e-12
+        assert fronts_at(before, frame) == fronts_at(after, frame)
+        shown = [is_visible(each, each.figures[0], frame) for each in (document, keyed)]
+        assert shown[0] == shown[1]
+    key = track_commands.put_track_key(0, 0, 24, 1 + 0j)
+    with pytest.raises(LissomError, match="track of 'tail' acts in a part of frames 20 to 44 only"):
+        cycle_commands.make_keys(0, 20, 92)(key(document))
+    ends = dict(zip((24, 30, 38), (20, 30, 44), strict=True))
+    whole = replace(wag, keys=tuple(replace(key, frame=ends[key.frame]) for key in wag.keys))
+    document = altered(document, tracks=(whole,))
+    keyed = cycle_commands.make_keys(0, 20, 92)(document)
+    before, after = clip_of(document, 0), clip_of(keyed, 0)
+    for frame in range(30, 79):
+        one, other = (track_at(clip.figure.tracks[0], clip, frame) for clip in (before, after))
+        assert abs(one.place - other.place) < 1e-12
+
+
+def test_cycles_go_with_all_of_their_keys_in_time():
+    document = cycle_commands.repeat(0, 20, 44, 68)(with_keys(20, 28, 36, 44, 90))
+    later = key_commands.move_keys(0, {20, 28, 36}, 8)(document).figures[0]
+    assert later.cycles == (Cycle(first=28, last=52, until=76),)
+    # Moved alone, a key is another part of every repeat.
+    alone = key_commands.move_keys(0, {28}, 3)(document).figures[0]
+    assert alone.cycles == document.figures[0].cycles
+    with pytest.raises(LissomError, match="key at frame 46 is where frames 20 to 44 repeat"):
+        key_commands.move_keys(0, {36}, 10)(document)
+    slower = key_commands.scale_keys(0, {20, 28, 36}, 1.25)(document).figures[0]
+    assert slower.cycles == (Cycle(first=20, last=50, until=80),)
+    twice = scene_commands.scale_time(2.0)(document).figures[0]
+    assert twice.cycles == (Cycle(first=40, last=88, until=136),)
+    assert not key_commands.delete_keys(0, {20, 28, 36})(document).figures[0].cycles
+    assert key_commands.delete_keys(0, {28, 90})(document).figures[0].cycles
+    with pytest.raises(LissomError, match="frame 68"):
+        scene_commands.set_frames(FrameRange(0, 60))(key_commands.delete_keys(0, {90})(document))
+
+
+def test_what_a_frame_shows_is_keyed_where_it_repeats():
+    figure = cycle_commands.repeat(0, 20, 44, 68)(with_keys(20, 28, 36, 44, 68)).figures[0]
+    assert [figure.source_of(frame) for frame in (4, 20, 43, 44, 50, 67, 68, 80)] == [
+        *(4, 20, 43, 20, 26, 43, 68, 80)
+    ]

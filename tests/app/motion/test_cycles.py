@@ -1,0 +1,218 @@
+"""Stretches that repeat: each repeat is the same motion, closed as a loop is."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from documents import altered
+from key_rows import jump, prepared, row
+from numpy.testing import assert_allclose
+
+from app.document.commands import key_commands
+from app.document.keyframe import Handle, Passing, Target
+from app.document.layering import Switch
+from app.document.queries.clips import clip_of
+from app.document.queries.fronts import fronts_at
+from app.document.queries.spans import intervals
+from app.document.queries.stage.sight import is_visible
+from app.document.queries.timeline import exported_frames, time_of
+from app.document.settings import FrameRange
+from app.document.timing import Cycle, Track, TrackKey
+from app.motion.inbetweens import Animation
+from engine.variant import Variant
+
+
+def cycling(*frames, cycle, last=100, loop=False, **settings):
+    """Return a document with different keys at some frames, of which a stretch repeats."""
+    document = row(len(frames))
+    keys = tuple(
+        replace(key, frame=frame)
+        for key, frame in zip(document.figures[0].keys, frames, strict=True)
+    )
+    return altered(
+        document, keys=keys, cycles=(cycle,), frames=FrameRange(0, last), loop=loop, **settings
+    )
+
+
+def moving(document):
+    return Animation(clip_of(document, 0), points=document.figures[0].domain.outline)
+
+
+WALK = Cycle(first=20, last=44, until=92)
+KEYS = (4, 20, 28, 34, 40)
+
+
+def unlike(animation, cycle, frames, until=None):
+    """Return by how much repeats differ at most, at some frames of a stretch."""
+    period, worst = cycle.period, 0.0
+    for frame in frames:
+        first = animation.positions(frame)
+        for again in range(frame + period, (until or cycle.until) + 1, period):
+            worst = max(worst, np.abs(animation.positions(again) - first).max())
+    return worst
+
+
+@pytest.mark.parametrize("variant", Variant)
+@pytest.mark.parametrize("after", [(), (110,)])
+def test_every_repeat_is_the_same_motion(variant, after):
+    document = cycling(*KEYS, *after, cycle=WALK, last=120, variant=variant)
+    assert unlike(moving(document), WALK, range(20, 44, 3)) < 1e-9
+
+
+@pytest.mark.parametrize("passing", Passing)
+def test_it_is_so_however_keys_are_passed(passing):
+    document = cycling(*KEYS, 110, cycle=WALK, last=120)
+    document = key_commands.set_passing(0, {20, 34}, passing)(document)
+    animation = moving(document)
+    assert unlike(animation, WALK, [20, 21, 30, 33, 34, 35, 43]) < 1e-9
+    if passing is Passing.HOLD:
+        assert_allclose(animation.positions(91), animation.positions(43), rtol=0, atol=1e-9)
+        assert_allclose(animation.positions(70), animation.positions(68), rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("variant", ["nu", "eta", "metric"])
+def test_it_is_led_to_gone_through_and_gone_on_from_at_one_velocity(variant):
+    document = cycling(*KEYS, 110, cycle=WALK, last=120, variant=variant)
+    animation = moving(document)
+    speeds = [jump(animation, frame) for frame in (20.0, 28.0, 44.0, 68.0, 92.0)]
+    largest = max(speed for _, speed in speeds)
+    assert max(change for change, _ in speeds) < 1e-5 * largest
+    assert min(speed for _, speed in speeds) > 1e-2 * largest
+
+
+def test_a_cycle_whose_end_is_keyed_alike_goes_on_through_it():
+    document = cycling(*KEYS, 92, 110, cycle=WALK, last=120)
+    keys = document.figures[0].keys
+    end = replace(keys[5], pose=keys[1].pose)
+    document = altered(document, keys=(*keys[:5], end, keys[6]))
+    change, speed = jump(moving(document), 92.0)
+    assert change < 1e-5 * speed
+
+
+def test_a_key_where_the_repeats_end_takes_over():
+    document = cycling(*KEYS, 92, cycle=WALK, last=120)
+    animation, keys = moving(document), document.figures[0].keys
+    posed = document.figures[0].map_of(keys[-1].pose)(document.figures[0].domain.outline)
+    for frame in (92, 100, 120):
+        assert_allclose(animation.positions(frame), posed, rtol=0, atol=1e-9)
+    assert unlike(animation, WALK, [21, 40, 43], until=91) < 1e-9
+
+
+def test_it_can_begin_and_end_between_keys_where_none_are_beyond():
+    cycle = Cycle(first=10, last=34, until=80)
+    animation = moving(cycling(16, 20, 28, cycle=cycle))
+    assert unlike(animation, cycle, range(10, 34, 4)) < 1e-9
+    # 80 is frame 32 of the stretch, from where it leads on to 16, eight frames later.
+    for frame in (81, 100):
+        assert_allclose(animation.positions(frame), animation.positions(32), rtol=0, atol=1e-9)
+    assert_allclose(animation.positions(3), animation.positions(10), rtol=0, atol=1e-9)
+
+
+def test_without_an_end_it_repeats_to_the_end_of_the_scene():
+    cycle = Cycle(first=0, last=24)
+    animation = moving(cycling(0, 8, 16, cycle=cycle, last=101))
+    assert unlike(animation, cycle, range(24), until=101) < 1e-9
+
+
+def test_two_keys_swing_to_and_fro():
+    cycle = Cycle(first=0, last=24)
+    animation = moving(cycling(0, 12, cycle=cycle, last=96))
+    assert unlike(animation, cycle, range(24), until=96) < 1e-9
+    assert_allclose(animation.positions(30), animation.positions(18), rtol=0, atol=1e-9)
+    assert jump(animation, 24.0)[0] < 1e-3
+
+
+def test_repeats_are_prepared_once():
+    document = cycling(*KEYS, 110, cycle=replace(WALK, until=92), last=120)
+    store, count = prepared(document)
+    assert count == len(intervals(clip_of(document, 0))) == 6
+    assert all(store.is_exact(clip_of(document, 0), frame) for frame in range(121))
+    longer = altered(document, cycles=(replace(WALK, until=44),))
+    # What goes on from it does so in other time.
+    assert prepared(longer, store)[1] == 1
+
+
+def test_a_loop_of_whole_repeats_has_no_seam():
+    cycle = Cycle(first=0, last=24)
+    document = cycling(0, 8, 16, cycle=cycle, last=72, loop=True)
+    assert exported_frames(document) == FrameRange(0, 71)
+    change, speed = jump(moving(document), 72.0)
+    assert change < 1e-5 * speed
+    document = cycling(0, 8, 16, 60, cycle=replace(cycle, until=48), last=72, loop=True)
+    assert exported_frames(document) == FrameRange(0, 71)
+    animation = moving(document)
+    assert unlike(animation, cycle, range(24), until=48) < 1e-9
+    speeds = [jump(animation, frame) for frame in (0.0, 24.0, 48.0, 60.0, 72.0)]
+    assert max(change for change, _ in speeds) < 1e-5 * max(speed for _, speed in speeds)
+
+
+def test_two_cycles_follow_each_other():
+    document = cycling(0, 6, 40, 46, cycle=Cycle(first=0, last=12, until=36))
+    second = Cycle(first=40, last=52)
+    document = altered(document, cycles=(*document.figures[0].cycles, second))
+    animation = moving(document)
+    assert unlike(animation, document.figures[0].cycles[0], range(12), until=36) < 1e-9
+    assert unlike(animation, second, range(40, 52), until=100) < 1e-9
+    for frame in (12.0, 36.0, 40.0, 52.0):
+        assert jump(animation, frame)[0] < 1e-3
+
+
+def test_a_single_key_stands_until_the_repeats_end():
+    document = cycling(0, 20, 60, cycle=Cycle(first=20, last=30, until=50))
+    clip = clip_of(document, 0)
+    assert [time_of(clip, frame)[1] for frame in (20, 33, 50)] == [1.0, 1.0, 1.0]
+    assert 0.0 < time_of(clip, 55).weight < 1.0
+    assert 0.0 < time_of(clip, 10).weight < 1.0
+
+
+def with_handles(document, *, free=False):
+    """Return it with two handles, which the second and third of its keys have at one place."""
+    figure = document.figures[0]
+    handles = tuple(
+        Handle(id=number, name=str(number), position=place, free=free)
+        for number, place in enumerate((30 + 45j, 90 + 45j))
+    )
+
+    def targets(pose):
+        places = figure.map_of(pose)(np.array([handle.position for handle in handles]))
+        return {i: Target(position=complex(place)) for i, place in enumerate(places)}
+
+    keys = [replace(k, pose=replace(k.pose, targets=targets(k.pose))) for k in figure.keys]
+    still = dict(keys[2].pose.targets) | {0: keys[1].pose.targets[0]}
+    keys[2] = replace(keys[2], pose=replace(keys[2].pose, targets=still))
+    return altered(document, keys=tuple(keys), handles=handles, next_handle=2)
+
+
+def test_handles_that_stay_and_tracks_repeat_with_it():
+    document = with_handles(cycling(*KEYS, 110, cycle=WALK, last=120))
+    wag = Track(
+        handles=(1,),
+        keys=(
+            TrackKey(frame=24, place=0j),
+            TrackKey(frame=30, place=4 + 3j),
+            TrackKey(frame=38, place=0j),
+        ),
+        delay=10,
+    )
+    document = altered(document, tracks=(wag,))
+    animation = moving(document)
+    assert animation.corrections is not None
+    found = [animation.corrections.at(frame) for frame in (22, 41)]
+    again = [animation.corrections.at(frame) for frame in (46, 89)]
+    assert all(one is other and one is not None for one, other in zip(found, again, strict=True))
+    assert unlike(animation, WALK, [22, 26, 29, 41]) < 1e-9
+
+
+def test_what_is_in_front_and_seen_repeats_with_it():
+    document = with_handles(cycling(*KEYS, 110, cycle=WALK, last=120))
+    keys = list(document.figures[0].keys)
+    keys[3] = replace(keys[3], fronts={1: 1.0})
+    document = altered(document, keys=tuple(keys))
+    clip = clip_of(document, 0)
+    ahead = [bool(fronts_at(clip, frame)) for frame in (33, 34, 43, 44, 57, 58, 91, 92, 110)]
+    assert ahead == [False, True, True, False, False, True, True, False, False]
+    switches = (Switch(0, visible=True), Switch(30, visible=False))
+    document = altered(document, switches=switches)
+    figure = document.figures[0]
+    shown = [is_visible(document, figure, frame) for frame in (29, 30, 43, 44, 53, 54, 91, 92, 120)]
+    assert shown == [True, False, False, True, True, False, False, True, True]

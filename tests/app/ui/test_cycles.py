@@ -1,0 +1,154 @@
+"""What repeats in the window: made of chosen keys, edited in one place, ended by its handle."""
+
+import pytest
+from imgui_bundle import ImVec2
+
+from app.document import FrameRange, key_commands, scene_commands
+from app.document.timing import Cycle
+from app.editor.actions import cycles, editing, keys, playback
+
+RIGHT = 1  # the id of the bar's right handle
+MENU = "//$FOCUSED/###"
+
+
+@pytest.fixture
+def swinging(window, bent):
+    """The bar that swings to and fro: keys at 0 and 24, and at 48 as at 0, in 150 frames."""
+    editing.edit(window.session, key_commands.copy_keys(bent.active, {0}, 48))
+    editing.edit(window.session, scene_commands.set_frames(FrameRange(0, 150)))
+    editing.choose_keys(window.session, frozenset({0, 24, 48}))
+    window.settle()
+    return bent
+
+
+@pytest.fixture
+def cycling(window, swinging):
+    window.act(cycles.repeat)
+    window.settle()
+    return swinging
+
+
+def frames_of(project):
+    return [key.frame for key in project.figure.keys]
+
+
+class Row:
+    """The robot's pointer on the row of the bar."""
+
+    def __init__(self, robot, bent=24):
+        self.robot = robot
+        robot.set_ref("###Timeline")
+        self.begin = self.place("key 0")
+        self.scale = (self.place(f"key {bent}").x - self.begin.x) / bent
+
+    def place(self, name):
+        return self.robot.item_info(f"**/{name}").rect_full.get_center()
+
+    def drag(self, name, *frames):
+        self.robot.mouse_move(f"**/{name}")
+        self.robot.mouse_down(0)
+        for frame in frames:
+            self.robot.mouse_move_to_pos(ImVec2(self.begin.x + frame * self.scale, self.begin.y))
+        self.robot.mouse_up(0)
+
+
+def drag_end_of_bar(window, project, by):
+    """Drag the right handle, where it is shown now."""
+    start = complex(project.puppet.shown.handle_places[RIGHT])
+
+    def drag(robot):
+        robot.mouse_move_to_pos(window.point(start))
+        robot.mouse_down(0)
+        for share in (0.5, 1.0):
+            robot.mouse_move_to_pos(window.point(start + share * by))
+        robot.mouse_up(0)
+
+    window.run(drag)
+    window.settle()
+
+
+def test_the_menu_of_chosen_keys_lets_them_repeat(window, swinging):
+    def repeat(robot):
+        robot.set_ref("###Timeline")
+        robot.item_click("**/key 24", 1)
+        robot.item_click(f"{MENU}Repeat")
+
+    first = swinging.document
+    window.run(repeat)
+    window.settle()
+    assert swinging.figure.cycles == (Cycle(first=0, last=48),)
+    assert frames_of(swinging) == [0, 24]
+    editing.undo(window.session)
+    assert swinging.document is first
+
+
+def test_the_end_of_the_repeats_is_dragged(window, cycling):
+    first = cycling.document
+    # It snaps to where a key is shown.
+    window.run(lambda robot: Row(robot).drag("repeats of 0", 120, 101))
+    window.settle()
+    assert cycling.figure.cycles == (Cycle(first=0, last=48, until=96),)
+    editing.undo(window.session)
+    assert cycling.document is first
+
+
+def test_a_drag_in_a_repeat_poses_the_key_that_is_shown_there(window, cycling):
+    before = cycling.figure.key(24).pose
+    playback.seek(window.session, 72)
+    window.settle()
+    shown = complex(cycling.puppet.shown.handle_places[RIGHT])
+    drag_end_of_bar(window, cycling, 10 - 40j)
+    assert playback.current_frame(window.session, cycling) == 72
+    assert frames_of(cycling) == [0, 24]
+    after = cycling.figure.key(24).pose
+    assert after is not before
+    there = complex(cycling.puppet.shown.handle_places[RIGHT])
+    assert abs(there - shown - (10 - 40j)) < 3
+    playback.seek(window.session, 24)
+    window.settle()
+    assert cycling.puppet.shown.pose is after
+    editing.undo(window.session)
+    assert cycling.figure.key(24).pose is before
+
+
+def test_a_drag_between_keys_of_a_repeat_makes_one_where_it_repeats(window, cycling):
+    playback.seek(window.session, 60)
+    window.settle()
+    goal = complex(cycling.puppet.shown.handle_places[RIGHT]) + 5 - 30j
+    drag_end_of_bar(window, cycling, 5 - 30j)
+    assert frames_of(cycling) == [0, 12, 24]
+    assert abs(complex(cycling.puppet.shown.handle_places[RIGHT]) - goal) < 3
+    window.act(editing.undo)
+    window.settle()
+    assert frames_of(cycling) == [0, 24]
+    window.act(keys.insert)
+    window.settle()
+    assert frames_of(cycling) == [0, 12, 24]
+    assert abs(complex(cycling.puppet.shown.handle_places[RIGHT]) - goal + 5 - 30j) < 3
+
+
+def test_repeats_are_made_into_keys_or_stop(window, cycling):
+    first = cycling.document
+    playback.seek(window.session, 100)
+    window.act(cycles.make_keys)
+    assert frames_of(cycling) == [0, 24, 48, 72, 96, 120]
+    assert cycling.figure.cycles == (Cycle(first=96, last=144),)
+    window.act(editing.undo)
+    assert cycling.document is first
+    window.act(cycles.stop)
+    assert frames_of(cycling) == [0, 24, 48]
+    assert not cycling.figure.cycles
+
+
+def test_keys_wait_before_what_repeats(window, cycling):
+    editing.choose_keys(window.session, frozenset())
+    window.run(lambda robot: Row(robot).drag("key 24", 40, 44, 70, 90))
+    window.settle()
+    assert frames_of(cycling) == [0, 44]
+    assert not window.session.toasts
+    # All of its keys together take the cycle with them.
+    editing.choose_keys(window.session, frozenset({0, 44}))
+    window.run(lambda robot: Row(robot, 44).drag("key 44", 50, 54))
+    window.settle()
+    assert frames_of(cycling) == [10, 54]
+    assert cycling.figure.cycles == (Cycle(first=10, last=58),)
