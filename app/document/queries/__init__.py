@@ -37,6 +37,7 @@ from app.document.queries.spans import (
 from app.document.queries.stage import (
     Composite as Composite,
     TreeRow as TreeRow,
+    alternates as alternates,
     composed as composed,
     is_visible as is_visible,
     layer_tree as layer_tree,

@@ -5,6 +5,7 @@ Out: answers; nothing is changed.
 Imports: the values of `app.document`.
 """
 
+from app.document.queries.stage.alternates import alternates as alternates
 from app.document.queries.stage.compositing import Composite as Composite, composed as composed
 from app.document.queries.stage.layer_tree import TreeRow as TreeRow, layer_tree as layer_tree
 from app.document.queries.stage.sight import (
