@@ -37,6 +37,7 @@ from app.editor.layering.choosing import (
     toggle as toggle,
 )
 from app.editor.layering.filming import (
+    change_camera_key as change_camera_key,
     delete_camera_key as delete_camera_key,
     fade_here as fade_here,
     fit_camera as fit_camera,

@@ -34,6 +34,23 @@ def fit_camera(session: Session, project: Project) -> None:
     viewing.look_from(session, view)
 
 
+@with_project
+def change_camera_key(
+    session: Session,
+    project: Project,
+    frame: int,
+    *,
+    zoom: float | None = None,
+    turn: float | None = None,
+) -> None:
+    """Let a key of the camera be zoomed or turned otherwise, where that is told."""
+    for key in project.document.camera:
+        if key.frame == frame:
+            zoom, turn = key.zoom if zoom is None else zoom, key.turn if turn is None else turn
+            changed = replace(key, zoom=zoom, turn=turn)
+            editing.edit(session, filming_commands.key_camera(changed))
+
+
 def delete_camera_key(session: Session, frame: int) -> None:
     """Delete a key of the camera."""
     editing.edit(session, filming_commands.delete_camera_key(frame))

@@ -23,6 +23,7 @@ NEAR, MUCH = 0.2, 0.6
 LUMA = np.array([0.2126, 0.7152, 0.0722])  # of red, green and blue, as Rec. 709 weighs them
 STEP = 4  # pixels: every so manieth is looked at
 DIM = 0.45  # of the desk's colour, over what the camera leaves out
+SMOOTH_FILL = 1 << 2  # ImDrawListFlags_AntiAliasedFill of Dear ImGui, which has no name here
 FAR = 1e3  # times the camera's frame: beyond the viewport
 
 
@@ -89,11 +90,15 @@ def draw_camera(look: Look, project: Project, screen: Screen, room: tuple[ImVec2
     draw_list.push_clip_rect(corner, corner + size, intersect_with_current_clip_rect=True)
     corners = shot.frame(project.document.canvas)
     inner, outer = (screen.points(shot.centre + by * (corners - shot.centre)) for by in (1.0, FAR))
-    # The frame is convex: its outside is four trapezoids, one beyond each edge.
+    # The frame is convex: its outside is four trapezoids, one beyond each edge. Where they meet,
+    # smooth edges would be seen.
+    smooth = draw_list.flags
+    draw_list.flags &= ~SMOOTH_FILL
     for here, there in zip(range(4), np.roll(range(4), -1).tolist(), strict=True):
         draw_list.add_quad_filled(
             inner[here], outer[here], outer[there], inner[there], ink(look.palette.desk, DIM)
         )
+    draw_list.flags = smooth
     for point in inner:
         draw_list.path_line_to(point)
     draw_list.path_stroke(ink(look.palette.accent), 1.5, imgui.ImDrawFlags_.closed)

@@ -777,6 +777,14 @@ def test_the_camera_is_keyed_from_the_viewport_dragged_and_deleted(window, proje
     play(lambda hand: hand.click(f"camera key {moved}"))
     assert playback.current_frame(window.session, project) == moved
 
+    def turn(hand):
+        hand.click(f"camera key {moved}", 1)
+        hand.robot.item_input_value("//$FOCUSED/##camera Turn", 90.0)
+        hand.robot.key_press(int(window.Key.escape))
+
+    play(turn)
+    assert project.document.camera[1].turn == pytest.approx(np.pi / 2)
+
     def delete(hand):
         hand.click("camera key 0", 1)
         hand.robot.item_click("//$FOCUSED/Delete")

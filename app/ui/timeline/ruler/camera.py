@@ -1,15 +1,18 @@
 """The camera's keys, in a row of their own below the markers."""
 
+from math import degrees, radians
+
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.document import CameraKey
 from app.editor import Action, CameraDrag, do, layering
 from app.editor.actions import playback, timeline_pointing
 from app.ui.shortcuts import bound_item
-from app.ui.style import begin_tip, in_hand, ink, is_pressed
+from app.ui.style import Look, begin_tip, in_hand, ink, is_pressed, number, tip
 from app.ui.timeline.bands import Bands, in_seconds, tag
 
 HALF = 0.36  # em: half the width of a key
+FIELD = 4.5  # em: width of the fields in its menu, and where they begin
 MENU = "menu of the camera"
 
 
@@ -73,6 +76,15 @@ def _point(bands: Bands, key: CameraKey) -> list[Action]:
     return []
 
 
+def _field(look: Look, name: str, value: float, text: str) -> float | None:
+    """Draw a field for a number of a key; return it when it was entered and is another."""
+    imgui.align_text_to_frame_padding()
+    imgui.text_unformatted(name)
+    imgui.same_line(FIELD * look.em)
+    imgui.set_next_item_width(FIELD * look.em)
+    return number(f"camera {name}", value, text)
+
+
 def _menu(bands: Bands, key: CameraKey) -> list[Action]:
     """Draw the menu of a key, if it is open."""
     actions: list[Action] = []
@@ -81,6 +93,14 @@ def _menu(bands: Bands, key: CameraKey) -> list[Action]:
             actions.append(do(playback.scrub, key.frame))
         if imgui.menu_item_simple("Delete"):
             actions.append(do(layering.delete_camera_key, key.frame))
+        imgui.separator()
+        zoom = _field(bands.look, "Zoom", key.zoom, "%.3g")
+        if zoom is not None:
+            actions.append(do(layering.change_camera_key, key.frame, zoom=zoom))
+        turn = _field(bands.look, "Turn", degrees(key.turn), "%.4g°")
+        if turn is not None:
+            actions.append(do(layering.change_camera_key, key.frame, turn=radians(turn)))
+        tip("By how much things are seen turned, counter-clockwise")
         imgui.separator()
         for name in ("key camera", "fit camera"):
             actions += bound_item(bands.session, name)
