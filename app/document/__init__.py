@@ -82,6 +82,7 @@ from app.document.queries import (
     TrackPlace as TrackPlace,
     Transit as Transit,
     TreeRow as TreeRow,
+    alternates as alternates,
     are_as_stiff as are_as_stiff,
     brushed_stiffness as brushed_stiffness,
     camera_at as camera_at,

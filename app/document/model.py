@@ -244,6 +244,12 @@ class Document:
     def _check_clocks(self, figure: Figure) -> None:
         """Refuse what does not come round in a loop."""
         period = self.frames.last - self.frames.first
+        for cycle in figure.cycles if self.loop and len(figure.keys) > 1 else ():
+            require(
+                any(cycle.has(key.frame) for key in figure.keys),
+                f"There is no key of {figure.name!r} in {cycle.told} that could repeat in a loop; "
+                "insert one there first.",
+            )
         for track in figure.tracks if self.loop else ():
             require(
                 track.delay <= period,

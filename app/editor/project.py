@@ -122,7 +122,9 @@ class Puppet:
             is_opaque=picture.is_opaque,
             file=clip.figure.picture,
             store=IntervalStore(mesh=PosableMesh.coarse(clip.figure.domain, among=among)),
-            cut=Derived(cut_picture(picture, clip.figure.cut_out), clip.figure.cut_out),
+            cut=Derived(
+                cut_picture(picture, clip.figure.cut_out, is_alone=among == 1), clip.figure.cut_out
+            ),
         )
 
 
@@ -204,6 +206,7 @@ class Project:
     beside: frozenset[int] = frozenset()
     solo: frozenset[int] = frozenset()
     toggled: frozenset[str] = frozenset()  # rows of the tree of layers, open or closed by hand
+    declined: frozenset[str] = frozenset()  # groups of which no choice is to be made
     listed: int | None = None  # the figure that the list of layers was scrolled to
 
     @property

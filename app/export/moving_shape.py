@@ -8,10 +8,12 @@ from typing import Final, TypeVar
 import numpy as np
 
 from app.document import (
+    Composite,
     Document,
     Figure,
     camera_at,
     clip_of,
+    composed,
     in_order,
     is_visible,
     opacity_at,
@@ -46,7 +48,7 @@ class MovingShape:
         Straight alpha, with colours where it is transparent; the part of the picture that the mesh
         shows.
     opacity : float
-        Of the whole figure, in the first frame.
+        Of the whole figure in the first frame, with those of its groups.
     uv : float64, shape (v, 2)
         u right, v up; [0, 1] spans the texture.
     orders : tuple of (float, int32 of shape (m, 3))
@@ -67,6 +69,21 @@ class MovingShape:
     motion: ShapeTargets
 
 
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class MovingScene:
+    """The shapes of a scene, the one behind all others first.
+
+    Parameters
+    ----------
+    shapes : tuple of MovingShape
+    parts : tuple of (int or Composite)
+        How they are composited, by their numbers, from back to front.
+    """
+
+    shapes: tuple[MovingShape, ...]
+    parts: tuple[int | Composite[int], ...]
+
+
 def with_light_meshes(document: Document, triangles: int) -> Document:
     """Return a document whose meshes have at most so many triangles, about."""
     return replace(document, figures=tuple(_lighter(f, triangles) for f in document.figures))
@@ -85,7 +102,7 @@ def moving_shapes(
     pictures: Mapping[int, Bytes],
     poses: Mapping[int, Poses],
     plan: ExportPlan,
-) -> Generator[float, None, list[MovingShape]]:
+) -> Generator[float, None, MovingScene]:
     """Find the shapes of every figure; yield how much of the work is done, from 0 to 1.
 
     Where the format shows a part of the plane, shapes are as the camera shows them there.
@@ -137,14 +154,16 @@ def moving_shapes(
         shape = MovingShape(
             name=plan.out.stem if len(document.figures) == 1 else figure.name,
             texture=bled(texture),
-            opacity=opacity_at(document, figure, first),
+            opacity=opacity_at(document, figure, first)
+            * math.prod(group.opacity for group in document.groups_around(figure.group)),
             uv=uv,
             orders=tuple(((n - first) / document.fps, order) for n, order in _changes(orders)),
             sights=tuple(((n - first) / document.fps, seen) for n, seen in _changes(sights)),
             motion=replace(motion, times=freeze((motion.times - first) / document.fps)),
         )
         found.append(shape)
-    return found
+    numbered = {clip.figure.id: number for number, clip in enumerate(clips)}
+    return MovingScene(shapes=tuple(found), parts=composed(document, numbered, first))
 
 
 def _painted(

@@ -119,10 +119,14 @@ class Painter:
             while context.error != _NO_ERROR:
                 pass
             self._drawn = []
+            textures: dict[int, GpuPicture] = {}  # by the pictures, which figures may share
             for figure, mesh in zip(figures, meshes, strict=True):
                 rest = mesh.vertices - figure.corner
-                texture = GpuPicture(context, pictures[figure.id])
-                owned.callback(texture.release)
+                texture = textures.get(id(pictures[figure.id]))
+                if texture is None:
+                    texture = GpuPicture(context, pictures[figure.id])
+                    textures[id(pictures[figure.id])] = texture
+                    owned.callback(texture.release)
                 seam = find_seam(figure.domain)
                 gpu_mesh = GpuMesh(
                     programs, texture, rest=rest, triangles=mesh.triangles, seam=seam

@@ -132,13 +132,19 @@ def flattened(document: Document, textures: Mapping[int, Bytes]) -> Bytes:
 def _blended(below: Image.Image, layer: Image.Image, how: Composite[Figure]) -> Image.Image:
     """Return a layer over what lies below it ("Compositing and Blending Level 1", Section 10)."""
     alpha = layer.getchannel("A").point(lambda a: round(how.opacity * a))
+    covered = below.getchannel("A")
+    # What is clipped meets all below as if that were opaque.
+    solid = below.convert("RGB").convert("RGBA") if how.clipped else below
     if how.blend != "normal":
         mix = ImageChops.multiply if how.blend == "multiply" else ImageChops.screen
         own, lower = layer.convert("RGB"), below.convert("RGB")
         # Where there is nothing below, it keeps its colours.
-        layer = Image.composite(mix(lower, own), own, below.getchannel("A")).convert("RGBA")
+        layer = Image.composite(mix(lower, own), own, solid.getchannel("A")).convert("RGBA")
     layer.putalpha(alpha)
-    return Image.alpha_composite(below, layer)
+    flat = Image.alpha_composite(solid, layer)
+    if how.clipped:
+        flat.putalpha(covered)
+    return flat
 
 
 def _reduced(rgba: Bytes, factor: int) -> Image.Image:
@@ -230,7 +236,12 @@ def _scene(drawing: LayeredPicture, meshing: Meshing, *, is_cut_out: bool) -> Op
         enumerate(drawing.layers),
         (layer.picture.size for layer in drawing.layers),
     )
-    figures = tuple(figure for figure, _ in made)
+    # Layers that share a picture share its file.
+    files: dict[int, PictureFile] = {}
+    figures = tuple(
+        replace(figure, picture=files.setdefault(id(layer.picture), figure.picture))
+        for layer, (figure, _) in zip(drawing.layers, made, strict=True)
+    )
     if all(figure.still for figure in figures):
         raise LissomError("none of its layers can be posed: there is no shape on any of them")
     pictures = {index: layer.picture for index, layer in enumerate(drawing.layers)}

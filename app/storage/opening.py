@@ -1,7 +1,8 @@
 """From a picture file to a new document, and from a picture to what is painted on its mesh."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 from typing import NamedTuple, Self
 
@@ -10,7 +11,7 @@ from app.errors import NOTHING_TOLD, ImportSummary, shown_name
 from app.storage.files import read_file
 from app.storage.pictures import Picture, decode_picture
 from engine.arrays import Booleans, Bytes, freeze
-from engine.domain import CutOut, HoleMap, build_domain, find_holes, subject_mask, texture
+from engine.domain import CutOut, HoleMap, Mask, build_domain, find_holes, subject_mask, texture
 from engine.errors import EngineError
 
 
@@ -29,35 +30,45 @@ class Cut:
 
     Parameters
     ----------
-    kept : bool, shape (h, w)
+    mask : Mask
         The pixels of the subject.
     texture : uint8, shape (h, w, 4)
         What is painted on the mesh; straight alpha.
-    holes : HoleMap, optional
-        None where the subject has too many parts.
     is_all : bool
         Whether every pixel is kept.
     leftover : bool, shape (h, w), optional
         Those of the subject that look like the removed background; None where there are none.
+    find_holes : callable
+        Returns where its holes are.
     """
 
-    kept: Booleans
+    mask: Mask
     texture: Bytes
-    holes: HoleMap | None
     is_all: bool
     leftover: Booleans | None = None
+    find_holes: Callable[[], HoleMap | None] = lambda: None
 
     @classmethod
     def of(
         cls,
         kept: Booleans,
         texture: Bytes,
-        holes: HoleMap | None = None,
         enclosed: Booleans | None = None,
+        find_holes: Callable[[], HoleMap | None] = lambda: None,
     ) -> Self:
         """Return a cut, with what is asked of it often found once: pictures are large."""
         leftover = None if enclosed is None or not (enclosed & kept).any() else enclosed & kept
-        return cls(kept, texture, holes, bool(kept.all()), leftover)
+        return cls(Mask.of(kept), texture, bool(kept.all()), leftover, find_holes)
+
+    @property
+    def kept(self) -> Booleans:
+        """The pixels (h, w) of the subject, unpacked."""
+        return self.mask.kept
+
+    @property
+    def holes(self) -> HoleMap | None:
+        """Where holes are; None where the subject has too many parts."""
+        return self.find_holes()
 
 
 def open_picture(path: Path, meshing: Meshing, cut_out: CutOut = CutOut()) -> OpenedScene:
@@ -80,15 +91,26 @@ def open_picture(path: Path, meshing: Meshing, cut_out: CutOut = CutOut()) -> Op
     return OpenedScene(Document(figures=(named,)), {named.id: picture}, notices)
 
 
-def cut_picture(picture: Picture, cut_out: CutOut) -> Cut:
-    """Cut the subject out of a picture; where there is none, all of it stays."""
+def cut_picture(picture: Picture, cut_out: CutOut, *, is_alone: bool = True) -> Cut:
+    """Cut the subject out of a picture; where there is none, all of it stays.
+
+    Its holes take time and memory: unless it is alone, they are found when they are asked for.
+    """
     try:
         subject = subject_mask(picture.rgba, cut_out)
     except EngineError:
         # Of a project that was saved before a cut-out that cannot be was changed again.
         return Cut.of(freeze(picture.rgba[..., 3] > 0), picture.rgba)
-    try:
-        holes = find_holes(subject.mask, subject.enclosed, opens=subject.opens)
-    except EngineError:
-        holes = None
-    return Cut.of(subject.mask, texture(picture.rgba, subject), holes, subject.enclosed)
+
+    packed, enclosed, opens = Mask.of(subject.mask), subject.enclosed, subject.opens
+
+    @cache
+    def find() -> HoleMap | None:
+        try:
+            return find_holes(packed.kept, enclosed, opens=opens)
+        except EngineError:
+            return None
+
+    if is_alone:
+        find()
+    return Cut.of(subject.mask, texture(picture.rgba, subject), enclosed, find)

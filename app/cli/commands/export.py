@@ -47,8 +47,12 @@ def run(arguments: argparse.Namespace) -> int:
     check_request(document, request)
     _check_options(request.settings.format, arguments)
     source = f"the picture of {arguments.project}"
+    decoded = {
+        file: decode_picture(file.data, source)
+        for file in {figure.picture for figure in document.figures}
+    }
     pictures = {
-        figure.id: cut_picture(decode_picture(figure.picture.data, source), figure.cut_out).texture
+        figure.id: cut_picture(decoded[figure.picture], figure.cut_out).texture
         for figure in document.figures
     }
     say(_make(document, pictures, request, arguments))

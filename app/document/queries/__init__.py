@@ -38,6 +38,7 @@ from app.document.queries.stage import (
     Composite as Composite,
     Shot as Shot,
     TreeRow as TreeRow,
+    alternates as alternates,
     camera_at as camera_at,
     composed as composed,
     in_order as in_order,
@@ -45,6 +46,7 @@ from app.document.queries.stage import (
     layer_tree as layer_tree,
     movement_at as movement_at,
     opacity_at as opacity_at,
+    repeated as repeated,
     sights_of as sights_of,
 )
 from app.document.queries.timeline import (

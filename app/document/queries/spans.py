@@ -149,12 +149,11 @@ def place_at(clip: Clip, frame: float) -> tuple[int, KeySpan, float]:
         frame = clip.frames.first + (frame - clip.frames.first) % clip.period
     found, rings, closing = layout(clip)
     ring = next((ring for ring in rings if ring.has(frame)), None)
-    if ring is None and rings:
+    if ring is None and rings and closing is None:
         first, last = rings[0], rings[-1]
-        over = found[-1].start + found[-1].frames
-        if first.keys[0] == 0 and frame < first.cycle.first and closing is None:
+        if first.keys[0] == 0 and frame < first.cycle.first:
             ring, frame = first, first.cycle.first
-        elif last.keys[-1] == len(clip.keys) - 1 and frame > max(last.end, over):
+        elif last.keys[-1] == len(clip.keys) - 1 and frame > last.end:
             ring, frame = last, last.end
     if ring is not None and ring.spans:
         source = ring.cycle.source(frame)
@@ -169,15 +168,3 @@ def place_at(clip: Clip, frame: float) -> tuple[int, KeySpan, float]:
             frame += clip.period
         number = max(0, bisect_right(found, frame, key=lambda span: span.start) - 1)
     return number, found[number], min(max(found[number].share(frame), 0.0), 1.0)
-
-
-def has_been(figure: Figure, event: int, frame: float) -> bool:
-    """Tell whether an event of a figure's keys holds at a frame, as far as no later one does.
-
-    Those of a cycle hold until a repeat, or all of them, are over, and begin anew.
-    """
-    for cycle in figure.cycles:
-        if cycle.has(event):
-            end = frame if cycle.until is None else min(frame, cycle.until)
-            return event <= frame and event <= cycle.source(end)
-    return event <= frame

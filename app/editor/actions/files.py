@@ -298,11 +298,10 @@ def _read_project(path: Path) -> Opened:
 
 
 def _decoded(document: Document, name: str) -> Opened:
-    files = [(figure.picture.data, f"the picture of {name}") for figure in document.figures]
-    pictures = {
-        figure.id: picture
-        for figure, picture in zip(document.figures, decode_pictures(files), strict=True)
-    }
+    files = list(dict.fromkeys(figure.picture for figure in document.figures))
+    decoded = decode_pictures([(file.data, f"the picture of {name}") for file in files])
+    by_file = dict(zip(files, decoded, strict=True))
+    pictures = {figure.id: by_file[figure.picture] for figure in document.figures}
     return Opened(document, _puppets(document, pictures))
 
 

@@ -126,7 +126,8 @@ def bring(
 
     def put(solved: Mapping[int, Sequence[Keyframe]]) -> None:
         everything = {each.figure.id: {**keys, **solved}[each.figure.id] for each in found}
-        putting.put(session, project, frame, everything, label=label, gesture=gesture)
+        poses = {each.figure.id for each in found if each.copied.is_pose}
+        putting.put(session, project, frame, everything, poses=poses, label=label, gesture=gesture)
         if way == "flipped" and len(found) == 1 and found[0].is_own:
             _note_flip(project, found[0], everything[found[0].figure.id])
         then()

@@ -6,6 +6,7 @@ from typing import Final
 
 import moderngl
 import numpy as np
+import numpy.typing as npt
 
 from app.errors import LissomError
 from app.render.gpu.context import largest_size
@@ -15,17 +16,21 @@ from engine.arrays import Bytes
 # whatever its size, so that even the faintest pixel's colour survives the product and its undoing.
 _LEVELS = np.arange(256) / 255
 _PRODUCTS: Final = np.outer(_LEVELS, _LEVELS).astype(np.float16).ravel()
+# Bytes do for a screen, which has no more levels.
+_BYTES: Final = np.rint(255 * np.outer(_LEVELS, _LEVELS)).astype(np.uint8).ravel()
 _BLOCK = 1 << 20  # pixels premultiplied at a time
 
 
 class GpuPicture:
-    """Owner of a premultiplied, mip-mapped RGBA16F texture that is transparent outside.
+    """Owner of a premultiplied, mip-mapped texture that is transparent outside.
 
     Parameters
     ----------
     context : moderngl.Context
     straight : uint8, shape (h, w, 4)
         Straight alpha, first row on top.
+    is_for_screen : bool
+        Whether its pixels need not come back from a frame as they are: that takes half the memory.
 
     Raises
     ------
@@ -33,7 +38,9 @@ class GpuPicture:
         If the picture is larger than the context's textures can be.
     """
 
-    def __init__(self, context: moderngl.Context, straight: Bytes) -> None:
+    def __init__(
+        self, context: moderngl.Context, straight: Bytes, *, is_for_screen: bool = False
+    ) -> None:
         height, width, _ = straight.shape
         limit = largest_size(context)
         if max(width, height) > limit:
@@ -42,7 +49,8 @@ class GpuPicture:
                 f"{limit} × {limit} at most; scale it down first"
             )
         self.size = (width, height)
-        self._texture = context.texture(self.size, 4, dtype="f2")
+        self._products = _BYTES if is_for_screen else _PRODUCTS
+        self._texture = context.texture(self.size, 4, dtype="f1" if is_for_screen else "f2")
         self._written: Bytes | None = None
         self.write(straight)
         self._sampler = context.sampler(
@@ -64,7 +72,7 @@ class GpuPicture:
         first, last = np.flatnonzero(changed)[[0, -1]]
         rows = max(1, _BLOCK // width)
         for top in range(first, last + 1, rows):
-            block = _premultiply(straight[top : min(top + rows, last + 1)])[::-1]
+            block = self._products[_index(straight[top : min(top + rows, last + 1)])][::-1]
             bottom = height - top - len(block)
             self._texture.write(block.tobytes(), viewport=(0, int(bottom), width, len(block)))
         self._texture.build_mipmaps()
@@ -86,8 +94,9 @@ class GpuPicture:
         self._texture.release()
 
 
-def _premultiply(straight: Bytes) -> np.ndarray[tuple[int, ...], np.dtype[np.float16]]:
+def _index(straight: Bytes) -> npt.NDArray[np.uint16]:
+    """Return where the products of pixels (h, w, 4) stand in their tables."""
     index = straight.astype(np.uint16)
     index[..., :3] += straight[..., 3:].astype(np.uint16) << 8
     index[..., 3] += 255 << 8
-    return _PRODUCTS[index]
+    return index

@@ -1,15 +1,24 @@
 """A drawing on several layers, and what its readers share."""
 
+import io
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+from PIL import Image
 
 from app.document import DEEPEST, BlendMode, Group, layer_commands, paths_to
 from app.errors import NOTHING_TOLD, ImportSummary, LissomError, Told, shown_name
-from app.storage.pictures.cores import require_memory
+from app.storage.pictures.cores import require_memory, side_by_side
 from app.storage.pictures.picture import Picture
+from engine.arrays import readonly
 
 MOST_LAYERS = 200
+# Of a layer's pixels: where no more of them are within the box of what is drawn, the rest is cut
+# off. Decoded, and on the graphics card, every pixel takes memory.
+CUT_OFF = 0.8
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -132,6 +141,11 @@ def layered_picture(
                 empty[layer.group] = layer.name
     if not kept:
         raise LissomError("it has no layer on which anything is drawn")
+    # Layers may share a picture.
+    distinct = list({id(layer.picture): layer for layer in kept}.values())
+    made = side_by_side(_trimmed, distinct, (layer.picture.size for layer in distinct))
+    trimmed = {id(layer.picture): each for layer, each in zip(distinct, made, strict=True)}
+    kept = [trimmed[id(layer.picture)].of(layer) for layer in kept]
     own = Counter(layer.name for layer in kept)
     taken: set[str] = set()
     layers = []
@@ -144,6 +158,45 @@ def layered_picture(
     return LayeredPicture(
         size=size, layers=tuple(layers), summary=told.summary, groups=groups.of(layers)
     )
+
+
+class _Trimmed(NamedTuple):
+    """A picture without empty pixels around it, and how far its corner has moved."""
+
+    data: bytes
+    picture: Picture
+    shift: complex
+
+    def of(self, layer: Layer) -> Layer:
+        """Return a layer with this picture."""
+        corner = layer.corner + self.shift
+        return replace(layer, data=self.data, picture=self.picture, corner=corner)
+
+
+def _trimmed(layer: Layer) -> _Trimmed:
+    """Return a layer's picture without empty pixels around what is drawn, where they are many."""
+    picture, (width, height) = layer.picture, layer.picture.size
+    drawn = picture.rgba[..., 3] > 0
+    top, bottom = np.flatnonzero(drawn.any(axis=1))[[0, -1]].tolist()
+    left, right = np.flatnonzero(drawn.any(axis=0))[[0, -1]].tolist()
+    # One more each way: what is opaque all over would be a picture that stands still.
+    top, left = max(top - 1, 0), max(left - 1, 0)
+    bottom, right = min(bottom + 1, height - 1), min(right + 1, width - 1)
+    if (right - left + 1) * (bottom - top + 1) > CUT_OFF * width * height:
+        return _Trimmed(layer.data, picture, 0j)
+    rgba = readonly(picture.rgba[top : bottom + 1, left : right + 1])
+    return _Trimmed(
+        encode_png(Image.fromarray(rgba)),
+        replace(picture, rgba=rgba, suffix=".png"),
+        complex(left, height - 1 - bottom),
+    )
+
+
+def encode_png(image: Image.Image) -> bytes:
+    """Return the PNG file of a picture, packed in little time."""
+    file = io.BytesIO()
+    image.save(file, "PNG", compress_level=1)
+    return file.getvalue()
 
 
 def require_few(count: int) -> None:

@@ -19,6 +19,7 @@ from app.storage.pictures.layered import (
     Layer,
     LayeredPicture,
     corner_from_top,
+    encode_png,
     layered_picture,
     require_room,
 )
@@ -109,7 +110,7 @@ def _read(drawing: Any) -> LayeredPicture:
         picture = Picture(rgba=freeze(np.array(image)))
         read = Layer(
             name=name,
-            data=_png(image),
+            data=encode_png(image),
             picture=picture,
             corner=corner_from_top(layer.left, layer.top, picture.size, drawing.height),
             visible=layer.visible,
@@ -124,7 +125,7 @@ def _read(drawing: Any) -> LayeredPicture:
         whole = drawing._record.image_data  # noqa: SLF001 - as of channels
         rows = drawing.height * drawing.channels
         _require_all_rows(whole, rows, drawing.version, padding=PADDING)
-        file = _png(drawing.topil().convert("RGBA"))
+        file = encode_png(drawing.topil().convert("RGBA"))
         flat = decode_picture(file, "the picture")
         layers = [Layer(name="picture", data=file, picture=flat)]
     return layered_picture((drawing.width, drawing.height), layers, groups, told)
@@ -213,12 +214,6 @@ def _require_all_rows(channel: Any, rows: int, version: int, *, padding: int = 0
         left = len(channel.data) - size * rows - int(lengths.sum())
         if len(lengths) < rows or not 0 <= left <= padding:
             raise LissomError("the rows of one of its channels are not as long as it says")
-
-
-def _png(image: Image.Image) -> bytes:
-    file = io.BytesIO()
-    image.save(file, "PNG", compress_level=1)
-    return file.getvalue()
 
 
 def _pixels(layer: Any, around: Sequence[Any], told: Told) -> Image.Image | None:

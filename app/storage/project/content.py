@@ -31,6 +31,7 @@ from app.document import (
     MoveKey,
     OpacityKey,
     Passing,
+    PictureFile,
     Placing,
     Pose,
     Spring,
@@ -345,7 +346,8 @@ def read_document(content: JsonObject, archive: Archive) -> Document:
     if len({figure["id"] for figure in figures}) < len(figures):
         # Told before their members are read, once for each.
         raise LissomError("two of its figures have the same id")
-    read = tuple(_read_figure(figure, archive) for figure in figures)
+    shared: dict[str, PictureFile] = {}
+    read = tuple(_read_figure(figure, archive, shared) for figure in figures)
     require_memory(figure.picture.size for figure in read)
     return Document(figures=read, **fields)
 
@@ -366,10 +368,18 @@ def _bring_up_to_schema_2(content: JsonObject) -> None:
     ]
 
 
-def _read_figure(fields: dict[str, Any], archive: Archive) -> Figure:
-    """Return the figure with these fields; what holds of its maps is proven anew."""
+def _read_figure(
+    fields: dict[str, Any], archive: Archive, shared: dict[str, PictureFile]
+) -> Figure:
+    """Return the figure with these fields; what holds of its maps is proven anew.
+
+    Its picture is one of those that are `shared`, by their checksums, or becomes one.
+    """
     members, made = FigureMembers(archive, fields["id"]), fields.pop("domain")
     picture = members.picture(**fields["picture"])
+    same = shared.setdefault(picture.sha256, picture)
+    if (same.suffix, same.size) == (picture.suffix, picture.size):
+        picture = same
     domain = members.domain(parted=made.pop("parted"))
     boundary = Boundary.sample(domain.outline, domain.cage, domain.holes)
 

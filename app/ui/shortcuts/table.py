@@ -41,8 +41,10 @@ def _redo_label(_: Session, project: Project) -> str:
 
 
 def _copied(session: Session, project: Project) -> str:
-    count = project.count_chosen if copying.copies_keys(session, project) else 0
-    return f"{count} keys" if count > 1 else "pose"
+    if copying.copies_keys(session, project):
+        return f"{project.count_chosen} keys" if project.count_chosen > 1 else "pose"
+    layers = len(project.layers)
+    return f"poses of {layers} layers" if layers > 1 else "pose"
 
 
 def _stretch(_: Session, project: Project) -> str:

@@ -23,7 +23,6 @@ NEAR, MUCH = 0.2, 0.6
 LUMA = np.array([0.2126, 0.7152, 0.0722])  # of red, green and blue, as Rec. 709 weighs them
 STEP = 4  # pixels: every so manieth is looked at
 DIM = 0.45  # of the desk's colour, over what the camera leaves out
-SMOOTH_FILL = 1 << 2  # ImDrawListFlags_AntiAliasedFill of Dear ImGui, which has no name here
 FAR = 1e3  # times the camera's frame: beyond the viewport
 
 
@@ -91,14 +90,21 @@ def draw_camera(look: Look, project: Project, screen: Screen, room: tuple[ImVec2
     corners = shot.frame(project.document.canvas)
     inner, outer = (screen.points(shot.centre + by * (corners - shot.centre)) for by in (1.0, FAR))
     # The frame is convex: its outside is four trapezoids, one beyond each edge. Where they meet,
-    # smooth edges would be seen.
-    smooth = draw_list.flags
-    draw_list.flags &= ~SMOOTH_FILL
+    # smooth edges would be seen: these are sharp.
+    dim, white = ink(look.palette.desk, DIM), imgui.get_font_tex_uv_white_pixel()
     for here, there in zip(range(4), np.roll(range(4), -1).tolist(), strict=True):
-        draw_list.add_quad_filled(
-            inner[here], outer[here], outer[there], inner[there], ink(look.palette.desk, DIM)
+        draw_list.prim_reserve(6, 4)
+        draw_list.prim_quad_uv(
+            inner[here],
+            outer[here],
+            outer[there],
+            inner[there],
+            white,
+            white,
+            white,
+            white,
+            dim,
         )
-    draw_list.flags = smooth
     for point in inner:
         draw_list.path_line_to(point)
     draw_list.path_stroke(ink(look.palette.accent), 1.5, imgui.ImDrawFlags_.closed)

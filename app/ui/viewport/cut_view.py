@@ -138,7 +138,7 @@ def _corners(width: float, height: float) -> Complexes:
 
 
 def _veil(cut: Cut) -> Bytes:
-    step = math.ceil(max(cut.kept.shape) / FINEST)
+    step = math.ceil(max(cut.mask.size) / FINEST)
     kept = cut.kept[::step, ::step]
     veil = np.zeros((*kept.shape, 4), dtype=np.uint8)
     veil[~kept] = VEIL

@@ -37,8 +37,8 @@ class Drawing:
         self.project = project
         self._renderer = renderer
         # By figures' ids and their pictures: a layer's may be replaced, or a new one get the id of
-        # one that is gone.
-        self._pictures: dict[tuple[int, Picture], GpuPicture] = {}
+        # one that is gone. Figures of which nothing is cut share them, by None.
+        self._pictures: dict[tuple[int | None, Picture], GpuPicture] = {}
         self._meshes: dict[PosableMesh, GpuMesh] = {}
         self._drawn_meshes: dict[tuple[PosableMesh, int], DrawnMesh] = {}
         self._ghosts: dict[tuple[int, int], tuple[object, Vertices]] = {}
@@ -58,6 +58,9 @@ class Drawing:
 
     def drawn_mesh(self, figure: int, mesh: PosableMesh, number: int = 0) -> DrawnMesh:
         """Return the copy of a figure's mesh with this number, which is posed by itself."""
+        if mesh in self._meshes and self._meshes[mesh].picture is not self._picture(figure):
+            # What is cut out of the picture is its own now, or is not any more.
+            self.release_but(self._meshes.keys() - {mesh})
         if (mesh, number) not in self._drawn_meshes:
             by_shader = shader_is_faster(self._renderer.programs.context)
             drawn = DrawnMesh(self._mesh(figure, mesh), by_shader=by_shader)
@@ -88,14 +91,13 @@ class Drawing:
 
     def refresh(self) -> None:
         """Bring the pictures up to what is cut out of them now."""
-        puppets = self.project.puppets
-        for figure, picture in list(self._pictures):
-            puppet = puppets.get(figure)
-            if puppet is None or puppet.picture is not picture:
-                # Undo brings it back; it has no mesh any more.
-                self._pictures.pop((figure, picture)).release()
+        used = {self._key(figure): figure for figure in self.project.puppets}
+        for key in list(self._pictures):
+            if key in used:
+                self._pictures[key].write(self.project.puppets[used[key]].cut.value.texture)
             else:
-                self._pictures[figure, picture].write(puppet.cut.value.texture)
+                # Undo brings it back; it has no mesh any more.
+                self._pictures.pop(key).release()
 
     def tint(self, pose: PosedMesh, values: Floats) -> None:
         """Colour a pose by values of its vertices, (v,), that are no distortion."""
@@ -158,8 +160,14 @@ class Drawing:
         return self._meshes[mesh]
 
     def _picture(self, figure: int) -> GpuPicture:
+        key = self._key(figure)
+        if key not in self._pictures:
+            texture = self.project.puppets[figure].cut.value.texture
+            context = self._renderer.programs.context
+            self._pictures[key] = GpuPicture(context, texture, is_for_screen=True)
+        return self._pictures[key]
+
+    def _key(self, figure: int) -> tuple[int | None, Picture]:
         puppet = self.project.puppets[figure]
-        if (figure, puppet.picture) not in self._pictures:
-            drawn = GpuPicture(self._renderer.programs.context, puppet.cut.value.texture)
-            self._pictures[figure, puppet.picture] = drawn
-        return self._pictures[figure, puppet.picture]
+        is_whole = puppet.cut.value.texture is puppet.picture.rgba
+        return None if is_whole else figure, puppet.picture

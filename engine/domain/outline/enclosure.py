@@ -9,7 +9,7 @@ import numpy as np
 from engine.arrays import Booleans, Complexes, Indices, readonly
 from engine.domain.outline.cage import offset_cage
 from engine.domain.outline.fitting import Candidates, fit_polygon
-from engine.domain.outline.holes import SMALLEST_HOLE, hole_in, trace_hole
+from engine.domain.outline.holes import SMALLEST_HOLE, hole_in, seen_holes, trace_hole
 from engine.domain.outline.knife import part
 from engine.domain.outline.margin import DistanceField, MarginCurve, curve_at_margin, distance_field
 from engine.domain.picture import Holes, WholePiece, join_parts, working_grid
@@ -127,8 +127,9 @@ def enclose(
     every = np.arange(1, len(piece.hole_areas) + 1)
     wanted = np.setdiff1d(every, others) if holes == "keep" else np.intersect1d(every, others)
     kept, crowded = _kept_holes(piece, wanted, fit, margin, grid.diagonal)
-    small = np.setdiff1d(wanted, [*kept, *crowded])
-    filled = np.setdiff1d(every, wanted)
+    seen = seen_holes(piece, grid)
+    small = np.intersect1d(np.setdiff1d(wanted, [*kept, *crowded]), seen)
+    filled = np.intersect1d(np.setdiff1d(every, wanted), seen)
     closed = None
     outline, cage, open_holes = fit.outline, fit.cage, tuple(kept.values())
     if slits:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
-from engine.arrays import Booleans, Complexes, Integers
+from engine.arrays import Booleans, Complexes, Indices, Integers
 from engine.domain.outline.cage import offset_cage
 from engine.domain.outline.fitting import Candidates, fit_polygon
 from engine.domain.outline.margin import curve_at_margin, distance_field
@@ -22,6 +22,7 @@ from engine.geometry import Hole, deepest_point
 # Radii of the largest disc, of the diagonal: in a hole that is kept, and in a part inside that
 # looks like the background, and is seen through or not although the mesh has no hole there.
 SMALLEST_HOLE, SMALLEST_POCKET = 0.012, 0.003
+BUBBLE = 3.0  # pixels: the same of a part that a soft contour encloses, which nobody sees as a hole
 SHARE = 0.25  # of that radius: the margin at most, and the offset from outline to cage
 FEWEST_EDGES = 16
 FRAME = 2  # cells of the subject around a hole that is cut out
@@ -91,6 +92,17 @@ def find_holes(mask: Booleans, enclosed: Booleans | None = None, *, opens: bool 
         if is_pocket and not opens:
             shut.add(number)
     return HoleMap(grid=grid, piece=piece, middles=middles, shut=frozenset(shut))
+
+
+def seen_holes(piece: WholePiece, grid: WorkingGrid) -> Indices:
+    """Return the numbers of the holes that a person sees: not of bubbles in a soft contour."""
+    least = max(SMALLEST_POCKET * grid.diagonal, BUBBLE / grid.cell)
+    seen = []
+    for number, (rows, columns) in enumerate(ndimage.find_objects(piece.holes), start=1):
+        hole = np.pad(piece.holes[rows, columns] == number, 1)
+        if min(hole.shape) >= 2 * least and ndimage.distance_transform_edt(hole).max() >= least:
+            seen.append(number)
+    return np.array(seen, dtype=np.intp)
 
 
 def trace_hole(

@@ -8,7 +8,7 @@ from hypothesis import given, strategies as st
 from invariants import check_pose
 from walkers import AXIS, FAR, HANDLES, SIZE, leg
 
-from app.document import Document, Target, handle_commands
+from app.document import Attachment, Document, Target, handle_commands
 from app.solving import Carriage, Likeness, Rig
 from app.solving.carrying import begin_like
 from app.solving.drag import Drag
@@ -202,10 +202,27 @@ def test_the_solver_begins_with_the_image_of_the_whole_map(near, mirrored):
     source, pose = near
     figure = leg("far leg", 1, mirrored=mirrored, turned=True)
     likeness = carriage(source, figure).likeness
-    begin = begin_like(Rig.of(figure), source, pose, likeness, {})
+    begin, _ = begin_like(Rig.of(figure), source, pose, likeness, {})
     points = source.domain.mesh.vertices
     images, shape = likeness.on(points), source.map_of(pose)
     inside = figure.covers(images)
     wanted = likeness.on(shape(points))[inside]
     moved = np.abs(shape(points) - points).max()
     assert np.abs(begin(images[inside]) - wanted).max() < 0.02 * moved
+
+
+@pytest.mark.parametrize("by", [FAR.shift, FAR.shift - 9j])
+def test_what_hangs_is_held_at_its_joint_as_the_source_is_at_its_own(near, by):
+    """The joint is beside the source's: it goes along as a rigid body would."""
+    hung = Attachment(to=9, at=0j)
+    source = replace(near[0], anchor=62 + 162j, joints=(hung,))
+    pose = raised(source)
+    assert abs(source.map_of(pose)(np.array([source.anchor]))[0] - source.anchor) < 3
+    figure = replace(leg("far leg", 1, FAR.shift), anchor=62 + 162j + by, joints=(hung,))
+    rig = Rig.of(figure)
+    assert len(rig.pins) == 1
+    carried = carriage(source, figure).carry(rig, pose)
+    check_pose(figure, carried)
+    there = source.map_of(pose)(np.array([source.anchor]))[0] + by
+    here = figure.map_of(carried)(np.array([figure.anchor]))[0]
+    assert abs(here - there) < 3

@@ -25,6 +25,7 @@ from app.editor.timeline_view import Strip
 from app.storage import load_project
 from app.ui.panel import is_in_front
 from app.ui.shortcuts import BINDINGS
+from engine.domain import Stroke
 
 WIDTH, HEIGHT = 240, 200
 
@@ -950,3 +951,28 @@ def test_blends_clipping_and_groups_are_set_in_the_panel(window, stranger):
         window.act(editing.undo)
     assert not project.document.groups[0].hidden
     assert project.document.figure(arm).blend == "normal"
+
+
+def test_figures_of_one_picture_share_it_on_the_graphics_card_until_one_is_cut(window, stranger):
+    project = window.again(Harness.open, stranger)
+    window.settle()
+    drawing = window._window._canvas._drawing
+    arm, glow, shine = (identity(project, name) for name in ("arm", "glow", "shine"))
+    assert drawing._picture(arm) is drawing._picture(glow) is drawing._picture(shine)
+    before = window.picture()
+    window.act(layering.choose, glow)
+    window.act(editing.edit, figure_commands.brush(glow, brush_at(project, glow)))
+    window.settle()
+    assert drawing._picture(arm) is drawing._picture(shine) is not drawing._picture(glow)
+    cut = window.picture()
+    assert cut.tobytes() != before.tobytes()
+    window.act(editing.undo)
+    window.settle()
+    assert drawing._picture(arm) is drawing._picture(glow)
+    assert len(drawing._pictures) == 3
+
+
+def brush_at(project, figure):
+    domain = project.document.figure(figure).domain
+    middle = domain.outline.mean() - project.document.figure(figure).corner
+    return Stroke(points=np.array([middle, middle + 5]), radius=8, keeps=False)

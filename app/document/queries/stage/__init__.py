@@ -5,6 +5,7 @@ Out: answers; nothing is changed.
 Imports: the values of `app.document`.
 """
 
+from app.document.queries.stage.alternates import alternates as alternates
 from app.document.queries.stage.compositing import Composite as Composite, composed as composed
 from app.document.queries.stage.layer_tree import TreeRow as TreeRow, layer_tree as layer_tree
 from app.document.queries.stage.moves import (
@@ -14,4 +15,8 @@ from app.document.queries.stage.moves import (
     movement_at as movement_at,
     opacity_at as opacity_at,
 )
-from app.document.queries.stage.sight import is_visible as is_visible, sights_of as sights_of
+from app.document.queries.stage.sight import (
+    is_visible as is_visible,
+    repeated as repeated,
+    sights_of as sights_of,
+)

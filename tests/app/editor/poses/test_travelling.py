@@ -154,6 +154,13 @@ def test_the_step_of_all_layers_is_pasted_swapped_and_nothing_is_mirrored(sessio
     settle(session)
     for name in ("near leg", "far leg"):
         close(ways(session, name, 24), ways(session, name, 0))
+    # Poses bring no way to the next key.
+    near = identity(session, "near leg")
+    editing.edit(session, key_commands.set_easing(near, {12}, PRESETS["in"]))
+    go(session, 12)
+    pasting.paste(session)
+    settle(session)
+    assert figure(session, "near leg").key(12).easing == PRESETS["in"]
 
 
 def test_left_and_right_layers_exchange_mirrored_when_flipped(tmp_path):
@@ -416,5 +423,26 @@ def test_keys_of_tracks_go_to_the_handles_of_the_partner(session, way, mirrors):
         if not mirrors:
             assert [key.place, key.velocity] == pytest.approx(wanted)
     assert session.project.chosen_of == {TrackRow(far, foot): frozenset({12, 18})}
+    editing.undo(session)
+    assert session.project.document is before
+
+
+def test_the_poses_of_chosen_layers_are_copied_and_one_is_pasted_onto_all_of_them(session):
+    near, far, body = (identity(session, name) for name in ("near leg", "far leg", "body"))
+    layering.choose_all(session, near, far)
+    copying.copy(session)
+    settle(session)
+    assert {each.figure.id for each in session.copied} == {near, far}
+    layering.choose(session, near)
+    copying.copy(session)
+    go(session, 12)
+    layering.choose_all(session, near, far, body)
+    before = session.project.document
+    pasting.paste(session)
+    settle(session)
+    close(ways(session, "far leg", 12), ways(session, "near leg", 0))
+    close(ways(session, "near leg", 12), ways(session, "near leg", 0))
+    assert figure(session, "body").key_frames == {0}
+    assert any("“body” has no handle" in toast.text for toast in session.toasts)
     editing.undo(session)
     assert session.project.document is before

@@ -148,12 +148,12 @@ def test_parts_are_joined_by_the_shortest_bridges() -> None:
 def test_holes_and_specks_are_told() -> None:
     rgba = pictures.blob(300, depth=0.0)
     rgba[140:150, 100:110, 3] = 0
-    rgba[140:150, 180:184, 3] = 0
+    rgba[140:150, 180:186, 3] = 0
     rgba[5, 5] = rgba[290, 8] = 255
     outline = outlined(rgba)
     assert outline.notices == (
         "2 specks dropped (0.01% of the subject)",
-        "1 hole filled, 0.1% of the subject, too small to stay open",
+        "1 hole filled, 0.2% of the subject, too small to stay open",
     )
     assert len(outline.holes) == 1
     assert not contains(outline.outline, np.array([5.5 + 294.5j])).any()

@@ -95,6 +95,26 @@ def test_small_holes_are_filled_and_told(radius: float, count: int) -> None:
     assert enclosure.notices == told
 
 
+@pytest.mark.parametrize("side", [300, 500])
+def test_bubbles_in_a_soft_contour_are_no_holes(side: int) -> None:
+    """As a brush with soft bristles leaves them between a line and what it surrounds."""
+    y, x = (np.mgrid[: 4 * side, : 4 * side] + 0.5) / 4
+    drawn = np.hypot(x - side / 2, y - side / 2) < 0.45 * side
+    rng = np.random.default_rng(3)
+    for angle in np.linspace(0, 2 * np.pi, 50):
+        middle = side * (0.5 + 0.5j + 0.41 * np.exp(1j * angle))
+        drawn &= np.hypot(x - middle.real, y - middle.imag) > rng.uniform(0.5, 3.2)
+    soft = drawn.reshape(side, 4, side, 4).mean((1, 3))
+    enclosure = kept(soft > 0.03)
+    assert (enclosure.holes, enclosure.notices) == ((), ())
+    assert kept(soft > 0.03, "fine").notices == ()
+    assert enclose(soft > 0.03, detail="normal", holes="fill").notices == ()
+    # A hole that is seen is told, as ever.
+    y, x = np.mgrid[:side, :side] - side // 2
+    told = kept((soft > 0.03) & (np.hypot(x, y) > 0.013 * side)).notices
+    assert told == ("1 hole filled, under 0.1% of the subject, too small to stay open",)
+
+
 def test_the_margin_and_the_cage_leave_the_middle_of_a_small_hole_free() -> None:
     (hole,) = kept(plate((300, 150, 12)), "coarse").holes
     assert_allclose(np.abs(hole.outline - (300 + 150j)), 9, rtol=0, atol=1)
