@@ -23,6 +23,7 @@ from app.document.commands import (
     cycle_commands as cycle_commands,
     exchanged as exchanged,
     figure_commands as figure_commands,
+    filming_commands as filming_commands,
     group_commands as group_commands,
     handle_commands as handle_commands,
     in_turn as in_turn,

@@ -39,6 +39,7 @@ from app.editor.session import (
     with_project as with_project,
 )
 from app.editor.timeline_view import (
+    CameraDrag as CameraDrag,
     CycleDrag as CycleDrag,
     Edge as Edge,
     EdgeDrag as EdgeDrag,

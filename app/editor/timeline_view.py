@@ -182,6 +182,14 @@ class MarkerDrag(TimeDrag):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class CameraDrag(TimeDrag):
+    """The pointer moves a key of the camera from a frame in `before` to where it is `at` now."""
+
+    key: int
+    at: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class SwitchDrag(TimeDrag):
     """The pointer moves where a figure is shown or hidden: from a frame in `before` to `at`."""
 

@@ -48,7 +48,7 @@ class MovingShape:
         Straight alpha, with colours where it is transparent; the part of the picture that the mesh
         shows.
     opacity : float
-        Of the whole figure with those of its groups, in the first frame.
+        Of the whole figure in the first frame, with those of its groups.
     uv : float64, shape (v, 2)
         u right, v up; [0, 1] spans the texture.
     orders : tuple of (float, int32 of shape (m, 3))

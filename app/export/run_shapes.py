@@ -118,12 +118,9 @@ class ShapeExport:
                     f"what lies in front of what changes in {shape.name}; a {format_.label} keeps "
                     "what is so at first"
                 )
-        constant = [
-            f"the opacity of {each.name}" for each in self._document.exported if each.opacities
-        ]
-        constant += [
-            f"the order of {each.name}" for each in self._document.exported if each.placings
-        ]
+        figures = self._document.exported
+        constant = [f"the opacity of {each.name}" for each in figures if each.opacities]
+        constant += [f"the order of {each.name}" for each in figures if each.placings]
         constant += ["the camera"] if self._document.camera and not format_.has_frame else []
         if constant:
             found.append(f"in a {format_.label} these do not change: {', '.join(constant)}")

@@ -15,6 +15,7 @@ from app.document.commands import (
     Command,
     choice_commands,
     figure_commands,
+    filming_commands,
     handle_commands,
     key_commands,
     layer_commands,
@@ -347,6 +348,7 @@ def _random_settings_command(rng: np.random.Generator, document: Document) -> Co
         scene_commands.move_marker(at, int(rng.integers(90))),
         scene_commands.delete_marker(at),
         scene_commands.set_loop(loop=bool(rng.integers(2))),
+        *_camera_commands(rng, document),
         figure_commands.set_variant(0, VARIANTS[rng.integers(len(VARIANTS))]),
         figure_commands.set_stillness(0, stillness=bool(rng.integers(2))),
         figure_commands.set_anchor(0, None if rng.random() < 0.3 else inside(rng)),
@@ -358,6 +360,20 @@ def _random_settings_command(rng: np.random.Generator, document: Document) -> Co
         figure_commands.set_cut_out(0, CutOut(tolerance=int(rng.integers(5)))),
     ]
     return commands[rng.integers(len(commands))]
+
+
+def _camera_commands(rng: np.random.Generator, document: Document) -> list[Command]:
+    frame, to = (int(at) for at in rng.integers(50, size=2))
+    at = document.camera[0].frame if document.camera else frame
+    faded = document.figures[0].opacities
+    key = CameraKey(frame=frame, centre=inside(rng), zoom=rng.uniform(0.1, 9), turn=rng.normal())
+    return [
+        filming_commands.key_camera(key),
+        filming_commands.move_camera_key(at, to),
+        filming_commands.delete_camera_key(at),
+        filming_commands.key_opacity(0, frame, rng.random()),
+        filming_commands.delete_opacity_key(0, faded[0].frame if faded else frame),
+    ]
 
 
 def _random_stroke(rng: np.random.Generator) -> Stroke:

@@ -369,6 +369,12 @@ MENUS: dict[str, dict[str, Binding]] = {
         "fit selection": Binding("Fit selection", do(viewing.fit_selection), "F"),
         "fit picture": Binding("Fit picture", do(viewing.look_from, None)),
         "actual size": Binding("Actual size", do(viewing.actual_size), "1"),
+        "fit camera": Binding(
+            "Fit camera",
+            do(layering.fit_camera),
+            hint="Show what the camera shows in this frame",
+            possible=lambda _, project: bool(project.document.camera),
+        ),
         "handles": _overlay(
             "Handles",
             "handles",
@@ -527,6 +533,12 @@ MENUS: dict[str, dict[str, Binding]] = {
             possible=lambda _, project: project.document.preview is not None,
         ),
         "marker": Binding("Add marker", do(keys.mark_here), "M", parted=True),
+        "key camera": Binding(
+            "Key the camera",
+            do(layering.key_camera),
+            icon=icons.ICON_FA_VIDEO,
+            hint="From here on frames show what the viewport shows now",
+        ),
         "previous marker": Binding(
             "Previous marker", do(playback.to_marker, -1), "Shift+PageUp", repeats=True
         ),

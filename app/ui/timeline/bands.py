@@ -76,6 +76,7 @@ class Bands:
         room = imgui.get_content_region_avail()
         figures = project.document.figures
         self.has_names = len(figures) > 1 or any(figure.tracks for figure in figures)
+        self.has_names |= bool(project.document.camera)
         names = min(NAMES * look.em, NAMES_SHARE * room.x) if self.has_names else 0.0
         self.size = ImVec2(room.x - names, room.y)
         self.left, self.top = self.corner.x + names, self.corner.y
@@ -84,7 +85,8 @@ class Bands:
         self.is_cramped = self.size.y < CRAMPED * look.em
         marks = SMALL_MARKS if self.is_cramped else MARKS
         self.marks_top = self.ruler_top + RULER * look.em
-        self.track_top = self.marks_top + bool(project.document.markers) * marks * look.em
+        self.camera_top = self.marks_top + bool(project.document.markers) * marks * look.em
+        self.track_top = self.camera_top + bool(project.document.camera) * THIN * look.em
         is_whole = self.is_cramped or project.timing.strip is None
         self.track_bottom = self.bottom - (0 if is_whole else OVERVIEW * look.em)
         self.rows: list[FigureRow] = []

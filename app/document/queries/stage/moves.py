@@ -10,6 +10,7 @@ from app.document.figure import Figure
 from app.document.layering import CameraKey, MoveKey, OpacityKey
 from app.document.model import Document
 from app.document.queries.passages import Leg, Moved, Passages, Value, value_on
+from engine.arrays import Complexes
 from engine.geometry import HERE, RigidMotion, Similarity
 
 Key = TypeVar("Key", CameraKey, MoveKey, OpacityKey)
@@ -35,6 +36,12 @@ class Shot(NamedTuple):
         """Return which motion of all things makes the canvas show what the camera does."""
         factor = self.zoom * complex(np.exp(1j * self.turn))
         return Similarity(factor, complex(*canvas) / 2 - factor * self.centre)
+
+    def frame(self, canvas: tuple[int, int]) -> Complexes:
+        """Return the corners of what is seen (4,), counter-clockwise from the lower left one."""
+        seen, (width, height) = self.on_canvas(canvas), canvas
+        corners = (0j, complex(width, 0), complex(width, height), complex(0, height))
+        return np.array([seen.back(corner) for corner in corners])
 
 
 def camera_at(document: Document, frame: float) -> Shot | None:

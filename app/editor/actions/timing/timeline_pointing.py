@@ -10,6 +10,7 @@ from app.document import (
     FrameRange,
     choice_commands,
     cycle_commands,
+    filming_commands,
     key_commands,
     layer_commands,
     scene_commands,
@@ -20,6 +21,7 @@ from app.editor.actions.timing.keys import retime
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.timeline_view import (
+    CameraDrag,
     CycleDrag,
     EdgeDrag,
     KeyBox,
@@ -210,21 +212,24 @@ def _moved(drag: TimeDrag, frame: float) -> tuple[TimeDrag, Command] | None:
             at = min(max(marker + by, 0), LAST_FRAME)
             others = {each.frame for each in before.markers} - {marker}
             command = scene_commands.move_marker(marker, at)
-            return None if at in others | {drag.at} else (replace(drag, at=at), command)
+        case CameraDrag(key=key):
+            at = before.frames.clamp(key + by)
+            others = {each.frame for each in before.camera} - {key}
+            command = filming_commands.move_camera_key(key, at)
         case CycleDrag():
             return drag, _end_cycle(drag, round(frame))
         case SwitchDrag(figure=figure, switch=switch):
             at = before.frames.clamp(switch + by)
             others = {each.frame for each in before.figure(figure).switches} - {switch}
             command = layer_commands.move_switch(figure, switch, at)
-            return None if at in others | {drag.at} else (replace(drag, at=at), command)
         case TurnDrag(choice=choice, turn=turn):
             at = before.frames.clamp(turn + by)
             others = {each.frame for each in before.choice(choice).turns} - {turn}
-            is_taken = at in others or at == before.frames.first
+            others.add(before.frames.first)
             command = choice_commands.move_turn(choice, turn, at)
-            return None if is_taken or at == drag.at else (replace(drag, at=at), command)
-    raise AssertionError("unreachable: there are no other drags")
+        case _:
+            raise AssertionError("unreachable: there are no other drags")
+    return None if at in others | {drag.at} else (replace(drag, at=at), command)
 
 
 def _end_cycle(drag: CycleDrag, frame: int) -> Command:
