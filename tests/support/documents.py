@@ -339,6 +339,7 @@ def _random_settings_command(rng: np.random.Generator, document: Document) -> Co
         scene_commands.move_marker(at, int(rng.integers(90))),
         scene_commands.delete_marker(at),
         scene_commands.set_loop(loop=bool(rng.integers(2))),
+        scene_commands.set_pairs((("near", "far"), (f"é {rng.integers(3)}", "B"))),
         figure_commands.set_variant(0, VARIANTS[rng.integers(len(VARIANTS))]),
         figure_commands.set_stillness(0, stillness=bool(rng.integers(2))),
         figure_commands.set_anchor(0, None if rng.random() < 0.3 else inside(rng)),
@@ -481,7 +482,7 @@ def full_document() -> Document:
 
 
 def clocked_document() -> Document:
-    """The full document with what came later: clocks of single handles, material, and groups."""
+    """The full document with what came later: clocks of handles, material, groups, and pairs."""
     full = full_document()
     figure = full.figures[0]
     nose, foot = figure.handles
@@ -520,7 +521,8 @@ def clocked_document() -> Document:
         Group(name="limbs", hidden=True, unknown=more),
         Group(name="limbs/left", opacity=1 / 3, blend="screen", clipped=True),
     )
-    return dataclasses.replace(full, figures=(child, parent), groups=groups)
+    pairs = (("L", "R"), ("Fuß", "Tatze\n"))
+    return dataclasses.replace(full, figures=(child, parent), groups=groups, pairs=pairs)
 
 
 def differences(first: object, second: object, where: str = "document") -> list[str]:
