@@ -169,6 +169,8 @@ class ExportFormat:
         Whether it shows a part of the plane, before a background; else it is in the plane itself.
     keeps_order : bool
         Whether what lies in front of what may change in it.
+    composites : bool
+        Whether figures and groups are blended, clipped and faded in it as they are here.
     largest : int, optional
         Pixels of a picture each way, at most.
     is_still : bool
@@ -194,6 +196,7 @@ class ExportFormat:
     is_drawn: bool = True
     has_frame: bool = True
     keeps_order: bool = True
+    composites: bool = True
     largest: int | None = None
     is_still: bool = False
     block: int = 1
@@ -308,6 +311,7 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
             is_drawn=False,
             has_frame=False,
             keeps_order=False,
+            composites=False,
             options="shapes",
         ),
         "html": ExportFormat(

@@ -23,6 +23,7 @@ from app.document import (
     Variant,
     clip_of,
     layer_tree,
+    movement_at,
 )
 from app.editor.timeline_view import KeyRow, KeysOf, Timing, TrackRow, row_of
 from app.editor.work import Afterwards, Carry, Derived, Promise, Pull, Take
@@ -44,7 +45,7 @@ from app.solving import Renewal, Rig
 from app.storage import Cut, Hold, Origin, Picture, cut_picture
 from engine.arrays import Bytes
 from engine.domain import CutOut
-from engine.geometry import HERE, RigidMotion
+from engine.geometry import RigidMotion
 from engine.maps import Bounds
 
 EXTENTS = 32  # of the motion, which are remembered for undo and redo
@@ -205,6 +206,7 @@ class Project:
     beside: frozenset[int] = frozenset()
     solo: frozenset[int] = frozenset()
     toggled: frozenset[str] = frozenset()  # rows of the tree of layers, open or closed by hand
+    declined: frozenset[str] = frozenset()  # groups of which no choice is to be made
     listed: int | None = None  # the figure that the list of layers was scrolled to
 
     @property
@@ -377,7 +379,7 @@ class Project:
         """
         own, joints = self.document.figure(figure), self.hung
         if not own.joints:
-            return [HERE for _ in frames]
+            return [movement_at(self.document, own, frame) for frame in frames]
         if joints is None and (before := self.joints.value) is not None:
             joints = before if self._hangs_as_in(before.document, own) else None
         return None if joints is None else [joints.placement(figure, frame) for frame in frames]
@@ -389,8 +391,8 @@ class Project:
         return (
             own is not None
             and (before.frames, before.loop) == (document.frames, document.loop)
-            and (own.joints, own.anchor, own.domain)
-            == (figure.joints, figure.anchor, figure.domain)
+            and (own.joints, own.anchor, own.domain, own.movement)
+            == (figure.joints, figure.anchor, figure.domain, figure.movement)
             and all(was.get(each.id) is each for each in document.all_carriers(figure.id))
         )
 

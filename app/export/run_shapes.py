@@ -1,11 +1,17 @@
 """Exports of shapes: nothing is drawn, and a few steps of the work are taken at a time."""
 
-from collections.abc import Generator, Mapping
+from collections.abc import Generator, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from typing import Final
 
-from app.document import Document
-from app.export.moving_shape import DEFAULT_TOLERANCE, MOST_TARGETS, MovingShape, moving_shapes
+from app.document import Document, Figure, Group
+from app.export.moving_shape import (
+    DEFAULT_TOLERANCE,
+    MOST_TARGETS,
+    MovingScene,
+    MovingShape,
+    moving_shapes,
+)
 from app.export.plan import ExportPlan
 from app.export.poses import Poses
 from app.export.run import come
@@ -41,7 +47,13 @@ class ShapeExport:
         self._plan = plan
         self._work = moving_shapes(document, pictures, poses, plan)
         self._share = 0.0
-        self.shapes: list[MovingShape] = []
+        self._document = document
+        self._scene: MovingScene | None = None
+
+    @property
+    def shapes(self) -> tuple[MovingShape, ...]:
+        """What was found of the figures; none before the end."""
+        return () if self._scene is None else self._scene.shapes
 
     def run(
         self, *, waits: bool = True, cancellation: Cancellation | None = None
@@ -71,11 +83,11 @@ class ShapeExport:
         cancellation = cancellation or Cancellation()
         total, worker = len(self._plan.times), ThreadPoolExecutor(1)
         try:
-            while not self.shapes:
+            while self._scene is None:
                 batch = worker.submit(self._advance)
                 yield from come(batch, count=int(self._share * total), waits=waits)
                 yield int(self._share * total)
-            end = worker.submit(self._write, cancellation)
+            end = worker.submit(self._write, self._scene, cancellation)
             yield from come(end, count=total, waits=waits)
         except BaseException:
             cancellation.cancel()
@@ -106,10 +118,37 @@ class ShapeExport:
                     f"what lies in front of what changes in {shape.name}; a {format_.label} keeps "
                     "what is so at first"
                 )
-        return tuple(found)
+        constant = [
+            f"the opacity of {each.name}" for each in self._document.exported if each.opacities
+        ]
+        constant += [
+            f"the order of {each.name}" for each in self._document.exported if each.placings
+        ]
+        constant += ["the camera"] if self._document.camera and not format_.has_frame else []
+        if constant:
+            found.append(f"in a {format_.label} these do not change: {', '.join(constant)}")
+        return (*found, *(() if format_.composites else self._uncomposited(format_.label)))
 
-    def _write(self, cancellation: Cancellation) -> None:
-        contents = SHAPE_WRITERS[self._plan.format](self.shapes, self._plan)
+    def _uncomposited(self, label: str) -> Iterator[str]:
+        """Tell what does not look as it does here in a format that paints figure upon figure."""
+        groups = self._document.groups
+        painted: list[Figure | Group] = [*self._document.exported, *groups]
+        for what, names in (
+            ("multiplied", [each.name for each in painted if each.blend == "multiply"]),
+            ("screened", [each.name for each in painted if each.blend == "screen"]),
+            ("clipped", [each.name for each in painted if each.clipped]),
+        ):
+            if names:
+                yield f"{', '.join(names)}: not {what} in a {label}, but painted over the rest"
+        faint = [group.name for group in groups if group.opacity < 1]
+        if faint:
+            yield (
+                f"{', '.join(faint)}: faded figure by figure in a {label}, so that they shine "
+                "through each other"
+            )
+
+    def _write(self, scene: MovingScene, cancellation: Cancellation) -> None:
+        contents = SHAPE_WRITERS[self._plan.format](scene, self._plan)
         write_atomically(self._plan.out, lambda file: file.write(contents), cancellation)
 
     def _advance(self) -> None:
@@ -117,5 +156,5 @@ class ShapeExport:
             try:
                 self._share = next(self._work)
             except StopIteration as stop:
-                self.shapes = stop.value
+                self._scene = stop.value
                 return

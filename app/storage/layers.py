@@ -126,19 +126,25 @@ def flattened(document: Document, textures: Mapping[int, Bytes]) -> Bytes:
 
     first = document.frames.first
     seen = {each.id: each for each in document.exported if is_visible(document, each, first)}
-    return readonly(np.asarray(painted(composed(document, seen))))
+    return readonly(np.asarray(painted(composed(document, seen, first))))
 
 
 def _blended(below: Image.Image, layer: Image.Image, how: Composite[Figure]) -> Image.Image:
     """Return a layer over what lies below it ("Compositing and Blending Level 1", Section 10)."""
     alpha = layer.getchannel("A").point(lambda a: round(how.opacity * a))
+    covered = below.getchannel("A")
+    # What is clipped meets all below as if that were opaque.
+    solid = below.convert("RGB").convert("RGBA") if how.clipped else below
     if how.blend != "normal":
         mix = ImageChops.multiply if how.blend == "multiply" else ImageChops.screen
         own, lower = layer.convert("RGB"), below.convert("RGB")
         # Where there is nothing below, it keeps its colours.
-        layer = Image.composite(mix(lower, own), own, below.getchannel("A")).convert("RGBA")
+        layer = Image.composite(mix(lower, own), own, solid.getchannel("A")).convert("RGBA")
     layer.putalpha(alpha)
-    return Image.alpha_composite(below, layer)
+    flat = Image.alpha_composite(solid, layer)
+    if how.clipped:
+        flat.putalpha(covered)
+    return flat
 
 
 def _reduced(rgba: Bytes, factor: int) -> Image.Image:
@@ -213,6 +219,9 @@ def still_figure(figure: Figure) -> Figure:
         hidden=figure.hidden,
         switches=figure.switches,
         opacity=figure.opacity,
+        opacities=figure.opacities,
+        movement=figure.movement,
+        placings=figure.placings,
         blend=figure.blend,
         clipped=figure.clipped,
         group=figure.group,

@@ -25,7 +25,15 @@ from app.document.commands import (
 )
 from app.document.figure import PictureFile, new_figure
 from app.document.keyframe import Handle, KeptPose, Keyframe, Passing, Pose, Target
-from app.document.layering import Attachment, Group, Switch
+from app.document.layering import (
+    Attachment,
+    CameraKey,
+    Group,
+    MoveKey,
+    OpacityKey,
+    Placing,
+    Switch,
+)
 from app.document.model import Document
 from app.document.settings import FRAMINGS, VARIANTS, ExportSettings, FrameRange, Marker, Meshing
 from app.document.timing import HOLD, LINEAR, PRESETS, Easing, Spring, Track, TrackKey
@@ -516,13 +524,24 @@ def clocked_document() -> Document:
         blend="multiply",
         clipped=True,
         group="limbs/left",
+        movement=(
+            MoveKey(frame=2, shift=complex(1 / 3, -0.0), turn=0.1, unknown=more),
+            MoveKey(frame=9, easing=PRESETS["in"], passing=Passing.STOP),
+        ),
+        opacities=(OpacityKey(frame=3, opacity=1 / 3), OpacityKey(frame=60, opacity=0.0)),
+        placings=(Placing(frame=7, beside=5, in_front=False), Placing(frame=70, beside=None)),
     )
     groups = (
         Group(name="limbs", hidden=True, unknown=more),
         Group(name="limbs/left", opacity=1 / 3, blend="screen", clipped=True),
     )
+    camera = (
+        CameraKey(frame=1, centre=complex(1 / 3, -0.0), zoom=2.0, turn=-0.5, unknown=more),
+        CameraKey(frame=9, centre=9j, zoom=0.1, easing=HOLD, passing=Passing.CORNER),
+    )
     pairs = (("L", "R"), ("Fuß", "Tatze\n"))
-    return dataclasses.replace(full, figures=(child, parent), groups=groups, pairs=pairs)
+    figures = (child, parent)
+    return dataclasses.replace(full, figures=figures, groups=groups, camera=camera, pairs=pairs)
 
 
 def differences(first: object, second: object, where: str = "document") -> list[str]:

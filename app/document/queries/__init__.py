@@ -36,10 +36,17 @@ from app.document.queries.spans import (
 )
 from app.document.queries.stage import (
     Composite as Composite,
+    Shot as Shot,
     TreeRow as TreeRow,
+    alternates as alternates,
+    camera_at as camera_at,
     composed as composed,
+    in_order as in_order,
     is_visible as is_visible,
     layer_tree as layer_tree,
+    movement_at as movement_at,
+    opacity_at as opacity_at,
+    repeated as repeated,
     sights_of as sights_of,
 )
 from app.document.queries.timeline import (

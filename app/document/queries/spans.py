@@ -168,15 +168,3 @@ def place_at(clip: Clip, frame: float) -> tuple[int, KeySpan, float]:
             frame += clip.period
         number = max(0, bisect_right(found, frame, key=lambda span: span.start) - 1)
     return number, found[number], min(max(found[number].share(frame), 0.0), 1.0)
-
-
-def has_been(figure: Figure, event: int, frame: float) -> bool:
-    """Tell whether an event of a figure's keys holds at a frame, as far as no later one does.
-
-    Those of a cycle hold until a repeat, or all of them, are over, and begin anew.
-    """
-    for cycle in figure.cycles:
-        if cycle.has(event):
-            end = frame if cycle.until is None else min(frame, cycle.until)
-            return event <= frame and event <= cycle.source(end)
-    return event <= frame

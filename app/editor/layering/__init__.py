@@ -56,6 +56,7 @@ from app.editor.layering.pictures import (
     stand_up as stand_up,
 )
 from app.editor.layering.turns import (
+    decline as decline,
     dissolve as dissolve,
     form as form,
     join as join,

@@ -5,7 +5,6 @@ Source: https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html
 
 import json
 import struct
-from collections.abc import Sequence
 from importlib.metadata import version
 from typing import Any, Final
 
@@ -13,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from app.errors import shown_name
-from app.export.moving_shape import MovingShape
+from app.export.moving_shape import MovingScene, MovingShape
 from app.export.plan import ExportPlan
 from app.export.writers.png import encode_png
 from engine.arrays import Complexes, Floats
@@ -29,10 +28,10 @@ _MOST_UINT16: Final = 65_534  # the last number ends strips
 _COMPONENTS: Final = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}
 
 
-def glb_file(shapes: Sequence[MovingShape], plan: ExportPlan) -> bytes:
+def glb_file(scene: MovingScene, plan: ExportPlan) -> bytes:
     """Return a glTF file of figures, the one behind all others first."""
     asset = _Asset(plan)
-    for shape in shapes:
+    for shape in scene.shapes:
         asset.add(shape)
     return asset.file()
 

@@ -11,9 +11,10 @@ from typing import Any, Final
 
 import numpy as np
 
+from app.document import Composite
 from app.errors import shown_name
 from app.export.framing import shown_box
-from app.export.moving_shape import MovingShape
+from app.export.moving_shape import MovingScene, MovingShape
 from app.export.plan import ExportPlan
 from app.export.writers.png import encode_png
 from app.storage import shader_source
@@ -33,7 +34,7 @@ _SHADERS: Final = (
 )
 
 
-def html_page(shapes: Sequence[MovingShape], plan: ExportPlan) -> bytes:
+def html_page(scene: MovingScene, plan: ExportPlan) -> bytes:
     """Return a page of figures, the one behind all others first."""
     box = shown_box(plan.view)
     (first, last), colour = plan.span, plan.background
@@ -43,7 +44,9 @@ def html_page(shapes: Sequence[MovingShape], plan: ExportPlan) -> bytes:
         "fps": plan.fps,
         "loop": plan.loop,
         **{name: _HEADER + "\n".join(map(shader_source, files)) for name, files in _SHADERS},
-        "figures": [_packed(shape) for shape in shapes],
+        "figures": [_packed(shape) for shape in scene.shapes],
+        "parts": _parts(scene.parts),
+        "colour": None if colour is None else [level / 255 for level in colour],
     }
     page = Template(_PAGE.read_text(encoding="utf-8")).substitute(
         title=html.escape(shown_name(plan.out.stem)),
@@ -76,8 +79,22 @@ def _packed(shape: MovingShape) -> dict[str, Any]:
         "triangles": len(shape.orders[0][1]),
         "orders": [seconds for seconds, _ in shape.orders],
         "sights": shape.sights,
-        "opacity": shape.opacity,
     }
+
+
+def _parts(parts: Sequence[int | Composite[int]]) -> list[Any]:
+    """Return how figures are composited: their numbers, and objects of such."""
+    return [
+        part
+        if isinstance(part, int)
+        else {
+            "parts": _parts(part.parts),
+            "opacity": part.opacity,
+            "blend": part.blend,
+            "clipped": part.clipped,
+        }
+        for part in parts
+    ]
 
 
 def _pairs(points: Complexes) -> Floats:

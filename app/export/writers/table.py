@@ -1,13 +1,13 @@
 """The writer of each format: one entry of a table each."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import closing, contextmanager
 from types import MappingProxyType
 from typing import IO, Final
 
 from app.errors import LissomError
 from app.export.destination import data_file
-from app.export.moving_shape import MovingShape
+from app.export.moving_shape import MovingScene
 from app.export.plan import ExportPlan
 from app.export.writers.apng import ApngWriter
 from app.export.writers.frame_writer import FrameWriter
@@ -48,8 +48,8 @@ FILE_WRITERS: Final[Mapping[str, Callable[[IO[bytes], ExportPlan], FrameWriter]]
 DATA_WRITERS: Final[Mapping[str, Callable[[IO[bytes], IO[bytes], ExportPlan], FrameWriter]]] = (
     MappingProxyType({"spritesheet": SpritesheetWriter})
 )
-SHAPE_WRITERS: Final[Mapping[str, Callable[[Sequence[MovingShape], ExportPlan], bytes]]] = (
-    MappingProxyType({"glb": glb_file, "html": html_page})
+SHAPE_WRITERS: Final[Mapping[str, Callable[[MovingScene, ExportPlan], bytes]]] = MappingProxyType(
+    {"glb": glb_file, "html": html_page}
 )
 
 

@@ -51,7 +51,7 @@ def draw(session: Session, look: Look, project: Project) -> list[Action]:
         return []
     settings = project.document.export
     motion = project.extent.value or box_around(project.puppet.shown.positions)
-    view = frame_view(settings, project.document.canvas, motion)
+    view = frame_view(settings, project.document, motion)
     box = shown_box(view)
     actions = [do(exporting.show_frame, box)]
     heading(look, "Picture")

@@ -224,7 +224,8 @@ def _posed(
             drawing.tint(pose, _tinted(session, project, drawing, figure, shown))
         elif heat_map != "none":
             drawing.heat(pose, shown, heat_map)
-    return composed(document, poses)
+    frame = max((shown.frame for shown in shows.values() if shown), default=0)
+    return composed(document, poses, frame)
 
 
 def _tinted(
@@ -264,7 +265,7 @@ def _ghosts(session: Session, project: Project, drawing: Drawing) -> tuple[Ghost
             }
             seen = {figure: pose for figure, pose in poses.items() if pose is not None}
             if seen:
-                meshes = composed(project.document, seen)
+                meshes = composed(project.document, seen, project.document.in_time(at))
                 ghosts.append(Ghost(meshes=meshes, tint=tint, opacity=GHOST_OPACITY / step**0.5))
     return tuple(ghosts)
 
@@ -303,14 +304,15 @@ def _behind_ghosts(session: Session, project: Project, meshes: int) -> int:
     if session.preferences.ghosts_in_front:
         return meshes
     document, shows = project.document, project.puppets
+    frame = max((each.shown.frame for each in shows.values() if each.shown), default=0)
     still = {
-        each.id: each.still
+        each.id: each.still and not each.movement
         for each in document.figures
         if (shown := shows[each.id].shown) is not None
         and is_visible(document, each, shown.frame)
         and (not project.solo or each.id in project.solo)
     }
-    return sum(1 for _ in takewhile(_is_still, composed(document, still)))
+    return sum(1 for _ in takewhile(_is_still, composed(document, still, frame)))
 
 
 def _is_still(part: bool | Composite[bool]) -> bool:  # noqa: FBT001 - of a composition

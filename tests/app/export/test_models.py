@@ -17,7 +17,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from PIL import Image
 from pygltflib import GLTF2
 
-from app.document import HOLD, ExportSettings, FrameRange, Switch, clip_of
+from app.document import HOLD, ExportSettings, FrameRange, Group, Switch, clip_of
 from app.errors import LissomError
 from app.export import (
     ExportRequest,
@@ -297,6 +297,30 @@ def test_every_figure_is_a_node_with_a_motion_of_its_own(tmp_path):
 def still():
     document = moving_document()
     return altered(document, keys=document.figures[0].keys[1:])
+
+
+def test_what_a_model_does_not_composite_is_told(tmp_path):
+    document = two_figures()
+    first, second = document.figures
+    document = replace(
+        document,
+        figures=(
+            replace(first, opacity=0.5, group="limbs"),
+            replace(second, blend="multiply", clipped=True),
+        ),
+        groups=(Group(name="limbs", opacity=0.5, blend="screen"),),
+    )
+    _, maker = exported(document, tmp_path / "two.glb")
+    assert maker.shapes[0].opacity == 0.25
+    told = [notice for notice in maker.notices if "glTF" in notice]
+    assert told == [
+        f"{second.name}: not multiplied in a glTF model, but painted over the rest",
+        "limbs: not screened in a glTF model, but painted over the rest",
+        f"{second.name}: not clipped in a glTF model, but painted over the rest",
+        "limbs: faded figure by figure in a glTF model, so that they shine through each other",
+    ]
+    _, maker = exported(two_figures(), tmp_path / "plain.glb")
+    assert not any("painted over" in notice for notice in maker.notices)
 
 
 def test_figures_are_seen_when_and_as_much_as_they_should(tmp_path, monkeypatch):

@@ -11,7 +11,7 @@ from chromium import PROGRAM, Page, chromium
 from documents import altered
 from PIL import Image
 
-from app.document import Document, ExportSettings, FrameRange, Switch, clip_of
+from app.document import Document, ExportSettings, FrameRange, Group, Switch, clip_of
 from app.export import ExportRequest, KeptPoses, Painter, ShapeExport, plan_export
 from app.motion import Animation
 from app.render.gpu import create_context
@@ -111,6 +111,31 @@ def test_the_browser_shows_what_the_renderer_draws(browser, tmp_path):
         assert apart.mean() <= MEAN, seconds
         assert found[0, 0, 3] == 0
     assert np.abs(premultiplied(shown(page, 0)) - premultiplied(found)).max() > 100
+    gl.release()
+    assert page.run("gl.getError()") == 0
+
+
+@pytest.mark.parametrize("background", ["transparent", "#c08030"])
+def test_the_browser_composites_as_the_renderer_does(browser, tmp_path, background):
+    document, out = two_blobs(), tmp_path / "walk.html"
+    low, high = document.figures
+    made = [
+        replace(low, name="base", opacity=0.8),
+        replace(high, id=1, name="shade", clipped=True, blend="screen"),
+        replace(high, id=2, name="far", blend="multiply", group="limbs"),
+        replace(low, id=3, name="near", opacity=1.0, group="limbs/inner"),
+        replace(high, id=4, name="light", clipped=True, blend="multiply", group="limbs/inner"),
+    ]
+    groups = (Group(name="limbs", opacity=0.6), Group(name="limbs/inner", blend="screen"))
+    document = replace(document, figures=tuple(made), groups=groups)
+    draw = exported(document, out, background=background)
+    page, gl = opened(browser, out), create_context()
+    page.run("lissom.pause()")
+    for seconds in MOMENTS:
+        found, wanted = shown(page, seconds), draw(gl, document.fps * seconds)
+        apart = np.abs(premultiplied(found) - premultiplied(wanted))
+        assert apart.max() <= 2 * MOST, seconds
+        assert apart.mean() <= 2 * MEAN, seconds
     gl.release()
     assert page.run("gl.getError()") == 0
 

@@ -3,9 +3,18 @@
 import pytest
 from imgui_bundle import ImVec2
 
-from app.document import FrameRange, key_commands, scene_commands
+from app.document import (
+    LINEAR,
+    FrameRange,
+    cycle_commands,
+    key_commands,
+    layer_commands,
+    scene_commands,
+)
 from app.document.timing import Cycle
+from app.editor import layering
 from app.editor.actions import cycles, editing, keys, playback
+from app.errors import LissomError
 
 RIGHT = 1  # the id of the bar's right handle
 MENU = "//$FOCUSED/###"
@@ -152,3 +161,28 @@ def test_keys_wait_before_what_repeats(window, cycling):
     window.settle()
     assert frames_of(cycling) == [10, 54]
     assert cycling.figure.cycles == (Cycle(first=10, last=58),)
+
+
+def test_chosen_layers_repeat_together_in_one_step(window, cycling):
+    arm, body = cycling.active, cycling.active + 1
+    editing.edit(window.session, layer_commands.duplicate_figure(arm))
+    editing.edit(window.session, cycle_commands.stop(arm, 0))
+    for figure in cycling.document.figures:
+        editing.edit(window.session, key_commands.move_keys(figure.id, {24}, figure.id))
+    editing.edit(window.session, cycle_commands.stop(body, 0))
+    window.settle()
+    layering.choose_all(window.session, arm, body)
+    editing.choose_keys_of(window.session, {})
+    before = cycling.document
+    window.act(cycles.repeat)
+    cycle = (Cycle(first=0, last=48),)
+    assert [figure.cycles for figure in cycling.document.figures] == [cycle, cycle]
+    editing.undo(window.session)
+    assert cycling.document is before
+    # What one of them refuses, none does.
+    other = key_commands.put_pose(body, 48, cycling.document.figure(body).key(25).pose, LINEAR)
+    editing.edit(window.session, other)
+    before = cycling.document
+    with pytest.raises(LissomError, match="bar copy: Frames 0 and 48 show two poses"):
+        cycles.repeat(window.session)
+    assert cycling.document is before

@@ -7,7 +7,7 @@ from imgui_bundle import ImVec2
 from layered import openraster
 from PIL import Image, ImageDraw
 
-from app.document import choice_commands, is_visible, key_commands
+from app.document import choice_commands, group_commands, is_visible, key_commands
 from app.editor import layering
 from app.editor.actions import editing, playback, posing
 
@@ -300,3 +300,16 @@ def test_what_is_hidden_at_all_times_is_switched_instead(window, scene, ids, use
     assert "hat" not in seen(scene, 7)
     assert "hat" in seen(scene, 8)
     assert not scene.document.figure(ids["hat"]).hidden
+
+
+def test_a_group_of_mouths_is_offered_as_a_choice(window, scene, ids, use):
+    command = group_commands.put_in_group([ids["ah"], ids["oh"]], "mouth")
+    window.act(editing.edit, command)
+    window.frames(3)
+    use(lambda robot: robot.item_click("**/Let them take turns"))
+    (choice,) = scene.document.choices
+    assert (choice.name, set(choice.figures)) == ("mouth", {ids["ah"], ids["oh"]})
+    window.act(editing.undo)
+    window.frames(3)
+    use(lambda robot: robot.item_click("**/No"))
+    assert scene.declined == {"mouth"}
