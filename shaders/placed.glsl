@@ -1,6 +1,6 @@
-// Where a figure is that hangs on another one: turned and moved as a whole.
+// Where a figure is that is moved as a whole, or seen by a camera: turned, scaled and moved.
 
-uniform vec4 placement;   // real and imaginary part of the factor, of modulus 1, and the shift
+uniform vec4 placement;   // real and imaginary part of the factor, and the shift
 
 vec2 placed(vec2 place) {
     vec2 turn = placement.xy;

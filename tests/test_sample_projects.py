@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from app.document.queries.shortfall import Extremes
-from app.document.queries.sight import is_visible
+from app.document.queries.stage.sight import is_visible
 from app.document.queries.timeline import clip_of, exported_frames
 from app.motion import Animation, Joints, PaintOrder
 from app.motion.interval_store import IntervalStore

@@ -23,9 +23,13 @@ from app.document.layering import (
     BLENDS,
     Attachment,
     BlendMode,
+    MoveKey,
+    OpacityKey,
+    Placing,
     Switch,
     require_in_order,
     require_joints,
+    require_rising,
 )
 from app.document.settings import NATURAL, VARIANTS, Meshing
 from app.document.timing import Cycle, Spring, Track, require_apart, require_repeatable
@@ -103,13 +107,17 @@ class Figure:
     # When it comes to be seen or hidden, in the order of their frames; it begins as the first one
     # says. Always seen without any.
     switches: tuple[Switch, ...] = ()
-    opacity: float = 1.0  # in [0, 1]
+    opacity: float = 1.0  # in [0, 1]; where it has keys, they hold instead
+    opacities: tuple[OpacityKey, ...] = ()
     blend: BlendMode = "normal"
     # Whether it is seen only where that is which lies below it in its group: a figure, or a group.
     clipped: bool = False
     group: str = ""  # the path of the innermost group that it is in; "" outside of all groups
     # The joints by which it hangs on others, each from its frame on; its anchor is then given.
     joints: tuple[Attachment, ...] = ()
+    # By which it moves as a whole, a rigid motion after its map, while it hangs on nothing.
+    movement: tuple[MoveKey, ...] = ()
+    placings: tuple[Placing, ...] = ()  # before the first one it lies where it is in the document
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
@@ -127,6 +135,13 @@ class Figure:
             f"{self.name!r} is attached, but has no anchor.",
         )
         require_joints(self.joints)
+        require_rising(self.movement, f"The movement of {self.name!r}")
+        require_rising(self.opacities, f"The opacity of {self.name!r}")
+        require_rising(self.placings, f"The order of {self.name!r}")
+        require(
+            all(placing.beside != self.id for placing in self.placings),
+            f"{self.name!r} cannot be in front of itself, nor behind.",
+        )
         require(
             not self.still or (len(self.keys) == 1 and not self.handles),
             f"{self.name!r} is a still picture: it has neither handles nor a second key.",
@@ -157,10 +172,11 @@ class Figure:
 
     @property
     def ends(self) -> tuple[int, int]:
-        """The first and the last frame of what is keyed: poses, tracks and what repeats."""
-        frames = [self.keys[0].frame, self.keys[-1].frame]
-        for track in self.tracks:
-            frames += [track.keys[0].frame, track.keys[-1].frame]
+        """The first and the last frame of what is keyed, or repeats."""
+        frames = [key.frame for key in self.keys]
+        frames += [key.frame for track in self.tracks for key in track.keys]
+        frames += [key.frame for key in self.movement]
+        frames += [key.frame for key in self.opacities]
         for cycle in self.cycles:
             frames += [cycle.first, cycle.last if cycle.until is None else cycle.until]
         return min(frames), max(frames)
@@ -173,6 +189,14 @@ class Figure:
         """Return the frame at which what a frame shows is keyed: another one where it repeats."""
         cycle = self.cycle_at(frame)
         return frame if cycle is None or frame in self.key_frames else int(cycle.source(frame))
+
+    @property
+    def pivot(self) -> complex:
+        """The point around which its movement turns it: its anchor, or the middle of its shape."""
+        if self.anchor is not None:
+            return self.anchor
+        x, y = self.domain.outline.real, self.domain.outline.imag
+        return complex(x.min() + x.max(), y.min() + y.max()) / 2
 
     @property
     def poses(self) -> tuple[Pose, ...]:

@@ -14,7 +14,7 @@ from typing import NoReturn
 from app.document.body import PAIRS, SidePairs, require_pairs
 from app.document.checks import NOTHING, Unknown, require, require_distinct, require_size
 from app.document.figure import Figure
-from app.document.layering import Choice, Group, paths_to
+from app.document.layering import CameraKey, Choice, Group, paths_to, require_rising
 from app.document.settings import FASTEST, ExportSettings, FrameRange, Marker
 from app.errors import LissomError
 
@@ -46,6 +46,8 @@ class Document:
     size: tuple[int, int] | None = None
     # Each after the one that it is in.
     groups: tuple[Group, ...] = ()
+    # Keys of what frames show of the plane; without any, it is the canvas.
+    camera: tuple[CameraKey, ...] = ()
 
     def __post_init__(self) -> None:
         self._check_figures()
@@ -58,6 +60,9 @@ class Document:
         for before, after in pairwise(marker.frame for marker in self.markers):
             require(after != before, f"Two markers are at frame {before}.")
             require(after > before, f"The markers at frames {before} and {after} are mixed up.")
+        require_rising(self.camera, "The camera")
+        for key in self.camera:
+            self._require_inside(key.frame)
         require(
             0 < self.fps <= FASTEST,
             f"The speed must be above 0 and at most {FASTEST:g} frames per second, "
@@ -176,11 +181,10 @@ class Document:
         self._check_groups()
         for figure in self.figures:
             for frame in figure.ends:
-                require(
-                    frame in self.frames,
-                    f"The key at frame {frame} lies outside the animation's frames "
-                    f"{self.frames.first} to {self.frames.last}.",
-                )
+                self._require_inside(frame)
+            for placing in figure.placings:
+                if placing.beside is not None:
+                    self.figure(placing.beside)
         changes = {joint.frame for figure in self.figures for joint in figure.joints}
         for figure in self.figures:
             if figure.joints:
@@ -188,6 +192,13 @@ class Document:
                     self.carriers(figure.id, frame)
             self._check_clocks(figure)
         self._check_choices()
+
+    def _require_inside(self, frame: int) -> None:
+        require(
+            frame in self.frames,
+            f"The key at frame {frame} lies outside the animation's frames {self.frames.first} to "
+            f"{self.frames.last}.",
+        )
 
     def _check_choices(self) -> None:
         require_distinct((choice.name for choice in self.choices), "Two choices are called {!r}.")
@@ -233,6 +244,12 @@ class Document:
     def _check_clocks(self, figure: Figure) -> None:
         """Refuse what does not come round in a loop."""
         period = self.frames.last - self.frames.first
+        for cycle in figure.cycles if self.loop and len(figure.keys) > 1 else ():
+            require(
+                any(cycle.has(key.frame) for key in figure.keys),
+                f"There is no key of {figure.name!r} in {cycle.told} that could repeat in a loop; "
+                "insert one there first.",
+            )
         for track in figure.tracks if self.loop else ():
             require(
                 track.delay <= period,

@@ -39,6 +39,7 @@ from app.editor.session import (
     with_project as with_project,
 )
 from app.editor.timeline_view import (
+    CameraDrag as CameraDrag,
     CycleDrag as CycleDrag,
     Edge as Edge,
     EdgeDrag as EdgeDrag,
@@ -53,6 +54,7 @@ from app.editor.timeline_view import (
     TimeDrag as TimeDrag,
     TimeGesture as TimeGesture,
     TrackRow as TrackRow,
+    TurnDrag as TurnDrag,
     figure_of as figure_of,
     frames_in as frames_in,
     row_of as row_of,

@@ -1,6 +1,6 @@
 """The project that is open: its document, what the window has of it, and what is under way."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from math import inf
 from pathlib import Path
@@ -23,6 +23,7 @@ from app.document import (
     Variant,
     clip_of,
     layer_tree,
+    movement_at,
 )
 from app.editor.timeline_view import KeyRow, KeysOf, Timing, TrackRow, row_of
 from app.editor.work import Afterwards, Carry, Derived, Promise, Pull, Take
@@ -44,7 +45,7 @@ from app.solving import Renewal, Rig
 from app.storage import Cut, Hold, Origin, Picture, cut_picture
 from engine.arrays import Bytes
 from engine.domain import CutOut
-from engine.geometry import HERE, RigidMotion
+from engine.geometry import RigidMotion
 from engine.maps import Bounds
 
 EXTENTS = 32  # of the motion, which are remembered for undo and redo
@@ -205,6 +206,7 @@ class Project:
     beside: frozenset[int] = frozenset()
     solo: frozenset[int] = frozenset()
     toggled: frozenset[str] = frozenset()  # rows of the tree of layers, open or closed by hand
+    declined: frozenset[str] = frozenset()  # groups of which no choice is to be made
     listed: int | None = None  # the figure that the list of layers was scrolled to
 
     @property
@@ -367,10 +369,32 @@ class Project:
 
     def placements(self, frames: Iterable[int], unknown: RigidMotion) -> list[RigidMotion]:
         """Return where the figure that is posed is at some frames: `unknown` till that is known."""
-        if not self.figure.joints:
-            return [HERE for _ in frames]
-        joints = self.hung
-        return [unknown if joints is None else joints.placement(self.active, f) for f in frames]
+        frames = list(frames)
+        return self.placed_at(self.active, frames) or [unknown for _ in frames]
+
+    def placed_at(self, figure: int, frames: Sequence[int]) -> list[RigidMotion] | None:
+        """Return where a figure, by its id, is at some frames; None till that is known.
+
+        While it is posed itself, it hangs as before: its joint holds.
+        """
+        own, joints = self.document.figure(figure), self.hung
+        if not own.joints:
+            return [movement_at(self.document, own, frame) for frame in frames]
+        if joints is None and (before := self.joints.value) is not None:
+            joints = before if self._hangs_as_in(before.document, own) else None
+        return None if joints is None else [joints.placement(figure, frame) for frame in frames]
+
+    def _hangs_as_in(self, before: Document, figure: Figure) -> bool:
+        """Tell whether a figure hangs on the very same others as in an earlier document."""
+        was = {each.id: each for each in before.figures}
+        document, own = self.document, was.get(figure.id)
+        return (
+            own is not None
+            and (before.frames, before.loop) == (document.frames, document.loop)
+            and (own.joints, own.anchor, own.domain, own.movement)
+            == (figure.joints, figure.anchor, figure.domain, figure.movement)
+            and all(was.get(each.id) is each for each in document.all_carriers(figure.id))
+        )
 
     def pair_up(self, method: Variant | Baseline | None) -> None:
         """Let each figure have a twin by a method, or none."""

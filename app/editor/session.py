@@ -138,6 +138,7 @@ class CopiedKeys:
 
     figure: Figure
     keys: tuple[Keyframe, ...]
+    is_pose: bool = False  # whether it is a pose, and no way to the next key comes with it
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -182,6 +182,14 @@ class MarkerDrag(TimeDrag):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class CameraDrag(TimeDrag):
+    """The pointer moves a key of the camera from a frame in `before` to where it is `at` now."""
+
+    key: int
+    at: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class SwitchDrag(TimeDrag):
     """The pointer moves where a figure is shown or hidden: from a frame in `before` to `at`."""
 
@@ -192,10 +200,20 @@ class SwitchDrag(TimeDrag):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class CycleDrag(TimeDrag):
-    """The pointer moves the end of what repeats from a frame on."""
+    """The pointer moves the end of what repeats from a frame on, or of its repeats."""
 
     figure: int
     first: int
+    is_stretch: bool  # whether it is its own end
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class TurnDrag(TimeDrag):
+    """The pointer moves where a layer of a choice comes to be seen, from `turn` to `at`."""
+
+    choice: str
+    turn: int
+    at: int
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -3,7 +3,7 @@
 import math
 from typing import Final
 
-from app.document import ExportSettings
+from app.document import Document, ExportSettings
 from app.motion import Box
 from app.render import View, canvas_view, fit_view
 
@@ -17,15 +17,16 @@ def shown_box(view: View) -> Box:
     return Box(view.centre - half, view.centre + half)
 
 
-def frame_view(settings: ExportSettings, picture: tuple[int, int], motion: Box) -> View:
+def frame_view(settings: ExportSettings, document: Document, motion: Box) -> View:
     """Return the view of every frame of an export.
+
+    With a camera, which shows what it does on the canvas, it is the canvas.
 
     Parameters
     ----------
     settings : ExportSettings
         Its framing and size.
-    picture : tuple of int
-        Width and height of the source picture.
+    document : Document
     motion : Box
         Around the whole motion.
 
@@ -34,8 +35,8 @@ def frame_view(settings: ExportSettings, picture: tuple[int, int], motion: Box) 
     A fitted frame without a size of its own is even both ways, as video needs it, and lies on the
     picture's own grid of pixels, so that what rests stays as sharp as it is.
     """
-    if settings.framing == "canvas":
-        return canvas_view(picture, settings.size)
+    if settings.framing == "canvas" or document.camera:
+        return canvas_view(document.canvas, settings.size)
     extent = motion.upper - motion.lower
     margin = complex(1, 1) * MARGIN * max(extent.real, extent.imag)
     lower, upper = motion.lower - margin, motion.upper + margin

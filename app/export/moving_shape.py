@@ -7,11 +7,22 @@ from typing import Final, TypeVar
 
 import numpy as np
 
-from app.document import Composite, Document, Figure, clip_of, composed, is_visible
+from app.document import (
+    Composite,
+    Document,
+    Figure,
+    camera_at,
+    clip_of,
+    composed,
+    in_order,
+    is_visible,
+    opacity_at,
+)
 from app.errors import LissomError
 from app.export.bleeding import bled
 from app.export.plan import ExportPlan
 from app.export.poses import Poses
+from app.export_formats import EXPORT_FORMATS
 from app.motion import PaintOrder, box_around
 from engine.arrays import Bytes, Complexes, Floats, Integers, freeze
 from engine.domain import Seam, find_seam
@@ -37,7 +48,7 @@ class MovingShape:
         Straight alpha, with colours where it is transparent; the part of the picture that the mesh
         shows.
     opacity : float
-        Of the whole figure, with those of its groups.
+        Of the whole figure in the first frame, with those of its groups.
     uv : float64, shape (v, 2)
         u right, v up; [0, 1] spans the texture.
     orders : tuple of (float, int32 of shape (m, 3))
@@ -94,6 +105,8 @@ def moving_shapes(
 ) -> Generator[float, None, MovingScene]:
     """Find the shapes of every figure; yield how much of the work is done, from 0 to 1.
 
+    Where the format shows a part of the plane, shapes are as the camera shows them there.
+
     Parameters
     ----------
     document : Document
@@ -115,8 +128,9 @@ def moving_shapes(
     numbers = range(first, last + 1)
     clips = [
         clip_of(document, figure.id)
-        for figure in document.exported
-        if any(is_visible(document, figure, frame) for frame in numbers)
+        for figure in in_order(document, first)
+        if figure in document.exported
+        and any(is_visible(document, figure, frame) for frame in numbers)
     ]
     if not clips:
         raise LissomError("no figure is seen in these frames; there is nothing to export")
@@ -126,7 +140,7 @@ def moving_shapes(
         seam = find_seam(figure.domain)
         places = mesh.vertices if seam is None else seam.closed(mesh.vertices)
         steps = build_targets(
-            _painted(seam, poses[figure.id]),
+            _painted(document, plan, seam, poses[figure.id]),
             places,
             times,
             tolerance=DEFAULT_TOLERANCE if tolerance is None else tolerance,
@@ -140,7 +154,7 @@ def moving_shapes(
         shape = MovingShape(
             name=plan.out.stem if len(document.figures) == 1 else figure.name,
             texture=bled(texture),
-            opacity=figure.opacity
+            opacity=opacity_at(document, figure, first)
             * math.prod(group.opacity for group in document.groups_around(figure.group)),
             uv=uv,
             orders=tuple(((n - first) / document.fps, order) for n, order in _changes(orders)),
@@ -149,14 +163,22 @@ def moving_shapes(
         )
         found.append(shape)
     numbered = {clip.figure.id: number for number, clip in enumerate(clips)}
-    return MovingScene(shapes=tuple(found), parts=composed(document, numbered))
+    return MovingScene(shapes=tuple(found), parts=composed(document, numbered, first))
 
 
-def _painted(seam: Seam | None, poses: Poses) -> Callable[[float], Complexes]:
-    """Return where vertices are painted at a time: with slits closed."""
-    if seam is None:
-        return poses.positions
-    return lambda frame: seam.closed(poses.positions(frame))
+def _painted(
+    document: Document, plan: ExportPlan, seam: Seam | None, poses: Poses
+) -> Callable[[float], Complexes]:
+    """Return where vertices are painted at a time: with slits closed, as the camera shows them."""
+    has_frame = EXPORT_FORMATS[plan.format].has_frame
+
+    def at(frame: float) -> Complexes:
+        places = poses.positions(frame)
+        places = places if seam is None else seam.closed(places)
+        shot = camera_at(document, frame) if has_frame else None
+        return places if shot is None else shot.on_canvas(document.canvas).on(places)
+
+    return at
 
 
 def _changes(values: list[tuple[int, Value]]) -> list[tuple[int, Value]]:

@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from app.document import Document, clip_of, composed, is_visible
+from app.document import Document, camera_at, clip_of, composed, is_visible
 from app.errors import EXPECTED_ERRORS, LissomError
 from app.export.framing import shown_box
 from app.export.plan import ExportPlan
@@ -30,6 +30,7 @@ from app.storage import Cancellation
 from engine.arrays import Bytes
 from engine.domain import find_seam
 from engine.domain.meshing import Mesh
+from engine.geometry import HERE, Similarity
 
 _SMALL: Final = 0.75  # pixels of the frame per pixel of the picture
 _TILE: Final = 4096  # pixels each way that are drawn at once, at most
@@ -45,7 +46,8 @@ class PosedFrame(NamedTuple):
     """A frame of the timeline, and where the vertices of each figure are in it."""
 
     frame: float
-    vertices: tuple[Placed, ...]
+    vertices: tuple[Placed, ...]  # in the plane
+    camera: Similarity | None  # by which the canvas comes to show what the camera does
 
 
 class _Tile(NamedTuple):
@@ -88,10 +90,13 @@ class Painter:
         self._clips = [clip_of(document, figure.id) for figure in figures]
         self._poses = [poses[figure.id] for figure in figures]
         self._background = Backdrop(colour=_colour(plan))
+        shots = [camera_at(document, frame) for frame in plan.times]
+        zooms = [1.0 if shot is None else shot.zoom for shot in shots]
+        smallest, largest = min(zooms) * plan.view.scale, max(zooms) * plan.view.scale
         meshes = [figure.domain.mesh for figure in figures]
         self._orders = [PaintOrder(mesh) for mesh in meshes]
         self._thinnings = [
-            Thinning(figure.domain, plan.view.scale) if _pays(plan, mesh, context) else None
+            Thinning(figure.domain, largest) if _pays(plan, mesh, context, largest) else None
             for figure, mesh in zip(figures, meshes, strict=True)
         ]
         looks = np.linspace(0, len(plan.times) - 1, _LOOKS).round().astype(int)
@@ -105,7 +110,7 @@ class Painter:
             programs = self._renderer.programs
             # At its own size the drawing comes out exact from one sample a pixel; made much smaller
             # it is finer from four.
-            finer = 2 if plan.view.scale < _SMALL else 1
+            finer = 2 if smallest < _SMALL else 1
             self._tiles = _tiles(plan.view, min(_TILE, largest_size(context) // finer))
             self._target = RenderTarget(programs, self._tiles[0].view.size, finer)
             owned.callback(self._target.release)
@@ -156,7 +161,9 @@ class Painter:
             if thinning is not None:
                 triangles = thinning.triangles(places, triangles)
             vertices.append(Placed(positions=places, triangles=triangles))
-        return PosedFrame(frame, tuple(vertices))
+        shot = camera_at(self._document, frame)
+        camera = None if shot is None else shot.on_canvas(self._document.canvas)
+        return PosedFrame(frame, tuple(vertices), camera)
 
     def _prepare_thinnings(self) -> None:
         """Look ahead at the motion, for triangles that will do in all of its frames."""
@@ -178,11 +185,11 @@ class Painter:
         try:
             drawn = zip(self._drawn, posed.vertices, self._clips, strict=True)
             seen = {
-                clip.figure.id: mesh.pose(vertices)
+                clip.figure.id: mesh.pose(vertices, placement=posed.camera or HERE)
                 for mesh, vertices, clip in drawn
                 if is_visible(self._document, clip.figure, posed.frame)
             }
-            meshes = composed(self._document, seen)
+            meshes = composed(self._document, seen, posed.frame)
             scene = Scene(background=self._background, meshes=meshes)
             pixels = _filled(self._plan.view.size, self._background.colour)
             for tile in self._tiles:
@@ -204,7 +211,7 @@ class Painter:
         height, width, _ = pixels.shape
         width, height = min(width, view.size[0]), min(height, view.size[1])
         vertices = np.concatenate([placed.positions for placed in posed.vertices])
-        box = box_around(view.to_pixels(vertices))
+        box = box_around(view.to_pixels((posed.camera or HERE).on(vertices)))
         # Two pixels more: none that a triangle touches is left out.
         left, top = (max(0, math.floor(side) - 2) for side in _sides(box.lower))
         right, bottom = (math.ceil(side) + 2 for side in _sides(box.upper))
@@ -222,7 +229,8 @@ class Painter:
     @property
     def notices(self) -> tuple[str, ...]:
         """What the person should know about the frames that were posed."""
-        if self._room.contains(self._reach, slack=_OUTSIDE):
+        # What a camera shows is what was wanted.
+        if self._document.camera or self._room.contains(self._reach, slack=_OUTSIDE):
             return ()
         return ("the motion leaves the frame; the framing 'fit' shows all of it",)
 
@@ -231,9 +239,12 @@ class Painter:
         self._owned.close()
 
 
-def _pays(plan: ExportPlan, mesh: Mesh, context: Context) -> bool:
-    """Tell whether fewer triangles of a mesh would save more time than it takes to find them."""
-    area = mesh.areas().mean() * plan.view.scale**2
+def _pays(plan: ExportPlan, mesh: Mesh, context: Context, scale: float) -> bool:
+    """Tell whether fewer triangles of a mesh would save more time than it takes to find them.
+
+    The scale is in pixels of the frame per unit of the plane, at most.
+    """
+    area = mesh.areas().mean() * scale**2
     return len(plan.times) >= _MANY and bool(area < _TINY) and is_software(context)
 
 

@@ -208,7 +208,7 @@ def plan_export(
     frames = _frames(document, settings)
     times = tuple(frame_times(document, frames, request.fps))
     rest = np.concatenate([figure.domain.mesh.vertices for figure in document.exported])
-    if settings.framing == "fit" and extent is None:
+    if settings.framing == "fit" and not document.camera and extent is None:
         extent = motion_box(
             document,
             framed_frames(document, frames),
@@ -217,7 +217,7 @@ def plan_export(
     plan = ExportPlan(
         out=request.out,
         format=settings.format,
-        view=frame_view(settings, document.canvas, extent or box_around(rest)),
+        view=frame_view(settings, document, extent or box_around(rest)),
         background=_colour(settings.background),
         times=times,
         first=frames.first,

@@ -118,6 +118,12 @@ class ShapeExport:
                     f"what lies in front of what changes in {shape.name}; a {format_.label} keeps "
                     "what is so at first"
                 )
+        figures = self._document.exported
+        constant = [f"the opacity of {each.name}" for each in figures if each.opacities]
+        constant += [f"the order of {each.name}" for each in figures if each.placings]
+        constant += ["the camera"] if self._document.camera and not format_.has_frame else []
+        if constant:
+            found.append(f"in a {format_.label} these do not change: {', '.join(constant)}")
         return (*found, *(() if format_.composites else self._uncomposited(format_.label)))
 
     def _uncomposited(self, label: str) -> Iterator[str]:

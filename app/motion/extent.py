@@ -47,6 +47,7 @@ def extent_source(document: Document) -> tuple[object, ...]:
             figure.variant,
             figure.bounds,
             figure.joints,
+            figure.movement,
             figure in document.exported,
             is_corrected(clip_of(document, figure.id))
             and (figure.stillness, figure.handles, figure.tracks, figure.springs),

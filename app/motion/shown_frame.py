@@ -6,7 +6,16 @@ from functools import partial
 
 import numpy as np
 
-from app.document import Attachment, Clip, Document, Figure, Pose, resting_pose, time_of
+from app.document import (
+    Attachment,
+    Clip,
+    Document,
+    Figure,
+    Pose,
+    movement_at,
+    resting_pose,
+    time_of,
+)
 from app.motion.corrected_frames import CorrectedFrames
 from app.motion.inbetweens import FrameCorrection
 from app.motion.interval_store import IntervalStore
@@ -167,10 +176,11 @@ def hang_shown(
     """
     hung = {}
     for identity, each in shown.items():
-        chain = chain_of(document, identity, each.frame)
-        if not document.figure(identity).joints:
-            placement = HERE
+        figure = document.figure(identity)
+        if not figure.joints:
+            placement = movement_at(document, figure, each.frame)
         elif joints is None:
+            chain = chain_of(document, identity, each.frame)
             kept = partial(_as_it_was, earlier)
             placement = along(chain, lambda figure, place: shown[figure.id].hinge(place), kept)
         else:

@@ -4,7 +4,7 @@ import moderngl
 
 from app.motion import Streamed, Vertices
 from app.render.gpu import GpuMesh, PosedMesh, PositionBuffer, SeriesBuffer, is_software, singles
-from engine.geometry import HERE, RigidMotion
+from engine.geometry import HERE, RigidMotion, Similarity
 from engine.streaming import MOST_ROWS, Series
 
 
@@ -29,7 +29,7 @@ class DrawnMesh:
         self._series_pose: PosedMesh | None = None
         self._current: tuple[Vertices, PosedMesh] | None = None
 
-    def pose(self, vertices: Vertices, *, placement: RigidMotion = HERE) -> PosedMesh:
+    def pose(self, vertices: Vertices, *, placement: RigidMotion | Similarity = HERE) -> PosedMesh:
         """Return the mesh with its vertices there and painted in their order; new ones go up."""
         if self._current is None or self._current[0] is not vertices:
             self._current = vertices, self._placed(vertices)

@@ -68,9 +68,11 @@ class Renderer:
             raise ValueError(f"a view of {view.size} pixels cannot fill a frame of {target.size}")
         target.framebuffer.use()
         self._draw_background(scene.background, view, target.oversampling)
+        behind, before = scene.meshes[: scene.ghosts_over], scene.meshes[scene.ghosts_over :]
+        self._draw_parts(behind, target, view, scene.heat)
         for ghost in scene.ghosts:
             self._draw_layer(Composite(ghost.meshes, ghost.opacity), target, view, tint=ghost.tint)
-        self._draw_parts(scene.meshes, target, view, scene.heat)
+        self._draw_parts(before, target, view, scene.heat)
         if scene.wireframe is not None:
             self._blend_over()
             for mesh in _meshes(scene.meshes):

@@ -52,7 +52,7 @@ class Wireframe:
 class Ghost:
     """A drawing that shines through: another frame of it under the current one, an onion skin."""
 
-    meshes: tuple[PosedMesh, ...]  # the drawing in that frame, the furthest first
+    meshes: tuple[Painted, ...]  # the drawing in that frame, the furthest first
     # Red, green and blue; None leaves the colours as they are.
     tint: tuple[float, float, float] | None
     opacity: float
@@ -83,7 +83,10 @@ class Disc:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Scene:
-    """A frame, from back to front: background, ghosts, drawing, wireframe, lines, discs."""
+    """A frame, from back to front: background, ghosts, drawing, wireframe, lines, discs.
+
+    Ghosts may come later, before some of the drawing's meshes or after all of them.
+    """
 
     background: Backdrop = Backdrop()
     # The drawing in this frame, the furthest first.
@@ -92,5 +95,6 @@ class Scene:
     heat: Heat | None = None
     wireframe: Wireframe | None = None
     ghosts: tuple[Ghost, ...] = ()  # the furthest first
+    ghosts_over: int = 0  # how many of the meshes are behind them
     lines: tuple[Line, ...] = ()
     discs: tuple[Disc, ...] = ()

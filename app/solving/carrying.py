@@ -9,12 +9,14 @@ import numpy as np
 from app.document import Figure, Pose, Target
 from app.solving.drag import Rig, fit_map, pins_of
 from engine.arrays import Complexes
-from engine.geometry import contains
+from engine.deform import Way
+from engine.geometry import box_diagonal, contains
 from engine.maps import HarmonicMap, certify
 
 MOST_STEPS = 600  # for one pose
 # Of a shape that counts as like another one, the part at least that lies on that one's image.
 ALIKE = 0.9
+BESIDE = 0.005  # of the shape's diagonal: so near to it is on it
 ENOUGH = 2_000  # vertices by which that is told
 # A part is drawn mirrored where its handles are this far from the likeness that mirrors nothing,
 # over their spread, and this many times nearer to the one that does.
@@ -156,10 +158,10 @@ class Carriage:
         if present is not None:
             targets, pins = {**present.targets, **targets}, pins_of(figure, present)
             return solve_from(rig, figure.map_of(present), targets, pins)
-        begin = begin_like(rig, self.source, pose, self.likeness, targets)
+        begin, ways = begin_like(rig, self.source, pose, self.likeness, targets)
         # What follows by a spring needs a target, too, which is not heeded.
         rest = {handle.id: Target(position=handle.position) for handle in figure.handles}
-        return solve_from(rig, begin, {**rest, **targets}, self._pins(rig, pose))
+        return solve_from(rig, begin, {**rest, **targets}, self._pins(rig, pose), ways)
 
     def _pins(self, rig: Rig, pose: Pose) -> list[Target]:
         """Return where the joints of a rig's figure are held, as is done next to them."""
@@ -176,12 +178,15 @@ class Carriage:
 
 
 def solve_from(
-    rig: Rig, begin: HarmonicMap, targets: Mapping[int, Target], pins: Sequence[Target]
+    rig: Rig,
+    begin: HarmonicMap,
+    targets: Mapping[int, Target],
+    pins: Sequence[Target],
+    ways: tuple[Way, ...] = tuple(Way),
 ) -> Pose:
-    """Return the pose with these wishes that is found from a map."""
-    deformer = rig.deformer
-    state = rig.beginning_at(begin)
-    state, _ = deformer.settle(state, rig.wish(targets, tuple(pins)), at_most=MOST_STEPS)
+    """Return the pose with these wishes that is found from a map, along some ways."""
+    deformer, wish = rig.deformer, rig.wish(targets, tuple(pins))
+    state, _ = deformer.settle(rig.beginning_at(begin), wish, ways=ways, at_most=MOST_STEPS)
     # Steps that walk into the bounds are proven for wider ones.
     proven = certify(state.map, deformer.boundary, deformer.bounds)
     return rig.pose(state.map, targets, proven)
@@ -189,21 +194,22 @@ def solve_from(
 
 def begin_like(
     rig: Rig, source: Figure, pose: Pose, likeness: Likeness, targets: Mapping[int, Target]
-) -> HarmonicMap:
-    """Return the map with which the solver begins that is to find the image of a pose.
+) -> tuple[HarmonicMap, tuple[Way, ...]]:
+    """Return the map with which the solver begins to look for the image of a pose, and its ways.
 
-    It is the map nearest to S ∘ f ∘ S⁻¹ where the two drawings are alike, else the rest, turned as
-    a whole as that is.
+    It is the map nearest to S ∘ f ∘ S⁻¹ where the two drawings are alike, and the pose the minimum
+    next to that; else the rest, turned as a whole as that is.
     """
     shape = source.map_of(pose)
     if is_alike(rig.figure, source, likeness):
-        return _image(rig, source, shape, likeness)
+        return _image(rig, source, shape, likeness), (Way.HERE,)
     turn = likeness.turned(whole_turn(source, shape))
     apart = [
         target.position - turn * rig.figure.handle(identity).position
         for identity, target in targets.items()
     ]
-    return rig.deformer.at_rest.moved(turn, complex(np.mean(apart)) if apart else 0j)
+    begin = rig.deformer.at_rest.moved(turn, complex(np.mean(apart)) if apart else 0j)
+    return begin, tuple(Way)
 
 
 def whole_turn(figure: Figure, shape: HarmonicMap) -> complex:
@@ -215,7 +221,9 @@ def whole_turn(figure: Figure, shape: HarmonicMap) -> complex:
 
 def is_alike(figure: Figure, source: Figure, likeness: Likeness) -> bool:
     """Tell whether nearly all of a figure lies on another one's image."""
-    found = source.covers(likeness.back(_some(figure.domain.mesh.vertices)))
+    places = likeness.back(_some(figure.domain.mesh.vertices))
+    # Many vertices of a coarse mesh are on its outline, and so beside the image of another one.
+    found = source.covers(places, tolerance=BESIDE * box_diagonal(source.domain.outline))
     return bool(found.mean() >= ALIKE)
 
 

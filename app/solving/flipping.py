@@ -62,5 +62,5 @@ def _flip(rig: Rig, pose: Pose, axis: float, pairs: SidePairs) -> Pose:
         Target(position=likeness.moved(shape, joint, pin.position, joint))
         for joint, pin in zip(rig.pins, pins_of(rig.figure, pose), strict=True)
     ]
-    begin = begin_like(rig, rig.figure, pose, likeness, targets)
-    return solve_from(rig, begin, targets, pins)
+    begin, ways = begin_like(rig, rig.figure, pose, likeness, targets)
+    return solve_from(rig, begin, targets, pins, ways)

@@ -12,8 +12,11 @@ from app.document import (
     NATURAL,
     VARIANTS,
     Bone,
+    CameraKey,
     Cycle,
     Easing,
+    MoveKey,
+    OpacityKey,
     Passing,
     Spring,
     Track,
@@ -29,7 +32,18 @@ from app.solving.script_fields import (
     require_order,
 )
 from app.solving.script_material import StiffPart, parse_material
-from app.solving.script_stage import ScriptChoice, ScriptJoint, parse_choices, parse_joints
+from app.solving.script_stage import (
+    ScriptChoice,
+    ScriptJoint,
+    ScriptPlacing,
+    parse_camera,
+    parse_canvas,
+    parse_choices,
+    parse_joints,
+    parse_movement,
+    parse_opacity,
+    parse_order,
+)
 from app.storage import (
     JsonObject,
     as_flag,
@@ -46,10 +60,11 @@ from engine.maps import Bounds
 
 SCHEMA = 1
 LARGEST = 32 * 1024 * 1024  # bytes
-SCENE_FIELDS = ("schema", "fps", "loop", "variant", "bounds", "still")
-OWN_FIELDS = ("anchor", "handles", "keys", "tracks", "springs", "cycles", "stiff")
+SCENE_FIELDS = ("schema", "fps", "loop", "variant", "bounds", "still", "camera", "canvas")
+MOVING_FIELDS = ("keys", "tracks", "springs", "cycles", "movement", "opacity")
+OWN_FIELDS = ("anchor", "handles", *MOVING_FIELDS, "stiff")
 STAGE_FIELDS = ("figures", "choices")
-FIGURE_FIELDS = ("layer", "variant", "bounds", "still", *OWN_FIELDS, "attach", "visible")
+FIGURE_FIELDS = ("layer", "variant", "bounds", "still", *OWN_FIELDS, "attach", "visible", "order")
 HANDLE_FIELDS = ("at", "front", "extent", "still")
 KEY_FIELDS = ("frame", "targets", "pull", "ease", "passing", "front")
 BOUND_FIELDS = ("k", "sigma_a", "sigma_b")
@@ -100,13 +115,19 @@ class FigureScript:
     attach: tuple[ScriptJoint, ...] = ()
     # When it is seen; None leaves that to the drawing.
     visible: tuple[tuple[int, bool], ...] | None = None
+    movement: tuple[MoveKey, ...] = ()
+    opacity: float | tuple[OpacityKey, ...] | None = None  # None leaves that to the drawing
+    order: tuple[ScriptPlacing, ...] = ()
 
     @property
     def last(self) -> int:
-        """The frame of the last key, those of tracks among them, or at which repeats end."""
-        ends = [track.keys[-1].frame for track in self.tracks]
-        ends += [cycle.last if cycle.until is None else cycle.until for cycle in self.cycles]
-        return max([self.keys[-1].frame, *ends])
+        """The frame of the last key, of whatever moves between keys, or at which repeats end."""
+        frames = [self.keys[-1].frame, *(track.keys[-1].frame for track in self.tracks)]
+        frames += [cycle.last if cycle.until is None else cycle.until for cycle in self.cycles]
+        frames += [key.frame for key in self.movement]
+        if isinstance(self.opacity, tuple):
+            frames += [key.frame for key in self.opacity]
+        return max(frames)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -117,11 +138,14 @@ class PoseScript:
     fps: float
     loop: bool
     choices: tuple[ScriptChoice, ...] = ()
+    camera: tuple[CameraKey, ...] = ()
+    canvas: tuple[int, int] | None = None  # None takes the drawing's size
 
     @property
     def last(self) -> int:
         """The last frame of the animation."""
-        return max(figure.last for figure in self.figures)
+        frames = [figure.last for figure in self.figures]
+        return max(frames + [key.frame for key in self.camera])
 
 
 def load_pose_script(path: Path) -> PoseScript:
@@ -180,6 +204,8 @@ def parse_pose_script(content: object) -> PoseScript:
         fps=as_number(script.get("fps", 24.0), "fps"),
         loop=as_flag(script.get("loop", False), "loop"),
         choices=parse_choices(script, [f.layer for f in figures if f.layer and f.visible]),
+        camera=parse_camera(script["camera"]) if script.get("camera") is not None else (),
+        canvas=parse_canvas(script["canvas"]) if script.get("canvas") is not None else None,
     )
     for index, figure in enumerate(figures if parsed.loop else ()):
         where = "" if figure.layer is None else f"figures[{index}]."
@@ -207,6 +233,11 @@ def _figure(script: JsonObject, where: str, usual: Mapping[str, Any]) -> FigureS
         own["attach"] = parse_joints(script["attach"], f"{where}attach")
     if "visible" in script:
         own["visible"] = _switches(script["visible"], f"{where}visible")
+    if script.get("movement") is not None:
+        own["movement"] = parse_movement(script["movement"], f"{where}movement")
+    if script.get("opacity") is not None:
+        own["opacity"] = parse_opacity(script["opacity"], f"{where}opacity")
+    own["order"] = parse_order(script.get("order", []), f"{where}order")
     own["tracks"] = parse_tracks(script.get("tracks", []), f"{where}tracks", tuple(handles))
     own["springs"] = parse_springs(script.get("springs", []), f"{where}springs", tuple(handles))
     own["cycles"] = parse_cycles(

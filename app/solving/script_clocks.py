@@ -1,9 +1,8 @@
 """Clocks of a pose script: tracks and springs of single handles, and cycles of all of a figure."""
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from math import radians
-from typing import Any, TypeVar
 
 from app.document import (
     HOLD,
@@ -20,6 +19,7 @@ from app.errors import LissomError
 from app.solving.script_fields import (
     fields_in,
     frame_of,
+    made_of,
     passage_of,
     require_handle,
     require_order,
@@ -32,8 +32,6 @@ SPRING_FIELDS = ("handle", "preset", "frequency", "damping", "lag", "strength")
 CYCLE_FIELDS = ("from", "to", "until")
 # What the places of a track's keys are called, by what it goes with.
 PLACES = {"pose": "offset", "picture": "at"}
-
-Made = TypeVar("Made")
 
 
 def parse_tracks(content: object, where: str, handles: Sequence[str]) -> tuple[Track, ...]:
@@ -106,7 +104,7 @@ def _track(content: object, where: str, handles: Mapping[str, int]) -> Track:
         for index, key in enumerate(keys)
     )
     require_order([key.frame for key in parsed], f"{where}.keys are")
-    return _made(
+    return made_of(
         Track,
         where,
         handles=_numbers(track, where, handles),
@@ -122,7 +120,7 @@ def _cycle(content: object, where: str) -> Cycle:
     cycle = fields_in(content, where, CYCLE_FIELDS)
     first, last = (frame_of(cycle, where, name) for name in ("from", "to"))
     until = None if cycle.get("until") is None else frame_of(cycle, where, "until")
-    return _made(Cycle, where, first=first, last=last, until=until)
+    return made_of(Cycle, where, first=first, last=last, until=until)
 
 
 def _track_key(content: object, where: str, place: str) -> TrackKey:
@@ -140,7 +138,7 @@ def _track_key(content: object, where: str, place: str) -> TrackKey:
             f'{where} has a velocity, which is of keys that are passed through; give it "passing": '
             '"through", or leave the velocity out'
         )
-    return _made(
+    return made_of(
         TrackKey,
         where,
         frame=frame_of(key, where),
@@ -168,7 +166,7 @@ def _spring(content: object, where: str, handles: Mapping[str, int]) -> Spring:
         raise LissomError(
             f"{where} needs a preset, one of {', '.join(SPRINGS)}, or a frequency and a damping"
         )
-    return _made(
+    return made_of(
         Spring, where, handle=_number(spring["handle"], f"{where}.handle", handles), **given
     )
 
@@ -190,14 +188,6 @@ def _number(name: object, where: str, handles: Mapping[str, int]) -> int:
     read = as_text(name, where)
     require_handle(read, handles, where)
     return handles[read]
-
-
-def _made(kind: Callable[..., Made], where: str, **fields: Any) -> Made:
-    """Return a value of these fields; what it refuses is told with the place in the script."""
-    try:
-        return kind(**fields)
-    except LissomError as error:
-        raise LissomError(f"{where}: {error}") from error
 
 
 def _require_one_each(

@@ -1,12 +1,15 @@
 """What keys of poses and of tracks have alike in a pose script."""
 
 import json
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 from itertools import pairwise
+from typing import Any, TypeVar
 
 from app.document import HOLD, LAST_FRAME, LINEAR, Easing, Passing
 from app.errors import LissomError
 from app.storage import JsonObject, as_object
+
+Made = TypeVar("Made")
 
 
 def fields_in(content: object, where: str, fields: tuple[str, ...]) -> JsonObject:
@@ -60,3 +63,11 @@ def require_handle(name: str, handles: Collection[str], where: str) -> None:
         raise LissomError(
             f"{where} names the handle {name!r}, but the handles are {', '.join(handles) or 'none'}"
         )
+
+
+def made_of(kind: Callable[..., Made], where: str, **fields: Any) -> Made:
+    """Return a value of these fields; what it refuses is told with the place in the script."""
+    try:
+        return kind(**fields)
+    except LissomError as error:
+        raise LissomError(f"{where}: {error}") from error

@@ -30,6 +30,7 @@ from app.solving.stage import (
     with_choices,
     with_joints,
     with_kept_places,
+    with_order,
 )
 from app.storage import still_figure
 from engine.deform import Hand
@@ -72,7 +73,12 @@ def pose_document(
     """
     named, notices = _by_figure(document, script), list[str]()
     document = replace(
-        document, frames=FrameRange(0, script.last), fps=script.fps, loop=script.loop
+        document,
+        frames=FrameRange(0, script.last),
+        fps=script.fps,
+        loop=script.loop,
+        camera=script.camera,
+        size=script.canvas or document.size,
     )
     for identity, part in named.items():
         with _whose(part):
@@ -89,7 +95,7 @@ def pose_document(
             figure, told = _posed(document.figure(identity), part, progress, loop=script.loop)
         document = document.with_figure(figure)
         notices += told
-    document = with_choices(with_kept_places(document, script), script)
+    document = with_choices(with_kept_places(with_order(document, script), script), script)
     return document, (*notices, *unseen(document, script))
 
 
@@ -133,8 +139,12 @@ def _by_figure(document: Document, script: PoseScript) -> dict[int, FigureScript
             figure = next((f for f in reversed(document.figures) if not f.still), None)
         else:
             figure = layer_named(document, part.layer)
-        if figure is None or figure.still:
-            raise LissomError(f"the layer {part.layer!r} stands still: there is no shape on it")
+        is_posed = bool(part.handles) or len(part.keys) > 1 or part.layer is None
+        if figure is None or (figure.still and is_posed):
+            raise LissomError(
+                f"the layer {part.layer!r} stands still: there is no shape on it to be posed; it "
+                "may be moved as a whole, without handles and with one key"
+            )
         named[figure.id] = part
     return named
 
@@ -152,6 +162,10 @@ def _prepared(document: Document, identity: int, part: FigureScript) -> Document
         # What the script says holds, whatever is hidden in the drawing.
         switches = tuple(Switch(frame, visible) for frame, visible in part.visible)
         figure = replace(figure, switches=switches, hidden=False)
+    if isinstance(part.opacity, tuple):
+        figure = replace(figure, opacities=part.opacity)
+    elif part.opacity is not None:
+        figure = replace(figure, opacity=part.opacity)
     document = document.with_figure(
         replace(
             figure,
@@ -159,6 +173,7 @@ def _prepared(document: Document, identity: int, part: FigureScript) -> Document
             bounds=part.bounds,
             anchor=part.anchor,
             stillness=part.still,
+            movement=part.movement,
             tracks=tuple(
                 replace(track, handles=tuple(first + number for number in track.handles))
                 for track in part.tracks
@@ -228,6 +243,10 @@ def _posed(
                 frame=key.frame, pose=pose, easing=key.ease, passing=key.passing, fronts=fronts
             )
         )
+    keyed = [key.frame for key in keys] + [switch.frame for switch in figure.switches]
+    for cycle in part.cycles:
+        if not (any(map(cycle.has, keyed)) or any(map(cycle.takes, figure.tracks))):
+            notices.append(f"{whose}nothing is keyed in {cycle.told}: there is nothing to repeat")
     return replace(figure, keys=tuple(keys), cycles=part.cycles), notices
 
 

@@ -1,16 +1,38 @@
-"""What a pose script says of its layers together: what hangs on what, and which take turns."""
+"""What a pose script says of its layers together, and of the camera.
+
+What hangs on what, which take turns, how they move as a whole, fade, and lie over each other.
+"""
 
 import json
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from math import radians
+from typing import Any, TypeVar
 
+from app.document import CameraKey, MoveKey, OpacityKey
 from app.errors import LissomError
-from app.solving.script_fields import fields_in, frame_of, require_order
-from app.storage import JsonObject, as_flag, as_list, as_point, as_text, as_whole
+from app.solving.script_fields import fields_in, frame_of, made_of, passage_of, require_order
+from app.storage import (
+    JsonObject,
+    as_flag,
+    as_list,
+    as_number,
+    as_object,
+    as_point,
+    as_text,
+    as_whole,
+)
 
 CHOICE_FIELDS = ("name", "layers", "keys")
 JOINT_FIELDS = ("to", "at", "turn", "frame", "keep")
+WAY_FIELDS = ("frame", "ease", "passing")
+CAMERA_FIELDS = (*WAY_FIELDS, "centre", "zoom", "turn")
+MOVE_FIELDS = (*WAY_FIELDS, "shift", "turn")
+# Where a layer comes to lie beside another one, and whether that is in front.
+SIDES = {"in_front_of": True, "behind": False}
+
+Key = TypeVar("Key", CameraKey, MoveKey)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -97,12 +119,8 @@ def _choice(content: object, where: str) -> ScriptChoice:
         if count > 1:
             raise LissomError(f"{where}.layers has {layer!r} twice")
     turns = []
-    for index, entry in enumerate(as_list(fields.get("keys", []), f"{where}.keys")):
-        at = f"{where}.keys[{index}]"
-        pair = as_list(entry, at)
-        if len(pair) != 2:
-            raise LissomError(f"{at} must be a frame and a layer, not {json.dumps(pair)}")
-        turn = as_whole(pair[0], at), as_text(pair[1], at)
+    for at, frame, layer in _from_frames(fields.get("keys", []), f"{where}.keys", "a layer"):
+        turn = frame, as_text(layer, at)
         if turn[1] not in layers:
             raise LissomError(f"{at} shows {turn[1]!r}, which is not among its layers")
         turns.append(turn)
@@ -110,3 +128,116 @@ def _choice(content: object, where: str) -> ScriptChoice:
     return ScriptChoice(
         name=as_text(fields["name"], f"{where}.name"), layers=layers, turns=tuple(turns)
     )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ScriptPlacing:
+    """From a frame on a layer lies right in front of another one, by its name, or behind it."""
+
+    frame: int
+    beside: str | None  # None where it lies in the drawing
+    in_front: bool = True
+
+
+def parse_camera(content: object) -> tuple[CameraKey, ...]:
+    """Return the keys of the camera."""
+
+    def key(read: JsonObject, where: str, **way: Any) -> CameraKey:
+        zoom = as_number(read.get("zoom", 1.0), f"{where}.zoom")
+        if not zoom > 0:
+            raise LissomError(f"{where}.zoom must be above 0, not {zoom:g}")
+        return made_of(
+            CameraKey,
+            where,
+            centre=as_point(read["centre"], f"{where}.centre"),
+            zoom=zoom,
+            turn=radians(as_number(read.get("turn", 0.0), f"{where}.turn")),
+            **way,
+        )
+
+    return _moving_keys(content, "camera", CAMERA_FIELDS, key)
+
+
+def parse_movement(content: object, where: str) -> tuple[MoveKey, ...]:
+    """Return the keys by which a figure is moved as a whole."""
+
+    def key(read: JsonObject, where: str, **way: Any) -> MoveKey:
+        return made_of(
+            MoveKey,
+            where,
+            shift=as_point(read.get("shift", [0.0, 0.0]), f"{where}.shift"),
+            turn=radians(as_number(read.get("turn", 0.0), f"{where}.turn")),
+            **way,
+        )
+
+    return _moving_keys(content, where, MOVE_FIELDS, key)
+
+
+def _moving_keys(
+    content: object, where: str, fields: tuple[str, ...], make: Callable[..., Key]
+) -> tuple[Key, ...]:
+    entries = as_list(fields_in(content, where, ("keys",))["keys"], f"{where}.keys")
+    if not entries:
+        raise LissomError(f"{where}.keys must be a list of at least one key")
+    keys = []
+    for index, entry in enumerate(entries):
+        at = f"{where}.keys[{index}]"
+        read = fields_in(entry, at, fields)
+        easing, passing = passage_of(read, at)
+        keys.append(make(read, at, frame=frame_of(read, at), easing=easing, passing=passing))
+    require_order([key.frame for key in keys], f"{where}.keys are")
+    return tuple(keys)
+
+
+def parse_opacity(content: object, where: str) -> float | tuple[OpacityKey, ...]:
+    """Return how opaque a figure is: a number, or keys."""
+    if not isinstance(content, list):
+        return made_of(OpacityKey, where, frame=0, opacity=as_number(content, where)).opacity
+    if not content:
+        raise LissomError(f"{where} must be a number, or a list of at least one key")
+    keys = tuple(
+        made_of(OpacityKey, at, frame=frame, opacity=as_number(opacity, at))
+        for at, frame, opacity in _from_frames(content, where, "a number")
+    )
+    require_order([key.frame for key in keys], f"{where} is")
+    return keys
+
+
+def parse_order(content: object, where: str) -> tuple[ScriptPlacing, ...]:
+    """Return beside which layers a figure lies."""
+    placings = []
+    for at, frame, place in _from_frames(content, where, "where the layer lies, or null"):
+        if place is None:
+            placings.append(ScriptPlacing(frame=frame, beside=None))
+            continue
+        read = as_object(place, at)
+        (side, *others) = read or {"": ""}
+        if others or side not in SIDES:
+            raise LissomError(
+                f"{at} must have in_front_of or behind, with a layer, not {json.dumps(place)}"
+            )
+        beside = as_text(read[side], f"{at}.{side}")
+        placings.append(ScriptPlacing(frame=frame, beside=beside, in_front=SIDES[side]))
+    require_order([placing.frame for placing in placings], f"{where} is")
+    return tuple(placings)
+
+
+def parse_canvas(content: object) -> tuple[int, int]:
+    """Return the size of the canvas."""
+    sides = as_list(content, "canvas")
+    if len(sides) != 2:
+        raise LissomError(f"canvas must be width and height, not {json.dumps(content)}")
+    width, height = (as_whole(side, "canvas") for side in sides)
+    return width, height
+
+
+def _from_frames(content: object, where: str, what: str) -> list[tuple[str, int, Any]]:
+    """Return pairs of a frame and what holds there, each after where it stands."""
+    found = []
+    for index, entry in enumerate(as_list(content, where)):
+        at = f"{where}[{index}]"
+        pair = as_list(entry, at)
+        if len(pair) != 2:
+            raise LissomError(f"{at} must be a frame and {what}, not {json.dumps(pair)}")
+        found.append((at, as_whole(pair[0], at), pair[1]))
+    return found

@@ -8,6 +8,7 @@ from app.document import (
     Attachment,
     Document,
     Figure,
+    Placing,
     Turn,
     choice_commands,
     is_visible,
@@ -78,6 +79,27 @@ def with_kept_places(document: Document, script: PoseScript) -> Document:
                 Joints(document), child.id, parent.id, joint.frame, turns=joint.turns
             )
             document = layer_commands.attach(child.id, anchor_of(child), nearest)(document)
+    return document
+
+
+def with_order(document: Document, script: PoseScript) -> Document:
+    """Return a document whose figures lie beside others as a script says."""
+    for part in script.figures:
+        if part.layer is None or not part.order:
+            continue
+        try:
+            figure = layer_named(document, part.layer)
+            placings = tuple(
+                Placing(
+                    each.frame,
+                    None if each.beside is None else layer_named(document, each.beside).id,
+                    each.in_front,
+                )
+                for each in part.order
+            )
+            document = document.with_figure(replace(figure, placings=placings))
+        except LissomError as error:
+            raise LissomError(f"layer {part.layer!r}: order: {error}") from error
     return document
 
 

@@ -126,7 +126,7 @@ def flattened(document: Document, textures: Mapping[int, Bytes]) -> Bytes:
 
     first = document.frames.first
     seen = {each.id: each for each in document.exported if is_visible(document, each, first)}
-    return readonly(np.asarray(painted(composed(document, seen))))
+    return readonly(np.asarray(painted(composed(document, seen, first))))
 
 
 def _blended(below: Image.Image, layer: Image.Image, how: Composite[Figure]) -> Image.Image:
@@ -219,6 +219,9 @@ def still_figure(figure: Figure) -> Figure:
         hidden=figure.hidden,
         switches=figure.switches,
         opacity=figure.opacity,
+        opacities=figure.opacities,
+        movement=figure.movement,
+        placings=figure.placings,
         blend=figure.blend,
         clipped=figure.clipped,
         group=figure.group,

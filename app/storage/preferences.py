@@ -17,7 +17,7 @@ from app.storage.files import read_file, write_atomically
 ThemeName = Literal["dark", "light"]
 SMALLEST_SCALE, LARGEST_SCALE = 0.75, 3.0
 MOST_RECENT = 10
-MOST_GHOSTS, LARGEST_GHOST_STEP = 6, 24
+MOST_GHOSTS, LARGEST_GHOST_STEP, LONGEST_PATH_REACH = 6, 24, 240
 CHECKER = "checker"
 LARGEST = 1024 * 1024  # bytes
 _COLOUR = re.compile("#[0-9a-f]{6}")
@@ -40,6 +40,11 @@ class Preferences:
         How time runs on the ways from new keys.
     ghosts_before, ghosts_after, ghost_step : int
         How many ghosts the onion skin shows, and how many frames apart.
+    ghosts_in_front : bool
+        Whether they are in front of the drawing, and not behind it.
+    path_reach : int
+        Of how many frames before the playhead, and after it, motion paths are drawn; 0 stands for
+        all that play.
     recent : tuple of Path
         Files opened or saved last, the newest first.
     folder : Path, optional
@@ -58,6 +63,8 @@ class Preferences:
     ghosts_before: int = 2
     ghosts_after: int = 2
     ghost_step: int = 4
+    ghosts_in_front: bool = False
+    path_reach: int = 0
     recent: tuple[Path, ...] = ()
     folder: Path | None = None
     exported: Path | None = None
@@ -160,6 +167,8 @@ def _understood(content: dict[str, Any]) -> Preferences:
         ghosts_before=int(number("ghosts_before", 0, MOST_GHOSTS)),
         ghosts_after=int(number("ghosts_after", 0, MOST_GHOSTS)),
         ghost_step=int(number("ghost_step", 1, LARGEST_GHOST_STEP)),
+        ghosts_in_front=content.get("ghosts_in_front") is True,
+        path_reach=int(number("path_reach", 0, LONGEST_PATH_REACH)),
         recent=tuple(Path(path) for path in paths if isinstance(path, str))[:MOST_RECENT],
         folder=folder,
         exported=exported,

@@ -29,7 +29,11 @@ from engine.geometry.polygon import (
     signed_area as signed_area,
     winding as winding,
 )
-from engine.geometry.rigid import HERE as HERE, RigidMotion as RigidMotion
+from engine.geometry.rigid import (
+    HERE as HERE,
+    RigidMotion as RigidMotion,
+    Similarity as Similarity,
+)
 from engine.geometry.segments import (
     Pieces as Pieces,
     bisect as bisect,

@@ -1,4 +1,4 @@
-"""Rigid motions of the plane."""
+"""Rigid motions of the plane, and similarities."""
 
 from typing import NamedTuple
 
@@ -20,6 +20,30 @@ class RigidMotion(NamedTuple):
     def back(self, place: complex) -> complex:
         """Return which place comes to a place."""
         return (place - self.shift) * self.factor.conjugate()
+
+    def after(self, other: "RigidMotion") -> "RigidMotion":
+        """Return the motion that is the other one and then this one."""
+        return RigidMotion(self.factor * other.factor, self.factor * other.shift + self.shift)
+
+    @property
+    def inverse(self) -> "RigidMotion":
+        """The motion that undoes it."""
+        return RigidMotion(self.factor.conjugate(), -self.factor.conjugate() * self.shift)
+
+
+class Similarity(NamedTuple):
+    """z ↦ factor · z + shift, the factor not 0."""
+
+    factor: complex = 1.0 + 0j
+    shift: complex = 0j
+
+    def on(self, places: Complexes) -> Complexes:
+        """Return where places come to."""
+        return self.factor * places + self.shift
+
+    def back(self, place: complex) -> complex:
+        """Return which place comes to a place."""
+        return (place - self.shift) / self.factor
 
 
 HERE = RigidMotion()

@@ -15,6 +15,7 @@ from app.document.commands import (
     Command,
     choice_commands,
     figure_commands,
+    filming_commands,
     handle_commands,
     key_commands,
     layer_commands,
@@ -25,7 +26,15 @@ from app.document.commands import (
 )
 from app.document.figure import PictureFile, new_figure
 from app.document.keyframe import Handle, KeptPose, Keyframe, Passing, Pose, Target
-from app.document.layering import Attachment, Group, Switch
+from app.document.layering import (
+    Attachment,
+    CameraKey,
+    Group,
+    MoveKey,
+    OpacityKey,
+    Placing,
+    Switch,
+)
 from app.document.model import Document
 from app.document.settings import FRAMINGS, VARIANTS, ExportSettings, FrameRange, Marker, Meshing
 from app.document.timing import HOLD, LINEAR, PRESETS, Easing, Spring, Track, TrackKey
@@ -339,6 +348,8 @@ def _random_settings_command(rng: np.random.Generator, document: Document) -> Co
         scene_commands.move_marker(at, int(rng.integers(90))),
         scene_commands.delete_marker(at),
         scene_commands.set_loop(loop=bool(rng.integers(2))),
+        *_camera_commands(rng, document),
+        scene_commands.set_pairs((("near", "far"), (f"é {rng.integers(3)}", "B"))),
         figure_commands.set_variant(0, VARIANTS[rng.integers(len(VARIANTS))]),
         figure_commands.set_stillness(0, stillness=bool(rng.integers(2))),
         figure_commands.set_anchor(0, None if rng.random() < 0.3 else inside(rng)),
@@ -350,6 +361,20 @@ def _random_settings_command(rng: np.random.Generator, document: Document) -> Co
         figure_commands.set_cut_out(0, CutOut(tolerance=int(rng.integers(5)))),
     ]
     return commands[rng.integers(len(commands))]
+
+
+def _camera_commands(rng: np.random.Generator, document: Document) -> list[Command]:
+    frame, to = (int(at) for at in rng.integers(50, size=2))
+    at = document.camera[0].frame if document.camera else frame
+    faded = document.figures[0].opacities
+    key = CameraKey(frame=frame, centre=inside(rng), zoom=rng.uniform(0.1, 9), turn=rng.normal())
+    return [
+        filming_commands.key_camera(key),
+        filming_commands.move_camera_key(at, to),
+        filming_commands.delete_camera_key(at),
+        filming_commands.key_opacity(0, frame, rng.random()),
+        filming_commands.delete_opacity_key(0, faded[0].frame if faded else frame),
+    ]
 
 
 def _random_stroke(rng: np.random.Generator) -> Stroke:
@@ -481,7 +506,7 @@ def full_document() -> Document:
 
 
 def clocked_document() -> Document:
-    """The full document with what came later: clocks of single handles, material, and groups."""
+    """The full document with what came later: clocks of handles, material, groups, and pairs."""
     full = full_document()
     figure = full.figures[0]
     nose, foot = figure.handles
@@ -515,12 +540,28 @@ def clocked_document() -> Document:
         blend="multiply",
         clipped=True,
         group="limbs/left",
+        movement=(
+            MoveKey(frame=2, shift=complex(1 / 3, -0.0), turn=0.1, unknown=more),
+            MoveKey(frame=9, easing=PRESETS["in"], passing=Passing.STOP),
+        ),
+        opacities=(OpacityKey(frame=3, opacity=1 / 3), OpacityKey(frame=60, opacity=0.0)),
+        placings=(Placing(frame=7, beside=5, in_front=False), Placing(frame=70, beside=None)),
     )
     groups = (
         Group(name="limbs", hidden=True, unknown=more),
         Group(name="limbs/left", opacity=1 / 3, blend="screen", clipped=True),
     )
-    return dataclasses.replace(full, figures=(child, parent), groups=groups)
+    camera = (
+        CameraKey(frame=1, centre=complex(1 / 3, -0.0), zoom=2.0, turn=-0.5, unknown=more),
+        CameraKey(frame=9, centre=9j, zoom=0.1, easing=HOLD, passing=Passing.CORNER),
+    )
+    return dataclasses.replace(
+        full,
+        figures=(child, parent),
+        groups=groups,
+        camera=camera,
+        pairs=(("L", "R"), ("Fuß", "Tatze\n")),
+    )
 
 
 def differences(first: object, second: object, where: str = "document") -> list[str]:

@@ -17,8 +17,10 @@ FAR = RigidMotion(1.0 + 0j, 60 - 6j)  # where the far leg is drawn, beside the n
 AXIS = 120.0
 
 
-def leg(name: str, identity: int, by: complex = 0j, *, mirrored: bool = False) -> Figure:
-    """Return a leg with a foot, moved by some whole pixels, or its mirror image."""
+def leg(
+    name: str, identity: int, by: complex = 0j, *, mirrored: bool = False, turned: bool = False
+) -> Figure:
+    """Return a leg with a foot, moved by some whole pixels, mirrored, or turned by a quarter."""
     picture = Image.new("RGBA", SIZE)
     pen = ImageDraw.Draw(picture)
     x, y, height = int(by.real), int(by.imag), SIZE[1]
@@ -26,10 +28,12 @@ def leg(name: str, identity: int, by: complex = 0j, *, mirrored: bool = False) -
         box = (left + x, height - high - y, right + x - 1, height - low - y - 1)
         pen.rectangle(box, fill=(200, 120, 60, 255))
     pixels = np.array(picture)
-    document = still_document(pixels[:, ::-1].copy() if mirrored else pixels)
+    pixels = pixels[:, ::-1].copy() if mirrored else pixels
+    document = still_document(np.rot90(pixels).copy() if turned else pixels)
     for handle, place in HANDLES.items():
         at = place + by
         at = 2 * AXIS - at.conjugate() if mirrored else at
+        at = 1j * at + SIZE[1] if turned else at
         document = handle_commands.add_handle(0, at, name=handle)(document)
     return replace(document.figures[0], id=identity, name=name)
 

@@ -60,7 +60,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--background", metavar="COLOUR", help="transparent, or a colour such as #fff or #ffffff"
     )
     parser.add_argument(
-        "--framing", choices=FRAMINGS, help="the picture's own canvas, or all of the motion"
+        "--framing",
+        choices=FRAMINGS,
+        help="the canvas, or all of the motion; with a camera both are what it shows",
     )
     parser.add_argument(
         "--names",

@@ -101,6 +101,30 @@ Layers that no entry names stand still. visible says from which frames on a laye
 not, also one that is hidden in DRAWING. Of the layers of a choice exactly one is seen at a time,
 from the frame on that its keys name; none of them is in another choice or has visible.
 
+What moves between keys of its own:
+
+   "camera": {"keys": [{"frame": 0, "centre": [400, 300]},
+                       {"frame": 48, "centre": [520, 340], "zoom": 2, "turn": 10}]},
+   "canvas": [1280, 720]
+
+at the top lets every frame of an export show what the camera does: the point centre in the middle,
+all zoom times as large (1 where left out; blended by its logarithm) and turned by so many degrees
+counter-clockwise as it is seen (0). Its frame is the canvas, from the origin to its upper right
+corner, which is as large as DRAWING where no canvas is given. Before its first key and after its
+last one it is held; in a loop the last one leads on to the first one. A figure has
+
+   "movement": {"keys": [{"frame": 0}, {"frame": 24, "shift": [60, 0], "turn": 90}]},
+   "opacity": [[0, 1], [12, 0.2]],
+   "order": [[24, {"in_front_of": "arm"}], [36, {"behind": "body"}], [48, null]]
+
+movement shifts it as a whole from where its poses have it, and turns it around its anchor, or else
+the middle of its shape, with all that hangs on it; while it hangs on another one it goes with that
+one alone. opacity is a number, or fades evenly from key to key. order lays it right in front of
+another layer from a frame on, or right behind it; null takes it back to its place in DRAWING. A
+layer that stands still has these too, with "handles": {} and "keys": [{"frame": 0}]. Keys of the
+camera and of movements have ease and passing as those of poses; where they begin and end they come
+from rest and to rest, unless an ease is named.
+
 examples:
   lissom pose giraffe.png nod.json --out nod.lissom
   lissom pose giraffe.png nod.json --out nod.lissom --triangles 20000 --detail fine

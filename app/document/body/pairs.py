@@ -1,6 +1,7 @@
 """Which handles, and which layers, are each other's other side: by their names, or their places."""
 
 from collections.abc import Iterable, Iterator, Mapping
+from functools import lru_cache
 
 import numpy as np
 
@@ -18,6 +19,7 @@ SIDES: SidePairs = (("L", "R"), ("left", "right"))
 PAIRS: SidePairs = (*SIDES, ("near", "far"))
 
 
+@lru_cache(maxsize=4096)
 def mirrored_name(name: str, pairs: SidePairs = PAIRS) -> str | None:
     """Return the name of a handle or a layer on the other side; None where it tells of no side.
 

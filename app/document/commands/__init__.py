@@ -19,6 +19,7 @@ from app.document.commands.command import Command as Command, in_turn as in_turn
 from app.document.commands.pose_commands import Settled as Settled, exchanged as exchanged
 from app.document.commands.staging import (
     choice_commands as choice_commands,
+    filming_commands as filming_commands,
     group_commands as group_commands,
     layer_commands as layer_commands,
 )

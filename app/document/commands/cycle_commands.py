@@ -7,8 +7,7 @@ from app.document.commands.command import figure_command
 from app.document.commands.keys_in_time import in_order
 from app.document.figure import Figure
 from app.document.keyframe import Keyframe
-from app.document.layering import Switch
-from app.document.queries import are_alike
+from app.document.queries import are_alike, repeated
 from app.document.timing import Cycle, Track, TrackKey
 from app.errors import LissomError
 
@@ -96,7 +95,7 @@ def make_keys(figure: Figure, first: int, end: int) -> Figure:
             _repeated(figure, track, cycle, starts) if cycle.takes(track) else track
             for track in figure.tracks
         ),
-        switches=_repeated_switches(figure, cycle, [*starts, first + rounds * cycle.period]),
+        switches=repeated(figure.switches, (cycle,), until),
     )
 
 
@@ -141,6 +140,18 @@ def nearest_end(figure: Figure, cycle: Cycle, frame: int, end: int) -> int | Non
     return min(fitting, key=lambda each: abs(each - frame))
 
 
+def stretched_to(figure: Figure, cycle: Cycle, frame: int) -> Cycle:
+    """Return a cycle with its end next to a frame, behind its keys; it repeats as often."""
+    own = [each for each in figure.key_frames if cycle.has(each)]
+    last = max([frame, cycle.first + 1, *(each + 1 for each in own)])
+    until = cycle.until
+    if until is not None:
+        until = max(
+            last, cycle.first + round((until - cycle.first) * (last - cycle.first) / cycle.period)
+        )
+    return replace(cycle, last=last, until=until)
+
+
 def cycle_from(figure: Figure, first: int) -> Cycle:
     """Return the cycle of a figure that begins at a frame."""
     for cycle in figure.cycles:
@@ -164,23 +175,6 @@ def _with_fronts(figure: Figure, cycle: Cycle, copy: Keyframe) -> Keyframe:
         if key.frame <= own[0].frame:
             depths.update(key.fronts)
     return replace(copy, fronts={handle: depths[handle] for handle in changed})
-
-
-def _repeated_switches(figure: Figure, cycle: Cycle, starts: list[int]) -> tuple[Switch, ...]:
-    """Return a figure's switches with those of a stretch in each repeat, which begins as before.
-
-    The last of the starts is where the repeats end.
-    """
-    own = [each for each in figure.switches if cycle.first < each.frame < cycle.last]
-    if not own:
-        return figure.switches
-    before = [each for each in figure.switches if each.frame <= cycle.first]
-    shown = (before or figure.switches)[-1 if before else 0].visible
-    copies = [Switch(at, shown) for at in starts]
-    for at in starts[:-1]:
-        copies += [replace(each, frame=each.frame + at - cycle.first) for each in own]
-    switches = {each.frame: each for each in (*copies, *figure.switches)}
-    return tuple(switches[frame] for frame in sorted(switches))
 
 
 def _repeated(figure: Figure, track: Track, cycle: Cycle, starts: list[int]) -> Track:

@@ -7,6 +7,7 @@ from app.document.commands import keys_in_time
 from app.document.commands.command import figure_command
 from app.document.figure import Figure
 from app.document.keyframe import Keyframe, Pose
+from app.document.layering import moved_in_time
 from app.document.timing import LINEAR, Cycle, Easing, Passing
 from app.errors import LissomError
 
@@ -196,4 +197,7 @@ def stretched(figure: Figure, first: int, factor: float) -> Figure:
             replace(track, keys=all_to(track.keys), delay=round(factor * track.delay))
             for track in figure.tracks
         ),
+        movement=all_to(figure.movement),
+        opacities=all_to(figure.opacities),
+        placings=moved_in_time(figure.placings, to),
     )

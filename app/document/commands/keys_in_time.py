@@ -10,10 +10,11 @@ from itertools import chain, pairwise
 from typing import TypeVar
 
 from app.document.keyframe import Keyframe
+from app.document.layering import CameraKey, MoveKey, OpacityKey
 from app.document.timing import HOLD, LINEAR, Easing, Passing, TrackKey
 from app.errors import LissomError
 
-Key = TypeVar("Key", Keyframe, TrackKey)
+Key = TypeVar("Key", Keyframe, TrackKey, CameraKey, MoveKey, OpacityKey)
 Row = tuple[Key, ...]
 
 
@@ -29,11 +30,11 @@ def at_frames(keys: Row[Key], frames: Iterable[int]) -> list[Key]:
 def in_order(keys: Iterable[Key]) -> Row[Key]:
     """Return a row of keys."""
     ordered = tuple(sorted(keys, key=lambda key: key.frame))
-    frame, count = Counter(key.frame for key in ordered).most_common(1)[0]
-    if count > 1:
-        raise LissomError(
-            f"Two keys would be at frame {frame}; move or delete the one there first."
-        )
+    for frame, count in Counter(key.frame for key in ordered).items():
+        if count > 1:
+            raise LissomError(
+                f"Two keys would be at frame {frame}; move or delete the one there first."
+            )
     return ordered
 
 

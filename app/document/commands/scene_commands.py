@@ -7,7 +7,7 @@ from itertools import pairwise
 from app.document.body import SidePairs
 from app.document.commands.command import command, numbered
 from app.document.commands.key_commands import stretched
-from app.document.commands.keys_in_time import require_factor, scaled
+from app.document.commands.keys_in_time import in_order, require_factor, scaled
 from app.document.model import Document
 from app.document.settings import ExportSettings, FrameRange, Marker
 from app.errors import LissomError
@@ -24,7 +24,8 @@ def set_frames(document: Document, frames: FrameRange) -> Document:
     """Set the first and last frame, which cut the preview range; no key may be left outside."""
     if frames == document.frames:
         return document
-    ends = (frame for figure in document.figures for frame in figure.ends)
+    ends = [frame for figure in document.figures for frame in figure.ends]
+    ends += [key.frame for key in document.camera]
     outside = next((frame for frame in ends if frame not in frames), None)
     if outside is not None:
         raise LissomError(
@@ -86,6 +87,9 @@ def scale_time(document: Document, factor: float) -> Document:
         choices=tuple(
             choice.at_frames(lambda frame: scaled(frame, first, factor))
             for choice in document.choices
+        ),
+        camera=in_order(
+            key.at_pace(scaled(key.frame, first, factor), 1 / factor) for key in document.camera
         ),
     )
 

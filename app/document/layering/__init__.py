@@ -1,7 +1,7 @@
-"""How figures stand among each other: their groups, what they hang on, and when they are seen.
+"""How figures stand among each other: groups, what they hang on, when they are seen, and where.
 
 In: ids of figures, and frames.
-Out: groups, joints, switches and choices.
+Out: groups, joints, switches and choices; keys of the camera, and of figures as a whole.
 Imports: the values of `app.document`.
 """
 
@@ -19,6 +19,14 @@ from app.document.layering.groups import (
     paths_to as paths_to,
     require_path as require_path,
     shared_path as shared_path,
+)
+from app.document.layering.moves import (
+    CameraKey as CameraKey,
+    MoveKey as MoveKey,
+    OpacityKey as OpacityKey,
+    Placing as Placing,
+    moved_in_time as moved_in_time,
+    require_rising as require_rising,
 )
 from app.document.layering.sight import (
     Choice as Choice,

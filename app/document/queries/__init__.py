@@ -9,13 +9,11 @@ from app.document.queries.clips import (
     Clip as Clip,
     clip_of as clip_of,
 )
-from app.document.queries.compositing import Composite as Composite, composed as composed
 from app.document.queries.fronts import (
     USUAL_EXTENT as USUAL_EXTENT,
     Front as Front,
     fronts_at as fronts_at,
 )
-from app.document.queries.layer_tree import TreeRow as TreeRow, layer_tree as layer_tree
 from app.document.queries.material import (
     are_as_stiff as are_as_stiff,
     brushed_stiffness as brushed_stiffness,
@@ -29,13 +27,27 @@ from app.document.queries.shortfall import (
     falls_short as falls_short,
     find_shortfall as find_shortfall,
 )
-from app.document.queries.sight import is_visible as is_visible, sights_of as sights_of
 from app.document.queries.spans import (
     KeySpan as KeySpan,
     closing_span as closing_span,
     intervals as intervals,
     place_at as place_at,
     spans as spans,
+)
+from app.document.queries.stage import (
+    Composite as Composite,
+    Shot as Shot,
+    TreeRow as TreeRow,
+    alternates as alternates,
+    camera_at as camera_at,
+    composed as composed,
+    in_order as in_order,
+    is_visible as is_visible,
+    layer_tree as layer_tree,
+    movement_at as movement_at,
+    opacity_at as opacity_at,
+    repeated as repeated,
+    sights_of as sights_of,
 )
 from app.document.queries.timeline import (
     Moment as Moment,

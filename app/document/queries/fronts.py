@@ -2,8 +2,8 @@
 
 from typing import NamedTuple
 
+from app.document.figure import Figure
 from app.document.queries.clips import Clip
-from app.document.queries.spans import has_been
 from engine.geometry import box_diagonal
 
 # Of the drawing's diagonal: how far a depth reaches that is given no extent.
@@ -31,7 +31,7 @@ def fronts_at(clip: Clip, frame: float) -> tuple[Front, ...]:
         frame = clip.frames.first + (frame - clip.frames.first) % clip.period
     is_before_all = clip.loop and frame < clip.keys[0].frame
     for key in clip.keys:
-        if is_before_all or has_been(figure, key.frame, frame):
+        if is_before_all or _has_been(figure, key.frame, frame):
             depths.update(key.fronts)
     usual = USUAL_EXTENT * box_diagonal(figure.domain.outline)
     return tuple(
@@ -39,3 +39,15 @@ def fronts_at(clip: Clip, frame: float) -> tuple[Front, ...]:
         for handle in figure.handles
         if depths[handle.id]
     )
+
+
+def _has_been(figure: Figure, key: int, frame: float) -> bool:
+    """Tell whether what a key says holds at a frame, as far as no later one says else.
+
+    What those of a cycle say holds until a repeat, or all of them, are over.
+    """
+    for cycle in figure.cycles:
+        if cycle.has(key):
+            end = frame if cycle.until is None else min(frame, cycle.until)
+            return key <= frame and key <= cycle.source(end)
+    return key <= frame

@@ -1,8 +1,11 @@
-"""How the motion reaches each of some keys, and leaves it, by their passings and easings."""
+"""How the motion reaches each of some keys, and leaves it, by their passings and easings.
+
+Between two keys, what moves is a cubic Hermite polynomial of the eased time.
+"""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from math import isfinite
+from math import inf, isfinite
 from typing import Generic, NamedTuple, Protocol, TypeVar
 
 from app.document.timing import HOLD, Easing, Passing
@@ -30,6 +33,21 @@ class Timed(Protocol):
 
 
 Key = TypeVar("Key", bound=Timed)
+Value = TypeVar("Value", float, complex)
+
+
+@dataclass(frozen=True)  # with slots, Python 3.11 could not make one of given types
+class Moved(Generic[Key, Value]):
+    """What moves between keys."""
+
+    of: Callable[[Key], Value]
+    same: float  # by how much two keys may differ that want the same
+    # With which a key of its own is passed, a frame; None for what its neighbours make of it.
+    velocity: Callable[[Key], Value | None] = lambda _: None
+
+    def is_same(self, one: Key, other: Key) -> bool:
+        """Tell whether two keys want the same."""
+        return abs(self.of(one) - self.of(other)) <= self.same
 
 
 class Leg(NamedTuple):
@@ -133,3 +151,77 @@ def _moving(keys: Sequence[Timed], leg: Leg | None) -> Leg | None:
 def rest(pace: float) -> float:
     """Return 0 where a blend must stop at a key, and 1 where its easing stops there by itself."""
     return 1.0 if pace == 0.0 else 0.0
+
+
+def value_on(passages: Passages[Key], leg: Leg, time: float, moved: Moved[Key, Value]) -> Value:
+    """Return what moves at a share of the frames of a leg, from 0 to 1; that of a key to the bit.
+
+    It passes a key at the key's own velocity, or with the slope of the parabola through it and its
+    neighbours, and with a stop where a neighbour wants the same of it.
+    """
+    one, other = passages.keys[leg.first], passages.keys[leg.last]
+    share = one.easing(time)
+    if share in (0.0, 1.0):
+        return moved.of(other if share else one)
+    change, rest = moved.of(other) - moved.of(one), 1.0 - share
+    leaving, reaching = slopes_on(passages, leg, moved)
+    return moved.of(one) + share * (
+        share * (3.0 - 2.0 * share) * change + rest * (rest * leaving - share * reaching)
+    )
+
+
+def slopes_on(passages: Passages[Key], leg: Leg, moved: Moved[Key, Value]) -> tuple[Value, Value]:
+    """Return the slopes, over the eased time, with which the keys of a leg are left and reached."""
+    change = moved.of(passages.keys[leg.last]) - moved.of(passages.keys[leg.first])
+    return (
+        _slope(passages, leg.first, moved, change, side=1),
+        _slope(passages, leg.last, moved, change, side=0),
+    )
+
+
+def _slope(
+    passages: Passages[Key], index: int, moved: Moved[Key, Value], change: Value, *, side: int
+) -> Value:
+    """Return the slope, over the eased time, with which a key is reached or, on side 1, left.
+
+    The change is that from the leg's first key to its second one.
+    """
+    keys = passages.keys
+    before, after = passages.arriving(index), passages.leaving(index)
+    velocity, arms = _led(passages, index, moved)
+    if velocity is not None:
+        return arms[side] * velocity
+    end = passages.ends(index)[side]
+    if not isinstance(end, Joint):
+        return end * change
+    window = (before.first if before else index, index, after.last if after else index)
+    first, middle, last = (
+        share * moved.of(keys[i]) for share, i in zip(end.velocity.tolist(), window, strict=True)
+    )
+    slope: Value = 3.0 * abs(end.arms[side]) * (first + middle + last)
+    return slope
+
+
+def _led(
+    passages: Passages[Key], index: int, moved: Moved[Key, Value]
+) -> tuple[Value | None, tuple[float, float]]:
+    """Return a key's own velocity, and the frames that an even blend takes at the paces there.
+
+    They are those of the leg that leads to it, and of the one that leads on. There is no velocity
+    where the key is not passed through, nor where an easing stands still there, or jumps.
+    """
+    keys = passages.keys
+    before, after = passages.arriving(index), passages.leaving(index)
+    reached, left = keys[before.last if before else index], keys[after.first if after else index]
+    end_pace = keys[before.first].easing.paces[1] if before else 1.0
+    start_pace = left.easing.paces[0] if after else 1.0
+    velocity = moved.velocity(left)
+    is_led = (
+        velocity == moved.velocity(reached)
+        and reached.passing is left.passing is Passing.THROUGH
+        and all(0.0 < pace < inf for pace in (end_pace, start_pace))
+    )
+    if not is_led:
+        return None, (0.0, 0.0)
+    arms = (before.frames if before else 0) / end_pace, (after.frames if after else 0) / start_pace
+    return velocity, arms

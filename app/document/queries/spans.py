@@ -44,10 +44,11 @@ class PlacedCycle(NamedTuple):
 
 
 class Layout(NamedTuple):
-    """The spans of a clip, in the order of their frames, and its cycles."""
+    """The spans of a clip, in the order of their frames, its cycles, and how a loop closes."""
 
     spans: tuple[KeySpan, ...]
     rings: tuple[PlacedCycle, ...]
+    closing: KeySpan | None  # from the last key to the first one
 
 
 def spans(clip: Clip) -> tuple[KeySpan, ...]:
@@ -62,9 +63,7 @@ def intervals(clip: Clip) -> tuple[tuple[int, int], ...]:
 
 def closing_span(clip: Clip) -> KeySpan | None:
     """Return the span in which a loop leads from its last key to its first one, if there is one."""
-    found = spans(clip)
-    is_closing = bool(found) and found[-1].start + found[-1].frames > clip.frames.last
-    return found[-1] if clip.loop and is_closing and found[-1].last == 0 else None
+    return layout(clip).closing
 
 
 def layout(clip: Clip) -> Layout:
@@ -86,11 +85,13 @@ def _layout(
         ring = ring_of.get(first)
         if ring is None or ring is not ring_of.get(last):
             found += _on(ring, at, first, last, at[last])
+    closing: list[KeySpan] = []
     if loop:
         # A cycle that begins between two of its keys is not led to.
         ring, round_ = ring_of.get(0), frames.last - frames.first
         if ring is None or at[0] == ring.cycle.first:
-            found += _on(ring_of.get(len(at) - 1), at, len(at) - 1, 0, at[0] + round_)
+            closing = _on(ring_of.get(len(at) - 1), at, len(at) - 1, 0, at[0] + round_)
+            found += closing
     led = {index for span in found for index in (span.first, span.last)}
     if len(at) > 1:
         found += [KeySpan(alone, alone, at[alone], 1) for alone in {*range(len(at))} - led]
@@ -103,6 +104,7 @@ def _layout(
             for ring in rings
             if ring.keys
         ),
+        closing[0] if closing else None,
     )
 
 
@@ -137,44 +139,32 @@ def _on(ring: PlacedCycle | None, at: list[int], first: int, last: int, to: int)
     return [] if first < 0 or to <= start or is_whole else [KeySpan(first, last, start, to - start)]
 
 
-def place_at(clip: Clip, frame: float) -> tuple[int, float]:
-    """Return the number of the span that a frame is in, and which share of it is over, 0 to 1.
+def place_at(clip: Clip, frame: float) -> tuple[int, KeySpan, float]:
+    """Return the span that a frame is in, after its number, and which share of it is over, 0 to 1.
 
     Where nothing leads to a later key, or from an earlier one, the pose stands still. In a loop
     frames beyond the ends come round. The clip has spans.
     """
     if clip.loop and clip.period and frame not in clip.frames:
         frame = clip.frames.first + (frame - clip.frames.first) % clip.period
-    found, rings = layout(clip)
+    found, rings, closing = layout(clip)
     ring = next((ring for ring in rings if ring.has(frame)), None)
-    if ring is None and rings:
+    if ring is None and rings and closing is None:
         first, last = rings[0], rings[-1]
-        over = found[-1].start + found[-1].frames
-        if first.keys[0] == 0 and frame < first.cycle.first and not closing_span(clip):
+        if first.keys[0] == 0 and frame < first.cycle.first:
             ring, frame = first, first.cycle.first
-        elif last.keys[-1] == len(clip.keys) - 1 and frame > max(last.end, over):
+        elif last.keys[-1] == len(clip.keys) - 1 and frame > last.end:
             ring, frame = last, last.end
     if ring is not None and ring.spans:
         source = ring.cycle.source(frame)
         place = bisect_right(ring.keys, source, key=lambda index: clip.keys[index].frame) - 1
         number = ring.spans[place]
-        return number, found[number].share(source if place >= 0 else source + ring.cycle.period)
-    if ring is not None:
+        frame = source if place >= 0 else source + ring.cycle.period
+    elif ring is not None:
         number = next(n for n, span in enumerate(found) if ring.keys[0] in span[:2])
-        return number, float(found[number].first != ring.keys[0])
-    if frame < found[0].start and closing_span(clip):
-        frame += clip.period
-    number = max(0, bisect_right(found, frame, key=lambda span: span.start) - 1)
-    return number, min(max(found[number].share(frame), 0.0), 1.0)
-
-
-def has_been(figure: Figure, event: int, frame: float) -> bool:
-    """Tell whether an event of a figure's keys holds at a frame, as far as no later one does.
-
-    Those of a cycle hold until a repeat, or all of them, are over, and begin anew.
-    """
-    for cycle in figure.cycles:
-        if cycle.has(event):
-            end = frame if cycle.until is None else min(frame, cycle.until)
-            return event <= frame and event <= cycle.source(end)
-    return event <= frame
+        return number, found[number], float(found[number].first != ring.keys[0])
+    else:
+        if frame < found[0].start and closing is not None:
+            frame += clip.period
+        number = max(0, bisect_right(found, frame, key=lambda span: span.start) - 1)
+    return number, found[number], min(max(found[number].share(frame), 0.0), 1.0)

@@ -8,7 +8,8 @@ from app.document.figure import Figure
 from app.document.keyframe import Pose
 from app.document.model import Document
 from app.document.queries.clips import Clip, clip_of
-from app.document.queries.spans import intervals, place_at, spans
+from app.document.queries.spans import place_at, spans
+from app.document.queries.stage import camera_at, movement_at, opacity_at
 from app.document.queries.tracks import track_at
 from app.document.queries.transits import transits
 from app.document.settings import FrameRange
@@ -35,11 +36,10 @@ def time_of(clip: Clip, frame: float) -> Moment:
     again; frames beyond the ends come round. In a cycle it is that of the frame that repeats there.
     Fractions lie between frames.
     """
-    found = spans(clip)
-    if not found:
+    if len(clip.keys) == 1:
         return Moment(0, 0.0)
-    interval, share = place_at(clip, frame)
-    eased = clip.keys[found[interval].first].easing(share)
+    interval, span, share = place_at(clip, frame)
+    eased = clip.keys[span.first].easing(share)
     return Moment(interval, transits(clip)[interval].weight(eased))
 
 
@@ -48,7 +48,7 @@ def resting_pose(clip: Clip, moment: Moment) -> Pose | None:
     keys = clip.keys
     if moment.weight not in (0.0, 1.0) or len(keys) == 1:
         return None if len(keys) > 1 else keys[0].pose
-    return keys[intervals(clip)[moment.interval][moment.weight == 1.0]].pose
+    return keys[spans(clip)[moment.interval][moment.weight == 1.0]].pose
 
 
 def changed_stretches(before: Document, after: Document) -> list[FrameRange]:
@@ -124,13 +124,22 @@ def framed_frames(document: Document, exported: FrameRange) -> FrameRange:
 def _is_same(document: Document, first: int, second: int) -> bool:
     """Tell whether two frames show the same pose, or two that were solved for the same wishes."""
     clips = (clip_of(document, figure.id) for figure in document.figures)
-    return all(
+    return _moves_alike(document, first, second) and all(
         _poses_alike(clip, time_of(clip, first), time_of(clip, second))
         and all(
             track_at(track, clip, first) == track_at(track, clip, second)
             for track in clip.figure.tracks
         )
         for clip in clips
+    )
+
+
+def _moves_alike(document: Document, first: int, second: int) -> bool:
+    """Tell whether the camera, and all figures as a whole, are alike at two frames."""
+    return camera_at(document, first) == camera_at(document, second) and all(
+        movement_at(document, each, first) == movement_at(document, each, second)
+        and opacity_at(document, each, first) == opacity_at(document, each, second)
+        for each in document.figures
     )
 
 

@@ -1,19 +1,14 @@
 """Where tracks want their handles."""
 
 from bisect import bisect_right
-from collections.abc import Callable
-from math import inf
-from typing import Generic, NamedTuple, TypeVar
+from typing import NamedTuple
 
 from app.document.queries.clips import Clip
-from app.document.queries.passages import Passages
-from app.document.timing import LINEAR, Cycle, Passing, Track, TrackKey
-from engine.interpolation import Joint
+from app.document.queries.passages import Leg, Moved, Passages, Value, slopes_on, value_on
+from app.document.timing import LINEAR, Cycle, Track, TrackKey
 
 # By how much two keys may differ that want the same: pixels, and radians.
 SAME_PLACE, SAME_TURN = 0.01, 1e-4
-
-Value = TypeVar("Value", float, complex)
 
 
 class TrackPlace(NamedTuple):
@@ -30,12 +25,10 @@ def track_at(track: Track, clip: Clip, frame: float) -> TrackPlace | None:
     come round, and the last frame is the first one again; so they do in a cycle that takes the
     track, and nowhere else is it then. What a key wants is given to the bit.
 
-    Between two keys place and turn are cubic Hermite polynomials of the eased time, with the
-    passings of keys as whole poses have them (`app.document.queries.passages`): through a key at
-    its own velocity, or with the slope of the parabola through it and its neighbours, and each with
-    a stop where a neighbour wants the same of it. Through its first key and its last one it comes
-    from rest and to rest, as nothing is moved beyond them; where it fills a loop and its ends agree
-    it goes on from the one to the other.
+    Between two keys place and turn have the passings of keys as whole poses have them
+    (`app.document.queries.passages.value_on`), each by itself. Through its first key and its last
+    one it comes from rest and to rest, as nothing is moved beyond them; where it fills a loop and
+    its ends agree it goes on from the one to the other.
     """
     time = _time(track, clip, frame)
     if time is None or not track.enabled:
@@ -61,23 +54,16 @@ def velocity_at(track: Track, clip: Clip, frame: float) -> complex | None:
         return None
     length = other.frame - one.frame
     share = (time - one.frame) / length
-    change, (leaving, reaching) = other.place - one.place, _slopes(track, clip, index, PLACE)
+    change = other.place - one.place
+    leaving, reaching = slopes_on(_passages(track, clip, PLACE), _leg(keys, index), PLACE)
     rest = 1.0 - share
     slope = 6.0 * share * rest * change
     slope += rest * (1.0 - 3.0 * share) * leaving - share * (2.0 - 3.0 * share) * reaching
     return slope / length
 
 
-class _Moved(NamedTuple, Generic[Value]):
-    """What moves between keys."""
-
-    of: Callable[[TrackKey], Value]
-    velocity: Callable[[TrackKey], Value | None]
-    same: float  # by how much two keys may differ that want the same
-
-
-PLACE = _Moved[complex](lambda key: key.place, lambda key: key.velocity, SAME_PLACE)
-TURN = _Moved[float](lambda key: key.turn, lambda _: None, SAME_TURN)
+PLACE = Moved[TrackKey, complex](lambda key: key.place, SAME_PLACE, lambda key: key.velocity)
+TURN = Moved[TrackKey, float](lambda key: key.turn, SAME_TURN)
 
 
 def _time(track: Track, clip: Clip, frame: float) -> float | None:
@@ -107,84 +93,24 @@ def _interval(track: Track, time: float) -> int:
     return bisect_right(track.keys, time, key=lambda key: key.frame) - 1
 
 
-def _value(track: Track, clip: Clip, time: float, moved: _Moved[Value]) -> Value:
-    """Return what moves at a frame from the first key to the last one."""
-    of, keys, index = moved.of, track.keys, _interval(track, time)
-    if time == keys[index].frame:
-        return of(keys[index])
-    one, other = keys[index], keys[index + 1]
-    share = one.easing((time - one.frame) / (other.frame - one.frame))
-    if share in (0.0, 1.0):
-        return of(other if share else one)
-    change, rest = of(other) - of(one), 1.0 - share
-    leaving, reaching = _slopes(track, clip, index, moved)
-    return of(one) + share * (
-        share * (3.0 - 2.0 * share) * change + rest * (rest * leaving - share * reaching)
-    )
-
-
-def _slopes(track: Track, clip: Clip, index: int, moved: _Moved[Value]) -> tuple[Value, Value]:
-    """Return the slopes, over the eased time, with which a key is left and the next one reached."""
+def _passages(track: Track, clip: Clip, moved: Moved[TrackKey, Value]) -> Passages[TrackKey]:
     keys = track.keys
-
-    def is_same(key: TrackKey, other: TrackKey) -> bool:
-        return abs(moved.of(key) - moved.of(other)) <= moved.same
-
     cycle = _cycle(track, clip)
     period = cycle.period if cycle else clip.period if clip.loop else 0
     is_whole = 0 < keys[-1].frame - keys[0].frame == period
-    gap = 0 if is_whole and is_same(keys[0], keys[-1]) else None
-    passages = Passages(keys=keys, gap=gap, is_same=is_same, ends_rest=True)
-    change = moved.of(keys[index + 1]) - moved.of(keys[index])
-    return (
-        _slope(passages, index, moved, change, side=1),
-        _slope(passages, index + 1, moved, change, side=0),
-    )
+    gap = 0 if is_whole and moved.is_same(keys[0], keys[-1]) else None
+    return Passages(keys=keys, gap=gap, is_same=moved.is_same, ends_rest=True)
 
 
-def _slope(
-    passages: Passages[TrackKey], index: int, moved: _Moved[Value], change: Value, *, side: int
-) -> Value:
-    """Return the slope, over the eased time, with which a key is reached or, on side 1, left.
-
-    The change is that from the interval's first key to its second one.
-    """
-    keys = passages.keys
-    before, after = passages.arriving(index), passages.leaving(index)
-    velocity, arms = _led(passages, index, moved)
-    if velocity is not None:
-        return arms[side] * velocity
-    end = passages.ends(index)[side]
-    if not isinstance(end, Joint):
-        return end * change
-    window = (before.first if before else index, index, after.last if after else index)
-    first, middle, last = (
-        share * moved.of(keys[i]) for share, i in zip(end.velocity.tolist(), window, strict=True)
-    )
-    slope: Value = 3.0 * abs(end.arms[side]) * (first + middle + last)
-    return slope
+def _leg(keys: tuple[TrackKey, ...], index: int) -> Leg:
+    return Leg(index, index + 1, keys[index + 1].frame - keys[index].frame)
 
 
-def _led(
-    passages: Passages[TrackKey], index: int, moved: _Moved[Value]
-) -> tuple[Value | None, tuple[float, float]]:
-    """Return a key's own velocity, and the frames that an even blend takes at the paces there.
-
-    They are those of the leg that leads to it, and of the one that leads on. There is no velocity
-    where the key is not passed through, nor where an easing stands still there, or jumps.
-    """
-    keys = passages.keys
-    before, after = passages.arriving(index), passages.leaving(index)
-    reached, left = keys[before.last if before else index], keys[after.first if after else index]
-    end_pace = keys[before.first].easing.paces[1] if before else 1.0
-    start_pace = left.easing.paces[0] if after else 1.0
-    velocity = moved.velocity(left)
-    is_led = (
-        velocity == moved.velocity(reached)
-        and reached.passing is left.passing is Passing.THROUGH
-        and all(0.0 < pace < inf for pace in (end_pace, start_pace))
-    )
-    if not is_led:
-        return None, (0.0, 0.0)
-    arms = (before.frames if before else 0) / end_pace, (after.frames if after else 0) / start_pace
-    return velocity, arms
+def _value(track: Track, clip: Clip, time: float, moved: Moved[TrackKey, Value]) -> Value:
+    """Return what moves at a frame from the first key to the last one."""
+    keys, index = track.keys, _interval(track, time)
+    if time == keys[index].frame:
+        return moved.of(keys[index])
+    leg = _leg(keys, index)
+    share = (time - keys[index].frame) / leg.frames
+    return value_on(_passages(track, clip, moved), leg, share, moved)

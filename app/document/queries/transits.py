@@ -129,7 +129,7 @@ def passings_of(clip: Clip) -> list[tuple[KeyPassing, KeyPassing]]:
 
     Keys of a cycle are passed as in every repeat, also by what leads to it and on from it.
     """
-    found, rings = layout(clip)
+    found, rings, _ = layout(clip)
     ways = {span.first: number for number, span in enumerate(found) if span.first != span.last}
     ends = {span.last: number for number, span in enumerate(found) if span.first != span.last}
     known = {index: KeyPassing(ends.get(index), ways.get(index)) for index in range(len(clip.keys))}

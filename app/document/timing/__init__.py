@@ -18,4 +18,8 @@ from app.document.timing.easing import (
 )
 from app.document.timing.passing import Passing as Passing, require_passing as require_passing
 from app.document.timing.springs import SPRINGS as SPRINGS, Spring as Spring
-from app.document.timing.tracks import Track as Track, TrackKey as TrackKey
+from app.document.timing.tracks import (
+    MOST_TURN as MOST_TURN,
+    Track as Track,
+    TrackKey as TrackKey,
+)

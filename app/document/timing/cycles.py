@@ -110,5 +110,5 @@ def _nearest_end(cycle: Cycle, own: Sequence[int], before: int) -> int:
     until = cycle.last if cycle.until is None else cycle.until
     rounds = range((before - cycle.first) // cycle.period + 2)
     ends = [frame + number * cycle.period for number in rounds for frame in own]
-    fitting = [end for end in ends if cycle.last <= end <= before]
+    fitting = [end for end in ends if cycle.last <= end <= before] or [before]
     return min(fitting, key=lambda end: abs(end - until))

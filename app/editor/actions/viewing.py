@@ -134,6 +134,16 @@ def set_ghosts(session: Session, before: int, after: int, step: int) -> None:
     )
 
 
+def put_ghosts_in_front(session: Session, in_front: bool) -> None:  # noqa: FBT001 - a checkbox's
+    """Let the onion skin be in front of the drawing, or behind it."""
+    session.preferences = replace(session.preferences, ghosts_in_front=in_front)
+
+
+def reach_paths(session: Session, reach: int) -> None:
+    """Choose of how many frames around the playhead motion paths are; 0 takes all that play."""
+    session.preferences = replace(session.preferences, path_reach=reach)
+
+
 def set_backdrop(session: Session, backdrop: str) -> None:
     """Choose what lies behind the drawing: "checker" or "#rrggbb"."""
     session.preferences = replace(session.preferences, backdrop=backdrop)

@@ -36,6 +36,14 @@ from app.editor.layering.choosing import (
     look_at_alone as look_at_alone,
     toggle as toggle,
 )
+from app.editor.layering.filming import (
+    change_camera_key as change_camera_key,
+    delete_camera_key as delete_camera_key,
+    fade_here as fade_here,
+    fit_camera as fit_camera,
+    key_camera as key_camera,
+    unfade_here as unfade_here,
+)
 from app.editor.layering.hanging import (
     hand_over as hand_over,
     hang as hang,
@@ -56,6 +64,7 @@ from app.editor.layering.pictures import (
     stand_up as stand_up,
 )
 from app.editor.layering.turns import (
+    decline as decline,
     dissolve as dissolve,
     form as form,
     join as join,

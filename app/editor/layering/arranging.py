@@ -9,6 +9,7 @@ from app.document import (
     BlendMode,
     choice_commands,
     group_commands,
+    in_order,
     in_turn,
     is_visible,
     layer_commands,
@@ -36,9 +37,11 @@ def figure_at(
     besides : int, optional
         A figure that is passed through.
     """
+    shown = project.puppet.shown
+    frame = project.playhead.frame if shown is None else shown.frame
     found = [
         each.id
-        for each in reversed(project.document.figures)
+        for each in reversed(in_order(project.document, frame))
         if each.id != besides and not (each.still or each.locked) and is_at(project, each.id, place)
     ]
     if below in found:

@@ -21,6 +21,12 @@ def show_here(session: Session, project: Project, identity: int) -> None:
     editing.edit(session, choice_commands.choose_at(identity, frame))
 
 
+@with_project
+def decline(_: Session, project: Project, group: str) -> None:
+    """Offer no more to make a choice of a group."""
+    project.declined |= {group}
+
+
 def join(session: Session, name: str, identity: int) -> None:
     """Take a layer into a choice."""
     editing.edit(session, choice_commands.join_choice(name, identity))

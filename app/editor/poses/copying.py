@@ -19,9 +19,14 @@ COPYING = Kind("Copying a pose", "The pose could not be copied", "hand")
 
 @with_project
 def copy(session: Session, project: Project) -> None:
-    """Copy the pose at the playhead or, in the timeline, the keys that are chosen there."""
+    """Copy the pose at the playhead or, in the timeline, the keys that are chosen there.
+
+    Where several layers are chosen, those of all of them.
+    """
     if copies_keys(session, project):
         copy_keys(session)
+    elif len(project.layers) > 1:
+        _copy_poses(session, project, project.layers)
     else:
         frame = playback.current_frame(session, project)
         putting.take_pose(session, project, COPYING, partial(_copy, session, frame))
@@ -29,9 +34,18 @@ def copy(session: Session, project: Project) -> None:
 
 @with_project
 def copy_all(session: Session, project: Project) -> None:
-    """Copy the poses that all layers have at the playhead; the worker finds those in between."""
+    """Copy the poses that all layers have at the playhead."""
+    _copy_poses(session, project, [figure.id for figure in project.document.figures])
+
+
+def _copy_poses(session: Session, project: Project, layers: Sequence[int]) -> None:
+    """Copy the poses of layers at the playhead; the worker finds those in between."""
     frame, document = playback.current_frame(session, project), project.document
-    figures = [each for each in document.figures if each.handles or len(each.keys) > 1]
+    figures = [
+        each
+        for each in document.figures
+        if each.id in layers and (each.handles or len(each.keys) > 1)
+    ]
     known: dict[int, Pose] = {}
     works = {}
     for figure in figures:
@@ -48,7 +62,7 @@ def copy_all(session: Session, project: Project) -> None:
     def take(found: Mapping[int, Pose]) -> None:
         poses = {**known, **found}
         keys = [(each, Keyframe(frame=frame, pose=poses[each.id])) for each in figures]
-        session.copied = tuple(CopiedKeys(figure, (key,)) for figure, key in keys)
+        session.copied = tuple(CopiedKeys(figure, (key,), is_pose=True) for figure, key in keys)
         session.copied_tracks = ()
         session.tell(f"Poses of {len(keys)} layers at frame {frame} copied.", topic="copy")
 

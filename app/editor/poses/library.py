@@ -49,8 +49,8 @@ def offers(project: Project) -> list[PoseOffer]:
     return [
         PoseOffer(each, kept)
         for each in figures
+        if each.library and not _landing(project, PoseOffer(each, each.library[0])).hindrance
         for kept in each.library
-        if not _landing(project, PoseOffer(each, kept)).hindrance
     ]
 
 

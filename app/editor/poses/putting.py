@@ -1,6 +1,6 @@
 """Poses on the timeline: what is pasted, flipped or taken from the library."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -22,6 +22,7 @@ def put(
     frame: int,
     keys_of: Mapping[int, Sequence[Keyframe]],
     *,
+    poses: Collection[int] = (),
     label: str | None = None,
     gesture: object | None = None,
 ) -> None:
@@ -35,6 +36,8 @@ def put(
         Where the first of them comes.
     keys_of : mapping of int to sequence of Keyframe
         By the ids of their figures.
+    poses : collection of int
+        Figures of which the pose alone is taken, too.
     label : str, optional
         What this does in words; by default it pastes.
     gesture : object, optional
@@ -43,8 +46,9 @@ def put(
     gesture = gesture or object()
     first = min(key.frame for keys in keys_of.values() for key in keys)
     chosen_of: dict[KeyRow, frozenset[int]] = {}
-    is_pose = sum(map(len, keys_of.values())) == 1
+    is_alone = sum(map(len, keys_of.values())) == 1
     for figure, keys in keys_of.items():
+        is_pose = is_alone or figure in poses
         # One pose changes all repeats; several keys have no place in them.
         at = project.document.figure(figure).source_of(frame) if is_pose else frame
         moved = [replace(key, frame=key.frame + at - first) for key in keys]

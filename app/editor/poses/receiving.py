@@ -77,7 +77,8 @@ def landings(session: Session, project: Project, way: PasteWay) -> list[Landing]
     """Return which figures take over what was copied, each of them once.
 
     Keys of several figures go to those that they are of, by their names, or to the partners of
-    these. Keys of one go to that which is posed; it gives its own to its partner.
+    these. Keys of one go to that which is posed, or to all that are chosen; where sides exchange,
+    the one that is posed gives its own to its partner.
     """
     found = _landings(session, project, way)
     return [each for each in found if not each.hindrance]
@@ -159,8 +160,7 @@ def _landings(session: Session, project: Project, way: PasteWay) -> list[Landing
     found: dict[int, Landing] = {}
     document, copied = project.document, _copied(session)
     for each in copied:
-        is_alone = len(copied) == 1
-        for figure in _receivers(document, each.figure, project.active, way, is_alone=is_alone):
+        for figure in _receivers(project, each.figure, way, is_alone=len(copied) == 1):
             found.setdefault(figure.id, landing_on(document, each, figure, way))
     return list(found.values())
 
@@ -174,15 +174,18 @@ def _copied(session: Session) -> list[CopiedKeys]:
 
 
 def _receivers(
-    document: Document, source: Figure, active: int, way: PasteWay, *, is_alone: bool
+    project: Project, source: Figure, way: PasteWay, *, is_alone: bool
 ) -> Iterator[Figure]:
-    """Yield the figure that takes over what was copied of another one, if there is one."""
+    """Yield the figures that take over what was copied of another one."""
+    document = project.document
     names = {figure.name: figure for figure in document.figures}
     # A layer may have been given another name since.
     kin = (each for each in document.figures if each.id == source.id)
     own = names.get(source.name) or next((f for f in kin if f.domain is source.domain), None)
-    if is_alone and (own is None or own.id != active):
-        yield document.figure(active)
+    if is_alone and way == "as it is":
+        yield from map(document.figure, project.layers)
+    elif is_alone and (own is None or own.id != project.active):
+        yield project.figure
     elif own is not None:
         other = None if way == "as it is" else mirrored_name(own.name, document.pairs)
         yield own if other is None else names.get(other, own)

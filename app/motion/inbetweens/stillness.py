@@ -115,13 +115,12 @@ class Stillness:
             self._still[moment.interval].any() or self._weights[moment.interval].any()
         ):
             return None
-        _, share = place_at(self._clip, frame)
+        _, span, share = place_at(self._clip, frame)
         if moment.weight in (0.0, 1.0) or not 0.0 < share < 1.0:
             side = int(moment.weight == 1.0)
             there = self._still[moment.interval] | (self._weights[moment.interval, side] > 0)
             return Lack(np.zeros_like(places), there.astype(np.float64))
-        frames = self._spans[moment.interval].frames
-        return self._lack(moment, frames, share, places)
+        return self._lack(moment, span.frames, share, places)
 
     def _lack(self, moment: Moment, frames: int, share: float, places: Complexes) -> Lack:
         number, rest = moment.interval, 1.0 - share

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.document import Attachment, Document, Figure
+from app.document import Attachment, Document, Figure, movement_at
 from engine.geometry import HERE, RigidMotion
 
 
@@ -21,6 +21,8 @@ class Hanging(NamedTuple):
 
     figure: Figure
     joint: Attachment | None
+    # By which it moves by itself: not while it hangs, and from where it was when it was let go.
+    movement: RigidMotion
 
 
 def chain_of(
@@ -32,7 +34,15 @@ def chain_of(
     """
     chain = document.carriers(figure, frame, before=before)
     at = document.in_time(frame)
-    return tuple(Hanging(each, each.joint_at(at, before=before)) for each in chain)
+    links = []
+    for each in chain:
+        joint, movement = each.joint_at(at, before=before), HERE
+        if joint is None or joint.to is None:
+            movement = movement_at(document, each, at)
+        if joint is not None and joint.to is None and joint.keeps:
+            movement = movement.after(movement_at(document, each, joint.frame).inverse)
+        links.append(Hanging(each, joint, movement))
+    return tuple(links)
 
 
 def along(
@@ -52,10 +62,10 @@ def along(
         Returns how a figure is held by a joint that keeps its place: turned and moved beside the
         point of the parent, or where it was let go.
     """
-    (last, released), others = chain[-1], chain[:-1]
-    is_kept = released is not None and released.keeps
-    placement = kept(last, released) if released is not None and is_kept else HERE
-    for (child, joint), (parent, _) in zip(others[::-1], chain[:0:-1], strict=True):
+    last, released, placement = chain[-1]
+    if released is not None and released.keeps:
+        placement = placement.after(kept(last, released))
+    for (child, joint, _), (parent, _, _) in zip(chain[-2::-1], chain[:0:-1], strict=True):
         if joint is None:
             raise ValueError("only the last carrier hangs on nothing")
         at, own = hinge(parent, joint.at), hinge(child, require_anchor(child))

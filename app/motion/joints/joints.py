@@ -181,8 +181,9 @@ class Joints:
 def carried_in(
     document: Document, figure: int, siblings: Mapping[int, PoseSampler] | None = None
 ) -> Carried | None:
-    """Return what tells where a figure of a document hangs; None where it hangs on nothing."""
-    if not document.figure(figure).hangs:
+    """Return what tells where a figure of a document is moved; None where it is at no time."""
+    own = document.figure(figure)
+    if not (own.hangs or own.movement):
         return None
     return partial(Joints(document, siblings).carried, figure)
 

@@ -184,7 +184,7 @@ class PosedMesh:
         self._triangles = triangles
 
     def place(self, factor: complex, shift: complex) -> None:
-        """Draw every vertex z at factor · z + shift, the factor of modulus 1."""
+        """Draw every vertex z at factor · z + shift."""
         self._placement = (factor.real, factor.imag, shift.real, shift.imag)
 
     def draw(self, files: ShaderFiles, uniforms: Mapping[str, object]) -> None:

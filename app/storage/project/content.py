@@ -13,6 +13,7 @@ from app.document import (
     PAIRS,
     Attachment,
     Bone,
+    CameraKey,
     Choice,
     Cycle,
     Document,
@@ -27,8 +28,11 @@ from app.document import (
     Keyframe,
     Marker,
     Meshing,
+    MoveKey,
+    OpacityKey,
     Passing,
     PictureFile,
+    Placing,
     Pose,
     Spring,
     Switch,
@@ -234,6 +238,20 @@ ATTACHMENT = record(
     Field("offset", POINT, usual=0j),
     Field("keeps", FLAG, usual=False),
 )
+WAY = (Field("frame", WHOLE), Field("easing", EASING), Field("passing", TEXT))
+CAMERA = several(
+    record(CameraKey, *WAY, Field("centre", POINT), Field("zoom", NUMBER), Field("turn", NUMBER))
+)
+MOVEMENT = several(record(MoveKey, *WAY, Field("shift", POINT), Field("turn", NUMBER)))
+OPACITIES = several(record(OpacityKey, *WAY, Field("opacity", NUMBER)))
+PLACINGS = several(
+    part(
+        Placing,
+        Field("frame", WHOLE),
+        Field("beside", optional(WHOLE)),
+        Field("in_front", FLAG),
+    )
+)
 GROUP = record(
     Group,
     Field("name", TEXT),
@@ -271,6 +289,9 @@ FIGURE = record(
     Field("hidden", FLAG, usual=False),
     Field("switches", several(SWITCH), usual=()),
     Field("opacity", NUMBER, usual=1.0),
+    Field("opacities", OPACITIES, usual=()),
+    Field("movement", MOVEMENT, usual=()),
+    Field("placings", PLACINGS, usual=()),
     Field("blend", TEXT, usual="normal"),
     Field("clipped", FLAG, usual=False),
     Field("group", TEXT, usual=""),
@@ -299,6 +320,7 @@ DOCUMENT = record(
     Field("pairs", several(pair(TEXT, TEXT, "two words")), usual=PAIRS),
     Field("choices", several(CHOICE), usual=()),
     Field("groups", several(GROUP), usual=()),
+    Field("camera", CAMERA, usual=()),
 )
 
 

@@ -12,6 +12,7 @@ from app.storage import CHECKER
 from app.ui.shortcuts import MENUS, bound_item
 from app.ui.style import Look, colour_field, tip
 
+PATH_REACHES = {0: "All that play", 6: "6 around the playhead", 12: "12", 24: "24", 48: "48"}
 BACKDROPS = {"Checker": CHECKER, "White": "#ffffff", "Grey": "#808080", "Black": "#000000"}
 
 
@@ -44,6 +45,20 @@ def _backdrops(session: Session) -> list[Action]:
     colour = colour_field("own colour", BACKDROPS["Black"] if current == CHECKER else current)
     if colour is not None:
         actions.append(do(viewing.set_backdrop, colour))
+    imgui.end_menu()
+    return actions
+
+
+def _path_reaches(session: Session) -> list[Action]:
+    """Draw the menu of the frames that motion paths are of."""
+    if not imgui.begin_menu("Frames of motion paths"):
+        return []
+    current = session.preferences.path_reach
+    actions = [
+        do(viewing.reach_paths, reach)
+        for reach, name in PATH_REACHES.items()
+        if imgui.menu_item(name, "", reach == current)[0]
+    ]
     imgui.end_menu()
     return actions
 
@@ -83,6 +98,7 @@ def _recent(session: Session) -> list[Action]:
 # What is more than an entry, by the name of the entry above it.
 BELOW: dict[str, Callable[[Session], list[Action]]] = {
     "open": _recent,
+    "motion paths": _path_reaches,
     "smaller": _backdrops,
     "ease not": _new_keys,
 }

@@ -40,6 +40,7 @@ RANGES = (("all", "All frames"), ("own", "From – to"))
 WHITE = "#ffffff"
 MEASURES = "Measuring where the motion reaches…"
 LEAVES = "The motion leaves the frame; “All motion” shows all of it."
+FILMED = "Each frame is what the camera shows then."
 KEEPS = "All of the motion is in the frame."
 LARGEST = 65_535
 PREVIEW, LARGEST_PREVIEW = 3.2, 6.0  # em: at least and at most
@@ -51,17 +52,19 @@ def draw(session: Session, look: Look, project: Project) -> list[Action]:
         return []
     settings = project.document.export
     motion = project.extent.value or box_around(project.puppet.shown.positions)
-    view = frame_view(settings, project.document.canvas, motion)
+    view = frame_view(settings, project.document, motion)
     box = shown_box(view)
-    actions = [do(exporting.show_frame, box)]
+    # The camera's frame is shown at all times.
+    actions = [] if project.document.camera else [do(exporting.show_frame, box)]
     heading(look, "Picture")
     chosen = _format(look, settings)
     if EXPORT_FORMATS[settings.format].has_frame:
-        chosen = _picture(look, chosen)
+        chosen = _picture(look, project, chosen)
         chosen, more = _size(session, look, chosen, view)
         actions += more
     chosen = _details(look, chosen)
-    _preview(look, project, settings, box, motion)
+    if not project.document.camera:
+        _preview(look, project, settings, box, motion)
     heading(look, "Frames")
     if EXPORT_FORMATS[settings.format].is_still:
         now = project.playhead.frame_at(project.document, session.clock())
@@ -96,9 +99,12 @@ def _format(look: Look, settings: ExportSettings) -> ExportSettings:
     return settings
 
 
-def _picture(look: Look, settings: ExportSettings) -> ExportSettings:
+def _picture(look: Look, project: Project, settings: ExportSettings) -> ExportSettings:
     label(look, "Background")
     settings = _background(look, settings)
+    if project.document.camera:
+        small(look, FILMED)
+        return settings
     label(look, "Framing")
     match segments(look, "framing", FRAMINGS, settings.framing):
         case "canvas" | "fit" as framing:

@@ -41,8 +41,10 @@ def _redo_label(_: Session, project: Project) -> str:
 
 
 def _copied(session: Session, project: Project) -> str:
-    count = project.count_chosen if copying.copies_keys(session, project) else 0
-    return f"{count} keys" if count > 1 else "pose"
+    if copying.copies_keys(session, project):
+        return f"{project.count_chosen} keys" if project.count_chosen > 1 else "pose"
+    layers = len(project.layers)
+    return f"poses of {layers} layers" if layers > 1 else "pose"
 
 
 def _stretch(_: Session, project: Project) -> str:
@@ -367,6 +369,12 @@ MENUS: dict[str, dict[str, Binding]] = {
         "fit selection": Binding("Fit selection", do(viewing.fit_selection), "F"),
         "fit picture": Binding("Fit picture", do(viewing.look_from, None)),
         "actual size": Binding("Actual size", do(viewing.actual_size), "1"),
+        "fit camera": Binding(
+            "Fit camera",
+            do(layering.fit_camera),
+            hint="Show what the camera shows in this frame",
+            possible=lambda _, project: bool(project.document.camera),
+        ),
         "handles": _overlay(
             "Handles",
             "handles",
@@ -525,6 +533,12 @@ MENUS: dict[str, dict[str, Binding]] = {
             possible=lambda _, project: project.document.preview is not None,
         ),
         "marker": Binding("Add marker", do(keys.mark_here), "M", parted=True),
+        "key camera": Binding(
+            "Key the camera",
+            do(layering.key_camera),
+            icon=icons.ICON_FA_VIDEO,
+            hint="From here on frames show what the viewport shows now",
+        ),
         "previous marker": Binding(
             "Previous marker", do(playback.to_marker, -1), "Shift+PageUp", repeats=True
         ),

@@ -1,10 +1,11 @@
 """Where times are on the screen, for all that is drawn in the timeline."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from imgui_bundle import ImVec2, imgui
 
-from app.document import Figure, Track
+from app.document import Figure, Track, TreeRow
 from app.editor import KeyRow, Project, Session, Strip, row_of, seen_at
 from app.ui.style import Look, tag_size, write_tag
 
@@ -14,7 +15,8 @@ BAR, BAR_SHARE = 3.6, 0.62  # em: height of intervals at most, and as a part of 
 CRAMPED, CRAMPED_SHARE = 5.5, 0.85  # em: below this height bars take more, and the overview goes
 ROUNDING = 0.4  # em
 NAMES, NAMES_SHARE = 9.0, 0.25  # em: width of the figures' names at most, and as a part of all
-THIN, TALL = 1.25, 2.8  # em: height of the rows of figures, and of the active one's at least
+THIN, TALL = 1.25, 2.8  # em: height of tracks' rows, and of the row of a figure that is alone
+EVEN, ROOMY = 2.0, 3.4  # em: heights of the rows of figures, at least and at most
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -25,6 +27,7 @@ class FigureRow:
     top: float
     bottom: float
     is_active: bool
+    depth: int = 0  # in how many groups and choices it is listed
 
     @property
     def middle(self) -> float:
@@ -48,6 +51,20 @@ class TrackLane:
         return (self.top + self.bottom) / 2
 
 
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class StageLane:
+    """Where the row of a group or a choice is: between two heights, in pixels of the window."""
+
+    row: TreeRow
+    top: float
+    bottom: float
+
+    @property
+    def middle(self) -> float:
+        """Half-way between them."""
+        return (self.top + self.bottom) / 2
+
+
 class Bands:
     """The bands of the timeline, and the way between frames and pixels."""
 
@@ -59,6 +76,7 @@ class Bands:
         room = imgui.get_content_region_avail()
         figures = project.document.figures
         self.has_names = len(figures) > 1 or any(figure.tracks for figure in figures)
+        self.has_names |= bool(project.document.camera)
         names = min(NAMES * look.em, NAMES_SHARE * room.x) if self.has_names else 0.0
         self.size = ImVec2(room.x - names, room.y)
         self.left, self.top = self.corner.x + names, self.corner.y
@@ -67,12 +85,14 @@ class Bands:
         self.is_cramped = self.size.y < CRAMPED * look.em
         marks = SMALL_MARKS if self.is_cramped else MARKS
         self.marks_top = self.ruler_top + RULER * look.em
-        self.track_top = self.marks_top + bool(project.document.markers) * marks * look.em
+        self.camera_top = self.marks_top + bool(project.document.markers) * marks * look.em
+        self.track_top = self.camera_top + bool(project.document.camera) * THIN * look.em
         is_whole = self.is_cramped or project.timing.strip is None
         self.track_bottom = self.bottom - (0 if is_whole else OVERVIEW * look.em)
         self.rows: list[FigureRow] = []
         self.track_rows: list[TrackLane] = []
-        self.overflow = self._lay_rows(figures)
+        self.stage_rows: list[StageLane] = []
+        self.overflow = self._lay_rows(project.tree)
         self.row = next(row for row in self.rows if row.is_active)
         self.middle = self.row.middle
         share = CRAMPED_SHARE if self.is_cramped else BAR_SHARE
@@ -82,29 +102,43 @@ class Bands:
         fitting = Strip.fitting(project.document.frames, self.width)
         self.strip = timing.gesture_strip or timing.strip or fitting
 
-    def _lay_rows(self, figures: tuple[Figure, ...]) -> float:
-        """Lay a row for each figure, the one in front on top, and below it those of its tracks.
+    def _lay_rows(self, tree: Sequence[TreeRow]) -> float:
+        """Lay a row for each group, choice and figure, and below a figure's those of its tracks.
 
-        The active one's takes what the others leave. Returns for how much there is no room.
+        Which of them is active changes nothing: no row moves under the pointer that chooses it.
+        Returns for how much there is no room.
         """
-        thin, room = THIN * self.look.em, self.track_bottom - self.track_top
-        shown = {figure.id: self._shown_tracks(figure) for figure in figures}
-        others = (len(figures) - 1 + sum(map(len, shown.values()))) * thin
-        tall = max(min(TALL * self.look.em, room), room - others)
-        overflow = max(others + tall - room, 0.0)
-        top = self.track_top - min(self.project.timing.scrolled * self.look.em, overflow)
+        em, room = self.look.em, self.track_bottom - self.track_top
+        thin, shown = THIN * em, [self._shown_tracks(row.figure) for row in tree if row.figure]
+        others = (len(tree) - len(shown) + sum(map(len, shown))) * thin
+        least, most = (EVEN * em, ROOMY * em) if len(tree) > 1 else (min(TALL * em, room), room)
+        tall = min(max((room - others) / len(shown), least), most)
+        overflow = max(others + len(shown) * tall - room, 0.0)
+        top = self.track_top - min(self.project.timing.scrolled * em, overflow)
         chosen = self.project.row
-        for figure in reversed(figures):
+        for row in tree:
+            figure = row.figure
+            if figure is None:
+                self.stage_rows.append(StageLane(row=row, top=top, bottom=top + thin))
+                top += thin
+                continue
             is_active = figure.id == self.project.active
-            bottom = top + (tall if is_active else thin)
-            self.rows.append(FigureRow(figure=figure, top=top, bottom=bottom, is_active=is_active))
-            top = bottom
-            for track in shown[figure.id]:
+            self.rows.append(
+                FigureRow(
+                    figure=figure,
+                    top=top,
+                    bottom=top + tall,
+                    is_active=is_active,
+                    depth=row.depth,
+                )
+            )
+            top += tall
+            for track in self._shown_tracks(figure):
                 is_chosen = row_of(figure, track) == chosen
-                row = TrackLane(
+                lane = TrackLane(
                     figure=figure, track=track, top=top, bottom=top + thin, is_chosen=is_chosen
                 )
-                self.track_rows.append(row)
+                self.track_rows.append(lane)
                 top += thin
         return overflow
 

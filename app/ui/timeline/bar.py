@@ -217,6 +217,10 @@ def _onion_skin(session: Session, look: Look) -> list[Action]:
         values[index] = imgui.slider_int(name, values[index], low, high)[1]
     if values != before:
         actions.append(do(viewing.set_ghosts, *values))
+    changed, in_front = imgui.checkbox("In front of the drawing", preferences.ghosts_in_front)
+    tip("Over all layers, and not behind those that are posed")
+    if changed:
+        actions.append(do(viewing.put_ghosts_in_front, in_front))
     imgui.end_popup()
     return actions
 

@@ -4,6 +4,7 @@ from imgui_bundle import ImVec2, imgui
 
 from app.editor import (
     Action,
+    CameraDrag,
     KeyDrag,
     MarkerDrag,
     Project,
@@ -12,6 +13,7 @@ from app.editor import (
     SwitchDrag,
     TimeDrag,
     TimeGesture,
+    TurnDrag,
     do,
     layering,
     seen_at,
@@ -27,6 +29,7 @@ from app.ui.timeline.intervals import draw_cycles, draw_intervals
 from app.ui.timeline.keys import draw_box, draw_ground, draw_keys
 from app.ui.timeline.rows import draw_rows
 from app.ui.timeline.ruler import (
+    draw_camera,
     draw_edges,
     draw_markers,
     draw_overview,
@@ -62,6 +65,7 @@ def _draw_track(bands: Bands, frame: int) -> list[Action]:
     actions += draw_cycles(bands)
     actions += draw_edges(bands)
     actions += draw_markers(bands)
+    actions += draw_camera(bands)
     actions += draw_playhead(bands, frame)
     actions += draw_keys(bands)
     actions += draw_track_keys(bands)
@@ -130,7 +134,7 @@ def _click(bands: Bands, gesture: TimeGesture) -> list[Action]:
             seen = bands.project.document.frames.clamp(seen_at(gesture.before, track, frame))
             chosen = {row: frozenset({frame})}
             return [do(editing.choose_keys_of, chosen), do(playback.scrub, seen)]
-        case MarkerDrag(marker=frame):
+        case MarkerDrag(marker=frame) | CameraDrag(key=frame) | TurnDrag(turn=frame):
             return [do(playback.scrub, frame)]
         case SwitchDrag(figure=figure, switch=frame):
             return [do(layering.choose, figure), do(playback.scrub, frame)]
@@ -199,7 +203,11 @@ def _hint_of_place(bands: Bands) -> str:
     if y < bands.ruler_top:
         return "Drag the ends of the preview range, double-click to play all frames"
     if bands.marks_top <= y < bands.track_top:
-        return "Click a marker to go there, drag it to move it, double-click to name it"
+        if y >= bands.camera_top:
+            what, more = "a key of the camera", "right-click for more"
+        else:
+            what, more = "a marker", "double-click to name it"
+        return f"Click {what} to go there, drag it to move it, {more}"
     if y < bands.track_top:
         return f"Drag to move the playhead, wheel to scroll, {with_key(CTRL, 'wheel')} to zoom"
     return (

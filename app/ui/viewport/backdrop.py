@@ -1,12 +1,18 @@
-"""What lies behind the drawing: a colour that was chosen, or squares on which it stands out."""
+"""What lies around the drawing: what is behind it, and what the camera leaves out.
+
+Behind it is a colour that was chosen, or squares on which it stands out.
+"""
 
 import numpy as np
-from imgui_bundle import ImVec4
+from imgui_bundle import ImVec2, ImVec4, imgui
 
+from app.document import camera_at
+from app.editor import Project
 from app.render import Backdrop
 from app.storage import CHECKER
-from app.ui.style import PALETTES, Palette, rgb
+from app.ui.style import PALETTES, Look, Palette, ink, rgb
 from app.ui.viewport.marks import plain
+from app.ui.viewport.screen import Screen
 from engine.arrays import Bytes, Floats
 
 SQUARE = 12.0  # pixels at a scale of 1
@@ -16,6 +22,8 @@ LEVELS = 256
 NEAR, MUCH = 0.2, 0.6
 LUMA = np.array([0.2126, 0.7152, 0.0722])  # of red, green and blue, as Rec. 709 weighs them
 STEP = 4  # pixels: every so manieth is looked at
+DIM = 0.45  # of the desk's colour, over what the camera leaves out
+FAR = 1e3  # times the camera's frame: beyond the viewport
 
 
 def measure_brightness(picture: Bytes) -> Floats:
@@ -60,3 +68,44 @@ def _lost(brightness: Floats, paper: ImVec4) -> float:
     level = float(np.array([paper.x, paper.y, paper.z]) @ LUMA)
     is_near = np.abs(np.arange(LEVELS) / (LEVELS - 1) - level) < NEAR
     return float(brightness[is_near].sum())
+
+
+def draw_camera(look: Look, project: Project, screen: Screen, room: tuple[ImVec2, ImVec2]) -> None:
+    """Draw the camera's frame at the frame that is shown, if there is a camera.
+
+    Parameters
+    ----------
+    look : Look
+    project : Project
+    screen : Screen
+    room : tuple of ImVec2
+        The upper left corner of the viewport, and its size.
+    """
+    shot = camera_at(project.document, screen.shown.frame)
+    if shot is None:
+        return
+    corner, size = room
+    draw_list = imgui.get_window_draw_list()
+    draw_list.push_clip_rect(corner, corner + size, intersect_with_current_clip_rect=True)
+    corners = shot.frame(project.document.canvas)
+    inner, outer = (screen.points(shot.centre + by * (corners - shot.centre)) for by in (1.0, FAR))
+    # The frame is convex: its outside is four trapezoids, one beyond each edge. Where they meet,
+    # smooth edges would be seen: these are sharp.
+    dim, white = ink(look.palette.desk, DIM), imgui.get_font_tex_uv_white_pixel()
+    for here, there in zip(range(4), np.roll(range(4), -1).tolist(), strict=True):
+        draw_list.prim_reserve(6, 4)
+        draw_list.prim_quad_uv(
+            inner[here],
+            outer[here],
+            outer[there],
+            inner[there],
+            white,
+            white,
+            white,
+            white,
+            dim,
+        )
+    for point in inner:
+        draw_list.path_line_to(point)
+    draw_list.path_stroke(ink(look.palette.accent), 1.5, imgui.ImDrawFlags_.closed)
+    draw_list.pop_clip_rect()

@@ -3,14 +3,15 @@
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
+from itertools import takewhile
 
 import numpy as np
 
-from app.document import Figure, composed, is_visible, time_of
+from app.document import Composite, Figure, composed, is_visible, time_of
 from app.editor import HeatMap, Project, Puppet, Session
 from app.motion import PosableMesh, Shown
 from app.render import Ghost, Heat, Painted, Renderer, Scene, Wireframe
-from app.render.gpu import RenderTarget
+from app.render.gpu import PosedMesh, RenderTarget
 from app.ui.style import PALETTES
 from app.ui.viewport.backdrop import background
 from app.ui.viewport.cut_view import mark_holes
@@ -110,7 +111,7 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
         *(puppet.shown for puppet in project.puppets.values()),
         *(puppet.cut.value for puppet in project.puppets.values()),
         *(puppet.twin.shown for puppet in project.puppets.values() if puppet.twin),
-        project.puppet.store.whole if session.overlays.onion else None,
+        *(puppet.store.whole for puppet in project.puppets.values() if session.overlays.onion),
         project.puppet.store.sampler,
         project.paths.value if session.overlays.paths else None,
         project.joints.value,
@@ -172,14 +173,16 @@ def _scene(session: Session, project: Project, shown: Shown, drawing: Drawing) -
         heat = Heat(low=low, high=high)
     wireframe = Wireframe(colour=plain(palette.text, 0.35)) if overlays.wireframe else None
     lines, discs = mark_all(session, project, shown, palette)
+    meshes = _posed(session, project, shows, drawing)
     return Scene(
         background=background(
             session.preferences.backdrop, palette, drawing.brightness, pixel_scale(session)
         ),
-        meshes=_posed(session, project, shows, drawing),
+        meshes=meshes,
         heat=heat,
         wireframe=wireframe,
-        ghosts=_ghosts(session, project, shown, drawing) if overlays.onion else (),
+        ghosts=_ghosts(session, project, drawing) if overlays.onion else (),
+        ghosts_over=_behind_ghosts(session, project, len(meshes)) if overlays.onion else 0,
         lines=lines,
         discs=discs,
     )
@@ -221,7 +224,8 @@ def _posed(
             drawing.tint(pose, _tinted(session, project, drawing, figure, shown))
         elif heat_map != "none":
             drawing.heat(pose, shown, heat_map)
-    return composed(document, poses)
+    frame = max((shown.frame for shown in shows.values() if shown), default=0)
+    return composed(document, poses, frame)
 
 
 def _tinted(
@@ -243,32 +247,73 @@ def _meshes(puppet: Puppet) -> set[PosableMesh]:
     return meshes | {shown.mesh for shown in shows if shown is not None}
 
 
-def _ghosts(
-    session: Session, project: Project, shown: Shown, drawing: Drawing
-) -> tuple[Ghost, ...]:
-    choice, store = session.preferences, project.puppet.store
-    # While the hand moves, in-betweens come a moment later: until then the last ones stay.
-    known = store.whole
-    if known is None or project.playhead.since is not None:
+def _ghosts(session: Session, project: Project, drawing: Drawing) -> tuple[Ghost, ...]:
+    """Return the poses before and after, of all layers that are seen then and look otherwise."""
+    if project.playhead.since is not None or project.puppet.shown is None:
         return ()
+    choice, now = session.preferences, project.puppet.shown.frame
     ghosts = []
     sides = ((-1, choice.ghosts_before, GHOST_BEFORE), (1, choice.ghosts_after, GHOST_AFTER))
     number = 0
     for direction, count, tint in sides:
         for step in range(count, 0, -1):
             number += 1
-            frame = shown.frame + direction * step * choice.ghost_step
-            if frame not in known.frames and not known.loop:
-                continue
-            corrected = project.puppet.corrected
-            correction = corrected.at(known, frame) if corrected else None
-            vertices = store.vertices(known, frame, correction=correction)
-            if vertices is None or time_of(known, frame) == time_of(known, shown.frame):
-                continue
-            placement = shown.placement
-            if known == project.clip:
-                (placement,) = project.placements([frame], placement)
-            drawn = drawing.drawn_mesh(project.active, store.mesh, number)
-            pose = drawn.pose(vertices, placement=placement)
-            ghosts.append(Ghost(meshes=(pose,), tint=tint, opacity=GHOST_OPACITY / step**0.5))
+            at = now + direction * step * choice.ghost_step
+            poses = {
+                figure.id: _ghost(project, drawing, figure, now, at, number)
+                for figure in project.document.figures
+            }
+            seen = {figure: pose for figure, pose in poses.items() if pose is not None}
+            if seen:
+                meshes = composed(project.document, seen, project.document.in_time(at))
+                ghosts.append(Ghost(meshes=meshes, tint=tint, opacity=GHOST_OPACITY / step**0.5))
     return tuple(ghosts)
+
+
+def _ghost(
+    project: Project, drawing: Drawing, figure: Figure, now: int, at: int, number: int
+) -> PosedMesh | None:
+    """Return a figure as it is at another frame; None where it looks no otherwise, or is not seen.
+
+    Where it hangs on what has moved just now, it is left out until it is known where it is.
+    """
+    document, puppet = project.document, project.puppets[figure.id]
+    # While the hand moves, in-betweens come a moment later: until then the last ones stay.
+    known = puppet.store.whole
+    if known is None or (at not in known.frames and not known.loop):
+        return None
+    placed = project.placed_at(figure.id, [now, at])
+    if project.solo and figure.id not in project.solo:
+        return None
+    was_seen, is_seen = (is_visible(document, figure, document.in_time(f)) for f in (now, at))
+    stays = time_of(known, at) == time_of(known, now) and placed and placed[0] == placed[1]
+    if placed is None or not is_seen or (was_seen and stays):
+        return None
+    correction = puppet.corrected.at(known, at) if puppet.corrected else None
+    find = partial(puppet.store.vertices, known, at, correction=correction)
+    of = puppet.store.mesh, known, at, correction
+    vertices = drawing.ghost(figure.id, number, of, find)
+    if vertices is None:
+        return None
+    drawn = drawing.drawn_mesh(figure.id, puppet.store.mesh, number)
+    return drawn.pose(vertices, placement=placed[1])
+
+
+def _behind_ghosts(session: Session, project: Project, meshes: int) -> int:
+    """Return how many of the meshes are behind the ghosts: all, or those of a background."""
+    if session.preferences.ghosts_in_front:
+        return meshes
+    document, shows = project.document, project.puppets
+    frame = max((each.shown.frame for each in shows.values() if each.shown), default=0)
+    still = {
+        each.id: each.still and not each.movement
+        for each in document.figures
+        if (shown := shows[each.id].shown) is not None
+        and is_visible(document, each, shown.frame)
+        and (not project.solo or each.id in project.solo)
+    }
+    return sum(1 for _ in takewhile(_is_still, composed(document, still, frame)))
+
+
+def _is_still(part: bool | Composite[bool]) -> bool:  # noqa: FBT001 - of a composition
+    return all(map(_is_still, part.parts)) if isinstance(part, Composite) else part

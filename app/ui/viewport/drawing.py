@@ -1,6 +1,6 @@
 """What a project needs on the graphics card: the pictures and meshes of its figures."""
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 
 import numpy as np
 
@@ -41,6 +41,7 @@ class Drawing:
         self._pictures: dict[tuple[int | None, Picture], GpuPicture] = {}
         self._meshes: dict[PosableMesh, GpuMesh] = {}
         self._drawn_meshes: dict[tuple[PosableMesh, int], DrawnMesh] = {}
+        self._ghosts: dict[tuple[int, int], tuple[object, Vertices]] = {}
         self._heated: dict[PosedMesh, tuple[Vertices, HeatMap]] = {}
         self._cut_view: CutView | None = None
         self._measured: tuple[Bytes, Floats] | None = None
@@ -65,6 +66,21 @@ class Drawing:
             drawn = DrawnMesh(self._mesh(figure, mesh), by_shader=by_shader)
             self._drawn_meshes[mesh, number] = drawn
         return self._drawn_meshes[mesh, number]
+
+    def ghost(
+        self, figure: int, number: int, of: object, find: Callable[[], Vertices | None]
+    ) -> Vertices | None:
+        """Return where a figure's vertices are in a copy that shows another frame, if known.
+
+        They are found anew only where they are of something else: the picture changes every frame.
+        """
+        known = self._ghosts.get((figure, number))
+        if known is None or known[0] != of:
+            vertices = find()
+            if vertices is None:
+                return None
+            known = self._ghosts[figure, number] = of, vertices
+        return known[1]
 
     def heat(self, pose: PosedMesh, shown: Shown, heat_map: HeatMap) -> None:
         """Colour a pose by a distortion of what is shown; uploaded only if it is another."""
@@ -108,6 +124,7 @@ class Drawing:
         for mesh, number in [key for key in self._drawn_meshes if key[0] not in meshes]:
             self._drawn_meshes.pop((mesh, number)).release()
             self._heated.clear()
+            self._ghosts.clear()
         for mesh in [mesh for mesh in self._meshes if mesh not in meshes]:
             self._meshes.pop(mesh).release()
 

@@ -7,7 +7,7 @@ from imgui_bundle import ImVec4
 
 from app.document import Clip, Track, falls_short, time_of, track_at
 from app.editor import Project, Session
-from app.motion import AttachedPoints, Box, PosableMesh, Shown, still_handles
+from app.motion import AttachedPoints, Box, MotionPaths, PosableMesh, Shown, still_handles
 from app.render import Colour, Disc, HandleMark, Line, mark_anchor, mark_handles
 from app.ui.style import Palette, density, interface_scale
 from app.ui.viewport.paths import mark_path
@@ -43,7 +43,7 @@ def mark_all(
         lines += _cages(shown, palette, scale)
     dots: tuple[Disc, ...] = ()
     if session.overlays.paths and project.playhead.since is None:
-        path_lines, dots = _paths(project, shown, palette, scale)
+        path_lines, dots = _paths(session, project, palette, scale)
         lines += path_lines
     if project.playhead.since is None or project.take is not None:
         colours = plain(palette.accent), plain(palette.text), plain(palette.desk, 0.8)
@@ -199,17 +199,30 @@ def moved_loops(shown: Shown) -> list[Complexes]:
     return np.split(shown.positions[: ends[-1]], ends[:-1])
 
 
+def _frames_of_paths(session: Session, project: Project, paths: MotionPaths) -> Booleans:
+    """Tell of which frames paths are drawn: of those that play, or of some around the playhead."""
+    played, reach = project.document.played, session.preferences.path_reach
+    frames = (paths.frames >= played.first) & (paths.frames <= played.last)
+    return frames & (abs(paths.frames - project.playhead.frame) <= reach) if reach else frames
+
+
 def _paths(
-    project: Project, shown: Shown, palette: Palette, scale: float
+    session: Session, project: Project, palette: Palette, scale: float
 ) -> tuple[list[Line], tuple[Disc, ...]]:
-    """Return the paths of the selected handles: a dot for each frame, and a larger one for keys."""
+    """Return the paths of the selected handles: a dot for each frame, and a larger one for keys.
+
+    Of what hangs on something that has moved just now there are none until they are known.
+    """
     paths = project.paths.value
     if paths is None or len(paths.frames) < 2 or paths.clip.figure.id != project.active:
         return [], ()
-    placements = project.placements(paths.frames.tolist(), shown.placement)
-    rows = zip(placements, paths.places, strict=True)
+    frames = _frames_of_paths(session, project, paths)
+    placements = project.placed_at(project.active, paths.frames[frames].tolist())
+    if placements is None or np.count_nonzero(frames) < 2:
+        return [], ()
+    rows = zip(placements, paths.places[frames], strict=True)
     places = np.array([placement.on(row) for placement, row in rows])
-    keys = np.isin(paths.frames, [key.frame for key in project.figure.keys])
+    keys = np.isin(paths.frames[frames], [key.frame for key in project.figure.keys])
     lines, discs = [], []
     for handle, path in zip(paths.clip.figure.handles, places.T, strict=True):
         # What does not move would only be a blot on its handle.
@@ -242,10 +255,10 @@ def _outlines(shown: Shown, palette: Palette, scale: float) -> list[Line]:
 
 
 def _cages(shown: Shown, palette: Palette, scale: float) -> list[Line]:
-    """Return the cages, which stay around the shape at rest and in its holes."""
+    """Return the cages, which stay around the shape at rest and in its holes, where it hangs."""
     return [
         Line(
-            points=cage,
+            points=shown.placement.on(cage),
             colour=plain(palette.warning, 0.8),
             width=1.5 * scale,
             dash=5.0 * scale,

@@ -65,7 +65,10 @@ def _places(project: Project, track: Track, frames: list[int]) -> list[tuple[int
     shown = project.puppet.shown
     if shown is None:
         return []
+    if not track.planted and project.placed_at(project.active, frames) is None:
+        return []
     wished = [tracking.wished(project, track, frame) for frame in frames]
+    # Where a planted one is in the scene, it is wherever its figure is.
     placements = project.placements(frames, shown.placement)
     return [
         (frame, placement.on(np.array([place])))

@@ -12,6 +12,7 @@ from app.editor.tools import pointing
 from app.ui.panel import is_in_front
 from app.ui.shortcuts import ALT, CTRL, bound_item, with_key
 from app.ui.style import Look, density, in_hand, is_pressed
+from app.ui.viewport.backdrop import draw_camera
 from app.ui.viewport.cut_view import draw_brush
 from app.ui.viewport.hand import (
     draw_axis,
@@ -58,6 +59,8 @@ def draw(session: Session, look: Look, project: Project, pictures: SplitTextures
         return actions
     draw_pictures(parts, pictures.own, pictures.twin)
     screen = Screen(session, project, project.puppet.shown, corner)
+    if session.cutting is None:
+        draw_camera(look, project, screen, (corner, parts.room))
     # Before the canvas: what comes first gets the pointer. Were they laid over it, a press in the
     # frame in which the pointer arrives would be the canvas's, or nobody's.
     with imgui_ctx.push_clip_rect(corner, corner + parts.room, True):  # noqa: FBT003 - within its own

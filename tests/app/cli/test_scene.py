@@ -437,3 +437,58 @@ def test_a_layer_of_a_choice_has_no_visible(face, capsys):
     with pytest.raises(SystemExit):
         face(figures=[oh], choices=[CHOICE])
     assert "the layer 'oh' is in a choice, which alone decides" in capsys.readouterr().err
+
+
+STAGED = {
+    "schema": 1,
+    "canvas": [120, 100],
+    "camera": {"keys": [{"frame": 0, "centre": [120, 100]}, {"frame": 8, "centre": [85, 100]}]},
+    "figures": [
+        {
+            "layer": "body",
+            "handles": {},
+            "keys": [{"frame": 0}],
+            "order": [[4, {"in_front_of": "arm"}], [8, None]],
+        },
+        {"layer": "arm", "handles": {}, "keys": [{"frame": 0}], "opacity": [[0, 1], [8, 0]]},
+        {
+            "layer": "wall",
+            "handles": {},
+            "keys": [{"frame": 0}],
+            "movement": {"keys": [{"frame": 0}, {"frame": 8, "shift": [500, 0]}]},
+        },
+    ],
+}
+
+
+def test_a_camera_a_fade_an_order_and_a_still_layer_that_moves_are_exported(folder, capsys):
+    script, out, frames = folder / "staged.json", folder / "staged.lissom", folder / "staged"
+    script.write_text(json.dumps(STAGED))
+    assert main(["pose", str(folder / "man.ora"), str(script), "--out", str(out)]) == 0
+    assert main(["export", str(out), "--out", str(frames), "--format", "png"]) == 0
+    first, middle, last = (
+        np.asarray(Image.open(frames / f"frame_{frame:04}.png")) for frame in (0, 4, 8)
+    )
+    assert first.shape == last.shape == (100, 120, 4)
+    # At (100, 120) the arm crosses the body.
+    assert first[30, 40].tolist() == [200, 40, 40, 255]
+    assert middle[30, 57].tolist() == [40, 40, 200, 255]
+    assert last[30, 75].tolist() == [40, 40, 200, 255]
+    assert first[5, 100].tolist() == [220, 230, 220, 255]
+    assert last[5, 100].tolist() == [0, 0, 0, 0]
+    capsys.readouterr()
+    assert main(["export", str(out), "--out", str(folder / "staged.glb")]) == 0
+    told = capsys.readouterr().err
+    assert "do not change: the opacity of arm, the order of body, the camera" in told
+
+
+def test_a_still_layer_is_moved_but_not_posed(folder, capsys):
+    wall = {**STAGED["figures"][2], "handles": {"h": [20, 20]}}
+    told = refused(folder, {**STAGED, "figures": [wall]}, capsys)
+    assert "no shape on it to be posed" in told
+
+
+def test_an_order_beside_a_layer_that_is_not_there_is_refused(folder, capsys):
+    body = {**STAGED["figures"][0], "order": [[4, {"behind": "hat"}]]}
+    told = refused(folder, {**STAGED, "figures": [body]}, capsys)
+    assert "layer 'body': order: there is no layer 'hat'" in told

@@ -13,7 +13,7 @@ from app.document.commands import (
     scene_commands,
 )
 from app.document.layering import Choice, Switch, Turn
-from app.document.queries import is_visible
+from app.document.queries import alternates, is_visible
 from app.errors import LissomError
 
 FRAMES = range(49)
@@ -165,3 +165,24 @@ def test_what_a_group_hides_comes_to_be_seen_alone(mouths):
     chosen = choices.choose_at(2, 10)(chosen)
     hidden = groups.set_group_hidden("face", hidden=True)(chosen)
     assert seen(hidden, (0, 10)) == [[1], []]
+
+
+@pytest.mark.parametrize(
+    ("group", "hidden", "offered"),
+    [
+        ("face/Mouth shapes", (), True),
+        ("visemes", (1,), True),
+        ("mouthpiece", (), False),
+        ("left hand", (1,), True),
+        ("hands", (), False),
+        ("arm", (1,), False),
+    ],
+)
+def test_groups_that_are_named_like_mouths_are_offered_as_choices(mouths, group, hidden, offered):
+    document = layer_commands.set_hidden(1, hidden=False)(mouths)
+    for identity in hidden:
+        document = layer_commands.set_hidden(identity, hidden=True)(document)
+    document = groups.put_in_group((1, 2), group)(document)
+    assert [figures for _, figures in alternates(document)] == [(1, 2)] * offered
+    chosen = choices.form_choice("mouth", (1, 2))(document)
+    assert alternates(chosen) == ()

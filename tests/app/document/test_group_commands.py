@@ -5,8 +5,8 @@ from documents import disc_document
 
 from app.document import group_commands as groups, layer_commands as layers
 from app.document.layering import Group
-from app.document.queries.compositing import Composite, composed
-from app.document.queries.sight import is_visible
+from app.document.queries.stage.compositing import Composite, composed
+from app.document.queries.stage.sight import is_visible
 from app.errors import LissomError
 
 
@@ -159,7 +159,7 @@ def test_each_run_of_a_group_is_composited_by_itself():
     document = grouped("a/one sky a/two a/b/three", "a", "a/b")
 
     def drawn(changed):
-        return composed(changed, {figure.id: figure.name for figure in changed.figures})
+        return composed(changed, {figure.id: figure.name for figure in changed.figures}, 0)
 
     assert drawn(document) == ("one", "sky", "two", "three")
     faded = groups.set_group_opacity("a", 0.5)(document)
@@ -192,14 +192,14 @@ def test_what_is_clipped_is_painted_on_what_lies_below_it_in_its_group():
     cut = [Composite((name,), clipped=True) for name in ("shade", "light")]
     # At the bottom of its group there is nothing that cuts.
     whole = ("sky", Composite(("arm", *cut), 0.5), "two", "three")
-    assert composed(document, names) == whole
+    assert composed(document, names, 0) == whole
     # What cuts is not seen, and nothing of what it cuts.
-    assert composed(document, {i: name for i, name in names.items() if name != "arm"}) == (
+    assert composed(document, {i: name for i, name in names.items() if name != "arm"}, 0) == (
         "sky",
         "two",
         "three",
     )
-    assert composed(document, {1: "arm"}) == (Composite(("arm",), 0.5),)
+    assert composed(document, {1: "arm"}, 0) == (Composite(("arm",), 0.5),)
     assert layers.set_clipped(2, clipped=True)(document) is document
 
 
@@ -207,8 +207,10 @@ def test_a_group_is_clipped_and_cuts():
     document = clipped(grouped("arm a/one a/two hat", "a"), "hat")
     document = replace(document, groups=(Group(name="a", clipped=True),))
     names = {figure.id: figure.name for figure in document.figures}
-    parts = composed(document, names)
+    parts = composed(document, names, 0)
     cut = Composite(("one", "two"), clipped=True), Composite(("hat",), clipped=True)
     assert parts == (Composite(("arm", *cut), 0.5),)
     free = replace(document, groups=(Group(name="a"),))
-    assert composed(free, names)[1] == Composite(("one", "two", Composite(("hat",), clipped=True)))
+    assert composed(free, names, 0)[1] == Composite(
+        ("one", "two", Composite(("hat",), clipped=True))
+    )

@@ -13,7 +13,7 @@ from app.document import (
 from app.document.layering import Attachment, Switch
 from app.document.queries.clips import clip_of
 from app.document.queries.fronts import fronts_at
-from app.document.queries.sight import is_visible
+from app.document.queries.stage.sight import is_visible
 from app.errors import LissomError
 
 

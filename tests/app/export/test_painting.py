@@ -12,6 +12,7 @@ from animations import BLOB, PARTED, Sliding, still_document
 from documents import altered
 from numpy.testing import assert_array_equal
 
+from app.document import CameraKey, FrameRange, OpacityKey
 from app.document.model import Document
 from app.errors import LissomError
 from app.export.painting import Painter
@@ -213,3 +214,55 @@ def test_a_frame_is_drawn_in_parts_that_the_machine_holds(gl, document, monkeypa
     assert np.abs(parts.astype(int) - whole).max() <= 2
     monkeypatch.setattr("app.export.painting.largest_size", lambda _: 32)
     assert np.abs(still(gl, document, size=(150, 111)).astype(int) - whole).max() <= 2
+
+
+def filmed(document: Document, *keys: CameraKey) -> Document:
+    return replace(document, camera=keys, frames=FrameRange(0, 12))
+
+
+def test_the_camera_at_twice_the_size_shows_a_part_of_a_frame_twice_as_large(gl, document):
+    height, width = BLOB.shape[:2]
+    centre = complex(width / 2 - 10, height / 2 + 5)
+    frame = still(gl, filmed(document, CameraKey(frame=0, centre=centre, zoom=2.0)))
+    assert frame.shape == BLOB.shape
+    large = still(gl, document, size=(2 * width, 2 * height)).astype(int)
+    left, top = round(2 * centre.real - width / 2), round(1.5 * height - 2 * centre.imag)
+    assert np.abs(frame - large[top : top + height, left : left + width]).max() <= 1
+
+
+def test_the_camera_turns_what_is_seen_counter_clockwise(gl, document):
+    height, width = BLOB.shape[:2]
+    key = CameraKey(frame=0, centre=complex(width, height) / 2, turn=np.pi / 2)
+    frame = still(gl, filmed(document, key), background="#20c040")
+    upright = still(gl, document, background="#20c040").astype(int)
+    left = (width - height) // 2
+    turned = np.rot90(upright)[left : left + height]
+    assert np.abs(frame[:, left : left + height] - turned).max() <= 1
+    assert (frame[:, : left - 1] == (0x20, 0xC0, 0x40, 255)).all()
+
+
+def test_each_frame_is_what_the_camera_shows_then(gl, document):
+    first = CameraKey(frame=0, centre=60 + 45j)
+    panned = filmed(document, first, replace(first, frame=12, centre=48 + 51j))
+    with drawing(gl, panned, Sliding(document, 0)) as draw:
+        halfway, end = draw(6.0), draw(12.0)
+    assert_array_equal(halfway[3:, 6:][SEEN[:-3, :-6]], BLOB[:-3, :-6][SEEN[:-3, :-6]])
+    assert_array_equal(end[6:, 12:][SEEN[:-6, :-12]], BLOB[:-6, :-12][SEEN[:-6, :-12]])
+
+
+def test_with_a_camera_every_framing_is_its_frame(gl, document):
+    away = filmed(document, CameraKey(frame=0, centre=500 + 45j, zoom=0.5))
+    away = replace(away, size=(64, 48))
+    for framing in ("fit", "canvas"):
+        assert plan_of(away, Sliding(away, 12), framing=framing).view.size == (64, 48)
+        assert notices(gl, away, Sliding(away, 12), framing=framing) == ()
+    assert not still(gl, away, framing="fit").any()
+
+
+def test_a_fade_is_drawn(gl, document):
+    keys = (OpacityKey(frame=0, opacity=1.0), OpacityKey(frame=10, opacity=0.0))
+    faded = replace(altered(document, opacities=keys), frames=FrameRange(0, 12))
+    with drawing(gl, faded, Sliding(document, 0)) as draw:
+        alpha = draw(5.0)[..., 3]
+        assert not draw(10.0).any()
+    assert np.abs(alpha - BLOB[..., 3] / 2)[SEEN].max() <= 1

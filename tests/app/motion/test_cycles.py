@@ -13,11 +13,12 @@ from app.document.keyframe import Handle, Passing, Target
 from app.document.layering import Switch
 from app.document.queries.clips import clip_of
 from app.document.queries.fronts import fronts_at
-from app.document.queries.sight import is_visible
 from app.document.queries.spans import intervals
+from app.document.queries.stage.sight import is_visible
 from app.document.queries.timeline import exported_frames, time_of
 from app.document.settings import FrameRange
 from app.document.timing import Cycle, Track, TrackKey
+from app.errors import LissomError
 from app.motion.inbetweens import Animation
 from engine.variant import Variant
 
@@ -106,6 +107,25 @@ def test_it_can_begin_and_end_between_keys_where_none_are_beyond():
     for frame in (81, 100):
         assert_allclose(animation.positions(frame), animation.positions(32), rtol=0, atol=1e-9)
     assert_allclose(animation.positions(3), animation.positions(10), rtol=0, atol=1e-9)
+
+
+def test_what_ends_right_after_its_stretch_stands_still_there():
+    # The way round, from 17 to 24, goes on beyond the end at 19.
+    animation = moving(cycling(6, 7, 17, cycle=Cycle(first=0, last=18, until=19), last=40))
+    for frame in (20, 22, 25, 40):
+        assert_allclose(animation.positions(frame), animation.positions(19), rtol=0, atol=1e-9)
+
+
+def test_it_is_told_where_repeats_may_end_before_a_key():
+    with pytest.raises(LissomError, match="let them end at frame 20 instead"):
+        cycling(6, 7, 17, 20, cycle=Cycle(first=0, last=18, until=19))
+    with pytest.raises(LissomError, match="let them end at frame 24 instead"):
+        cycling(6, 7, 17, 30, cycle=Cycle(first=0, last=18, until=22))
+
+
+def test_in_a_loop_keys_elsewhere_lead_through_a_stretch_without_one():
+    with pytest.raises(LissomError, match="no key of 'figure' in frames 0 to 4 that could repeat"):
+        cycling(35, 42, cycle=Cycle(first=0, last=4, until=20), loop=True)
 
 
 def test_without_an_end_it_repeats_to_the_end_of_the_scene():

@@ -8,7 +8,7 @@ import pytest
 from drawings import Easel
 from numpy.testing import assert_allclose
 
-from app.document.queries.compositing import Composite
+from app.document.queries.stage.compositing import Composite
 from app.render.gpu.mesh import PosedMesh
 from app.render.scene import Backdrop, Scene
 from app.render.view import canvas_view

@@ -174,6 +174,25 @@ def test_later_meshes_lie_on_top_of_a_scene_and_of_a_ghost(easel):
     assert_array_equal(np.unique(frame[..., 3]), [128])
 
 
+@pytest.mark.parametrize("over", [0, 1, 2])
+def test_ghosts_lie_over_as_many_of_the_meshes_as_is_told(easel, over):
+    """A red ghost that half covers is behind both, between a wall and the drawing, or in front."""
+    corners = np.array([0, 20, 20 + 20j, 20j])
+    quad = np.array([[0, 1, 2], [0, 2, 3]], np.int32)
+    blue = np.full((20, 20, 4), (0, 0, 255, 255), np.uint8)
+    wall, drawing, other = (easel.pose(easel.mesh(blue, corners, quad), corners) for _ in range(3))
+    drawing.place(1, 10)
+    ghost = Ghost(meshes=(other,), tint=(1.0, 0.0, 0.0), opacity=0.5)
+    scene = Scene(meshes=(wall, drawing), ghosts=(ghost,), ghosts_over=over)
+    frame = easel.frame(canvas_view((20, 20)), scene)
+    # Left of the drawing there is the wall alone, right of that the drawing.
+    is_over = {"wall": over > 0, "drawing": over > 1}
+    for column, name in ((4, "wall"), (15, "drawing")):
+        red, _, blue = frame[10, column, :3]
+        assert (red > 60) == (blue < 200) == is_over[name], name
+        assert blue > 60, name
+
+
 def test_limbs_of_a_ghost_do_not_shine_through_each_other(easel):
     picture = np.full((20, 20, 4), 255, np.uint8)
     rest, triangles = grid_mesh(20, 20, 2, margin=0.0)

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 from invariants import check_pose
-from walkers import AXIS, FAR, HANDLES, leg
+from walkers import AXIS, FAR, HANDLES, SIZE, leg
 
-from app.document import Document, Target, handle_commands
+from app.document import Attachment, Document, Target, handle_commands
 from app.solving import Carriage, Likeness, Rig
+from app.solving.carrying import begin_like
 from app.solving.drag import Drag
 
 PLACES = np.array([3 + 1j, 40 - 7j, 12 + 90j, -55 + 20j])
@@ -82,10 +83,12 @@ def near():
     return figure, raised(figure)
 
 
-@pytest.mark.parametrize("mirrored", [False, True])
-def test_a_leg_that_is_drawn_elsewhere_or_mirrored_does_the_same(near, mirrored):
+@pytest.mark.parametrize("drawn", ["elsewhere", "mirrored", "turned", "mirrored and turned"])
+def test_a_leg_that_is_drawn_elsewhere_or_mirrored_does_the_same(near, drawn):
     source, pose = near
-    figure = leg("far leg", 1, 0j if mirrored else FAR.shift, mirrored=mirrored)
+    mirrored, turned = "mirrored" in drawn, "turned" in drawn
+    by = FAR.shift if drawn == "elsewhere" else 0j
+    figure = leg("far leg", 1, by, mirrored=mirrored, turned=turned)
     way = carriage(source, figure)
     assert way.likeness.mirrors == mirrored
     carried = way.carry(Rig.of(figure), pose)
@@ -93,7 +96,8 @@ def test_a_leg_that_is_drawn_elsewhere_or_mirrored_does_the_same(near, mirrored)
     assert carried.certificate.certified
     for handle in figure.handles:
         wished = pose.targets[way.pairs[handle.id]].position
-        image = 2 * AXIS - wished.conjugate() if mirrored else wished + FAR.shift
+        image = 2 * AXIS - wished.conjugate() if mirrored else wished + by
+        image = 1j * image + SIZE[1] if turned else image
         assert carried.targets[handle.id].position == pytest.approx(image, abs=1e-9)
     # Not its handles alone: all of it is the image, as near as two cages have it.
     points = source.domain.mesh.vertices
@@ -170,3 +174,55 @@ def test_handles_that_take_nothing_over_stay_where_they_are(near):
     named = {figure.handle(i).name: target for i, target in wished.items()}
     assert carried.targets[foot.id].position == pytest.approx(named["foot"].position)
     check_pose(added, carried)
+
+
+@pytest.mark.parametrize("far", [False, True], ids=["alike", "drawn otherwise"])
+def test_what_no_handle_tells_is_taken_over_too(near, far):
+    """One handle alone does not tell how the shape is turned."""
+    source = with_one_handle(near[0])
+    figure = with_one_handle(leg("far leg", 1, FAR.shift, turned=far))
+    turn, rest = np.exp(0.6j), source.keys[0].pose
+    turned = replace(rest, phi=HANDLES["hip"] + turn * (source.domain.cage - HANDLES["hip"]))
+    carried = carriage(source, figure).carry(Rig.of(figure), turned)
+    fz, _ = figure.map_of(carried).derivatives(figure.domain.mesh.vertices)
+    np.testing.assert_allclose(fz, turn, rtol=0, atol=1e-6)
+    assert figure.lags(carried)[0] < 1e-6
+
+
+def with_one_handle(figure):
+    (hip, *others) = figure.handles
+    remove = handle_commands.remove_handles(figure.id, frozenset(each.id for each in others))
+    (alone,) = remove(Document(figures=(figure,))).figures
+    assert alone.handles == (hip,)
+    return alone
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_the_solver_begins_with_the_image_of_the_whole_map(near, mirrored):
+    source, pose = near
+    figure = leg("far leg", 1, mirrored=mirrored, turned=True)
+    likeness = carriage(source, figure).likeness
+    begin, _ = begin_like(Rig.of(figure), source, pose, likeness, {})
+    points = source.domain.mesh.vertices
+    images, shape = likeness.on(points), source.map_of(pose)
+    inside = figure.covers(images)
+    wanted = likeness.on(shape(points))[inside]
+    moved = np.abs(shape(points) - points).max()
+    assert np.abs(begin(images[inside]) - wanted).max() < 0.02 * moved
+
+
+@pytest.mark.parametrize("by", [FAR.shift, FAR.shift - 9j])
+def test_what_hangs_is_held_at_its_joint_as_the_source_is_at_its_own(near, by):
+    """The joint is beside the source's: it goes along as a rigid body would."""
+    hung = Attachment(to=9, at=0j)
+    source = replace(near[0], anchor=62 + 162j, joints=(hung,))
+    pose = raised(source)
+    assert abs(source.map_of(pose)(np.array([source.anchor]))[0] - source.anchor) < 3
+    figure = replace(leg("far leg", 1, FAR.shift), anchor=62 + 162j + by, joints=(hung,))
+    rig = Rig.of(figure)
+    assert len(rig.pins) == 1
+    carried = carriage(source, figure).carry(rig, pose)
+    check_pose(figure, carried)
+    there = source.map_of(pose)(np.array([source.anchor]))[0] + by
+    here = figure.map_of(carried)(np.array([figure.anchor]))[0]
+    assert abs(here - there) < 3

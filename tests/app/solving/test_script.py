@@ -402,6 +402,60 @@ def test_a_script_gives_its_figure_tracks_springs_and_stillness():
     assert not document.figures[0].stillness
 
 
+CAMERA = {"keys": [{"frame": 0, "centre": [100, 60]}, {"frame": 12, "centre": [1, 2], "turn": 90}]}
+
+
+def test_the_camera_and_movements_are_read():
+    (one, two) = parse_pose_script({**WHOLE, "camera": CAMERA, "canvas": [640, 360]}).camera
+    assert (one.frame, one.centre, one.zoom, one.turn) == (0, 100 + 60j, 1.0, 0.0)
+    assert two.turn == np.pi / 2
+    eased = changed(("keys", 1, "ease"), "in", CAMERA)
+    camera = parse_pose_script({**WHOLE, "camera": eased}).camera
+    assert (camera[0].passing, camera[1].passing) == (Passing.THROUGH, Passing.CORNER)
+    moved = {"keys": [{"frame": 0}, {"frame": 40, "shift": [3, -4], "turn": -180}]}
+    script = parse_pose_script({**WHOLE, "movement": moved, "opacity": [[0, 1], [50, 0.5]]})
+    (figure,) = script.figures
+    assert (figure.movement[1].shift, figure.movement[1].turn) == (3 - 4j, -np.pi)
+    assert [(key.frame, key.opacity) for key in figure.opacity] == [(0, 1), (50, 0.5)]
+    assert script.last == 50
+    assert parse_pose_script({**WHOLE, "opacity": 0.25}).figures[0].opacity == 0.25
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"camera": {"keys": []}}, "camera.keys must be a list of at least one key"),
+        ({"camera": {"key": []}}, "unknown field 'key'"),
+        ({"camera": changed(("keys", 1, "zoom"), 0, CAMERA)}, "keys[1].zoom must be above 0"),
+        ({"camera": changed(("keys", 1, "zoom"), -2, CAMERA)}, "keys[1].zoom must be above 0"),
+        ({"camera": changed(("keys", 1, "zoom"), float("inf"), CAMERA)}, "zoom must be finite"),
+        ({"camera": changed(("keys", 1, "frame"), 0, CAMERA)}, "camera.keys are out of order"),
+        ({"camera": changed(("keys", 1, "tilt"), 1, CAMERA)}, "unknown field 'tilt'"),
+        ({"camera": changed(("keys", 0, "centre"), None, CAMERA)}, "lacks the field 'centre'"),
+        ({"camera": changed(("keys", 0, "centre"), [1e9, 0], CAMERA)}, "keys[0]: The camera's"),
+        ({"canvas": [640]}, "canvas must be width and height"),
+        ({"canvas": [640, 1.5]}, "canvas must be a whole number"),
+        ({"movement": {"keys": [{"frame": 0, "zoom": 2}]}}, "unknown field 'zoom'"),
+        ({"movement": {"keys": [{"frame": 3}, {"frame": 2}]}}, "movement.keys are out of order"),
+        ({"opacity": 2}, "Opacity is between 0 and 1"),
+        ({"opacity": [[0, 1], [0, 0]]}, "opacity is out of order"),
+        ({"opacity": [[0]]}, "opacity[0] must be a frame and a number"),
+        ({"opacity": []}, "at least one key"),
+        ({"order": [[0, None]]}, "unknown field 'order'"),
+    ],
+)
+def test_a_camera_that_cannot_be_is_refused(change, words):
+    with pytest.raises(LissomError, match=re.escape(words)):
+        parse_pose_script({**WHOLE, **change})
+
+
+@pytest.mark.parametrize("place", [{}, {"beside": "arm"}, 3, {"in_front_of": "a", "behind": "b"}])
+def test_an_order_is_in_front_of_a_layer_or_behind_it(place):
+    own = {"layer": "arm", "handles": {}, "keys": [{"frame": 0}], "order": [[3, place]]}
+    with pytest.raises(LissomError, match=r"figures\[0\]\.order\[0\] must"):
+        parse_pose_script({"schema": 1, "figures": [own]})
+
+
 ROUND = {"schema": 1, "handles": {"end": [210, 40], "start": [30, 40]}, "keys": [{"frame": 0}]}
 ROUND["keys"] += [{"frame": f, "targets": {"end": [210, y]}} for f, y in ((8, 60), (16, 20))]
 

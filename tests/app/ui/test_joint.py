@@ -10,15 +10,20 @@ from PIL import Image, ImageDraw
 
 from app.document import (
     Attachment,
+    Command,
+    FrameRange,
     clip_of,
     figure_commands,
     fronts_at,
     key_commands,
     layer_commands,
+    scene_commands,
 )
 from app.editor import layering
 from app.editor.actions import editing, files, playback, posing, viewing
-from app.storage import Autosave, Origin
+from app.motion import Joints
+from app.motion.joints import animation_at
+from app.storage import Autosave, Origin, still_figure
 from app.ui.style import PALETTES
 from app.ui.viewport.marks import find_anchor, mark_all
 from engine.geometry import HERE
@@ -290,6 +295,8 @@ def test_where_layers_hang_is_not_told_by_joints_of_an_earlier_document(window, 
     editing.edit(window.session, key_commands.pose_key(figure.id, 0, pose))
     assert swung.joints.value is joints
     assert swung.placements([0], HERE) == [HERE]
+    assert swung.placed_at(swung.active, [0]) is None
+    assert ways(window, swung) == [], "a way at a place where its layer is no more"
     window.settle()
     (now,) = ways(window, swung)
     np.testing.assert_allclose([now[0], now[-1]], [way[0] + 50, way[-1]], rtol=0, atol=1e-6)
@@ -307,3 +314,141 @@ def test_a_layer_that_comes_to_a_scene_with_joints_has_its_own_way(window, swung
     window.settle()
     (way,) = ways(window, swung)
     assert abs(way[-1] - way[0] - 12) < 1e-6
+
+
+def ghosts_of(window):
+    """Return the picture without and with ghosts, as the viewport shows them."""
+    pictures = []
+    for onion in (False, True):
+        if window.session.overlays.onion != onion:
+            window.act(viewing.toggle, "onion")
+        window.settle()
+        pictures.append(np.asarray(window.picture()).astype(int)[..., :3])
+    return pictures
+
+
+def around(window, picture, place):
+    point = window.point(place)
+    return picture[round(point.y) - 2 : round(point.y) + 3, round(point.x) - 2 : round(point.x) + 3]
+
+
+@pytest.fixture
+def nodding(window, swung):
+    """The same before a wall that stands still, at frame 12, with one ghost at either end."""
+    wall = replace(
+        swung.document.figures[0],
+        id=layer_commands.free_identity(swung.document),
+        name="wall",
+        handles=(),
+        keys=swung.document.figures[0].keys[:1],
+        joints=(),
+    )
+    wall = still_figure(wall)
+    swung.history.do(layer_commands.add_figure(wall), gesture=None)
+    editing.follow_figures(swung)
+    window.act(layering.move, wall.id, 0)
+    window.act(viewing.set_ghosts, 1, 1, 12)
+    window.act(playback.seek, 12)
+    window.act(viewing.toggle, "handles")
+    window.act(viewing.toggle, "paths")
+    window.settle()
+    return swung
+
+
+def placed(project, name, frame, place):
+    """Return where a point of a layer at rest is in the scene at a frame, by its joints."""
+    figure = project.document.figure(identity(project, name))
+    joints = Joints(project.document, project.samplers)
+    animation = animation_at(project.document, figure.id, np.array([place]), project.samplers, None)
+    own = animation.frame(frame).positions
+    return complex(joints.placement(figure.id, frame).on(own)[0])
+
+
+def test_ghosts_are_of_all_layers_where_their_joints_have_them_then(window, nodding):
+    plain, ghosts = ghosts_of(window)
+    # Edges of the arm, which hangs on the body, and of the body: nothing is there at frame 12.
+    edges = {
+        "arm": {0: 168 + 108j, 24: 180 + 126j},
+        "body": {0: 105 + 60j, 24: 66 + 168j},
+    }
+    for name, places in edges.items():
+        for frame, place in places.items():
+            at = placed(nodding, name, frame, place)
+            was, now = (around(window, each, at) for each in (plain, ghosts))
+            tint = ((now - was)[..., 0] - (now - was)[..., 2]).mean()
+            assert tint > 20 if frame == 0 else tint < -20, (name, frame)
+
+
+def test_ghosts_are_in_front_where_that_is_wished(window, nodding):
+    plain, behind = ghosts_of(window)
+    at = placed(nodding, "body", 12, 85 + 100j)  # within the body, now and then
+    np.testing.assert_array_equal(around(window, behind, at), around(window, plain, at))
+
+    def put(robot):
+        robot.set_ref("###Timeline")
+        robot.item_click("**/###onion skin")
+        robot.item_click("//$FOCUSED/In front of the drawing")
+        robot.popup_close_all()
+
+    window.run(put)
+    assert window.session.preferences.ghosts_in_front
+    window.settle()
+    front = np.asarray(window.picture()).astype(int)[..., :3]
+    assert np.abs(around(window, front, at) - around(window, plain, at)).max() > 20
+
+
+def test_what_hangs_on_something_moved_just_now_has_no_ghost_until_it_is_known_where(
+    window, nodding
+):
+    ghosts_of(window)
+    figure = nodding.document.figure(identity(nodding, "body"))
+    pose = replace(figure.keys[0].pose, phi=figure.domain.cage + 40j)
+    editing.edit(window.session, key_commands.pose_key(figure.id, 0, pose))
+    assert nodding.placed_at(identity(nodding, "arm"), [0]) is None
+    assert nodding.placed_at(figure.id, [0]) == [HERE]
+    window.settle()
+    (there,) = nodding.placed_at(identity(nodding, "arm"), [0])
+    assert there.on(np.array([SHOULDER]))[0] == pytest.approx(SHOULDER + 40j, abs=1e-6)
+
+
+def test_while_a_layer_is_posed_itself_its_way_stays_where_it_hangs(window, swung):
+    window.act(playback.seek, 24)
+    window.settle()
+    (way,) = ways(window, swung)
+    (handle,) = swung.figure.handles
+    figure = swung.document.figure(swung.active)
+    other = replace(figure, handles=(replace(handle, weight=2.0),))
+    swung.history.do(Command("Weigh", lambda document: document.with_figure(other)), gesture=None)
+    assert swung.hung is None
+    np.testing.assert_allclose(ways(window, swung), [way], rtol=0, atol=1e-9)
+
+
+def test_ways_are_of_what_plays_or_of_some_frames_around_the_playhead(window, swung):
+    (whole,) = ways(window, swung)
+    assert len(whole) == 49
+    window.act(editing.edit, scene_commands.set_preview(FrameRange(6, 20)))
+    window.settle()
+    (played,) = ways(window, swung)
+    np.testing.assert_allclose(played, whole[6:21], rtol=0, atol=1e-9)
+    window.act(playback.seek, 18)
+    window.settle()
+
+    def choose(robot):
+        robot.set_ref("##MainMenuBar")
+        robot.menu_click("View/Frames of motion paths/6 around the playhead")
+
+    window.run(choose)
+    window.settle()
+    (near,) = ways(window, swung)
+    np.testing.assert_allclose(near, whole[12:21], rtol=0, atol=1e-9)
+
+
+def test_the_cage_is_drawn_where_its_layer_hangs(window, swung):
+    window.act(viewing.toggle, "paths")
+    window.act(viewing.toggle, "cage")
+    window.settle()
+    shown = swung.puppet.shown
+    assert abs(shown.placement.factor - 1) > 0.1
+    lines, _ = mark_all(window.session, swung, shown, PALETTES["dark"])
+    (cage,) = [line.points for line in lines if line.dash]
+    np.testing.assert_allclose(cage, shown.placement.on(swung.figure.domain.cage))

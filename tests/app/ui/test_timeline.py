@@ -7,11 +7,18 @@ from hypothesis import given, strategies as st
 from imgui_bundle import ImVec2, imgui
 from projects import project_of
 
-from app.document import exported_frames, figure_commands, key_commands
+from app.document import (
+    camera_at,
+    exported_frames,
+    figure_commands,
+    filming_commands,
+    key_commands,
+)
 from app.document.keyframe import Handle, Keyframe, Passing, Target
 from app.document.settings import FrameRange
 from app.document.timing import HOLD, LINEAR, PRESETS
-from app.editor.actions import editing, keys, playback, rebuilding, timeline_pointing
+from app.editor import layering
+from app.editor.actions import editing, keys, playback, rebuilding, timeline_pointing, viewing
 from app.editor.timeline_view import Strip
 from app.ui.bars.status import limit_of_motion
 from app.ui.style import PALETTES
@@ -735,3 +742,71 @@ def test_only_what_goes_straight_is_called_linear(window, monkeypatch):
     window.act(keys.set_easing, {0: {24}}, HOLD)
     window.settle()
     assert labels(window, monkeypatch) == ["smooth", "smooth", "hold"]
+
+
+def camera_of(project):
+    return [(key.frame, round(key.zoom, 6)) for key in project.document.camera]
+
+
+def test_the_camera_is_keyed_from_the_viewport_dragged_and_deleted(window, project, play):
+    first, canvas = project.document, project.document.canvas
+    # What fits the canvas is the canvas.
+    layering.key_camera(window.session)
+    shot = camera_at(project.document, 0)
+    assert shot.centre == complex(*canvas) / 2
+    assert shot.zoom == pytest.approx(1, rel=1e-12)
+    playback.scrub(window.session, 30)
+    view = project.view(window.session.screen)
+    viewing.look_from(window.session, replace(view, centre=60 + 70j, scale=2 * view.scale))
+    layering.key_camera(window.session)
+    window.settle()
+    assert camera_of(project) == [(0, 1), (30, 2)]
+    assert camera_at(project.document, 30).centre == 60 + 70j
+    looked = project.view(window.session.screen)
+    viewing.look_from(window.session, None)
+    layering.fit_camera(window.session)
+    again = project.view(window.session.screen)
+    assert (again.centre, again.scale) == (looked.centre, pytest.approx(looked.scale))
+
+    play(lambda hand: hand.drag("camera key 30", 50, 44))
+    assert camera_of(project) == [(0, 1), (44, 2)]
+    # One key is never dropped on another, and a click goes there.
+    play(lambda hand: hand.drag("camera key 44", 10, 0))
+    assert camera_of(project)[0] == (0, 1)
+    moved = camera_of(project)[1][0]
+    play(lambda hand: hand.click(f"camera key {moved}"))
+    assert playback.current_frame(window.session, project) == moved
+
+    def turn(hand):
+        hand.click(f"camera key {moved}", 1)
+        hand.robot.item_input_value("//$FOCUSED/##camera Turn", 90.0)
+        hand.robot.key_press(int(window.Key.escape))
+
+    play(turn)
+    assert project.document.camera[1].turn == pytest.approx(np.pi / 2)
+
+    def delete(hand):
+        hand.click("camera key 0", 1)
+        hand.robot.item_click("//$FOCUSED/Delete")
+
+    play(delete)
+    assert camera_of(project) == [(moved, 2)]
+    undo_all(window)
+    assert project.document is first
+
+
+def test_what_the_camera_leaves_out_is_dimmed_in_the_viewport(window, project):
+    inside, outside = CENTRE, CENTRE + 0.8 * RADIUS
+    window.session.overlays = replace(window.session.overlays, handles=False)
+
+    def brightness(place):
+        point = window.point(place)
+        return np.mean(window.picture().convert("RGB").getpixel((int(point.x), int(point.y))))
+
+    before = brightness(inside), brightness(outside)
+    layering.key_camera(window.session)
+    key = replace(project.document.camera[0], zoom=2.0)
+    editing.edit(window.session, filming_commands.key_camera(key))
+    window.settle()
+    assert brightness(inside) == before[0]
+    assert abs(brightness(outside) - before[1]) > 20

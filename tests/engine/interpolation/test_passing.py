@@ -28,6 +28,7 @@ from engine.interpolation import (
     prepare,
     prepare_inbetweens,
     prepare_sites,
+    prove,
     sample_keyframes,
 )
 from engine.maps import Boundary, Bounds, HarmonicMap
@@ -303,3 +304,58 @@ def test_a_course_asks_for_its_keyframes():
     course = Course.between(Tangent(Joint(1.0, 1.0), 1.0, 1.0), 1.0)
     with pytest.raises(EngineError, match="three keyframes, not 2"):
         Passage.of(keys, sheets, course)
+
+
+def test_tangents_apart_are_those_of_other_keyframes():
+    """An interval leads from one motion to another: six keyframes, four of which it does not go to.
+
+    In their order: before, first, last, after, and apart the one after the first in its own motion,
+    and the one before the last in its own.
+    """
+    start, end = Tangent(Joint(2.0, 3.0), 0.5, 1.0), Tangent(Joint(1.0, 4.0), 0.25, 1.0)
+    course = Course.between(start, end, apart=(True, True))
+    assert (course.count, course.first) == (6, 1)
+    assert course.windows == ([0, 1, 4], [5, 2, 3])
+    values = np.array([3.0, -1.0, 2.0, 7.0, 0.5, -4.0])
+    controls = course.controls @ values
+    velocities = [
+        each.length * each.joint.velocity @ values[window]
+        for each, window in zip((start, end), course.windows, strict=True)
+    ]
+    assert_allclose(controls[[0, 3]], [-1.0, 2.0], atol=1e-15)
+    assert_allclose(controls[1] - controls[0], start.joint.arms[1] * velocities[0], atol=1e-14)
+    assert_allclose(controls[2] - controls[3], end.joint.arms[0] * velocities[1], atol=1e-14)
+    assert_allclose(course.controls.sum(axis=1), 1.0, atol=1e-15)
+    assert Course.between(1.0, end, apart=(False, True)).windows[1] == [3, 1, 2]
+    assert_allclose(
+        course.full.controls[:2],
+        Course.between(Tangent(start.joint, 1.0, 1.0), end, apart=(True, True)).controls[:2],
+        atol=1e-15,
+    )
+
+
+@pytest.mark.parametrize("variant", ["nu", "scaled-eta", "metric"])
+@pytest.mark.parametrize("bounds", [WIDE, Bounds(k=0.3, sigma_a=2.2, sigma_b=0.5)])
+def test_what_leads_to_another_motion_keeps_the_bounds_and_is_proven(variant, bounds):
+    sites = prepare_sites(OUTLINE, CAGE, POINTS, anchor=0.7 + 0.6j)
+    # From the first to the second; in the motion that it leads to the third comes after that, and
+    # the fourth before.
+    keys = sample_keyframes(MAPS, sites)
+    joint = Joint(1.0, 1.0, end_pace=0.5)
+    tangent = BLENDS[Variant(variant)].tangent(
+        [MAPS[3], MAPS[1], MAPS[2]], joint, bounds, sites.boundary
+    )
+    course = Course.between(1.0, tangent, apart=(False, True))
+    sheets = root_sheets(np.array([key.anchor_fz for key in keys]))
+    passage = Passage.of(keys, sheets, course)
+    extension = transform().at(sites.paths.nodes) if variant == "metric" else None
+    interval = prepare_inbetweens(Variant(variant), Interval(sites, passage, bounds, extension))
+    assert_allclose(interval.frame(1.0).positions, keys[1].positions, rtol=0, atol=1e-9)
+    proof = prove(interval)
+    assert proof.never_folds
+    for time in (0.3, 0.6, 0.9, 0.97):
+        frame = interval.frame(time)
+        k = np.abs(frame.fzbar / frame.fz)
+        assert k.max() <= proof.k + 1e-6
+        if variant == "metric":
+            assert k.max() <= max(bounds.k, *(np.abs(key.nu).max() for key in keys)) + 1e-3

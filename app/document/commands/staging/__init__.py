@@ -7,6 +7,7 @@ Imports: the values of `app.document`, commands on handles and keys.
 
 from app.document.commands.staging import (
     choice_commands as choice_commands,
+    filming_commands as filming_commands,
     group_commands as group_commands,
     layer_commands as layer_commands,
 )

@@ -84,11 +84,7 @@ def remove_figure(document: Document, identity: int) -> Document:
         raise LissomError("A document has at least one layer; add another one first.")
     document = choice_commands.let_go(document, identity)
     figures = tuple(
-        replace(each, joints=tuple(joint for joint in each.joints if joint.to != identity))
-        if any(joint.to == identity for joint in each.joints)
-        else each
-        for each in document.figures
-        if each.id != identity
+        _without_ties(each, identity) for each in document.figures if each.id != identity
     )
     return without_empty_groups(replace(document, figures=figures, size=document.canvas))
 
@@ -291,6 +287,15 @@ def _group_at(others: Sequence[Figure], index: int, figure: Figure) -> str:
     shared = max((shared_path(own, each.group) for each in others), key=len, default="")
     # With all of what else is in its groups elsewhere, it leaves them; alone in one, it keeps it.
     return own if stays == shared else stays
+
+
+def _without_ties(figure: Figure, other: int) -> Figure:
+    """Return a figure that neither hangs on another one at any time nor is painted beside it."""
+    joints = tuple(joint for joint in figure.joints if joint.to != other)
+    placings = tuple(placing for placing in figure.placings if placing.beside != other)
+    if (joints, placings) == (figure.joints, figure.placings):
+        return figure
+    return replace(figure, joints=joints, placings=placings)
 
 
 def _with(document: Document, identity: int, **changes: object) -> Document:

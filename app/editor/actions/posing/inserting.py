@@ -18,8 +18,15 @@ INSERTING = Kind("Inserting a key", "The key could not be inserted", "hand")
 
 @with_project
 def insert_key(session: Session, project: Project) -> None:
-    """Insert a key of the pose that is shown, at the present frame."""
+    """Insert a key of the pose that is shown, at the present frame, in each chosen layer."""
     playback.halt(session)
+    if project.beside:
+        here, gesture = playback.current_frame(session, project), object()
+        chosen = [project.document.figure(each) for each in project.layers]
+        for figure in (each for each in chosen if not each.still):
+            if (at := figure.source_of(here)) not in figure.key_frames:
+                insert_key_at(session, figure.id, at, gesture)
+        return
     frame = playback.posed_frame(session, project)
     if any((pull.figure, pull.frame) == (project.active, frame) for pull in project.pulls):
         # What is on its way there may be a key itself.
@@ -29,18 +36,20 @@ def insert_key(session: Session, project: Project) -> None:
 
 
 @with_project
-def insert_key_at(session: Session, project: Project, figure: int, frame: int) -> None:
-    """Insert a key of the pose that a figure has at a frame."""
+def insert_key_at(
+    session: Session, project: Project, figure: int, frame: int, gesture: object | None = None
+) -> None:
+    """Insert a key of the pose that a figure has at a frame; those of a gesture are one step."""
     if figure not in project.puppets:
         return
     unkeyed = project.history.unkeyed
     if unkeyed is not None and (unkeyed.figure, unkeyed.frame) == (figure, frame):
-        gesture = object()
+        gesture = gesture or object()
         project.history.do(as_key(session, project, unkeyed), gesture=gesture)
         project.history.pose(None, gesture=gesture)
     elif frame not in project.document.figure(figure).key_frames:
         clip = clip_of(project.document, figure)
-        take = partial(_insert, session, project, clip, frame)
+        take = partial(_insert, session, project, clip, frame, gesture)
         fit_pose(session, project, clip, frame, take, kind=INSERTING)
     else:
         session.tell(f"Frame {frame} has a key already. Drag a handle to change it.")
@@ -65,13 +74,15 @@ def fit_pose(
     promises.begin(session, project, kind, work, take)
 
 
-def _insert(session: Session, project: Project, clip: Clip, frame: int, pose: Pose) -> None:
+def _insert(
+    session: Session, project: Project, clip: Clip, frame: int, gesture: object | None, pose: Pose
+) -> None:
     figure = clip.figure.id
     if figure in project.puppets and clip_of(project.document, figure) == clip:
         found = UnkeyedPose(figure=figure, frame=frame, pose=pose)
-        project.history.do(as_key(session, project, found))
+        project.history.do(as_key(session, project, found), gesture=gesture)
         if project.active == figure:
             project.chosen = frozenset({frame})
     else:
         # Other keys came or went meanwhile: the figure is shown otherwise there now.
-        insert_key_at(session, figure, frame)
+        insert_key_at(session, figure, frame, gesture)

@@ -11,13 +11,14 @@ from app.errors import LissomError
 
 
 def chosen_stretch(project: Project) -> tuple[int, int] | None:
-    """Return the first and the last frame of the chosen keys, or of all of the row's.
+    """Return the first and the last frame of the chosen keys, or else of all of the chosen layers'.
 
     None where there are fewer than two.
     """
     frames = set[int]().union(*project.chosen_of.values())
     if len(frames) < 2:
-        frames = set(frames_in(project.document, project.row))
+        rows = project.layers if len(project.layers) > 1 else [project.row]
+        frames = set[int]().union(*(frames_in(project.document, row) for row in rows))
     return (min(frames), max(frames)) if len(frames) > 1 else None
 
 
@@ -29,11 +30,11 @@ def cycle_here(session: Session, project: Project, frame: int | None = None) -> 
 
 @with_project
 def repeat(session: Session, project: Project) -> None:
-    """Let the stretch of the chosen keys repeat, in all layers that have some of them."""
+    """Let the stretch of the chosen keys repeat, in all layers that have some or are chosen."""
     stretch = chosen_stretch(project)
     if stretch is None:
         return
-    document, figures = project.document, _chosen_figures(project)
+    document, figures = project.document, _figures(project)
     ends = [cycle_commands.end_of_repeats(document.figure(each), *stretch) for each in figures]
     until = min((end for end in ends if end is not None), default=None)
     commands = [cycle_commands.repeat(each, *stretch, until) for each in figures]
@@ -67,7 +68,7 @@ def _change(
         return
     figures = [
         each
-        for each in {project.active, *_chosen_figures(project)}
+        for each in {project.active, *_figures(project)}
         if any(cycle.first == other.first for other in project.document.figure(each).cycles)
     ]
     commands = [command(each, cycle.first) for each in figures]
@@ -75,8 +76,11 @@ def _change(
     editing.edit(session, Command(label, lambda now: _all_of(commands, figures, now)))
 
 
-def _chosen_figures(project: Project) -> list[int]:
-    return sorted({figure_of(row) for row in project.chosen_of} or {project.active})
+def _figures(project: Project) -> list[int]:
+    """Return the layers of chosen keys, with those that are chosen together, or the one posed."""
+    together = project.layers if len(project.layers) > 1 else ()
+    figures = {*together, *map(figure_of, project.chosen_of)} or {project.active}
+    return sorted(each for each in figures if not project.document.figure(each).still)
 
 
 def _all_of(commands: list[Command], figures: list[int], document: Document) -> Document:

@@ -8,7 +8,9 @@ from app.document import (
     Command,
     Document,
     FrameRange,
+    choice_commands,
     cycle_commands,
+    filming_commands,
     key_commands,
     layer_commands,
     scene_commands,
@@ -19,6 +21,7 @@ from app.editor.actions.timing.keys import retime
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.timeline_view import (
+    CameraDrag,
     CycleDrag,
     EdgeDrag,
     KeyBox,
@@ -31,6 +34,7 @@ from app.editor.timeline_view import (
     SwitchDrag,
     TimeDrag,
     TimeGesture,
+    TurnDrag,
     figure_of,
     frames_in,
     keys_in,
@@ -208,19 +212,37 @@ def _moved(drag: TimeDrag, frame: float) -> tuple[TimeDrag, Command] | None:
             at = min(max(marker + by, 0), LAST_FRAME)
             others = {each.frame for each in before.markers} - {marker}
             command = scene_commands.move_marker(marker, at)
-            return None if at in others | {drag.at} else (replace(drag, at=at), command)
-        case CycleDrag(figure=figure, first=first):
-            cycle = cycle_commands.cycle_from(before.figure(figure), first)
-            end = cycle_commands.nearest_end(
-                before.figure(figure), cycle, round(frame), before.frames.last
-            )
-            return drag, cycle_commands.repeat(figure, first, cycle.last, end)
+        case CameraDrag(key=key):
+            at = before.frames.clamp(key + by)
+            others = {each.frame for each in before.camera} - {key}
+            command = filming_commands.move_camera_key(key, at)
+        case CycleDrag():
+            return drag, _end_cycle(drag, round(frame))
         case SwitchDrag(figure=figure, switch=switch):
             at = before.frames.clamp(switch + by)
             others = {each.frame for each in before.figure(figure).switches} - {switch}
             command = layer_commands.move_switch(figure, switch, at)
-            return None if at in others | {drag.at} else (replace(drag, at=at), command)
-    raise AssertionError("unreachable: there are no other drags")
+        case TurnDrag(choice=choice, turn=turn):
+            at = before.frames.clamp(turn + by)
+            others = {each.frame for each in before.choice(choice).turns} - {turn}
+            others.add(before.frames.first)
+            command = choice_commands.move_turn(choice, turn, at)
+        case _:
+            raise AssertionError("unreachable: there are no other drags")
+    return None if at in others | {drag.at} else (replace(drag, at=at), command)
+
+
+def _end_cycle(drag: CycleDrag, frame: int) -> Command:
+    """Return the command that puts the dragged end of a cycle where the pointer is, or near."""
+    figure = drag.before.figure(drag.figure)
+    cycle = cycle_commands.cycle_from(figure, drag.first)
+    last, until = cycle.last, cycle.until
+    if drag.is_stretch:
+        cycle = cycle_commands.stretched_to(figure, cycle, min(frame, drag.before.frames.last))
+        last, until = cycle.last, cycle.until
+    else:
+        until = cycle_commands.nearest_end(figure, cycle, frame, drag.before.frames.last)
+    return cycle_commands.repeat(drag.figure, drag.first, last, until)
 
 
 def _trim(drag: EdgeDrag, pointed: float) -> Command:

@@ -2,7 +2,8 @@
 
 from imgui_bundle import imgui
 
-from app.editor import Action, Project, Session, do
+from app.document import alternates
+from app.editor import Action, Project, Session, do, layering
 from app.editor.actions import files, playback, rebuilding
 from app.ui.panels.layers.settings import draw_settings
 from app.ui.panels.layers.tree import SmallPictures, draw_tree
@@ -13,7 +14,8 @@ _FOLD = imgui.TreeNodeFlags_.no_tree_push_on_open | imgui.TreeNodeFlags_.span_av
 
 def draw(session: Session, look: Look, project: Project, pictures: SmallPictures) -> list[Action]:
     """Draw the list of layers with their small pictures, and the settings of the chosen one."""
-    actions = _summary(look, project) + draw_tree(session, look, project, pictures)
+    actions = _summary(look, project) + _offers(look, project)
+    actions += draw_tree(session, look, project, pictures)
     if len(project.document.figures) == 1:
         small(look, "Drop another picture here, or open an .ora or .psd file, for more layers.")
     renewal = project.renewal
@@ -42,4 +44,22 @@ def _summary(look: Look, project: Project) -> list[Action]:
         for matter in summary.matters:
             small(look, matter)
     imgui.separator()
+    return actions
+
+
+def _offers(look: Look, project: Project) -> list[Action]:
+    """Draw the offers to let layers of a group take turns, where it is named like mouths."""
+    actions: list[Action] = []
+    for group, figures in alternates(project.document):
+        if group.name in project.declined:
+            continue
+        name = group.name.rpartition("/")[2]
+        imgui.push_id(group.name)
+        small(look, f"The {len(figures)} layers of {name} look as if they took turns.")
+        if imgui.button("Let them take turns"):
+            actions.append(do(layering.form, *figures, name=name))
+        imgui.same_line()
+        if imgui.button("No"):
+            actions.append(do(layering.decline, group.name))
+        imgui.pop_id()
     return actions

@@ -28,7 +28,7 @@ from engine.arrays import Bytes
 ROW, WIDE, GAP = 2.1, 2.5, 0.35  # em: height of a row, width of its picture, room around that
 INDENT, FOLD = 0.9, 1.2  # em: by which rows in others lie to the right, and of the triangle
 DEEPEST_INDENT = 6  # rows that are deeper are not shifted any more
-FEWEST, OTHERS = 4.5, 20.0  # rows at least, and em that are left to the settings below
+FEWEST, OTHERS = 6.5, 20.0  # rows at least, and em that are left to the settings below
 HIDDEN = 0.35  # opacity of the pictures of layers that are not seen now
 PAPER = imgui.IM_COL32(128, 130, 136, 255)  # on which both dark and light drawings are seen
 SIGN = imgui.IM_COL32(12, 13, 16, 255)  # on the paper

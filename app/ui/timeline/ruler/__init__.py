@@ -1,10 +1,11 @@
-"""The ruler and what stands at it: frames, the playhead, markers, the preview range, the end.
+"""The ruler and what stands at it: frames, the playhead, markers, the camera, the ends.
 
 In: the bands of the timeline.
 Out: actions on time.
 Imports: `app.ui.style`, `app.ui.shortcuts`, `app.ui.timeline.bands`.
 """
 
+from app.ui.timeline.ruler.camera import draw_camera as draw_camera
 from app.ui.timeline.ruler.edges import draw_edges as draw_edges
 from app.ui.timeline.ruler.markers import draw_markers as draw_markers
 from app.ui.timeline.ruler.ruler import (

@@ -35,7 +35,7 @@ def draw_markers(bands: Bands) -> list[Action]:
         name = f"marker {_origin(gesture, marker.frame)}"
         end = x + max(GRIP * em, HALF * em + width)
         bands.button(
-            name, ImVec2(x - GRIP * em, bands.marks_top), ImVec2(end, bands.track_top), right=True
+            name, ImVec2(x - GRIP * em, bands.marks_top), ImVec2(end, bands.camera_top), right=True
         )
         _draw(bands, marker, x, text)
         actions += _point(bands, marker)
@@ -56,7 +56,7 @@ def _draw(bands: Bands, marker: Marker, x: float, text: str) -> None:
     palette, draw_list, em = bands.look.palette, imgui.get_window_draw_list(), bands.look.em
     hot = in_hand()
     colour = palette.accent if hot else palette.anchor
-    top, bottom = bands.marks_top + 0.15 * em, bands.track_top - 0.1 * em
+    top, bottom = bands.marks_top + 0.15 * em, bands.camera_top - 0.1 * em
     waist = top + 0.55 * (bottom - top)
     half = HALF * em
     for point in (
@@ -68,7 +68,7 @@ def _draw(bands: Bands, marker: Marker, x: float, text: str) -> None:
     ):
         draw_list.path_line_to(point)
     draw_list.path_fill_convex(ink(colour))
-    begin, end = ImVec2(x, bands.track_top), ImVec2(x, bands.track_bottom)
+    begin, end = ImVec2(x, bands.camera_top), ImVec2(x, bands.track_bottom)
     draw_list.add_line(begin, end, ink(colour, 0.8 if hot else 0.35), 1.0)
     if text and not bands.is_cramped:
         with sized(SMALL):

@@ -9,6 +9,7 @@ from sessions import go, session_of, settle
 from walkers import AXIS, FAR, leg, walker
 
 from app.document import (
+    PAIRS,
     PRESETS,
     Document,
     Passing,
@@ -16,10 +17,11 @@ from app.document import (
     handle_commands,
     key_commands,
     layer_commands,
+    material_commands,
     track_commands,
 )
 from app.editor import layering
-from app.editor.actions import editing, playback, posing
+from app.editor.actions import editing, material, playback, posing
 from app.editor.actions.upkeep import maintain
 from app.editor.poses import copying, library, pasting, receiving
 from app.editor.session import CopiedKeys
@@ -153,6 +155,13 @@ def test_the_step_of_all_layers_is_pasted_swapped_and_nothing_is_mirrored(sessio
     settle(session)
     for name in ("near leg", "far leg"):
         close(ways(session, name, 24), ways(session, name, 0))
+    # Poses bring no way to the next key.
+    near = identity(session, "near leg")
+    editing.edit(session, key_commands.set_easing(near, {12}, PRESETS["in"]))
+    go(session, 12)
+    pasting.paste(session)
+    settle(session)
+    assert figure(session, "near leg").key(12).easing == PRESETS["in"]
 
 
 def test_left_and_right_layers_exchange_mirrored_when_flipped(tmp_path):
@@ -161,10 +170,12 @@ def test_left_and_right_layers_exchange_mirrored_when_flipped(tmp_path):
     session = walking(tmp_path, document)
     pull(session, "leg.L", knee=18 + 8j, foot=-20 + 30j)
     editing.edit(session, key_commands.set_turns(0, {0}, 2))
-    copying.copy_all(session)
+    editing.choose_keys_of(session, {0: frozenset({0}), 2: frozenset({0})})
+    copying.copy_keys(session)
     go(session, 12)
     pasting.paste(session, FLIPPED)
     settle(session)
+    assert figure(session, "leg.R").key(12).turns == -2
     was = ways(session, "leg.L", 0)
     close(ways(session, "leg.R", 12), {name: -way.conjugate() for name, way in was.items()})
     close(ways(session, "leg.L", 12), dict.fromkeys(was, 0j))
@@ -200,6 +211,21 @@ def test_words_for_sides_are_edited_and_whole_names_are_partners(session):
     settle(session)
     close(ways(session, "Standbein", 12), ways(session, "Spielbein", 0))
     assert project.document.pairs == (("L", "R"), ("Spielbein", "Standbein"))
+
+
+def test_a_handle_whose_partner_takes_over_from_it_takes_nothing_over_from_itself():
+    one, both = (
+        replace(leg("leg", 0), handles=tuple(replace(h, name=n) for h, n in named))
+        for named in (
+            zip(leg("leg", 0).handles, ("hand.L", "knee", "foot"), strict=True),
+            zip(leg("leg", 0).handles, ("hand.L", "hand.R", "foot"), strict=True),
+        )
+    )
+    left, right, foot = (handle.id for handle in both.handles)
+    assert receiving.common_handles(one, both, PAIRS, SWAPPED) == {right: left, foot: foot}
+    other = replace(one, id=7)
+    assert receiving.common_handles(other, both, PAIRS, PLAIN) == {left: left, foot: foot}
+    assert receiving.common_handles(both, one, PAIRS, SWAPPED) == {left: right, foot: foot}
 
 
 def test_why_nothing_can_be_pasted_is_said(session):
@@ -400,3 +426,41 @@ def test_keys_of_tracks_go_to_the_handles_of_the_partner(session, way, mirrors):
     assert session.project.chosen_of == {TrackRow(far, foot): frozenset({12, 18})}
     editing.undo(session)
     assert session.project.document is before
+
+
+def test_the_poses_of_chosen_layers_are_copied_and_one_is_pasted_onto_all_of_them(session):
+    near, far, body = (identity(session, name) for name in ("near leg", "far leg", "body"))
+    layering.choose_all(session, near, far)
+    copying.copy(session)
+    settle(session)
+    assert {each.figure.id for each in session.copied} == {near, far}
+    layering.choose(session, near)
+    copying.copy(session)
+    go(session, 12)
+    layering.choose_all(session, near, far, body)
+    before = session.project.document
+    pasting.paste(session)
+    settle(session)
+    close(ways(session, "far leg", 12), ways(session, "near leg", 0))
+    close(ways(session, "near leg", 12), ways(session, "near leg", 0))
+    assert figure(session, "body").key_frames == {0}
+    assert any("“body” has no handle" in toast.text for toast in session.toasts)
+    editing.undo(session)
+    assert session.project.document is before
+
+
+def test_pairs_of_the_document_tell_partners_of_handles_too(session):
+    names = ("hip", "Spielknie", "Standknie")
+    for handle, name in enumerate(names):
+        editing.edit_figure(session, handle_commands.rename_handle, handle, name)
+    pasting.set_pairs(session, "L/R, Spielknie/Standknie")
+    editing.select(session, frozenset({1}))
+    editing.select_mirrored(session)
+    assert session.project.selected == {2}
+    editing.edit(session, track_commands.put_track_key(0, 1, 0, 4 + 2j))
+    pairs = session.project.document.pairs
+    editing.edit_figure(session, track_commands.mirror_track, 1, pairs)
+    assert session.project.figure.track_of(2).keys[0].place == -4 + 2j
+    editing.edit_figure(session, material_commands.add_bone, (0, 1), 5.0)
+    material.mirror(session)
+    assert [bone.ends for bone in session.project.figure.bones] == [(0, 1), (0, 2)]

@@ -2,11 +2,12 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Generic, TypeVar
+from typing import Generic, NamedTuple, TypeVar
 
 from app.document.figure import Figure
 from app.document.layering import BlendMode, paths_to
 from app.document.model import Document
+from app.document.queries.stage.moves import in_order, opacity_at
 
 Drawn = TypeVar("Drawn")
 
@@ -41,35 +42,47 @@ class _Unit(Generic[Drawn]):
 
 
 def composed(
-    document: Document, drawn: Mapping[int, Drawn]
+    document: Document, drawn: Mapping[int, Drawn], frame: float
 ) -> tuple[Drawn | Composite[Drawn], ...]:
-    """Return how what is drawn of figures is composited, from back to front.
+    """Return how what is drawn of figures is composited at a frame, from back to front.
 
     Parameters
     ----------
     drawn : mapping of int to Drawn
         By the ids of the figures that are seen. Of a group's figures each run without others
         between is composited by itself; what is cut by something that is not seen is not, either.
+    frame : float
+        It tells the order of the figures, and how opaque they are.
     """
-    return _parts(document, document.figures, drawn, 0)
+    opacities = {figure.id: opacity_at(document, figure, frame) for figure in document.figures}
+    return _parts(_Painted(document, drawn, opacities), in_order(document, frame), 0)
+
+
+class _Painted(NamedTuple, Generic[Drawn]):
+    """What is drawn of the figures of a document, and how opaque they are, by their ids."""
+
+    document: Document
+    drawn: Mapping[int, Drawn]
+    opacities: Mapping[int, float]
 
 
 def _parts(
-    document: Document, figures: Sequence[Figure], drawn: Mapping[int, Drawn], depth: int
+    given: _Painted[Drawn], figures: Sequence[Figure], depth: int
 ) -> tuple[Drawn | Composite[Drawn], ...]:
     """Return the parts of figures that are in the same groups down to this depth."""
     units: list[_Unit[Drawn]] = []
     for path, run in _runs(figures, depth):
         unit: _Unit[Drawn]
         if path:
-            group, inner = document.group(path), _parts(document, run, drawn, depth + 1)
+            group, inner = given.document.group(path), _parts(given, run, depth + 1)
             blend: BlendMode = "normal" if group.blend == "pass-through" else group.blend
             passes = group.blend == "pass-through" and group.opacity == 1
             unit = _Unit(Composite(inner, group.opacity, blend, group.clipped), passes)
         else:
             (figure,) = run
-            seen = (drawn[figure.id],) if figure.id in drawn else ()
-            unit = _Unit(Composite(seen, figure.opacity, figure.blend, figure.clipped))
+            seen = (given.drawn[figure.id],) if figure.id in given.drawn else ()
+            opacity = given.opacities[figure.id]
+            unit = _Unit(Composite(seen, opacity, figure.blend, figure.clipped))
         if unit.whole.clipped and units and not units[-1].whole.clipped:
             units[-1].cut.append(unit.whole)
         else:

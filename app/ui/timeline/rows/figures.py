@@ -10,6 +10,7 @@ from app.editor.actions import editing, timeline_pointing
 from app.ui.style import CHOSEN, SMALL, begin_tip, in_hand, ink, is_pressed, shortened, sized
 from app.ui.timeline.bands import THIN, Bands, FigureRow, tag
 from app.ui.timeline.keys import choose_row
+from app.ui.timeline.rows.stage import INDENT, draw_stage, draw_stage_names
 from app.ui.timeline.tracks import FOLD, draw_fold, draw_names, draw_ways
 
 HATCH = 0.55  # em between the lines over a time in which a figure is hidden
@@ -23,6 +24,7 @@ def draw_rows(bands: Bands, frame: int) -> list[Action]:
     if bands.has_names:
         actions += _draw_names(bands, frame)
     bands.push_clip()
+    actions += draw_stage(bands)
     for row in bands.rows:
         if bands.has_names:
             _draw_ground(bands, row)
@@ -63,12 +65,13 @@ def _draw_names(bands: Bands, frame: int) -> list[Action]:
         icon = icons.ICON_FA_IMAGE if row.figure.still else icons.ICON_FA_PERSON
         colour = ink(palette.text if is_visible(document, row.figure, frame) else palette.dim)
         with sized(SMALL):
-            left = low.x + (FOLD * em if row.figure.tracks else 0.0)
+            left = low.x + (FOLD * bool(row.figure.tracks) + INDENT * row.depth) * em
             text = shortened(row.figure.name, box[1].x - left - 2.6 * em)
             top = row.middle - imgui.get_text_line_height() / 2
             draw_list.add_text(ImVec2(left + 0.4 * em, top), colour, icon)
             draw_list.add_text(ImVec2(left + 1.8 * em, top), colour, text)
-        actions += draw_fold(bands, row, low.x)
+        actions += draw_fold(bands, row, low.x + INDENT * row.depth * em)
+    actions += draw_stage_names(bands, frame)
     actions += draw_names(bands)
     _draw_scrolled(bands)
     imgui.pop_clip_rect()
@@ -81,7 +84,8 @@ def _draw_scrolled(bands: Bands) -> None:
         return
     height = bands.track_bottom - bands.track_top
     per_pixel = height / (height + bands.overflow)
-    top = bands.track_top + per_pixel * (bands.track_top - bands.rows[0].top)
+    first = min([bands.rows[0].top, *(lane.top for lane in bands.stage_rows[:1])])
+    top = bands.track_top + per_pixel * (bands.track_top - first)
     width = 0.18 * bands.look.em
     imgui.get_window_draw_list().add_rect_filled(
         ImVec2(bands.left - width, top),

@@ -1,0 +1,61 @@
+"""Commands on what moves between keys of its own: the camera, and how opaque figures are."""
+
+from dataclasses import replace
+
+from app.document.commands import keys_in_time
+from app.document.commands.command import command, figure_command
+from app.document.figure import Figure
+from app.document.layering import CameraKey, OpacityKey
+from app.document.model import Document
+from app.document.settings import FrameRange
+
+
+@command("Key the camera")
+def key_camera(document: Document, key: CameraKey) -> Document:
+    """Let the camera have a key, in place of the one at its frame, whose way on it keeps."""
+    row = document.camera
+    old = next((each for each in row if each.frame == key.frame), None)
+    if old is not None:
+        put = replace(key, easing=old.easing, passing=old.passing, unknown=old.unknown)
+        return _filmed(document, keys_in_time.exchanged(row, {key.frame: put}))
+    return _filmed(document, keys_in_time.inserted(row, key) if row else (key,))
+
+
+@command("Move camera key")
+def move_camera_key(document: Document, frame: int, to: int) -> Document:
+    """Move the key of the camera at a frame to another one."""
+    return _filmed(document, keys_in_time.moved(document.camera, {frame}, to - frame))
+
+
+@command("Delete camera key")
+def delete_camera_key(document: Document, frame: int) -> Document:
+    """Delete the key of the camera at a frame; without any, frames show the canvas."""
+    return _filmed(document, keys_in_time.without(document.camera, {frame}))
+
+
+@figure_command("Key opacity")
+def key_opacity(figure: Figure, frame: int, opacity: float) -> Figure:
+    """Let a figure be so opaque at a frame, and fade evenly from key to key."""
+    row, new = figure.opacities, OpacityKey(frame=frame, opacity=float(opacity))
+    old = next((each for each in row if each.frame == frame), None)
+    if old is not None:
+        changed = keys_in_time.exchanged(row, {frame: replace(old, opacity=new.opacity)})
+        return figure if changed is row else replace(figure, opacities=changed)
+    return replace(figure, opacities=keys_in_time.inserted(row, new) if row else (new,))
+
+
+@figure_command("Delete opacity key")
+def delete_opacity_key(figure: Figure, frame: int) -> Figure:
+    """Delete a key of a figure's opacity; without any it stays as opaque as the last one had it."""
+    left = keys_in_time.without(figure.opacities, {frame})
+    if left:
+        return replace(figure, opacities=left)
+    return replace(figure, opacities=(), opacity=figure.opacities[0].opacity)
+
+
+def _filmed(document: Document, camera: tuple[CameraKey, ...]) -> Document:
+    """Return a document with another camera, and with room for its keys."""
+    if camera is document.camera:
+        return document
+    ends = [document.frames.first, document.frames.last, *(key.frame for key in camera)]
+    return replace(document, camera=camera, frames=FrameRange(min(ends), max(ends)))

@@ -1,0 +1,122 @@
+"""Keys of the camera, and of figures moved as a whole, of their opacity and of their order."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
+from math import tau
+from typing import Final, Self
+
+from app.document.checks import NOTHING, Unknown, require, require_place
+from app.document.settings import LAST_FRAME
+from app.document.timing import HOLD, LINEAR, MOST_TURN, Easing, Passing, require_passing
+
+MOST_ZOOM: Final = 1000.0  # and as many times smaller
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _MovingKey:
+    """A key of what moves as poses do, and the way from there to the next one."""
+
+    frame: int
+    easing: Easing = LINEAR
+    passing: Passing = Passing.THROUGH
+    unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
+
+    def __post_init__(self) -> None:
+        _require_frame(self.frame)
+        require_passing(self.passing)
+        object.__setattr__(self, "passing", Passing(self.passing))
+
+    @property
+    def shown_passing(self) -> Passing:
+        """How the motion passes the key, by a hold too."""
+        return Passing.HOLD if self.easing == HOLD else self.passing
+
+    def with_way(self, other: Self, *, backwards: bool = False) -> Self:
+        """Return the key with the way on from another one, or with that way run backwards."""
+        return replace(self, easing=other.easing.reversed() if backwards else other.easing)
+
+    def at_pace(self, frame: int, pace: float) -> Self:  # noqa: ARG002 - it has no velocity
+        """Return the key at another frame of a motion that runs so many times as fast."""
+        return self if frame == self.frame else replace(self, frame=frame)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CameraKey(_MovingKey):
+    """What the camera shows at a frame: the canvas's rectangle, elsewhere, smaller and turned."""
+
+    centre: complex  # the point of the plane in the middle
+    zoom: float = 1.0  # how many times as large as on the canvas things are seen; blended by log
+    turn: float = 0.0  # by how much things are seen turned, counter-clockwise, in radians
+
+    def __post_init__(self) -> None:
+        _MovingKey.__post_init__(self)
+        require_place(self.centre, "The camera's centre")
+        require(
+            1 / MOST_ZOOM <= self.zoom <= MOST_ZOOM,
+            f"A zoom is above 0, from {1 / MOST_ZOOM:g} to {MOST_ZOOM:g}, not {self.zoom:g}.",
+        )
+        _require_turn(self.turn)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MoveKey(_MovingKey):
+    """Where a whole figure is at a frame, beside where its poses have it."""
+
+    shift: complex = 0j  # pixels
+    turn: float = 0.0  # counter-clockwise around its pivot, in radians
+
+    def __post_init__(self) -> None:
+        _MovingKey.__post_init__(self)
+        require_place(self.shift, "A figure's movement")
+        _require_turn(self.turn)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OpacityKey(_MovingKey):
+    """How opaque a figure is at a frame; by itself it fades evenly."""
+
+    opacity: float  # in [0, 1]
+    passing: Passing = Passing.CORNER
+
+    def __post_init__(self) -> None:
+        _MovingKey.__post_init__(self)
+        require(0 <= self.opacity <= 1, f"Opacity is between 0 and 1, not {self.opacity:g}.")
+
+
+@dataclass(frozen=True, slots=True)
+class Placing:
+    """From a frame on a figure is painted right in front of another one, or right behind it.
+
+    Beside nothing it is painted where it lies in the order of all figures.
+    """
+
+    frame: int
+    beside: int | None  # the id of the other figure
+    in_front: bool = True
+
+    def __post_init__(self) -> None:
+        _require_frame(self.frame)
+
+
+def require_rising(keys: Sequence[_MovingKey] | Sequence[Placing], what: str) -> None:
+    """Raise a `LissomError` unless each of some keys comes after the one before."""
+    for before, after in pairwise(key.frame for key in keys):
+        require(before < after, f"{what} has a key at frame {after} after that at frame {before}.")
+
+
+def moved_in_time(placings: Sequence[Placing], to: Callable[[int], int]) -> tuple[Placing, ...]:
+    """Return placings at other frames; of two at one frame the later one holds."""
+    placed = {max(to(placing.frame), 0): placing for placing in placings}
+    return tuple(replace(placing, frame=at) for at, placing in sorted(placed.items()))
+
+
+def _require_frame(frame: int) -> None:
+    require(0 <= frame <= LAST_FRAME, f"A key is at a frame from 0 to {LAST_FRAME:,}, not {frame}.")
+
+
+def _require_turn(turn: float) -> None:
+    require(
+        abs(turn) <= MOST_TURN,
+        f"A turn is at most {MOST_TURN / tau:g} whole turns, not {turn / tau:g}.",
+    )

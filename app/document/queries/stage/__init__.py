@@ -1,0 +1,22 @@
+"""What follows from a document about its figures as layers: what is seen, where, and as one.
+
+In: documents.
+Out: answers; nothing is changed.
+Imports: the values of `app.document`.
+"""
+
+from app.document.queries.stage.alternates import alternates as alternates
+from app.document.queries.stage.compositing import Composite as Composite, composed as composed
+from app.document.queries.stage.layer_tree import TreeRow as TreeRow, layer_tree as layer_tree
+from app.document.queries.stage.moves import (
+    Shot as Shot,
+    camera_at as camera_at,
+    in_order as in_order,
+    movement_at as movement_at,
+    opacity_at as opacity_at,
+)
+from app.document.queries.stage.sight import (
+    is_visible as is_visible,
+    repeated as repeated,
+    sights_of as sights_of,
+)

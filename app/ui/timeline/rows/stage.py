@@ -1,0 +1,177 @@
+"""The rows of groups and choices: keys of all that is in one, and what of the other is seen."""
+
+from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
+
+from app.document import Choice, choice_commands
+from app.editor import Action, KeysOf, TurnDrag, do, layering
+from app.editor.actions import editing, playback, timeline_pointing
+from app.ui.style import SMALL, begin_tip, in_hand, ink, is_pressed, shortened, sized
+from app.ui.timeline.bands import Bands, StageLane, tag
+
+INDENT = 0.7  # em by which rows in others lie to the right
+FOLD = 1.1  # em: width of the triangle that opens and closes a row
+EDGE = 0.35  # em: half the width of what takes hold of where a turn begins
+DOT, GRIP = 0.25, 0.5  # em: half a group's key, and of the box that takes it
+
+
+def draw_stage_names(bands: Bands, frame: int) -> list[Action]:
+    """Draw the names of groups and choices, and the triangles that open and close them."""
+    actions: list[Action] = []
+    document, palette, em = bands.project.document, bands.look.palette, bands.look.em
+    draw_list = imgui.get_window_draw_list()
+    for lane in bands.stage_rows:
+        row = lane.row
+        low = ImVec2(bands.corner.x, lane.top)
+        high = ImVec2(bands.left - 0.3 * em, lane.bottom)
+        left = low.x + INDENT * row.depth * em
+        imgui.push_id(row.key)
+        if bands.button("name", low, high):
+            actions.append(do(layering.choose_all, *row.figures))
+        if in_hand():
+            draw_list.add_rect_filled(low, high, ink(palette.hovered), 0.2 * em)
+        if begin_tip():
+            imgui.text_unformatted("Click to choose all layers in it")
+            imgui.end_tooltip()
+        if bands.button("fold", ImVec2(left, lane.top), ImVec2(left + FOLD * em, lane.bottom)):
+            actions.append(do(layering.toggle, row.toggle))
+        caret = icons.ICON_FA_CARET_DOWN if row.is_open else icons.ICON_FA_CARET_RIGHT
+        icon = icons.ICON_FA_FOLDER if row.choice is None else icons.ICON_FA_MASKS_THEATER
+        text = row.name
+        if row.choice is not None:
+            text = f"{text}: {document.figure(row.choice.at(frame)).name}"
+        with sized(SMALL):
+            top = lane.middle - imgui.get_text_line_height() / 2
+            text = shortened(text, high.x - left - 3.0 * em)
+            draw_list.add_text(ImVec2(left + 0.3 * em, top), ink(palette.dim), caret)
+            draw_list.add_text(ImVec2(left + FOLD * em, top), ink(palette.text), icon)
+            draw_list.add_text(ImVec2(left + (FOLD + 1.5) * em, top), ink(palette.text), text)
+        imgui.pop_id()
+    return actions
+
+
+def draw_stage(bands: Bands) -> list[Action]:
+    """Draw the keys of groups and the turns of choices, and take clicks and drags on them."""
+    actions: list[Action] = []
+    palette, draw_list = bands.look.palette, imgui.get_window_draw_list()
+    for lane in bands.stage_rows:
+        low, high = ImVec2(bands.left, lane.top), ImVec2(bands.right, lane.bottom)
+        draw_list.add_rect_filled(low, high, ink(palette.desk, 0.35))
+        draw_list.add_line(ImVec2(low.x, high.y), high, ink(palette.line))
+        imgui.push_id(lane.row.key)
+        if lane.row.choice is not None:
+            actions += _turns(bands, lane, lane.row.choice)
+        else:
+            actions += _keys(bands, lane)
+        imgui.pop_id()
+    return actions
+
+
+def _keys(bands: Bands, lane: StageLane) -> list[Action]:
+    """Draw where layers of a group have keys; a click chooses all that are at a frame."""
+    actions: list[Action] = []
+    document, em = bands.project.document, bands.look.em
+    figures = [document.figure(identity) for identity in lane.row.figures]
+    chosen_of = bands.project.chosen_of
+    for frame in sorted({frame for figure in figures for frame in figure.key_frames}):
+        x = bands.x(frame)
+        if not bands.shows(x - GRIP * em, x + GRIP * em):
+            continue
+        keys: KeysOf = {each.id: frozenset({frame}) for each in figures if frame in each.key_frames}
+        box = ImVec2(GRIP * em, GRIP * em)
+        middle = ImVec2(x, lane.middle)
+        if bands.button(f"keys {frame}", middle - box, middle + box):
+            actions += [do(editing.choose_keys_of, keys), do(playback.scrub, frame)]
+        is_chosen = all(frame in chosen_of.get(row, ()) for row in keys)
+        if begin_tip():
+            count = f"{len(keys)} keys" if len(keys) > 1 else "A key"
+            imgui.text_unformatted(f"{count} at frame {frame}: click to choose all of them")
+            imgui.end_tooltip()
+        palette = bands.look.palette
+        colour = palette.accent if is_chosen else palette.text if in_hand() else palette.dim
+        imgui.get_window_draw_list().add_circle_filled(middle, DOT * em, ink(colour))
+    return actions
+
+
+def _turns(bands: Bands, lane: StageLane, choice: Choice) -> list[Action]:
+    """Draw from where to where each layer of a choice is seen."""
+    actions: list[Action] = []
+    document, em = bands.project.document, bands.look.em
+    palette, draw_list = bands.look.palette, imgui.get_window_draw_list()
+    first, last = document.frames.first, document.frames.last
+    starts = sorted({first, *(turn.frame for turn in choice.turns if turn.frame > first)})
+    for number, (start, end) in enumerate(zip(starts, [*starts[1:], last], strict=True)):
+        left, right = max(bands.x(start), bands.left), min(bands.x(max(end, start)), bands.right)
+        if right <= left:
+            continue
+        low, high = ImVec2(left + 1, lane.top + 1), ImVec2(right, lane.bottom - 1)
+        seen = choice.at(start)
+        bands.button(f"turn {start}", low, high, right=True)
+        if imgui.is_item_clicked(imgui.MouseButton_.right):
+            imgui.open_popup(f"menu of turn {start}")
+        elif imgui.is_item_clicked():
+            actions.append(do(layering.choose, seen))
+        strength = 0.34 if in_hand() else 0.24 - 0.08 * (number % 2)
+        draw_list.add_rect_filled(low, high, ink(palette.accent, strength), 0.2 * em)
+        with sized(SMALL):
+            top = lane.middle - imgui.get_text_line_height() / 2
+            text = shortened(document.figure(seen).name, right - left - 0.9 * em)
+            draw_list.add_text(ImVec2(left + 0.45 * em, top), ink(palette.text), text)
+        if begin_tip():
+            imgui.text_unformatted(f"{document.figure(seen).name} from frame {start} on")
+            imgui.text_disabled("Right click for another one, drag where it begins to move that")
+            imgui.end_tooltip()
+        actions += _menu(bands, choice, start)
+    for start in starts[1:]:
+        actions += _edge(bands, lane, choice, start)
+    return actions
+
+
+def _menu(bands: Bands, choice: Choice, start: int) -> list[Action]:
+    """Draw the menu of a turn: which layer is seen in it, if any change there."""
+    actions: list[Action] = []
+    if not imgui.begin_popup(f"menu of turn {start}"):
+        return actions
+    for identity in choice.figures:
+        name = bands.project.document.figure(identity).name
+        is_seen = choice.at(start) == identity
+        if imgui.menu_item(f"{name}###show {identity}", "", is_seen)[0] and not is_seen:
+            actions.append(do(editing.edit, choice_commands.choose_at(identity, start)))
+    imgui.separator()
+    is_change = any(turn.frame == start for turn in choice.turns[1:])
+    if imgui.menu_item_simple("Delete", enabled=is_change):
+        actions.append(do(editing.edit, choice_commands.unchoose_at(choice.name, start)))
+    imgui.end_popup()
+    return actions
+
+
+def _edge(bands: Bands, lane: StageLane, choice: Choice, start: int) -> list[Action]:
+    """Draw where a turn begins, and let it be dragged."""
+    em, x = bands.look.em, bands.x(start)
+    if not bands.shows(x - EDGE * em, x + EDGE * em):
+        return []
+    drag = bands.project.timing.gesture
+    if not isinstance(drag, TurnDrag) or (drag.choice, drag.at) != (choice.name, start):
+        drag = None
+    origin = start if drag is None else drag.turn
+    box = ImVec2(x - EDGE * em, lane.top), ImVec2(x + EDGE * em, lane.bottom)
+    bands.button(f"edge {origin}", *box)
+    is_hot = in_hand() or drag is not None
+    colour = ink(bands.look.palette.text if is_hot else bands.look.palette.anchor)
+    top, bottom = ImVec2(x, lane.top + 2), ImVec2(x, lane.bottom - 2)
+    imgui.get_window_draw_list().add_line(top, bottom, colour, 1.5)
+    if origin != start:
+        tag(bands, x, f"{start}  ({start - origin:+d})")
+    if in_hand():
+        imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
+    if not is_pressed():
+        return []
+    document = bands.project.document
+    begun = TurnDrag(
+        choice=choice.name,
+        turn=start,
+        at=start,
+        start=bands.pointed,
+        before=document,
+        after=document,
+    )
+    return [do(timeline_pointing.begin, begun, bands.strip)]

@@ -1,0 +1,222 @@
+"""The camera, figures moved as a whole, fades and orders: at keys, between them, around loops."""
+
+from dataclasses import replace
+from math import exp, log, pi
+
+import numpy as np
+import pytest
+from documents import CENTRE, altered, disc_document
+from numpy.testing import assert_allclose
+
+from app.document import (
+    HOLD,
+    CameraKey,
+    FrameRange,
+    MoveKey,
+    OpacityKey,
+    Passing,
+    Placing,
+    camera_at,
+    exported_frames,
+    in_order,
+    layer_commands,
+    movement_at,
+    opacity_at,
+    scene_commands,
+)
+from app.errors import LissomError
+
+EMPTY = replace(disc_document(), frames=FrameRange(0, 48))
+KEYS = (
+    CameraKey(frame=4, centre=100 + 100j),
+    CameraKey(frame=10, centre=130 + 80j, zoom=3.0, turn=pi / 2),
+    CameraKey(frame=30, centre=90 + 160j, zoom=0.4, turn=-pi),
+    CameraKey(frame=40, centre=70 + 10j, zoom=2.0, turn=3 * pi),
+)
+STEP = 1e-5  # frames, for slopes
+
+
+def filmed(keys=KEYS, *, loop=False):
+    return altered(EMPTY, camera=tuple(keys), loop=loop)
+
+
+def told(document, frame):
+    """Return what the camera shows as numbers that are blended evenly."""
+    shot = camera_at(document, frame)
+    return np.array([shot.centre.real, shot.centre.imag, log(shot.zoom), shot.turn])
+
+
+def slopes(document, frame):
+    before, at, after = (told(document, frame + by) for by in (-STEP, 0, STEP))
+    return (at - before) / STEP, (after - at) / STEP
+
+
+def test_a_key_is_given_to_the_bit_and_held_outside():
+    document = filmed()
+    for key in KEYS:
+        shot = camera_at(document, key.frame)
+        assert (shot.centre, shot.turn) == (key.centre, key.turn)
+        assert shot.zoom == pytest.approx(key.zoom, rel=1e-14)
+    assert camera_at(document, 0) == camera_at(document, 4)
+    assert camera_at(document, 48) == camera_at(document, 40)
+    assert camera_at(EMPTY, 7) is None
+
+
+def test_the_camera_passes_its_keys_and_the_ends_of_its_motion_without_a_jerk():
+    for key in KEYS:
+        assert_allclose(*slopes(filmed(), key.frame), rtol=0, atol=1e-3)
+    assert np.abs(slopes(filmed(), 10)).min() > 0.01
+    corners = filmed(replace(key, passing=Passing.CORNER) for key in KEYS)
+    assert np.abs(np.subtract(*slopes(corners, 10))).max() > 1
+
+
+def test_zoom_is_blended_by_its_logarithm():
+    two = (CameraKey(frame=0, centre=0j), CameraKey(frame=24, centre=0j, zoom=4.0))
+    assert camera_at(filmed(two), 12).zoom == pytest.approx(2.0, rel=1e-12)
+    even = filmed(replace(key, passing=Passing.CORNER) for key in two)
+    for frame in (3, 6, 17.5):
+        assert camera_at(even, frame).zoom == pytest.approx(exp(log(4) * frame / 24), rel=1e-12)
+
+
+def test_what_is_seen_is_zoomed_and_turned_counter_clockwise_around_the_centre():
+    document = filmed([CameraKey(frame=0, centre=30 + 40j, zoom=2.0, turn=pi / 2)])
+    seen = camera_at(document, 0).on_canvas((200, 100))
+    # What lies to the right of the centre is seen above it.
+    places = seen.on(np.array([30 + 40j, 35 + 40j]))
+    assert_allclose(places, [100 + 50j, 100 + 60j], rtol=0, atol=1e-12)
+    assert seen.back(100 + 60j) == pytest.approx(35 + 40j, abs=1e-12)
+
+
+def test_in_a_loop_the_camera_comes_round():
+    document = filmed(loop=True)
+    for frame in (0, 4, 40, 47.9):
+        assert_allclose(*slopes(document, frame), rtol=0, atol=1e-3)
+        assert_allclose(told(document, frame + 48), told(document, frame), rtol=0, atol=1e-9)
+    assert camera_at(document, 0).zoom != camera_at(document, 40).zoom
+    closed = (replace(KEYS[0], frame=0), KEYS[1], KEYS[2], replace(KEYS[0], frame=48))
+    seam = filmed(closed, loop=True)
+    assert_allclose(slopes(seam, 0)[1], slopes(seam, 48)[0], rtol=0, atol=1e-3)
+    assert np.abs(slopes(seam, 0)[1]).max() > 0.1
+    assert camera_at(filmed(KEYS[:1], loop=True), 20) == camera_at(filmed(KEYS[:1]), 20)
+
+
+def test_the_last_frame_of_a_loop_is_left_out_only_where_all_of_it_is_the_first_again():
+    assert exported_frames(altered(EMPTY, loop=True)).last == 47
+    panned = (replace(KEYS[0], frame=0), replace(KEYS[1], frame=48))
+    assert exported_frames(filmed(panned, loop=True)).last == 48
+
+
+def test_a_held_camera_jumps():
+    held = filmed([replace(KEYS[0], easing=HOLD), *KEYS[1:]])
+    assert camera_at(held, 9.999) == camera_at(held, 4)
+
+
+def test_a_figure_is_moved_and_turned_around_its_anchor_or_its_middle():
+    keys = (MoveKey(frame=0), MoveKey(frame=8, shift=10 + 5j, turn=pi / 2))
+    document = altered(EMPTY, movement=keys)
+    figure = document.figures[0]
+    motion = movement_at(document, figure, 8)
+    assert abs(figure.pivot - CENTRE) < 1e-9
+    places = motion.on(np.array([figure.pivot, figure.pivot + 1]))
+    assert_allclose(places, figure.pivot + 10 + 5j + np.array([0, 1j]), rtol=0, atol=1e-9)
+    assert abs(movement_at(document, figure, 3.7).factor) == pytest.approx(1, abs=1e-15)
+    by_anchor = replace(figure, anchor=80 + 90j)
+    assert movement_at(document, by_anchor, 8).on(np.array([80 + 90j]))[0] == pytest.approx(
+        90 + 95j, abs=1e-9
+    )
+
+
+def test_fades_are_even_and_stay_between_nothing_and_all():
+    keys = (OpacityKey(frame=0, opacity=1.0), OpacityKey(frame=12, opacity=0.2))
+    document = altered(EMPTY, opacities=keys, opacity=0.5)
+    figure = document.figures[0]
+    assert opacity_at(document, figure, 3) == pytest.approx(0.8, abs=1e-12)
+    assert opacity_at(document, figure, 40) == 0.2
+    peaks = [0.9, 1.0, 0.1, 0.0, 0.8]
+    keys = tuple(
+        OpacityKey(frame=6 * i, opacity=each, passing=Passing.THROUGH)
+        for i, each in enumerate(peaks)
+    )
+    through = altered(EMPTY, opacities=keys)
+    values = [opacity_at(through, through.figures[0], t) for t in np.arange(0, 30, 0.1)]
+    assert max(values) == 1.0
+    assert min(values) == 0.0
+
+
+def stack(**placings):
+    document = EMPTY
+    for name in "abcd"[: 4 - len(document.figures)]:
+        copy = replace(EMPTY.figures[0], id=layer_commands.free_identity(document), name=f"{name}")
+        document = layer_commands.add_figure(copy)(document)
+    ids = {figure.name: figure.id for figure in document.figures}
+    figures = tuple(
+        replace(
+            figure,
+            placings=tuple(
+                Placing(frame, ids.get(beside), in_front)
+                for frame, beside, in_front in placings.get(figure.name, ())
+            ),
+        )
+        for figure in document.figures
+    )
+    return replace(document, figures=figures)
+
+
+def order(document, frame):
+    return "".join(each.name[0] for each in in_order(document, frame))
+
+
+def test_a_layer_lies_in_front_of_another_one_from_a_frame_on():
+    document = stack(a=[(8, "c", True), (20, None, True)], c=[(30, "a", False)])
+    assert order(document, 0) == order(document, 7.9) == "fabc"
+    assert order(document, 8) == order(document, 19) == "fbca"
+    assert order(document, 20) == "fabc"
+    assert order(document, 30) == "fcab"
+    # What is beside something that is moved itself goes along, and a circle ends somewhere.
+    assert order(stack(a=[(0, "c", True)], c=[(9, "figure", False)]), 9) == "cafb"
+    assert sorted(order(stack(a=[(0, "c", True)], c=[(9, "a", True)]), 9)) == list("abcf")
+
+
+def test_time_edits_carry_all_of_them_along():
+    document = altered(
+        EMPTY,
+        camera=KEYS,
+        movement=(MoveKey(frame=4), MoveKey(frame=8, shift=1j)),
+        opacities=(OpacityKey(frame=2, opacity=0.5),),
+        placings=(Placing(6, None),),
+    )
+    twice = scene_commands.scale_time(2.0)(document)
+    figure = twice.figures[0]
+    assert [key.frame for key in twice.camera] == [8, 20, 60, 80]
+    assert [key.frame for key in figure.movement] == [8, 16]
+    assert [figure.opacities[0].frame, figure.placings[0].frame] == [4, 12]
+    for frame in (3.0, 7.3, 11.0):
+        assert_allclose(told(twice, 2 * frame), told(document, frame), rtol=0, atol=1e-12)
+
+
+def test_what_cannot_be_is_refused():
+    with pytest.raises(LissomError, match="zoom is above 0"):
+        CameraKey(frame=0, centre=0j, zoom=0.0)
+    with pytest.raises(LissomError, match="zoom is above 0"):
+        CameraKey(frame=0, centre=0j, zoom=float("nan"))
+    with pytest.raises(LissomError, match="frame 4 after that at frame 10"):
+        filmed([KEYS[1], KEYS[0]])
+    with pytest.raises(LissomError, match="key at frame 40 lies outside"):
+        altered(EMPTY, frames=FrameRange(0, 39), camera=KEYS)
+    with pytest.raises(LissomError, match="key at frame 40 would lie outside"):
+        scene_commands.set_frames(FrameRange(0, 39))(filmed())
+    with pytest.raises(LissomError, match="in front of itself"):
+        altered(EMPTY, placings=(Placing(0, 0),))
+    with pytest.raises(LissomError, match="no figure with the id 7"):
+        altered(EMPTY, placings=(Placing(0, 7),))
+    with pytest.raises(LissomError, match="between 0 and 1"):
+        OpacityKey(frame=0, opacity=1.5)
+    with pytest.raises(LissomError, match="within"):
+        MoveKey(frame=0, shift=complex(0, float("inf")))
+
+
+def test_a_layer_that_is_removed_leaves_none_that_lies_beside_it():
+    document = stack(a=[(8, "c", True)])
+    gone = next(each.id for each in document.figures if each.name == "c")
+    left = layer_commands.remove_figure(gone)(document)
+    assert order(left, 9) == "fab"

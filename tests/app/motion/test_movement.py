@@ -1,0 +1,82 @@
+"""Figures moved as a whole: a rigid motion after the map, with all that hangs on them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from chains import chain, seen
+from numpy.testing import assert_allclose
+
+from app.document import Attachment, MoveKey, clip_of, layer_commands as layers, movement_at
+from app.motion import Animation, Joints, hung_animations
+from app.motion.joints import carried_in
+
+MOVES = (MoveKey(frame=0), MoveKey(frame=20, shift=40 - 10j, turn=1.2), MoveKey(frame=48))
+
+
+def moving(document, identity, keys=MOVES):
+    return document.with_figure(replace(document.figure(identity), movement=keys))
+
+
+def test_what_hangs_on_a_figure_that_moves_goes_along():
+    still, moved = chain(), moving(chain(), 0)
+    for frame in (0.0, 7.5, 20.0, 33.0):
+        motion = movement_at(moved, moved.figure(0), frame)
+        for figure in (0, 1, 2):
+            before = Joints(still).placement(figure, frame)
+            after = Joints(moved).placement(figure, frame)
+            assert_allclose(after, motion.after(before), rtol=0, atol=1e-9)
+
+
+def test_a_figure_is_as_distorted_and_certified_as_without():
+    still, moved = chain(), moving(chain(), 0)
+    points = still.figure(0).domain.mesh.vertices * 0.9 + 10 + 10j
+    one, other = (Animation(clip_of(each, 0), points=points).frame(13.0) for each in (still, moved))
+    assert np.array_equal(one.fz, other.fz)
+    assert np.array_equal(one.fzbar, other.fzbar)
+    assert [key.pose for key in still.figure(0).keys] == [key.pose for key in moved.figure(0).keys]
+    hung = hung_animations([Animation(clip_of(moved, 0), points=points)], moved)[0]
+    motion = movement_at(moved, moved.figure(0), 13.0)
+    assert_allclose(hung.positions(13.0), motion.on(one.positions), rtol=0, atol=1e-9)
+
+
+def test_a_figure_is_not_moved_by_itself_while_it_hangs():
+    document = chain()
+    for frame in (0, 9.5):
+        assert Joints(moving(document, 1)).placement(1, frame) == Joints(document).placement(
+            1, frame
+        )
+
+
+def test_what_is_let_go_goes_on_from_where_it_is():
+    document = moving(chain(), 1)
+    figure = document.figure(1)
+    released = Attachment(to=None, frame=20, keeps=True)
+    document = layers.attach(1, figure.anchor, released)(document)
+    joints = Joints(document)
+    at, before = joints.placement(1, 20), joints.placement(1, 20, before=True)
+    assert_allclose(at, before, rtol=0, atol=1e-9)
+    own = document.figure(1)
+    gone = movement_at(document, own, 30).after(movement_at(document, own, 20).inverse)
+    assert_allclose(joints.placement(1, 30), gone.after(at), rtol=0, atol=1e-9)
+    assert np.abs(seen(document, 1, 30) - seen(document, 1, 20)).min() > 1
+
+
+def test_what_takes_hold_of_a_moving_figure_does_not_let_it_jump():
+    document = moving(chain(), 1)
+    figure = document.figure(1)
+    later = (Attachment(to=0, at=figure.joints[0].at, frame=12, keeps=True),)
+    document = document.with_figure(replace(figure, joints=later))
+    joints = Joints(document)
+    assert_allclose(
+        joints.placement(1, 12), joints.placement(1, 12, before=True), rtol=0, atol=1e-9
+    )
+    assert joints.placement(1, 12, before=True) == movement_at(document, figure, 12)
+
+
+def test_springs_feel_the_movement():
+    assert carried_in(chain(), 0) is None
+    moved = moving(chain(), 0)
+    carried = carried_in(moved, 0)
+    assert carried(20.0) == movement_at(moved, moved.figure(0), 20.0)
+    assert carried(20.0).shift != pytest.approx(0)

@@ -1,0 +1,315 @@
+"""The tree of layers in the window: groups, choices, several at once, joints that change hands."""
+
+import numpy as np
+import pytest
+from harness import Harness
+from imgui_bundle import ImVec2
+from layered import openraster
+from PIL import Image, ImageDraw
+
+from app.document import choice_commands, group_commands, is_visible, key_commands
+from app.editor import layering
+from app.editor.actions import editing, playback, posing
+
+WIDTH, HEIGHT = 240, 200
+FACES = {
+    "oh": (110, 100, 130, 120),
+    "ah": (110, 95, 130, 125),
+    "hat": (80, 20, 160, 60),
+    "head": (60, 40, 180, 160),
+    "stick": (200, 20, 215, 180),
+}
+
+
+@pytest.fixture(scope="module")
+def drawing(tmp_path_factory):
+    path = tmp_path_factory.mktemp("tree") / "face.ora"
+    stack = "".join(f'<layer name="{n}" src="data/{i}.png"/>' for i, n in enumerate(FACES))
+    pictures = []
+    for number, box in enumerate(FACES.values()):
+        image = Image.new("RGBA", (WIDTH, HEIGHT))
+        ImageDraw.Draw(image).rounded_rectangle(box, 6, fill=(40 * number, 90, 200, 255))
+        pictures.append(image)
+    path.write_bytes(openraster((WIDTH, HEIGHT), stack, pictures))
+    return path
+
+
+@pytest.fixture
+def scene(window, drawing):
+    project = window.again(Harness.open, drawing)
+    window.show_tab("Layers")
+    return project
+
+
+@pytest.fixture
+def ids(scene):
+    return {figure.name: figure.id for figure in scene.document.figures}
+
+
+@pytest.fixture
+def use(window):
+    """Use the tab of layers by the robot."""
+
+    def play(what):
+        def run(robot):
+            robot.set_ref("Layers")
+            what(robot)
+
+        window.run(run)
+        window.frames(3)
+
+    return play
+
+
+def row_of(key):
+    return f"**/###row {key}"
+
+
+def drop(robot, dragged, onto, share=0.5):
+    """Drag a row to a share of another one's height, from its top on."""
+    robot.mouse_move(row_of(dragged))
+    robot.mouse_down(0)
+    low, high = (getattr(robot.item_info(row_of(onto)).rect_full, end) for end in ("min", "max"))
+    for at in (0.5, share):
+        robot.mouse_move_to_pos(ImVec2((low.x + high.x) / 2, low.y + at * (high.y - low.y)))
+        robot.yield_(2)
+    robot.mouse_up(0)
+    robot.yield_(2)
+
+
+def seen(project, frame):
+    document = project.document
+    return {each.name for each in document.figures if is_visible(document, each, frame)}
+
+
+def place(project, name, window):
+    """Where the middle of a layer's outline is drawn in the scene."""
+    window.settle()
+    shown = project.puppets[next(f.id for f in project.document.figures if f.name == name)].shown
+    return complex(shown.placement.on(shown.positions).mean())
+
+
+def test_layers_take_turns_by_one_click(window, scene, ids, use):
+    def choose_both(robot):
+        robot.item_click(row_of(ids["ah"]))
+        robot.key_down(int(window.Key.mod_ctrl))
+        robot.item_click(row_of(ids["oh"]))
+        robot.key_up(int(window.Key.mod_ctrl))
+
+    use(choose_both)
+    assert set(scene.layers) == {ids["ah"], ids["oh"]}
+
+    def let_take_turns(robot):
+        robot.item_click(row_of(ids["ah"]), 1)
+        robot.item_click("//$FOCUSED/Let them take turns")
+
+    use(let_take_turns)
+    (choice,) = scene.document.choices
+    assert set(choice.figures) == {ids["ah"], ids["oh"]}
+    first = scene.document.figure(choice.at(0)).name
+    other = ({"ah", "oh"} - {first}).pop()
+    assert {"ah", "oh"} & seen(scene, 0) == {first}
+    window.act(playback.seek, 12)
+    use(lambda robot: robot.item_click(f"**/fold choice {choice.name}"))
+    use(lambda robot: robot.item_click(f"**/###turn {ids[other]}"))
+    assert {"ah", "oh"} & seen(scene, 11) == {first}
+    assert {"ah", "oh"} & seen(scene, 12) == {other}
+    window.settle()
+    window.act(editing.undo)
+    assert {"ah", "oh"} & seen(scene, 12) == {first}
+
+
+def test_where_a_turn_begins_is_dragged_in_the_timeline(window, scene, ids):
+    window.act(editing.edit, choice_commands.form_choice("mouth", [ids["ah"], ids["oh"]]))
+    other = next(i for i in (ids["ah"], ids["oh"]) if i != scene.document.choices[0].at(0))
+    window.act(editing.edit, choice_commands.choose_at(other, 12))
+    window.frames(3)
+    places = {}
+
+    def measure(robot):
+        robot.set_ref("###Timeline")
+        for start in (0, 12):
+            places[start] = robot.item_info(f"**/choice mouth/turn {start}").rect_full
+
+    def drag(robot):
+        robot.set_ref("###Timeline")
+        step = (places[12].min.x - places[0].min.x) / 12
+        robot.mouse_move("**/choice mouth/edge 12")
+        robot.mouse_down(0)
+        y = places[12].get_center().y
+        for frame in (18, 20):
+            robot.mouse_move_to_pos(ImVec2(places[12].min.x - 1 + (frame - 12) * step, y))
+            robot.yield_(2)
+        robot.mouse_up(0)
+
+    window.run(measure)
+    window.run(drag)
+    window.frames(3)
+    assert [turn.frame for turn in scene.document.choices[0].turns][-1] == 20
+    window.act(editing.undo)
+    assert [turn.frame for turn in scene.document.choices[0].turns][-1] == 12
+
+
+@pytest.mark.usefixtures("scene")
+def test_rows_stay_where_they_are_when_another_layer_is_chosen(window, ids):
+    tops = []
+
+    def look(robot):
+        robot.set_ref("###Timeline")
+        found = [robot.item_info(f"**/name {ids[each]}").rect_full.min.y for each in shown]
+        tops.append(found)
+
+    shown = ("oh", "ah", "hat")
+    for name in shown:
+        window.act(layering.choose, ids[name])
+        window.frames(2)
+        window.run(look)
+    assert all(each == tops[0] for each in tops)
+
+
+def test_layers_are_grouped_folded_hidden_and_locked_together(window, scene, ids, use):
+    window.act(layering.choose_all, ids["hat"], ids["head"])
+    use(lambda robot: robot.item_click("###group layers"))
+    assert [each.name for each in scene.document.groups] == ["group"]
+    key = next(row.key for row in scene.tree if row.group)
+    use(lambda robot: robot.item_click(f"**/###eye {key}"))
+    assert not {"hat", "head"} & seen(scene, 0)
+    use(lambda robot: robot.item_click(f"**/###eye {key}"))
+    use(lambda robot: robot.item_click(f"**/###lock {key}"))
+    assert all(scene.document.figure(ids[each]).locked for each in ("hat", "head"))
+    use(lambda robot: robot.item_click(f"**/fold {key}"))
+    listed = [row.figure.name for row in scene.tree if row.figure]
+    # What is posed is listed all the same.
+    assert {"hat", "head"} & set(listed) <= {scene.figure.name}
+    # Dropped onto its row, another layer is in it, too.
+    use(lambda robot: drop(robot, ids["stick"], key))
+    assert scene.document.figure(ids["stick"]).group == "group"
+
+
+def test_a_row_that_is_dropped_on_another_one_hangs_there(window, scene, ids, use):
+    before = place(scene, "hat", window)
+    use(lambda robot: drop(robot, ids["hat"], ids["head"]))
+    window.settle()
+    (joint,) = scene.document.figure(ids["hat"]).joints
+    assert joint.to == ids["head"]
+    assert abs(place(scene, "hat", window) - before) < 0.1
+    # Beside what it does not touch, it hangs as well, and nothing moves.
+    before = place(scene, "stick", window)
+    use(lambda robot: drop(robot, ids["stick"], ids["head"]))
+    window.settle()
+    (joint,) = scene.document.figure(ids["stick"]).joints
+    assert abs(joint.offset) > 10
+    assert abs(place(scene, "stick", window) - before) < 0.1
+    # In a circle nothing can hang: the row goes beside it.
+    use(lambda robot: drop(robot, ids["head"], ids["hat"]))
+    assert scene.document.figure(ids["head"]).joints == ()
+
+
+def test_what_hung_on_a_layer_that_is_deleted_hangs_on_what_that_hung_on(window, scene, ids):
+    for child, parent in (("ah", "hat"), ("hat", "head")):
+        window.act(layering.hang, ids[child], ids[parent])
+        window.settle()
+    window.act(layering.choose, ids["head"])
+    window.act(posing.add_handle, 120 + 100j)
+    window.settle()
+    before = scene.document
+    there = place(scene, "ah", window)
+    window.act(layering.remove, ids["hat"])
+    window.settle()
+    assert scene.document.figure(ids["ah"]).joints[0].to == ids["head"]
+    assert abs(place(scene, "ah", window) - there) < 0.1
+    assert scene.history.undo_label == "Delete layer"
+    window.act(editing.undo)
+    assert scene.document is before
+
+
+def test_a_layer_is_handed_over_and_let_go_without_a_jump(window, scene, ids, use):
+    window.act(layering.hang, ids["stick"], ids["head"])
+    window.settle()
+    window.act(layering.choose, ids["stick"])
+    for frame, button in ((10, f"**/To hat###to {ids['hat']}"), (20, "**/Let it go")):
+        window.act(playback.seek, frame)
+        window.settle()
+        before = place(scene, "stick", window)
+
+        def hand_over(robot, frame=frame, button=button):
+            robot.item_click(f"**/Hand over from frame {frame} on…")
+            robot.item_click(button.replace("**", "//$FOCUSED"))
+
+        use(hand_over)
+        window.settle()
+        assert scene.document.figure(ids["stick"]).joints[-1].frame == frame
+        assert abs(place(scene, "stick", window) - before) < 0.5
+    assert [each.to for each in scene.document.figure(ids["stick"]).joints] == [
+        ids["head"],
+        ids["hat"],
+        None,
+    ]
+    window.act(layering.take_back_joint, ids["stick"], 20)
+    assert len(scene.document.figure(ids["stick"]).joints) == 2
+
+
+def test_a_layer_is_looked_at_alone_while_exports_have_all(window, scene, ids):
+    def blue():
+        return np.count_nonzero(np.asarray(window.picture())[..., 2] > 150)
+
+    window.settle()
+    whole = blue()
+    window.act(layering.look_at_alone, ids["stick"])
+    window.settle()
+    assert blue() < whole / 2
+    assert layering.figure_at(scene, 120 + 100j) is None
+    assert len(scene.document.exported) == 5
+    window.act(layering.look_at_alone, ids["stick"])
+    window.settle()
+    assert blue() == whole
+    # What is deleted is looked at no more, and all others again.
+    window.act(layering.look_at_alone, ids["hat"])
+    window.act(layering.remove, ids["hat"])
+    window.settle()
+    assert scene.solo == frozenset()
+
+
+def test_several_layers_get_keys_together_and_go_together(window, scene, ids):
+    for name in ("hat", "head"):
+        figure = scene.document.figure(ids[name])
+        command = key_commands.insert_key(figure.id, 24, figure.keys[0].pose)
+        window.act(editing.edit, command)
+    before = scene.document
+    window.act(layering.choose_all, ids["hat"], ids["head"])
+    window.act(playback.seek, 12)
+    window.act(posing.insert_key)
+    window.settle()
+    for name in ("hat", "head"):
+        assert 12 in scene.document.figure(ids[name]).key_frames
+    window.act(editing.undo)
+    assert scene.document is before
+    window.act(layering.remove, *scene.layers)
+    window.settle()
+    assert {figure.name for figure in scene.document.figures} == {"stick", "ah", "oh"}
+    window.act(layering.remove, *(figure.id for figure in scene.document.figures))
+    assert "at least one layer" in window.session.toasts[-1].text
+
+
+def test_what_is_hidden_at_all_times_is_switched_instead(window, scene, ids, use):
+    window.act(layering.show, ids["hat"])
+    window.act(layering.choose, ids["hat"])
+    window.act(playback.seek, 8)
+    window.frames(3)
+    use(lambda robot: robot.item_click("**/Show from frame 8 on"))
+    assert "hat" not in seen(scene, 7)
+    assert "hat" in seen(scene, 8)
+    assert not scene.document.figure(ids["hat"]).hidden
+
+
+def test_a_group_of_mouths_is_offered_as_a_choice(window, scene, ids, use):
+    command = group_commands.put_in_group([ids["ah"], ids["oh"]], "mouth")
+    window.act(editing.edit, command)
+    window.frames(3)
+    use(lambda robot: robot.item_click("**/Let them take turns"))
+    (choice,) = scene.document.choices
+    assert (choice.name, set(choice.figures)) == ("mouth", {ids["ah"], ids["oh"]})
+    window.act(editing.undo)
+    window.frames(3)
+    use(lambda robot: robot.item_click("**/No"))
+    assert scene.declined == {"mouth"}
