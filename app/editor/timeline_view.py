@@ -200,10 +200,11 @@ class SwitchDrag(TimeDrag):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class CycleDrag(TimeDrag):
-    """The pointer moves the end of what repeats from a frame on."""
+    """The pointer moves the end of what repeats from a frame on, or of its repeats."""
 
     figure: int
     first: int
+    is_stretch: bool  # whether it is its own end
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -349,6 +349,7 @@ def _random_settings_command(rng: np.random.Generator, document: Document) -> Co
         scene_commands.delete_marker(at),
         scene_commands.set_loop(loop=bool(rng.integers(2))),
         *_camera_commands(rng, document),
+        scene_commands.set_pairs((("near", "far"), (f"é {rng.integers(3)}", "B"))),
         figure_commands.set_variant(0, VARIANTS[rng.integers(len(VARIANTS))]),
         figure_commands.set_stillness(0, stillness=bool(rng.integers(2))),
         figure_commands.set_anchor(0, None if rng.random() < 0.3 else inside(rng)),
@@ -505,7 +506,7 @@ def full_document() -> Document:
 
 
 def clocked_document() -> Document:
-    """The full document with what came later: clocks of single handles, material, and groups."""
+    """The full document with what came later: clocks of handles, material, groups, and pairs."""
     full = full_document()
     figure = full.figures[0]
     nose, foot = figure.handles
@@ -554,7 +555,13 @@ def clocked_document() -> Document:
         CameraKey(frame=1, centre=complex(1 / 3, -0.0), zoom=2.0, turn=-0.5, unknown=more),
         CameraKey(frame=9, centre=9j, zoom=0.1, easing=HOLD, passing=Passing.CORNER),
     )
-    return dataclasses.replace(full, figures=(child, parent), groups=groups, camera=camera)
+    return dataclasses.replace(
+        full,
+        figures=(child, parent),
+        groups=groups,
+        camera=camera,
+        pairs=(("L", "R"), ("Fuß", "Tatze\n")),
+    )
 
 
 def differences(first: object, second: object, where: str = "document") -> list[str]:

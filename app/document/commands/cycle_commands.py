@@ -140,6 +140,18 @@ def nearest_end(figure: Figure, cycle: Cycle, frame: int, end: int) -> int | Non
     return min(fitting, key=lambda each: abs(each - frame))
 
 
+def stretched_to(figure: Figure, cycle: Cycle, frame: int) -> Cycle:
+    """Return a cycle with its end next to a frame, behind its keys; it repeats as often."""
+    own = [each for each in figure.key_frames if cycle.has(each)]
+    last = max([frame, cycle.first + 1, *(each + 1 for each in own)])
+    until = cycle.until
+    if until is not None:
+        until = max(
+            last, cycle.first + round((until - cycle.first) * (last - cycle.first) / cycle.period)
+        )
+    return replace(cycle, last=last, until=until)
+
+
 def cycle_from(figure: Figure, first: int) -> Cycle:
     """Return the cycle of a figure that begins at a frame."""
     for cycle in figure.cycles:

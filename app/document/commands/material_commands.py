@@ -6,8 +6,10 @@ from dataclasses import replace
 import numpy as np
 
 from app.document.body import (
+    PAIRS,
     USUAL_STRENGTH,
     Bone,
+    SidePairs,
     pairs_by_name,
     require_amount,
     usual_as_none,
@@ -83,7 +85,7 @@ def show_bones(figure: Figure, *, shown: bool) -> Figure:
 
 
 @figure_command("Mirror material")
-def mirror(figure: Figure) -> Figure:
+def mirror(figure: Figure, pairs: SidePairs = PAIRS) -> Figure:
     """Give both sides of a figure what one of them has.
 
     Where the drawing at the mirror image of a place differs more from the usual material, it is
@@ -95,9 +97,9 @@ def mirror(figure: Figure) -> Figure:
         there = carried_stiffness(domain.loops, stiffness, opposite)
         farther = np.abs(np.log(there)) > np.abs(np.log(stiffness))
         stiffness = usual_as_none(np.where(farther, there, stiffness))
-    pairs, bones = pairs_by_name(figure.handles), list(figure.bones)
+    partners, bones = pairs_by_name(figure.handles, pairs), list(figure.bones)
     for bone in figure.bones:
-        first, second = (pairs.get(end, end) for end in bone.ends)
+        first, second = (partners.get(end, end) for end in bone.ends)
         mirrored = replace(bone, ends=(first, second))
         if not any(other.is_between(mirrored.ends) for other in bones) and _fits(figure, mirrored):
             bones.append(mirrored)

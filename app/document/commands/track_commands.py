@@ -7,6 +7,7 @@ from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
 from typing import Any
 
+from app.document.body import PAIRS, SidePairs
 from app.document.commands import keys_in_time
 from app.document.commands.command import figure_command
 from app.document.commands.track_handles import left, mirrored_track, moved_to
@@ -206,12 +207,12 @@ def copy_track(figure: Figure, handle: int, to: int) -> Figure:
 
 
 @figure_command("Copy track mirrored")
-def mirror_track(figure: Figure, handle: int) -> Figure:
+def mirror_track(figure: Figure, handle: int, pairs: SidePairs = PAIRS) -> Figure:
     """Give the handles on the other side the track of a handle, mirrored.
 
     A handle without a partner keeps its track, and does its mirror image.
     """
-    return _with_track(figure, mirrored_track(figure, _track(figure, handle)))
+    return _with_track(figure, mirrored_track(figure, _track(figure, handle), pairs))
 
 
 @figure_command("Set spring")

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.document.body import partners_of
+from app.document.body import SidePairs, partners_of
 from app.document.figure import Figure
 from app.document.timing import Track, TrackKey
 
@@ -33,12 +33,12 @@ def with_moved_handle(figure: Figure, identity: int, position: complex) -> Figur
     return replace(figure, tracks=tuple(tracks))
 
 
-def mirrored_track(figure: Figure, track: Track) -> Track:
+def mirrored_track(figure: Figure, track: Track, pairs: SidePairs) -> Track:
     """Return a track mirrored at the figure's axis, for the partners of its handles."""
     axis = figure.axis
-    pairs = partners_of(figure.handles, axis, figure.domain.outline)
+    partners = partners_of(figure.handles, axis, figure.domain.outline, pairs)
     # Two that lie together may have one partner.
-    handles = tuple(dict.fromkeys(pairs.get(handle, handle) for handle in track.handles))
+    handles = tuple(dict.fromkeys(partners.get(handle, handle) for handle in track.handles))
     old, new = (figure.handle(each[0]).position for each in (track.handles, handles))
     # A drawing is hardly its own mirror image: what the partner is beside that of the handle.
     beside = new - _reflected(old, axis)

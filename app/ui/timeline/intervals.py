@@ -164,7 +164,7 @@ def draw_cycles(bands: Bands) -> list[Action]:
             end = bands.project.document.frames.last if cycle.until is None else cycle.until
             _hatch(bands, row, cycle, end)
             if row.is_active:
-                actions += _end_of_cycle(bands, row, cycle, end)
+                actions += _ends_of_cycle(bands, row, cycle, end)
     imgui.pop_clip_rect()
     return actions
 
@@ -196,35 +196,51 @@ def _hatch(bands: Bands, row: FigureRow, cycle: Cycle, end: int) -> None:
     imgui.pop_clip_rect()
 
 
-def _end_of_cycle(bands: Bands, row: FigureRow, cycle: Cycle, end: int) -> list[Action]:
-    """Draw the end of the repeats, and take what the pointer does to it."""
+def _ends_of_cycle(bands: Bands, row: FigureRow, cycle: Cycle, end: int) -> list[Action]:
+    """Draw the ends of a stretch and of its repeats, and take what the pointer does to them."""
+    repeats = "to the end of the scene" if cycle.until is None else f"until frame {end}"
+    told = f"{cycle.told.capitalize()} repeat {repeats}"
+    actions: list[Action] = []
+    if end > cycle.last:
+        actions += _end_of_cycle(bands, row, cycle, cycle.last, told, is_stretch=True)
+    return actions + _end_of_cycle(bands, row, cycle, end, told, is_stretch=False)
+
+
+def _end_of_cycle(
+    bands: Bands, row: FigureRow, cycle: Cycle, end: int, told: str, *, is_stretch: bool
+) -> list[Action]:
     x, half = bands.x(end), GRIP * bands.look.em
     if not bands.shows(x - half, x + half):
         return []
     gesture = bands.project.timing.gesture
-    is_dragged = isinstance(gesture, CycleDrag) and gesture.first == cycle.first
+    is_dragged = isinstance(gesture, CycleDrag) and (gesture.first, gesture.is_stretch) == (
+        cycle.first,
+        is_stretch,
+    )
     low, high = ImVec2(x - half, bands.bar_top), ImVec2(x + half, bands.bar_bottom)
-    bands.button(f"repeats of {cycle.first}", low, high)
+    bands.button(f"{'stretch' if is_stretch else 'repeats'} of {cycle.first}", low, high)
     is_hot = in_hand() or is_dragged
     colour = ink(bands.look.palette.accent, 1.0 if is_hot else 0.75)
     draw_list, top, bottom = imgui.get_window_draw_list(), bands.bar_top, bands.bar_bottom
     draw_list.add_line(ImVec2(x, top), ImVec2(x, bottom), colour, 3.0 if is_hot else 2.0)
-    for y in (top, bottom):
+    for y in () if is_stretch else (top, bottom):
         draw_list.add_line(ImVec2(x - half, y), ImVec2(x, y), colour, 2.0)
     if is_hot:
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
     if is_dragged:
-        tag(bands, x, "to the end" if cycle.until is None else f"until {end}")
+        is_open = cycle.until is None and not is_stretch
+        tag(bands, x, "to the end" if is_open else f"{'to' if is_stretch else 'until'} {end}")
     elif gesture is None and begin_tip():
-        until = "to the end of the scene" if cycle.until is None else f"until frame {end}"
-        imgui.text_unformatted(f"{cycle.told.capitalize()} repeat {until}")
-        imgui.text_disabled("Drag to end them elsewhere, right click on them for more")
+        imgui.text_unformatted(told)
+        what = "Drag to make each longer or shorter" if is_stretch else "Drag to end them elsewhere"
+        imgui.text_disabled(f"{what}, right click on them for more")
         imgui.end_tooltip()
     if not is_pressed():
         return []
     drag = CycleDrag(
         figure=row.figure.id,
         first=cycle.first,
+        is_stretch=is_stretch,
         start=bands.pointed,
         before=bands.project.document,
         after=bands.project.document,

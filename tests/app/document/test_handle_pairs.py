@@ -4,7 +4,14 @@ import numpy as np
 import pytest
 
 from app.document import Handle
-from app.document.body.pairs import mirrored_name, pairs_by_name, partners_of
+from app.document.body.pairs import (
+    mirrored_name,
+    pairs_by_name,
+    partners_of,
+    read_pairs,
+    written_pairs,
+)
+from app.errors import LissomError
 
 SIDES = [
     ("hand.L", "hand.R"),
@@ -60,3 +67,65 @@ def test_handles_that_names_do_not_pair_are_paired_by_their_places():
     assert partners_of(handles, 50.0, outline) == {1: 2, 2: 1, 3: 4, 4: 3, 6: 6}
     assert partners_of(handles[2:4], 20.0, outline) == {3: 3}
     assert partners_of([], 50.0, outline) == {}
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [("near leg", "far leg"), ("Near leg", "Far leg"), ("legNear", "legFar"), ("NEAR 2", "FAR 2")],
+)
+def test_near_and_far_are_sides_too(one, other):
+    assert mirrored_name(one) == other
+    assert mirrored_name(other) == one
+
+
+@pytest.mark.parametrize("name", ["nearly there", "linear", "farm", "afar"])
+def test_near_and_far_are_words_of_their_own(name):
+    assert mirrored_name(name) is None
+
+
+PAIRS = (("vorn", "hinten"), ("Bein 1", "Bein 2"), ("L", "R"))
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [
+        ("Bein vorn", "Bein hinten"),
+        ("Bein 1", "Bein 2"),
+        ("Bein 1 vorn", "Bein 1 hinten"),  # of several words the last one counts
+        ("hand.L", "hand.R"),
+    ],
+)
+def test_words_and_whole_names_are_chosen(one, other):
+    assert mirrored_name(one, PAIRS) == other
+    assert mirrored_name(other, PAIRS) == one
+
+
+def test_no_other_words_count_then_and_numbers_are_whole():
+    for name in ("near leg", "left hand", "Bein 12", "vornehm"):
+        assert mirrored_name(name, PAIRS) is None
+
+
+def test_a_whole_name_comes_before_its_words():
+    assert mirrored_name("left leg", (("left", "right"), ("left leg", "peg"))) == "peg"
+
+
+@pytest.mark.parametrize("text", ["L/R, left/right, near/far", "a/b", " near / far ,, L/R ", ""])
+def test_pairs_are_read_as_they_are_written(text):
+    pairs = read_pairs(text)
+    assert read_pairs(written_pairs(pairs)) == pairs
+    assert len(pairs) == text.count("/")
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("near", "“near” is no pair"),
+        ("near/far/middle", "is no pair"),
+        ("near/far, far/away", "“far” is twice"),
+        ("near/near", "“near” is twice"),
+        ("/far", "of two words"),
+    ],
+)
+def test_what_is_no_pair_is_told(text, words):
+    with pytest.raises(LissomError, match=words):
+        read_pairs(text)

@@ -10,10 +10,11 @@ from app.document import (
     key_commands,
     layer_commands,
     scene_commands,
+    track_commands,
 )
-from app.document.timing import Cycle
+from app.document.timing import Cycle, Track, TrackKey
 from app.editor import layering
-from app.editor.actions import cycles, editing, keys, playback
+from app.editor.actions import cycles, editing, keys, playback, tracks
 from app.errors import LissomError
 
 RIGHT = 1  # the id of the bar's right handle
@@ -101,6 +102,17 @@ def test_the_end_of_the_repeats_is_dragged(window, cycling):
     assert cycling.document is first
 
 
+def test_the_end_of_the_stretch_is_dragged_and_it_repeats_as_often(window, cycling):
+    window.run(lambda robot: Row(robot).drag("repeats of 0", 120, 95))
+    window.run(lambda robot: Row(robot).drag("stretch of 0", 44, 40))
+    window.settle()
+    assert cycling.figure.cycles == (Cycle(first=0, last=40, until=80),)
+    # Its keys stay in it.
+    window.run(lambda robot: Row(robot).drag("stretch of 0", 30, 10))
+    window.settle()
+    assert cycling.figure.cycles == (Cycle(first=0, last=25, until=50),)
+
+
 def test_a_drag_in_a_repeat_poses_the_key_that_is_shown_there(window, cycling):
     before = cycling.figure.key(24).pose
     playback.seek(window.session, 72)
@@ -186,3 +198,24 @@ def test_chosen_layers_repeat_together_in_one_step(window, cycling):
     with pytest.raises(LissomError, match="bar copy: Frames 0 and 48 show two poses"):
         cycles.repeat(window.session)
     assert cycling.document is before
+
+
+def test_a_drag_on_a_track_in_a_repeat_keys_it_where_it_repeats(window, cycling):
+    own = tuple(TrackKey(frame=f, place=p) for f, p in ((0, 0j), (8, 12 + 6j), (16, 0j)))
+    command = track_commands.put_track(cycling.active, Track(handles=(RIGHT,), keys=own))
+    editing.edit(window.session, command)
+    tracks.choose(window.session, RIGHT)
+    playback.seek(window.session, 56)
+    window.settle()
+    shown = complex(cycling.puppet.shown.handle_places[RIGHT])
+    drag_end_of_bar(window, cycling, 4 - 10j)
+    track = cycling.figure.track_of(RIGHT)
+    assert [key.frame for key in track.keys] == [0, 8, 16]
+    assert track.keys[1].place != 12 + 6j
+    assert abs(complex(cycling.puppet.shown.handle_places[RIGHT]) - shown - (4 - 10j)) < 3
+    playback.seek(window.session, 60)
+    window.settle()
+    drag_end_of_bar(window, cycling, 2 - 5j)
+    track = cycling.figure.track_of(RIGHT)
+    assert [key.frame for key in track.keys] == [0, 8, 12, 16]
+    assert frames_of(cycling) == [0, 24]

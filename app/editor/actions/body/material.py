@@ -78,9 +78,10 @@ def clear(session: Session) -> None:
     editing.edit_figure(session, material_commands.clear)
 
 
-def mirror(session: Session) -> None:
+@with_project
+def mirror(session: Session, project: Project) -> None:
     """Give both sides of the mirror axis what one of them has."""
-    editing.edit_figure(session, material_commands.mirror)
+    editing.edit_figure(session, material_commands.mirror, project.document.pairs)
 
 
 @with_project

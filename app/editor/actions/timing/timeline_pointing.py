@@ -216,12 +216,8 @@ def _moved(drag: TimeDrag, frame: float) -> tuple[TimeDrag, Command] | None:
             at = before.frames.clamp(key + by)
             others = {each.frame for each in before.camera} - {key}
             command = filming_commands.move_camera_key(key, at)
-        case CycleDrag(figure=figure, first=first):
-            cycle = cycle_commands.cycle_from(before.figure(figure), first)
-            end = cycle_commands.nearest_end(
-                before.figure(figure), cycle, round(frame), before.frames.last
-            )
-            return drag, cycle_commands.repeat(figure, first, cycle.last, end)
+        case CycleDrag():
+            return drag, _end_cycle(drag, round(frame))
         case SwitchDrag(figure=figure, switch=switch):
             at = before.frames.clamp(switch + by)
             others = {each.frame for each in before.figure(figure).switches} - {switch}
@@ -234,6 +230,19 @@ def _moved(drag: TimeDrag, frame: float) -> tuple[TimeDrag, Command] | None:
         case _:
             raise AssertionError("unreachable: there are no other drags")
     return None if at in others | {drag.at} else (replace(drag, at=at), command)
+
+
+def _end_cycle(drag: CycleDrag, frame: int) -> Command:
+    """Return the command that puts the dragged end of a cycle where the pointer is, or near."""
+    figure = drag.before.figure(drag.figure)
+    cycle = cycle_commands.cycle_from(figure, drag.first)
+    last, until = cycle.last, cycle.until
+    if drag.is_stretch:
+        cycle = cycle_commands.stretched_to(figure, cycle, min(frame, drag.before.frames.last))
+        last, until = cycle.last, cycle.until
+    else:
+        until = cycle_commands.nearest_end(figure, cycle, frame, drag.before.frames.last)
+    return cycle_commands.repeat(drag.figure, drag.first, last, until)
 
 
 def _trim(drag: EdgeDrag, pointed: float) -> Command:

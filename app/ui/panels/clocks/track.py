@@ -153,7 +153,8 @@ def _copies(project: Project, handle: Handle) -> list[Action]:
                 actions.append(do(editing.edit_figure, command, handle.id, other.id))
         imgui.end_combo()
     tip("Give another handle the same track, in place of its own")
-    partners = partners_of(figure.handles, figure.axis, figure.domain.outline)
+    words = project.document.pairs
+    partners = partners_of(figure.handles, figure.axis, figure.domain.outline, words)
     is_pair = partners.get(handle.id, handle.id) != handle.id
     hint = (
         "Give its partner on the other side the mirrored track"
@@ -161,7 +162,7 @@ def _copies(project: Project, handle: Handle) -> list[Action]:
         else "Mirror its track: no partner on the other side was found by name or place"
     )
     if text_button("Mirror track" if not is_pair else "Copy mirrored", next(widths), hint):
-        actions.append(do(editing.edit_figure, track_commands.mirror_track, handle.id))
+        actions.append(do(editing.edit_figure, track_commands.mirror_track, handle.id, words))
     return actions
 
 

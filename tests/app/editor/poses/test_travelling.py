@@ -17,10 +17,11 @@ from app.document import (
     handle_commands,
     key_commands,
     layer_commands,
+    material_commands,
     track_commands,
 )
 from app.editor import layering
-from app.editor.actions import editing, playback, posing
+from app.editor.actions import editing, material, playback, posing
 from app.editor.actions.upkeep import maintain
 from app.editor.poses import copying, library, pasting, receiving
 from app.editor.session import CopiedKeys
@@ -446,3 +447,20 @@ def test_the_poses_of_chosen_layers_are_copied_and_one_is_pasted_onto_all_of_the
     assert any("“body” has no handle" in toast.text for toast in session.toasts)
     editing.undo(session)
     assert session.project.document is before
+
+
+def test_pairs_of_the_document_tell_partners_of_handles_too(session):
+    names = ("hip", "Spielknie", "Standknie")
+    for handle, name in enumerate(names):
+        editing.edit_figure(session, handle_commands.rename_handle, handle, name)
+    pasting.set_pairs(session, "L/R, Spielknie/Standknie")
+    editing.select(session, frozenset({1}))
+    editing.select_mirrored(session)
+    assert session.project.selected == {2}
+    editing.edit(session, track_commands.put_track_key(0, 1, 0, 4 + 2j))
+    pairs = session.project.document.pairs
+    editing.edit_figure(session, track_commands.mirror_track, 1, pairs)
+    assert session.project.figure.track_of(2).keys[0].place == -4 + 2j
+    editing.edit_figure(session, material_commands.add_bone, (0, 1), 5.0)
+    material.mirror(session)
+    assert [bone.ends for bone in session.project.figure.bones] == [(0, 1), (0, 2)]

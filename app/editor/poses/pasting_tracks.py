@@ -1,0 +1,86 @@
+"""Pasting keys of tracks: onto the track that is chosen, or, with poses, by names."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from app.document import Track, track_commands
+from app.editor.poses.receiving import Landing, PasteWay, landings
+from app.editor.project import Project
+from app.editor.session import CopiedTrack, Session
+from app.editor.timeline_view import TrackRow
+
+
+def tracks_here(
+    session: Session, project: Project, way: PasteWay
+) -> Mapping[TrackRow, CopiedTrack]:
+    """Return what was copied of each track, by the row on which it can be pasted.
+
+    Keys of one track go to that which is chosen; else they go with those of poses, by names.
+    """
+    copied, chosen = session.copied_tracks, project.chosen_track
+    if way == "as it is" and len(copied) == 1 and chosen is not None:
+        return {TrackRow(project.active, chosen): copied[0]}
+    carried = {}
+    for landing in landings(session, project, way):
+        ours = {other: identity for identity, other in landing.pairs.items()}
+        for each in copied:
+            handles = tuple(ours[each_id] for each_id in each.track.handles if each_id in ours)
+            if each.figure.id == landing.copied.figure.id and each.track.handles[0] in ours:
+                track = _carried_track(landing, each, way, handles)
+                carried[TrackRow(landing.figure.id, handles[0])] = track
+    return carried
+
+
+def _carried_track(
+    landing: Landing, copied: CopiedTrack, way: PasteWay, handles: tuple[int, ...]
+) -> CopiedTrack:
+    """Return a track that was copied as one of a figure's handles."""
+    likeness = landing.carriage(way).likeness
+    old = landing.copied.figure.handle(copied.track.handles[0]).position
+    new = landing.figure.handle(handles[0]).position
+    # Beside the pose ways count, and in the picture places, with what the handle is beside them.
+    start = -likeness.shift if not copied.track.planted else new - likeness.to(old)
+    keys = tuple(
+        replace(
+            key,
+            place=likeness.to(key.place) + start,
+            turn=-key.turn if likeness.mirrors else key.turn,
+            velocity=None if key.velocity is None else likeness.to(key.velocity) - likeness.shift,
+        )
+        for key in copied.keys
+    )
+    if landing.is_direct(way):
+        keys = copied.keys
+    return replace(copied, track=replace(copied.track, handles=handles), keys=keys)
+
+
+def paste_track(
+    session: Session, project: Project, row: TrackRow, copied: CopiedTrack, by: int, gesture: object
+) -> None:
+    """Put keys of a track into that of a row so many frames later; these are chosen then."""
+    figure = project.document.figure(row.figure)
+    track, name = figure.track_of(row.handle), figure.handle(row.handle).name
+    if track is not None and track.planted != copied.track.planted:
+        session.tell(
+            f"The keys that were copied are {_kind(copied.track)}, those of {name} are "
+            f"{_kind(track)}. Set both alike in the Handle tab, then copy again."
+        )
+        return
+    by += copied.track.delay - (0 if track is None else track.delay)
+    keys = tuple(replace(key, frame=key.frame + by) for key in copied.keys)
+    if keys[0].frame < 0:
+        session.tell(f"The track of {name} is too late for a key at this frame.")
+        return
+    if track is None:
+        handles = copied.track.handles if copied.track.handles[0] == row.handle else (row.handle,)
+        track = replace(copied.track, handles=handles, keys=keys)
+        command = track_commands.put_track(row.figure, track)
+    else:
+        command = track_commands.put_track_keys(*row, keys)
+    project.history.do(command, gesture=gesture)
+    frames = frozenset(key.frame for key in keys)
+    project.selected, project.chosen_of = frozenset(), {**project.chosen_of, row: frames}
+
+
+def _kind(track: Track) -> str:
+    return "planted" if track.planted else "with the pose"
