@@ -1,6 +1,7 @@
 // A disc of constant size on the screen, one instance a disc.
 
 uniform vec4 view;
+uniform vec2 view_turn;   // by which the plane is turned before, of length 1
 uniform vec2 frame_size;   // in pixels
 
 in vec2 centre;
@@ -15,11 +16,15 @@ flat out vec3 disc;        // radius, rim width, softness
 flat out vec4 disc_fill;
 flat out vec4 disc_rim;
 
+vec2 turned(vec2 point) {
+    return vec2(dot(point, vec2(view_turn.x, -view_turn.y)), dot(point, view_turn.yx));
+}
+
 void main() {
     float reach = radius + softness;
     offset = vec2(gl_VertexID % 2 == 0 ? -reach : reach, gl_VertexID < 2 ? -reach : reach);
     disc = vec3(radius, rim_width, softness);
     disc_fill = fill;
     disc_rim = rim;
-    gl_Position = vec4(centre * view.xy + view.zw + offset / frame_size * 2.0, 0.0, 1.0);
+    gl_Position = vec4(turned(centre) * view.xy + view.zw + offset / frame_size * 2.0, 0.0, 1.0);
 }

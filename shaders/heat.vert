@@ -1,6 +1,7 @@
 // A vertex of the heat map: as mesh.vert, with the quantity that is shown.
 
 uniform vec4 view;
+uniform vec2 view_turn;   // by which the plane is turned before, of length 1
 
 in vec2 uv;
 in float heat;
@@ -11,8 +12,12 @@ out float vertex_heat;
 vec2 vertex_position();
 vec2 placed(vec2 place);
 
+vec2 turned(vec2 point) {
+    return vec2(dot(point, vec2(view_turn.x, -view_turn.y)), dot(point, view_turn.yx));
+}
+
 void main() {
     texture_uv = uv;
     vertex_heat = heat;
-    gl_Position = vec4(placed(vertex_position()) * view.xy + view.zw, 0.0, 1.0);
+    gl_Position = vec4(turned(placed(vertex_position())) * view.xy + view.zw, 0.0, 1.0);
 }

@@ -1,6 +1,7 @@
 // A segment of a polyline as a rectangle around it, one instance a segment.
 
 uniform vec4 view;         // factors and offsets from the plane to clip space
+uniform vec2 view_turn;   // by which the plane is turned before, of length 1
 uniform vec2 frame_size;   // in pixels
 
 in vec2 before;            // the polyline's points about the segment; `before` is `start` and
@@ -19,8 +20,12 @@ flat out vec2 cut_end;
 flat out vec4 line_ink;
 flat out vec3 pen;         // width, dash, travelled
 
+vec2 turned(vec2 point) {
+    return vec2(dot(point, vec2(view_turn.x, -view_turn.y)), dot(point, view_turn.yx));
+}
+
 vec2 pixels(vec2 point) {
-    return ((point * view.xy + view.zw) * 0.5 + 0.5) * frame_size;
+    return ((turned(point) * view.xy + view.zw) * 0.5 + 0.5) * frame_size;
 }
 
 vec2 direction(vec2 way) {

@@ -6,6 +6,8 @@ from math import inf
 from pathlib import Path
 from typing import Self
 
+import numpy as np
+
 from app.document import (
     Baseline,
     Clip,
@@ -21,6 +23,7 @@ from app.document import (
     TreeRow,
     UnkeyedPose,
     Variant,
+    camera_at,
     clip_of,
     layer_tree,
     movement_at,
@@ -197,6 +200,7 @@ class Project:
     track_row: TrackRow | None = None  # that of a track which is chosen
     take: Take | None = None  # a drag that is recorded, until that is kept or given up
     camera: View | None = None  # None fits the picture into the viewport
+    looks_through: bool = False  # whether the viewport shows what the scene's camera does
     awaits_extent: bool = False  # whether the camera fits the motion once that is measured
     flip: Flip | None = None
     blend: PoseBlend | None = None
@@ -413,9 +417,13 @@ class Project:
 
     def view(self, screen: tuple[int, int]) -> View:
         """Return what the viewport shows on a screen of this size in pixels."""
-        if self.camera is not None:
-            return replace(self.camera, size=screen)
-        return view_around(Box(0j, complex(*self.document.canvas)), screen)
+        whole = view_around(Box(0j, complex(*self.document.canvas)), screen)
+        shown = self.puppet.shown
+        shot = camera_at(self.document, self.playhead.frame if shown is None else shown.frame)
+        if self.looks_through and shot is not None:
+            turn = complex(np.exp(1j * shot.turn))
+            return replace(whole, centre=shot.centre, scale=whole.scale * shot.zoom, turn=turn)
+        return whole if self.camera is None else replace(self.camera, size=screen)
 
 
 def view_around(box: Box, screen: tuple[int, int]) -> View:

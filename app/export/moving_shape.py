@@ -16,7 +16,6 @@ from app.document import (
     composed,
     in_order,
     is_visible,
-    opacity_at,
 )
 from app.errors import LissomError
 from app.export.bleeding import bled
@@ -48,7 +47,7 @@ class MovingShape:
         Straight alpha, with colours where it is transparent; the part of the picture that the mesh
         shows.
     opacity : float
-        Of the whole figure in the first frame, with those of its groups.
+        Of the whole figure, where it is the most, with those of its groups.
     uv : float64, shape (v, 2)
         u right, v up; [0, 1] spans the texture.
     orders : tuple of (float, int32 of shape (m, 3))
@@ -122,6 +121,7 @@ def moving_shapes(
     LissomError
         If nothing is seen, or the motion fails somewhere.
     """
+    document = _unfading(document)
     first, last = plan.span
     times = np.linspace(first, last, round((last - first) / _CLOSE) + 1).tolist()
     tolerance = plan.shapes.tolerance
@@ -154,7 +154,7 @@ def moving_shapes(
         shape = MovingShape(
             name=plan.out.stem if len(document.figures) == 1 else figure.name,
             texture=bled(texture),
-            opacity=opacity_at(document, figure, first)
+            opacity=figure.opacity
             * math.prod(group.opacity for group in document.groups_around(figure.group)),
             uv=uv,
             orders=tuple(((n - first) / document.fps, order) for n, order in _changes(orders)),
@@ -164,6 +164,17 @@ def moving_shapes(
         found.append(shape)
     numbered = {clip.figure.id: number for number, clip in enumerate(clips)}
     return MovingScene(shapes=tuple(found), parts=composed(document, numbered, first))
+
+
+def _unfading(document: Document) -> Document:
+    """Return a document whose figures are as opaque as they are at most, at all times."""
+    figures = tuple(
+        replace(each, opacities=(), opacity=max(key.opacity for key in each.opacities))
+        if each.opacities
+        else each
+        for each in document.figures
+    )
+    return replace(document, figures=figures)
 
 
 def _painted(

@@ -28,7 +28,7 @@ class Overlay:
 
     def draw(self, view: View, lines: Sequence[Line], discs: Sequence[Disc]) -> None:
         """Draw the lines and, over them, the discs."""
-        uniforms = {"view": view.transform, "frame_size": view.size}
+        uniforms = {**view.uniforms, "frame_size": view.size}
         if lines:
             self._lines.draw(np.concatenate([_segments(line, view) for line in lines]), uniforms)
         if discs:

@@ -99,7 +99,7 @@ class Renderer:
         self.programs.draw_screen(_BACKGROUND, uniforms)
 
     def _draw_mesh(self, mesh: PosedMesh, view: View, heat: Heat | None) -> None:
-        uniforms: dict[str, object] = {"view": view.transform, "picture": _PICTURE_UNIT}
+        uniforms: dict[str, object] = {**view.uniforms, "picture": _PICTURE_UNIT}
         with mesh.picture.bound(_PICTURE_UNIT):
             if heat is None:
                 mesh.draw(_PICTURE, uniforms)
@@ -116,7 +116,7 @@ class Renderer:
 
     def _draw_wireframe(self, mesh: PosedMesh, view: View, wireframe: Wireframe) -> None:
         uniforms: Mapping[str, object] = {
-            "view": view.transform,
+            **view.uniforms,
             "frame_size": view.size,
             "ink": wireframe.colour,
             "width": wireframe.width,

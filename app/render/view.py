@@ -13,6 +13,7 @@ class View:
     centre: complex  # the point, x + iy with y up, in the middle of the frame
     scale: float  # pixels of the frame per unit of the plane
     size: tuple[int, int]  # width and height of the frame in pixels
+    turn: complex = 1.0 + 0j  # of modulus 1, by which what is shown is turned
 
     def __post_init__(self) -> None:
         if min(self.size) < 1:
@@ -24,23 +25,31 @@ class View:
 
     @property
     def transform(self) -> tuple[float, float, float, float]:
-        """Factors and offsets (x, y, x, y) from the plane to OpenGL's -1 … 1, for the shaders."""
+        """Factors and offsets (x, y, x, y) from the turned plane to OpenGL's -1 … 1."""
         x, y = 2 * self.scale / self.size[0], 2 * self.scale / self.size[1]
-        return x, y, -x * self.centre.real, -y * self.centre.imag
+        centre = self.turn * self.centre
+        return x, y, -x * centre.real, -y * centre.imag
+
+    @property
+    def uniforms(self) -> dict[str, object]:
+        """What shaders need to turn the plane, and then to bring it to OpenGL's -1 … 1."""
+        return {"view": self.transform, "view_turn": (self.turn.real, self.turn.imag)}
 
     def to_pixels(self, points: Complexes) -> Complexes:
         """Return pixels x + iy, from the frame's upper left corner with y down, of points."""
-        offset = (points - self.centre).conj() * self.scale
+        offset = (self.turn * (points - self.centre)).conj() * self.scale
         pixels: Complexes = offset + complex(*self.size) / 2
         return pixels
 
     def to_plane(self, pixel: complex) -> complex:
         """Return the point under a pixel; the inverse of `to_pixels`."""
-        return self.centre + (pixel - complex(*self.size) / 2).conjugate() / self.scale
+        offset = (pixel - complex(*self.size) / 2).conjugate() / self.scale
+        return self.centre + self.turn.conjugate() * offset
 
     def panned(self, pixels: complex) -> "View":
         """Return the view after dragging its contents by x + iy pixels, y down."""
-        return replace(self, centre=self.centre - pixels.conjugate() / self.scale)
+        moved = self.turn.conjugate() * pixels.conjugate() / self.scale
+        return replace(self, centre=self.centre - moved)
 
     def zoomed(self, factor: float, pixel: complex) -> "View":
         """Return the view magnified by `factor`; the point under `pixel` stays where it is."""

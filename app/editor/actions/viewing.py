@@ -24,7 +24,7 @@ HEAT_MAPS: tuple[HeatMap, ...] = ("none", "k", "sigma_a", "sigma_b")
 @with_project
 def look_from(_: Session, project: Project, camera: View | None) -> None:
     """Move the camera; None fits the picture's frame into the viewport, whatever its size."""
-    project.camera = camera
+    project.camera, project.looks_through = camera, False
     project.awaits_extent = False
 
 

@@ -40,8 +40,8 @@ from app.editor.layering.filming import (
     change_camera_key as change_camera_key,
     delete_camera_key as delete_camera_key,
     fade_here as fade_here,
-    fit_camera as fit_camera,
     key_camera as key_camera,
+    look_through as look_through,
     unfade_here as unfade_here,
 )
 from app.editor.layering.hanging import (

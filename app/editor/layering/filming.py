@@ -2,36 +2,41 @@
 
 from dataclasses import replace
 
+import numpy as np
+
 from app.document import CameraKey, camera_at, filming_commands
-from app.editor.actions import editing, playback, viewing
+from app.editor.actions import editing, playback
 from app.editor.project import Project, view_around
 from app.editor.session import Session, with_project
 from app.motion import Box
-from app.render import View
 
 
 @with_project
 def key_camera(session: Session, project: Project) -> None:
-    """Let the camera show at the playhead what the viewport shows, turned as it is there."""
+    """Let the camera show at the playhead what the viewport shows.
+
+    Where that is upright, it stays as turned as it is.
+    """
     document, frame = project.document, playback.current_frame(session, project)
     shot, view = camera_at(document, frame), project.view(session.screen)
+    whole = view_around(Box(0j, complex(*document.canvas)), session.screen)
+    turn = 0.0 if shot is None else shot.turn
+    if view.turn != 1:
+        # The nearest one, of those with whole turns more or less.
+        turn += float(np.angle(view.turn * np.exp(-1j * turn)))
     key = CameraKey(
         frame=document.frames.clamp(frame),
         centre=view.centre,
-        zoom=view.scale / _canvas_view(session, project).scale,
-        turn=0.0 if shot is None else shot.turn,
+        zoom=view.scale / whole.scale,
+        turn=turn,
     )
     editing.edit(session, filming_commands.key_camera(key))
 
 
 @with_project
-def fit_camera(session: Session, project: Project) -> None:
-    """Let the viewport show what the camera does at the playhead, upright."""
-    shot = camera_at(project.document, playback.current_frame(session, project))
-    view = _canvas_view(session, project)
-    if shot is not None:
-        view = replace(view, centre=shot.centre, scale=view.scale * shot.zoom)
-    viewing.look_from(session, view)
+def look_through(_: Session, project: Project) -> None:
+    """Let the viewport show what the camera does at each frame, or what it showed before."""
+    project.looks_through = not project.looks_through
 
 
 @with_project
@@ -54,10 +59,6 @@ def change_camera_key(
 def delete_camera_key(session: Session, frame: int) -> None:
     """Delete a key of the camera."""
     editing.edit(session, filming_commands.delete_camera_key(frame))
-
-
-def _canvas_view(session: Session, project: Project) -> View:
-    return view_around(Box(0j, complex(*project.document.canvas)), session.screen)
 
 
 @with_project

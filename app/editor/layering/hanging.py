@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Collection, Sequence
 
-from app.document import Attachment, Command, in_turn, layer_commands
+from app.document import Attachment, Command, Document, in_turn, layer_commands, movement_at
 from app.editor import promises
 from app.editor.action import do
 from app.editor.actions import editing, playback
@@ -16,6 +16,7 @@ from app.motion import (
     hand_over as joint_that_keeps,
     hang as joint_at_rest,
 )
+from engine.geometry import RigidMotion
 
 HANGING = Kind("Hanging a layer", "The layers cannot be joined")
 
@@ -105,7 +106,7 @@ def let_hang(session: Session, project: Project, child: int) -> None:
         free = Attachment(to=None, frame=joint.frame, keeps=True)
         editing.edit(session, layer_commands.attach(child, anchor_of(figure), free))
     elif shown is not None:
-        editing.edit(session, layer_commands.detach(child, *shown.placement))
+        editing.edit(session, _detach(project.document, child, shown.frame, shown.placement))
 
 
 @with_project
@@ -185,8 +186,17 @@ def _inherit(joints: Joints, child: int, gone: Collection[int], frame: int) -> C
             held = joint_at_rest(joints, child, heir, frame, turns=joint.turns)
             return layer_commands.attach(child, *held)
         if all(each.to in gone for each in figure.joints):
-            return layer_commands.detach(child, *joints.placement(child, frame))
+            return _detach(document, child, frame, joints.placement(child, frame))
     return in_turn("Attach", ())
+
+
+def _detach(document: Document, child: int, frame: int, placement: RigidMotion) -> Command:
+    """Return the command by which a figure hangs on nothing and stays where it is at a frame.
+
+    From then on it is moved by its own movement.
+    """
+    own = movement_at(document, document.figure(child), frame)
+    return layer_commands.detach(child, *own.inverse.after(placement))
 
 
 @with_project

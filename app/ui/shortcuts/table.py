@@ -40,6 +40,10 @@ def _redo_label(_: Session, project: Project) -> str:
     return "" if label is None else f"“{label}”"
 
 
+def _looks_through(session: Session) -> bool:
+    return session.project is not None and session.project.looks_through
+
+
 def _copied(session: Session, project: Project) -> str:
     if copying.copies_keys(session, project):
         return f"{project.count_chosen} keys" if project.count_chosen > 1 else "pose"
@@ -369,11 +373,12 @@ MENUS: dict[str, dict[str, Binding]] = {
         "fit selection": Binding("Fit selection", do(viewing.fit_selection), "F"),
         "fit picture": Binding("Fit picture", do(viewing.look_from, None)),
         "actual size": Binding("Actual size", do(viewing.actual_size), "1"),
-        "fit camera": Binding(
-            "Fit camera",
-            do(layering.fit_camera),
-            hint="Show what the camera shows in this frame",
+        "look through": Binding(
+            "Look through the camera",
+            do(layering.look_through),
+            hint="Show what the camera shows in each frame, until you look elsewhere",
             possible=lambda _, project: bool(project.document.camera),
+            active=_looks_through,
         ),
         "handles": _overlay(
             "Handles",

@@ -482,6 +482,15 @@ def test_a_camera_a_fade_an_order_and_a_still_layer_that_moves_are_exported(fold
     assert "do not change: the opacity of arm, the order of body, the camera" in told
 
 
+def test_what_fades_in_is_seen_in_a_model(folder):
+    script, out, model = (folder / f"fading{suffix}" for suffix in (".json", ".lissom", ".glb"))
+    arm = {**STAGED["figures"][1], "opacity": [[0, 0], [8, 0.75]]}
+    script.write_text(json.dumps({**STAGED, "figures": [arm]}))
+    assert main(["pose", str(folder / "man.ora"), str(script), "--out", str(out)]) == 0
+    assert main(["export", str(out), "--out", str(model)]) == 0
+    assert b'"baseColorFactor":[1.0,1.0,1.0,0.75]' in model.read_bytes()
+
+
 def test_a_still_layer_is_moved_but_not_posed(folder, capsys):
     wall = {**STAGED["figures"][2], "handles": {"h": [20, 20]}}
     told = refused(folder, {**STAGED, "figures": [wall]}, capsys)

@@ -241,6 +241,18 @@ def test_the_camera_turns_what_is_seen_counter_clockwise(gl, document):
     assert (frame[:, : left - 1] == (0x20, 0xC0, 0x40, 255)).all()
 
 
+def test_a_view_that_is_turned_shows_what_a_turned_camera_does(gl, document):
+    height, width = BLOB.shape[:2]
+    key = CameraKey(frame=0, centre=complex(width, height) / 2, turn=0.3)
+    poses = Sliding(document, 0)
+    plan = plan_of(document, poses)
+    view = replace(plan.view, turn=complex(np.exp(0.3j)))
+    painter = Painter(gl, document, {0: BLOB}, {0: poses}, replace(plan, view=view))
+    frame = painter.draw(painter.pose(0.0)).astype(int)
+    painter.release()
+    assert np.abs(frame - still(gl, filmed(document, key))).max() <= 2
+
+
 def test_each_frame_is_what_the_camera_shows_then(gl, document):
     first = CameraKey(frame=0, centre=60 + 45j)
     panned = filmed(document, first, replace(first, frame=12, centre=48 + 51j))

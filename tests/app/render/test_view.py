@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
@@ -19,7 +21,12 @@ views = st.builds(
 )
 
 
-@given(views, points)
+turned = st.builds(
+    lambda view, turn: replace(view, turn=complex(np.exp(1j * turn))), views, st.floats(-4, 4)
+)
+
+
+@given(turned, points)
 def test_pixels_and_points_are_inverses(view, point):
     pixel = view.to_pixels(np.array([point]))[0]
     assert_allclose(view.to_plane(pixel), point, rtol=0, atol=1e-8)
@@ -33,10 +40,11 @@ def test_the_corners_of_a_frame(view):
     assert_allclose(upper_left.imag, view.centre.imag + height / 2 / view.scale, rtol=1e-12)
 
 
-@given(views, points)
+@given(turned, points)
 def test_the_shaders_transform_agrees_with_the_pixels(view, point):
     x, y, offset_x, offset_y = view.transform
-    clip = complex(x * point.real + offset_x, y * point.imag + offset_y)
+    place = view.turn * point
+    clip = complex(x * place.real + offset_x, y * place.imag + offset_y)
     pixel = view.to_pixels(np.array([point]))[0]
     wanted = complex(2 * pixel.real / view.size[0] - 1, 1 - 2 * pixel.imag / view.size[1])
     assert_allclose(clip, wanted, rtol=1e-9, atol=1e-9)

@@ -12,11 +12,13 @@ from app.document import (
     Attachment,
     Command,
     FrameRange,
+    MoveKey,
     clip_of,
     figure_commands,
     fronts_at,
     key_commands,
     layer_commands,
+    movement_at,
     scene_commands,
 )
 from app.editor import layering
@@ -285,6 +287,23 @@ def test_a_layer_that_is_let_go_leaves_its_way_on_the_other_one(window, swung):
     window.act(editing.undo)
     window.settle()
     np.testing.assert_allclose(ways(window, swung), [way], rtol=0, atol=1e-9)
+
+
+def test_a_layer_that_is_let_go_stays_where_it_is_though_it_moves_by_itself(window, swung):
+    arm = identity(swung, "arm")
+    moves = (MoveKey(frame=0), MoveKey(frame=12, shift=20 + 5j, turn=0.4))
+    moved = replace(swung.document.figure(arm), movement=moves)
+    window.act(editing.edit, Command("Move", lambda document: document.with_figure(moved)))
+    window.act(playback.seek, 6)
+    window.settle()
+    shown = swung.puppets[arm].shown
+    before = shown.placement.on(shown.positions)
+    window.act(layering.let_hang, arm)
+    window.settle()
+    after = swung.puppets[arm].shown
+    assert not swung.document.figure(arm).hangs
+    assert after.placement == movement_at(swung.document, swung.document.figure(arm), 6)
+    np.testing.assert_allclose(after.placement.on(after.positions), before, rtol=0, atol=0.01)
 
 
 def test_where_layers_hang_is_not_told_by_joints_of_an_earlier_document(window, swung):

@@ -764,9 +764,21 @@ def test_the_camera_is_keyed_from_the_viewport_dragged_and_deleted(window, proje
     assert camera_at(project.document, 30).centre == 60 + 70j
     looked = project.view(window.session.screen)
     viewing.look_from(window.session, None)
-    layering.fit_camera(window.session)
+    layering.look_through(window.session)
     again = project.view(window.session.screen)
     assert (again.centre, again.scale) == (looked.centre, pytest.approx(looked.scale))
+    playback.scrub(window.session, 0)
+    window.settle()
+    assert project.view(window.session.screen).centre == complex(*canvas) / 2
+    # A key from there, turned, is what it was; looking elsewhere ends it.
+    layering.change_camera_key(window.session, 0, turn=7.0)
+    window.settle()
+    layering.key_camera(window.session)
+    assert project.document.camera[0].turn == pytest.approx(7.0)
+    editing.undo(window.session)
+    viewing.look_from(window.session, None)
+    assert not project.looks_through
+    window.settle()
 
     play(lambda hand: hand.drag("camera key 30", 50, 44))
     assert camera_of(project) == [(0, 1), (44, 2)]

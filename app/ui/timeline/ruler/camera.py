@@ -102,7 +102,7 @@ def _menu(bands: Bands, key: CameraKey) -> list[Action]:
             actions.append(do(layering.change_camera_key, key.frame, turn=radians(turn)))
         tip("By how much things are seen turned, counter-clockwise")
         imgui.separator()
-        for name in ("key camera", "fit camera"):
+        for name in ("key camera", "look through"):
             actions += bound_item(bands.session, name)
         imgui.end_popup()
     return actions
