@@ -26,6 +26,7 @@ from app.solving.drag import Drag, Rig
 from app.solving.script import FigureScript, PoseKey, PoseScript
 from app.solving.stage import (
     layer_named,
+    unmoved,
     unseen,
     with_choices,
     with_joints,
@@ -96,7 +97,7 @@ def pose_document(
         document = document.with_figure(figure)
         notices += told
     document = with_choices(with_kept_places(with_order(document, script), script), script)
-    return document, (*notices, *unseen(document, script))
+    return document, (*notices, *unmoved(document, script), *unseen(document, script))
 
 
 @contextmanager

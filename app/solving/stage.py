@@ -118,6 +118,23 @@ def with_choices(document: Document, script: PoseScript) -> Document:
     return document
 
 
+def unmoved(document: Document, script: PoseScript) -> list[str]:
+    """Tell of layers that a script moves as a whole, and that hang on others at all times."""
+    frames = range(document.frames.first, document.frames.last + 1)
+    notices = []
+    for part in script.figures:
+        if part.layer is None or not part.movement:
+            continue
+        figure = layer_named(document, part.layer)
+        carriers = [document.carriers(figure.id, frame)[1:] for frame in frames]
+        if all(carriers):
+            notices.append(
+                f"{part.layer} hangs on {carriers[0][0].name} and goes with it: its own movement "
+                "is not seen"
+            )
+    return notices
+
+
 def unseen(document: Document, script: PoseScript) -> list[str]:
     """Tell of layers that a script poses, switches or chooses, and that are never seen so."""
     first, last = document.frames.first, document.frames.last

@@ -482,6 +482,20 @@ def test_a_camera_a_fade_an_order_and_a_still_layer_that_moves_are_exported(fold
     assert "do not change: the opacity of arm, the order of body, the camera" in told
 
 
+def test_a_movement_of_what_hangs_at_all_times_is_told(folder, capsys):
+    moved = {"keys": [{"frame": 0}, {"frame": 8, "shift": [5, 0]}]}
+    body, arm, _ = SCRIPT["figures"]
+    script, out = folder / "hung.json", folder / "hung.lissom"
+    for figures, is_told in (
+        ([{**body, "movement": moved}, arm], False),
+        ([body, {**arm, "movement": moved}], True),
+    ):
+        script.write_text(json.dumps({"schema": 1, "figures": figures}))
+        assert main(["pose", str(folder / "man.ora"), str(script), "--out", str(out)]) == 0
+        told = capsys.readouterr().err
+        assert ("arm hangs on body and goes with it: its own movement is not" in told) == is_told
+
+
 def test_what_fades_in_is_seen_in_a_model(folder):
     script, out, model = (folder / f"fading{suffix}" for suffix in (".json", ".lissom", ".glb"))
     arm = {**STAGED["figures"][1], "opacity": [[0, 0], [8, 0.75]]}
