@@ -555,13 +555,9 @@ def clocked_document() -> Document:
         CameraKey(frame=1, centre=complex(1 / 3, -0.0), zoom=2.0, turn=-0.5, unknown=more),
         CameraKey(frame=9, centre=9j, zoom=0.1, easing=HOLD, passing=Passing.CORNER),
     )
-    return dataclasses.replace(
-        full,
-        figures=(child, parent),
-        groups=groups,
-        camera=camera,
-        pairs=(("L", "R"), ("Fuß", "Tatze\n")),
-    )
+    pairs = (("L", "R"), ("Fuß", "Tatze\n"))
+    figures = (child, parent)
+    return dataclasses.replace(full, figures=figures, groups=groups, camera=camera, pairs=pairs)
 
 
 def differences(first: object, second: object, where: str = "document") -> list[str]:

@@ -1,48 +1,20 @@
 """Keys of the camera, and of figures moved as a whole, of their opacity and of their order."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import tau
-from typing import Final, Self
+from typing import Final
 
-from app.document.checks import NOTHING, Unknown, require, require_place
+from app.document.checks import require, require_place
 from app.document.settings import LAST_FRAME
-from app.document.timing import HOLD, LINEAR, MOST_TURN, Easing, Passing, require_passing
+from app.document.timing import MOST_TURN, MovingKey, Passing
 
 MOST_ZOOM: Final = 1000.0  # and as many times smaller
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _MovingKey:
-    """A key of what moves as poses do, and the way from there to the next one."""
-
-    frame: int
-    easing: Easing = LINEAR
-    passing: Passing = Passing.THROUGH
-    unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
-
-    def __post_init__(self) -> None:
-        _require_frame(self.frame)
-        require_passing(self.passing)
-        object.__setattr__(self, "passing", Passing(self.passing))
-
-    @property
-    def shown_passing(self) -> Passing:
-        """How the motion passes the key, by a hold too."""
-        return Passing.HOLD if self.easing == HOLD else self.passing
-
-    def with_way(self, other: Self, *, backwards: bool = False) -> Self:
-        """Return the key with the way on from another one, or with that way run backwards."""
-        return replace(self, easing=other.easing.reversed() if backwards else other.easing)
-
-    def at_pace(self, frame: int, pace: float) -> Self:  # noqa: ARG002 - it has no velocity
-        """Return the key at another frame of a motion that runs so many times as fast."""
-        return self if frame == self.frame else replace(self, frame=frame)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CameraKey(_MovingKey):
+class CameraKey(MovingKey):
     """What the camera shows at a frame: the canvas's rectangle, elsewhere, smaller and turned."""
 
     centre: complex  # the point of the plane in the middle
@@ -50,7 +22,8 @@ class CameraKey(_MovingKey):
     turn: float = 0.0  # by how much things are seen turned, counter-clockwise, in radians
 
     def __post_init__(self) -> None:
-        _MovingKey.__post_init__(self)
+        MovingKey.__post_init__(self)
+        _require_frame(self.frame)
         require_place(self.centre, "The camera's centre")
         require(
             1 / MOST_ZOOM <= self.zoom <= MOST_ZOOM,
@@ -60,27 +33,29 @@ class CameraKey(_MovingKey):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class MoveKey(_MovingKey):
+class MoveKey(MovingKey):
     """Where a whole figure is at a frame, beside where its poses have it."""
 
     shift: complex = 0j  # pixels
     turn: float = 0.0  # counter-clockwise around its pivot, in radians
 
     def __post_init__(self) -> None:
-        _MovingKey.__post_init__(self)
+        MovingKey.__post_init__(self)
+        _require_frame(self.frame)
         require_place(self.shift, "A figure's movement")
         _require_turn(self.turn)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class OpacityKey(_MovingKey):
+class OpacityKey(MovingKey):
     """How opaque a figure is at a frame; by itself it fades evenly."""
 
     opacity: float  # in [0, 1]
     passing: Passing = Passing.CORNER
 
     def __post_init__(self) -> None:
-        _MovingKey.__post_init__(self)
+        MovingKey.__post_init__(self)
+        _require_frame(self.frame)
         require(0 <= self.opacity <= 1, f"Opacity is between 0 and 1, not {self.opacity:g}.")
 
 
@@ -99,7 +74,7 @@ class Placing:
         _require_frame(self.frame)
 
 
-def require_rising(keys: Sequence[_MovingKey] | Sequence[Placing], what: str) -> None:
+def require_rising(keys: Sequence[MovingKey] | Sequence[Placing], what: str) -> None:
     """Raise a `LissomError` unless each of some keys comes after the one before."""
     for before, after in pairwise(key.frame for key in keys):
         require(before < after, f"{what} has a key at frame {after} after that at frame {before}.")

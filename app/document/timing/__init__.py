@@ -16,6 +16,7 @@ from app.document.timing.easing import (
     PRESETS as PRESETS,
     Easing as Easing,
 )
+from app.document.timing.moving_key import MovingKey as MovingKey
 from app.document.timing.passing import Passing as Passing, require_passing as require_passing
 from app.document.timing.springs import SPRINGS as SPRINGS, Spring as Spring
 from app.document.timing.tracks import (

@@ -6,31 +6,27 @@ from itertools import pairwise
 from typing import Self
 
 from app.document.checks import FARTHEST, NOTHING, Unknown, require, require_distinct, require_place
-from app.document.timing.easing import HOLD, LINEAR, Easing
-from app.document.timing.passing import Passing, require_passing
+from app.document.timing.moving_key import MovingKey
 
 MOST_TURN = 20 * math.tau  # either way
 LONGEST_DELAY = 999_999  # frames: an animation is no longer
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class TrackKey:
+class TrackKey(MovingKey):
     """Where a track wants its handles at a frame, and the way from there to its next key."""
 
-    frame: int
     # Of a track with the pose, by how much the handle is beside its place in the base motion, in
     # the frame that turns with the shape there; of a planted one, its place in the picture. Pixels.
     place: complex
     # By how much the shape turns there beyond the base motion, in radians; where the track turns.
     turn: float = 0.0
-    easing: Easing = LINEAR
-    passing: Passing = Passing.THROUGH
     # With which the motion passes it where it goes through, in pixels a frame, as the place is
     # told; None for what its neighbours and the easings make of it.
     velocity: complex | None = None
-    unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
+        MovingKey.__post_init__(self)
         require_place(self.place, "A track's key")
         require(
             abs(self.turn) <= MOST_TURN,
@@ -42,17 +38,6 @@ class TrackKey:
             f"A track passes a key at no more than {FARTHEST:,.0f} pixels a frame, not at "
             f"{self.velocity}.",
         )
-        require_passing(self.passing)
-        object.__setattr__(self, "passing", Passing(self.passing))
-
-    @property
-    def shown_passing(self) -> Passing:
-        """How the motion passes the key, by a hold too."""
-        return Passing.HOLD if self.easing == HOLD else self.passing
-
-    def with_way(self, other: Self, *, backwards: bool = False) -> Self:
-        """Return the key with the way on from another one, or with that way run backwards."""
-        return replace(self, easing=other.easing.reversed() if backwards else other.easing)
 
     def at_pace(self, frame: int, pace: float) -> Self:
         """Return the key at another frame of a motion that runs so many times as fast."""

@@ -120,6 +120,11 @@ class PoseSampler:
                 self._extension = self.known.transform.at(self.sites.paths.nodes, single=True)
             return self._extension
 
+    def forget_extension(self) -> None:
+        """Let go of the transform at the nodes, most of what a figure takes that is not edited."""
+        with self._extension_lock:
+            self._extension = None
+
     def keep_only(self, poses: AbstractSet[Pose]) -> None:
         """Forget what was kept for other poses."""
         with self._lock:

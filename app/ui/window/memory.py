@@ -7,7 +7,7 @@ each large drawing that is opened after another, and each export, takes more mem
 import ctypes
 import sys
 
-from app.editor import Session
+from app.editor import Project, Session
 
 REST = 1.0  # seconds
 ARENA_MAX = -8  # the C library's number for it
@@ -34,7 +34,17 @@ class FreeMemory:
             self._due = session.clock() + REST
         elif self._due is not None and session.clock() >= self._due:
             self._due = None
+            if project is not None:
+                _forget_extensions(project)
             give_back()
+
+
+def _forget_extensions(project: Project) -> None:
+    """Let go of what prepares in-betweens of figures that nobody edits: it is soon made again."""
+    for identity, puppet in project.puppets.items():
+        for store in (puppet.store, puppet.fine) if identity != project.active else ():
+            if store is not None and store.sampler is not None:
+                store.sampler.forget_extension()
 
 
 def share_heap() -> None:

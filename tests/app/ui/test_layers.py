@@ -7,7 +7,15 @@ from imgui_bundle import ImVec2
 from layered import blob, openraster
 from PIL import Image, ImageDraw
 
-from app.document import PRESETS, Attachment, Passing, figure_commands, key_commands, layer_commands
+from app.document import (
+    PRESETS,
+    Attachment,
+    Passing,
+    clip_of,
+    figure_commands,
+    key_commands,
+    layer_commands,
+)
 from app.document.keyframe import Target
 from app.editor import do, layering
 from app.editor.actions import (
@@ -25,6 +33,7 @@ from app.editor.timeline_view import Strip
 from app.storage import load_project
 from app.ui.panel import is_in_front
 from app.ui.shortcuts import BINDINGS
+from app.ui.window import memory
 from engine.domain import Stroke
 
 WIDTH, HEIGHT = 240, 200
@@ -976,3 +985,24 @@ def brush_at(project, figure):
     domain = project.document.figure(figure).domain
     middle = domain.outline.mean() - project.document.figure(figure).corner
     return Stroke(points=np.array([middle, middle + 5]), radius=8, keeps=False)
+
+
+def test_what_prepares_layers_that_nobody_edits_is_let_go_and_comes_again(window, keyed):
+    window.act(layering.choose, identity(keyed, "arm"))
+    window.settle()
+    arm, body = (keyed.puppets[identity(keyed, name)] for name in ("arm", "body"))
+    body_id = identity(keyed, "body")
+    for puppet in (arm, body):
+        assert puppet.store.sampler.extension is not None  # made where nothing needed it yet
+    window.clock.now += 2 * memory.REST
+    window.act(playback.seek, 3)
+    window.settle()
+    window.clock.now += 2 * memory.REST
+    window.frames(3)
+    window.clock.now += 2 * memory.REST
+    window.frames(3)
+    assert body.store.sampler._extension is None
+    assert arm.store.sampler._extension is not None
+    window.act(editing.edit, key_commands.move_keys(body_id, [BODY[1]], 1))
+    window.settle()
+    assert body.store.has(clip_of(keyed.document, body_id))
