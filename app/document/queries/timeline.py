@@ -14,9 +14,11 @@ from app.document.queries.tracks import track_at
 from app.document.queries.transits import transits
 from app.document.settings import FrameRange
 from app.errors import LissomError
+from engine.geometry import RigidMotion, Similarity
 
 # Pixels: a handle at rest is where the identity takes it, up to rounding.
 SAME_PLACE = 1e-6
+SAME_FACTOR = 1e-9
 
 
 class Moment(NamedTuple):
@@ -136,9 +138,20 @@ def _is_same(document: Document, first: int, second: int) -> bool:
 
 def _moves_alike(document: Document, first: int, second: int) -> bool:
     """Tell whether the camera, and all figures as a whole, are alike at two frames."""
-    return camera_at(document, first) == camera_at(document, second) and all(
-        movement_at(document, each, first) == movement_at(document, each, second)
-        and opacity_at(document, each, first) == opacity_at(document, each, second)
+    shots = [camera_at(document, frame) for frame in (first, second)]
+    pairs: list[list[RigidMotion | Similarity]] = [
+        [shot.on_canvas(document.canvas) for shot in shots if shot is not None]
+    ]
+    pairs += [
+        [movement_at(document, each, frame) for frame in (first, second)]
+        for each in document.figures
+    ]
+    # After a whole turn things are where they were, up to rounding.
+    return all(
+        abs(one.factor - other.factor) <= SAME_FACTOR and abs(one.shift - other.shift) <= SAME_PLACE
+        for one, other in filter(None, pairs)
+    ) and all(
+        opacity_at(document, each, first) == opacity_at(document, each, second)
         for each in document.figures
     )
 

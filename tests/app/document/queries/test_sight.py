@@ -104,6 +104,11 @@ def test_the_last_frame_of_a_loop_is_left_out_only_where_all_of_it_is_the_first_
     assert exported_frames(altered(EMPTY, loop=True)).last == 47
     panned = (replace(KEYS[0], frame=0), replace(KEYS[1], frame=48))
     assert exported_frames(filmed(panned, loop=True)).last == 48
+    # A wheel that has turned round is where it was.
+    wheel = (MoveKey(frame=0), MoveKey(frame=48, turn=2 * pi))
+    assert exported_frames(altered(EMPTY, movement=wheel, loop=True)).last == 47
+    rolled = (MoveKey(frame=0), MoveKey(frame=48, shift=1, turn=2 * pi))
+    assert exported_frames(altered(EMPTY, movement=rolled, loop=True)).last == 48
 
 
 def test_a_held_camera_jumps():
