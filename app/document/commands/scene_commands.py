@@ -64,6 +64,12 @@ def set_pairs(document: Document, pairs: SidePairs) -> Document:
     return document if pairs == document.pairs else replace(document, pairs=pairs)
 
 
+@command("Set canvas")
+def set_canvas(document: Document, size: tuple[int, int]) -> Document:
+    """Set width and height of the canvas, which begins at the origin; figures stay in place."""
+    return document if size == document.canvas else replace(document, size=size)
+
+
 @command("Scale time")
 def scale_time(document: Document, factor: float) -> Document:
     """Make the whole animation longer or shorter: keys, markers, frames and preview range."""

@@ -4,15 +4,16 @@ from dataclasses import replace
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
-from app.document import ExportSettings, FrameRange, exported_frames
+from app.document import ExportSettings, FrameRange, exported_frames, scene_commands
 from app.editor import Action, Project, Session, do
-from app.editor.actions import exporting
+from app.editor.actions import editing, exporting
 from app.errors import LissomError, shown_name
 from app.export import frame_view, missing, shown_box
 from app.export_formats import EXPORT_FORMATS
 from app.motion import Box, box_around, extent_source
 from app.render import View
 from app.ui.panels.format_options import draw_options
+from app.ui.panels.sizes import LARGEST, size_fields
 from app.ui.shortcuts import BINDINGS
 from app.ui.style import (
     FILL,
@@ -42,7 +43,6 @@ MEASURES = "Measuring where the motion reaches…"
 LEAVES = "The motion leaves the frame; “All motion” shows all of it."
 FILMED = "Each frame is what the camera shows then."
 KEEPS = "All of the motion is in the frame."
-LARGEST = 65_535
 PREVIEW, LARGEST_PREVIEW = 3.2, 6.0  # em: at least and at most
 
 
@@ -62,6 +62,8 @@ def draw(session: Session, look: Look, project: Project) -> list[Action]:
         chosen = _picture(look, project, chosen)
         chosen, more = _size(session, look, chosen, view)
         actions += more
+        if settings.framing == "canvas" or project.document.camera:
+            actions += _canvas(look, project)
     chosen = _details(look, chosen)
     if not project.document.camera:
         _preview(look, project, settings, box, motion)
@@ -173,21 +175,8 @@ def _size(
     actions: list[Action] = []
     label(look, "Size")
     gap = imgui.get_style().item_inner_spacing.x
-    button = 1.15 * imgui.get_frame_height()
-    times = imgui.calc_text_size("×").x
-    each = (imgui.get_content_region_avail().x - 2 * button - times - 4 * gap) / 2
-    width, height = view.size
-    imgui.set_next_item_width(each)
-    _, wide = imgui.input_int("##width", width, 0)
-    by_width = imgui.is_item_deactivated_after_edit()
-    tip("Width in pixels")
-    imgui.same_line(0, gap)
-    imgui.text_disabled("×")
-    imgui.same_line(0, gap)
-    imgui.set_next_item_width(each)
-    _, high = imgui.input_int("##height", height, 0)
-    by_height = imgui.is_item_deactivated_after_edit()
-    tip("Height in pixels")
+    room = 2 * (1.15 * imgui.get_frame_height() + gap)
+    entered = size_fields("", view.size, room)
     imgui.same_line(0, gap)
     keeps = session.keeps_aspect
     icon = icons.ICON_FA_LOCK if keeps else icons.ICON_FA_LOCK_OPEN
@@ -202,14 +191,30 @@ def _size(
         enabled=settings.size is not None,
     ):
         return replace(settings, size=None), actions
-    if by_width and wide > 0:
-        high = round(wide * height / width) if keeps else height
-    elif by_height and high > 0:
-        wide = round(high * width / height) if keeps else width
-    else:
+    if entered is None or entered.size == view.size:
         return settings, actions
-    entered = (min(max(wide, 1), LARGEST), min(max(high, 1), LARGEST))
-    return (settings if entered == view.size else replace(settings, size=entered)), actions
+    (wide, high), (width, height) = entered.size, view.size
+    if keeps and entered.by_width:
+        high = min(max(round(wide * height / width), 1), LARGEST)
+    elif keeps:
+        wide = min(max(round(high * width / height), 1), LARGEST)
+    return replace(settings, size=(wide, high)), actions
+
+
+def _canvas(look: Look, project: Project) -> list[Action]:
+    """Draw the size of the canvas, from the origin on, and the way back to the picture's."""
+    document = project.document
+    label(look, "Canvas")
+    gap = imgui.get_style().item_inner_spacing.x
+    entered = size_fields("canvas ", document.canvas, 1.15 * imgui.get_frame_height() + gap)
+    imgui.same_line(0, gap)
+    hint = "Back to the size of the picture behind all others"
+    is_own = document.canvas != document.figures[0].picture.size
+    if icon_button(look, icons.ICON_FA_ARROW_ROTATE_LEFT, "canvas size", hint, enabled=is_own):
+        return [do(editing.edit, scene_commands.set_canvas(document.figures[0].picture.size))]
+    if entered is None or entered.size == document.canvas:
+        return []
+    return [do(editing.edit, scene_commands.set_canvas(entered.size))]
 
 
 def _frames(look: Look, project: Project, settings: ExportSettings) -> ExportSettings:

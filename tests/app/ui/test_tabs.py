@@ -516,3 +516,17 @@ def test_a_handle_that_is_outweighed_is_not_said_to_be_held_back_by_limits(
         assert reason in told, title
         assert "by the limits" not in told
     assert project.timing.shortfalls.value[pose] == {1: pytest.approx(12, abs=1e-6)}
+
+
+def test_the_canvas_has_a_size_of_its_own(window, project, tab):
+    tab("Export", lambda robot: robot.item_click("**/framing/###canvas"))
+    before = project.document
+    width, height = before.canvas
+    tab("Export", lambda robot: robot.item_input_value("**/##canvas width", width + 40))
+    assert project.document.canvas == (width + 40, height)
+    assert project.document.figures == before.figures
+    tab("Export", lambda robot: robot.item_click("**/###canvas size"))
+    assert project.document.canvas == (width, height)
+    editing.undo(window.session)
+    editing.undo(window.session)
+    assert project.document is before

@@ -1,0 +1,38 @@
+"""Fields for the width and the height of pictures."""
+
+from typing import NamedTuple
+
+from imgui_bundle import imgui
+
+from app.ui.style import tip
+
+LARGEST = 65_535
+
+
+class EnteredSize(NamedTuple):
+    """A size in pixels, and whether it was the width that was entered."""
+
+    size: tuple[int, int]
+    by_width: bool
+
+
+def size_fields(name: str, size: tuple[int, int], room: float) -> EnteredSize | None:
+    """Draw two fields, with so many pixels left beside them; return what was entered, if it was."""
+    gap = imgui.get_style().item_inner_spacing.x
+    times = imgui.calc_text_size("×").x
+    each = (imgui.get_content_region_avail().x - room - times - 2 * gap) / 2
+    entered = list(size)
+    ended = []
+    for side, word in enumerate(("width", "height")):
+        imgui.set_next_item_width(each)
+        _, entered[side] = imgui.input_int(f"##{name}{word}", size[side], 0)
+        ended.append(imgui.is_item_deactivated_after_edit())
+        tip(f"{word.capitalize()} in pixels")
+        if not side:
+            imgui.same_line(0, gap)
+            imgui.text_disabled("×")
+            imgui.same_line(0, gap)
+    wide, high = (min(side, LARGEST) for side in entered)
+    if not any(ended) or min(wide, high) < 1:
+        return None
+    return EnteredSize((wide, high), ended[0])
