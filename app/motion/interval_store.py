@@ -71,8 +71,11 @@ class IntervalStore:
         return tuple(every) if len(every) == len(known) else None
 
     def has(self, clip: Clip) -> bool:
-        """Tell whether all in-betweens of a clip are prepared."""
-        return self.prepared(clip) is not None
+        """Tell whether all in-betweens of a clip can be shown."""
+        if clip.figure.domain is not self.mesh.source:
+            return False
+        known = (self._known.get(pair) for pair in self._pairs(clip))
+        return all(each is not None and each.is_there for each in known)
 
     def is_exact(self, clip: Clip, frame: float) -> bool:
         """Tell whether what belongs to a frame is there, and nothing has to stand in for it."""
@@ -111,10 +114,12 @@ class IntervalStore:
             positions = self.mesh.posed(found)
         elif isinstance(found, OneFrame):
             positions = found.positions
-        elif found is None or found.inbetweens is None:
+        elif found is None or not found.is_there:
             return None
         elif found.series is not None and found.series.covers(moment.weight):
             return Streamed(found.series, found.distortions, moment.weight, triangles)
+        elif found.inbetweens is None:
+            return None
         else:
             positions = found.inbetweens.frame(moment.weight).positions
         return Placed(positions=positions, triangles=triangles)
@@ -125,7 +130,7 @@ class IntervalStore:
             return None
         resting = resting_pose(clip, moment)
         known = self.interval(clip, moment.interval) if resting is None else None
-        if known is None or known.inbetweens is not None:
+        if known is None or known.is_there:
             return known or resting
         return known.one if known.one and known.one.weight == moment.weight else None
 
@@ -154,7 +159,7 @@ class IntervalStore:
         found: dict[int, float] = {}
         for number, transit in enumerate(transits(clip)):
             known = self.interval(clip, number)
-            if known is None or known.inbetweens is None:
+            if known is None or not known.is_there:
                 continue
             first = int(isinstance(transit.start, Joint))
             ends, keys = (transit.start, transit.end), transit.keys[first : first + 2]
@@ -174,12 +179,15 @@ class IntervalStore:
         copied._known = dict(self._known)  # noqa: SLF001 - its own
         return copied
 
-    def missing(self, clip: Clip, frame: float) -> list[int]:
-        """Return the numbers of intervals to prepare, the nearest first, and each pair once."""
+    def missing(self, clip: Clip, frame: float, *, is_edited: bool = True) -> list[int]:
+        """Return the numbers of intervals to prepare, the nearest first, and each pair once.
+
+        Of a figure that is not edited, those of which the series leaves nothing out need not be.
+        """
         pairs, nearest = self._pairs(clip), dict[Pair, int]()
         for number in _by_nearness(clip, frame):
             known = self._known.get(pairs[number])
-            if known is None or known.inbetweens is None:
+            if known is None or not (known.inbetweens or (known.is_streamed and not is_edited)):
                 nearest.setdefault(pairs[number], number)
         return list(nearest.values())
 
@@ -224,7 +232,7 @@ class IntervalStore:
             for distortions, series in enumerate((known.series, known.distortions)):
                 if series is not None:
                     used += self._sizes[pair][1 + distortions]
-                elif known.sites is not None and (heat or not distortions):
+                elif known.sites and known.inbetweens and (heat or not distortions):
                     if used + (self._largest[1 + distortions] or usual) > self.budget:
                         return None
                     return Build(pair, known, distortions=bool(distortions))
@@ -267,6 +275,19 @@ class IntervalStore:
             )
             built = KnownInterval(build.poses, series=positions, distortions=distortions)
             self.take(FoundIntervals(None, {build.pair: built}))
+
+    def rest(self) -> None:
+        """Let go of what is prepared where series leave nothing out; what is edited needs it again.
+
+        It is most of what a figure with keys takes.
+        """
+        for pair, known in list(self._known.items()):
+            if known.inbetweens is not None and known.is_streamed:
+                self._set(pair, known._replace(inbetweens=None, one=None))
+        if self.sampler is not None:
+            prepared = (known.poses for known in self._known.values() if known.inbetweens)
+            self.sampler.keep_only(frozenset(chain(*prepared)))
+            self.sampler.forget_extension()
 
     def fail(self, part: IntervalPart, clip: Clip) -> None:
         """Take note that a part of a clip cannot be made, as long as its keys are present."""

@@ -44,6 +44,16 @@ class KnownInterval(NamedTuple):
     distortions: Series | None = None
 
     @property
+    def is_there(self) -> bool:
+        """Whether all of it can be shown: it is prepared, or its series leaves nothing out."""
+        return self.inbetweens is not None or self.is_streamed
+
+    @property
+    def is_streamed(self) -> bool:
+        """Whether the series of the positions has all of it."""
+        return self.series is not None and self.series.is_whole
+
+    @property
     def sizes(self) -> tuple[int, int, int]:
         """Bytes of what is prepared, with the samples of one key, and of both series."""
         own = 0 if self.one is None else self.one.positions.nbytes

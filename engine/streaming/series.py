@@ -69,6 +69,15 @@ class Series:
         """Memory that the arrays take, in bytes."""
         return held_bytes(self)
 
+    @property
+    def is_whole(self) -> bool:
+        """Whether no stretch is left to the direct path."""
+        if not self.pieces:
+            return False
+        ends = (0.0, *(piece.end for piece in self.pieces))
+        starts = (*(piece.start for piece in self.pieces), 1.0)
+        return all(start <= end for start, end in zip(starts, ends, strict=True))
+
     def covers(self, time: float) -> bool:
         """Tell whether the series knows the values at a time."""
         return self._piece_at(time) is not None

@@ -197,7 +197,8 @@ def _prepare(
             setattr(puppet, "fine" if is_fine else "store", IntervalStore(mesh=mesh))
 
         return _interval_job(session, kind, puppet, clip, work=partial(make, domain), done=begin)
-    lacking = store.missing(clip, frame)
+    is_edited = puppet is project.puppet and not is_fine
+    lacking = store.missing(clip, frame, is_edited=is_edited)
     if not lacking or (is_fine and not store.has_room()):
         return None
     # All at once where the hand has changed those around one key, and the ghosts are to stay

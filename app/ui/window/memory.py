@@ -35,16 +35,16 @@ class FreeMemory:
         elif self._due is not None and session.clock() >= self._due:
             self._due = None
             if project is not None:
-                _forget_extensions(project)
+                _rest(project)
             give_back()
 
 
-def _forget_extensions(project: Project) -> None:
-    """Let go of what prepares in-betweens of figures that nobody edits: it is soon made again."""
+def _rest(project: Project) -> None:
+    """Let go of what in-betweens are made with, of figures that nobody edits: it is soon there."""
     for identity, puppet in project.puppets.items():
         for store in (puppet.store, puppet.fine) if identity != project.active else ():
-            if store is not None and store.sampler is not None:
-                store.sampler.forget_extension()
+            if store is not None:
+                store.rest()
 
 
 def share_heap() -> None:

@@ -303,6 +303,44 @@ def test_memory_is_bounded_and_the_farthest_series_makes_room(clip, prepared, mo
     assert prepared.nbytes <= prepared.budget
 
 
+def test_at_rest_series_alone_show_all_of_what_nobody_edits(clip, prepared):
+    prepared.pin([clip], [], 0)
+    stream(prepared, clip, 0)
+    assert all(prepared.interval(clip, number).is_streamed for number in range(3))
+    frames = (0.5, 4, 9.9, 13, 21.7, 30)
+    before = [prepared.positions(clip, frame) for frame in frames]
+    size = prepared.nbytes
+    prepared.rest()
+    assert prepared.nbytes < size / 2
+    for frame, places in zip(frames, before, strict=True):
+        assert np.array_equal(prepared.positions(clip, frame), places)
+        assert prepared.is_exact(clip, frame)
+    assert prepared.has(clip)
+    assert prepared.velocity_shares(clip).keys() == {10, 20}
+    assert prepared.missing(clip, 0, is_edited=False) == []
+    assert prepared.next_build(clip, 0, heat=True) is None
+    # What is edited is measured, and made of its in-betweens: they are made again.
+    assert prepared.prepared(clip) is None
+    assert prepared.missing(clip, 0) == [0, 1, 2]
+    prepare(prepared, clip)
+    assert len(prepared.prepared(clip)) == 3
+    assert all(prepared.interval(clip, number).is_streamed for number in range(3))
+
+
+def test_what_no_series_has_all_of_stays_prepared_at_rest(clip, prepared):
+    prepared.pin([clip], [], 0)
+    stream(prepared, clip, 0)
+    pair = pair_of(clip, 1)
+    known = prepared.interval(clip, 1)
+    holed = replace(known.series, pieces=known.series.pieces[1:])
+    prepared.take(FoundIntervals(None, {pair: KnownInterval(known.poses, series=holed)}))
+    prepared.rest()
+    assert prepared.interval(clip, 1).inbetweens is not None
+    assert prepared.interval(clip, 0).inbetweens is None
+    assert prepared.has(clip)
+    assert np.isfinite(prepared.positions(clip, 11)).all()
+
+
 @pytest.mark.parametrize("frame", [0, 25])
 def test_what_did_not_fit_is_not_built_over_and_over(clip, found, monkeypatch, frame):
     monkeypatch.setattr("app.motion.interval_store.EXPECTED", 1)

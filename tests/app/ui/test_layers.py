@@ -1003,6 +1003,13 @@ def test_what_prepares_layers_that_nobody_edits_is_let_go_and_comes_again(window
     window.frames(3)
     assert body.store.sampler._extension is None
     assert arm.store.sampler._extension is not None
+    # Series show what nobody edits; what they are made from is made again when the layer is chosen.
+    assert body.store.prepared(clip_of(keyed.document, body_id)) is None
+    assert arm.store.prepared(keyed.clip) is not None
+    assert body.shown.is_current
+    window.act(layering.choose, body_id)
+    window.settle()
+    assert body.store.prepared(keyed.clip) is not None
     window.act(editing.edit, key_commands.move_keys(body_id, [BODY[1]], 1))
     window.settle()
     assert body.store.has(clip_of(keyed.document, body_id))
