@@ -274,7 +274,7 @@ def quick_friend() -> Document:
     document = load_project(FRIEND)
     moving = [figure for figure in document.figures if len(figure.keys) > 1]
     figures = tuple(replace(figure, variant=Variant.NU) for figure in moving)
-    return replace(document, figures=figures)
+    return replace(document, figures=figures, choices=())
 
 
 def export_friend(folder: Path, name: str, background: str, project: Path = FRIEND) -> int:

@@ -366,7 +366,8 @@ def _random_settings_command(rng: np.random.Generator, document: Document) -> Co
 def _camera_commands(rng: np.random.Generator, document: Document) -> list[Command]:
     frame, to = (int(at) for at in rng.integers(50, size=2))
     at = document.camera[0].frame if document.camera else frame
-    faded = document.figures[0].opacities
+    faded, moved = document.figure(0).opacities, document.figure(0).movement
+    other = int(rng.integers(len(document.figures)))
     key = CameraKey(frame=frame, centre=inside(rng), zoom=rng.uniform(0.1, 9), turn=rng.normal())
     return [
         filming_commands.key_camera(key),
@@ -374,6 +375,10 @@ def _camera_commands(rng: np.random.Generator, document: Document) -> list[Comma
         filming_commands.delete_camera_key(at),
         filming_commands.key_opacity(0, frame, rng.random()),
         filming_commands.delete_opacity_key(0, faded[0].frame if faded else frame),
+        filming_commands.key_movement(0, frame, inside(rng), rng.normal()),
+        filming_commands.delete_movement_key(0, moved[0].frame if moved else frame),
+        filming_commands.place_at(0, Placing(frame, other, bool(rng.integers(2)))),
+        filming_commands.unplace_at(0, frame),
     ]
 
 

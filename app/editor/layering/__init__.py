@@ -42,7 +42,11 @@ from app.editor.layering.filming import (
     fade_here as fade_here,
     key_camera as key_camera,
     look_through as look_through,
+    move_here as move_here,
+    place_here as place_here,
     unfade_here as unfade_here,
+    unmove_here as unmove_here,
+    unplace_here as unplace_here,
 )
 from app.editor.layering.hanging import (
     hand_over as hand_over,

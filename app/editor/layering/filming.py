@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.document import CameraKey, camera_at, filming_commands
+from app.document import CameraKey, Placing, camera_at, filming_commands
 from app.editor.actions import editing, playback
 from app.editor.project import Project, view_around
 from app.editor.session import Session, with_project
@@ -73,3 +73,40 @@ def unfade_here(session: Session, project: Project, identity: int) -> None:
     """Take back what is said of a layer's opacity at the playhead."""
     frame = playback.current_frame(session, project)
     editing.edit(session, filming_commands.delete_opacity_key(identity, frame))
+
+
+@with_project
+def move_here(
+    session: Session, project: Project, identity: int, shift: complex, turn: float
+) -> None:
+    """Set where a whole layer is from key to key, at the playhead."""
+    frame = playback.current_frame(session, project)
+    editing.edit(session, filming_commands.key_movement(identity, frame, shift, turn))
+
+
+@with_project
+def unmove_here(session: Session, project: Project, identity: int) -> None:
+    """Take back what is said of a layer's movement at the playhead."""
+    frame = playback.current_frame(session, project)
+    editing.edit(session, filming_commands.delete_movement_key(identity, frame))
+
+
+@with_project
+def place_here(
+    session: Session,
+    project: Project,
+    identity: int,
+    beside: int | None,
+    in_front: bool = True,  # noqa: FBT001, FBT002 - of an action
+) -> None:
+    """Paint a layer beside another one from the playhead on, or beside none where it lies."""
+    frame = playback.current_frame(session, project)
+    placing = Placing(frame, beside, in_front)
+    editing.edit(session, filming_commands.place_at(identity, placing))
+
+
+@with_project
+def unplace_here(session: Session, project: Project, identity: int) -> None:
+    """Take back what is said of a layer's order from the playhead on."""
+    frame = playback.current_frame(session, project)
+    editing.edit(session, filming_commands.unplace_at(identity, frame))

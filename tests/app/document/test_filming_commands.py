@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from documents import altered, disc_document
 
@@ -9,8 +10,12 @@ from app.document import (
     HOLD,
     CameraKey,
     FrameRange,
+    Placing,
     camera_at,
     filming_commands as filming,
+    in_order,
+    layer_commands,
+    movement_at,
     opacity_at,
 )
 from app.errors import LissomError
@@ -50,3 +55,34 @@ def test_opacity_is_keyed_and_the_last_key_leaves_what_it_said():
     assert (none.figures[0].opacities, none.figures[0].opacity) == ((), 0.5)
     with pytest.raises(LissomError, match="no key at frame 3"):
         filming.delete_opacity_key(0, 3)(altered(faded))
+
+
+def test_a_figure_is_moved_from_key_to_key():
+    document = filming.key_movement(0, 24, 30 + 10j, 0.5)(
+        filming.key_movement(0, 0, 0j, 0.0)(EMPTY)
+    )
+    figure = document.figure(0)
+    at = movement_at(document, figure, 24)
+    assert abs(at.on(np.array([figure.pivot]))[0] - figure.pivot - 30 - 10j) < 1e-12
+    assert abs(at.factor - np.exp(0.5j)) < 1e-12
+    # Midway between two keys at rest.
+    half = movement_at(document, figure, 12).on(np.array([figure.pivot]))[0]
+    assert abs(half - figure.pivot - 15 - 5j) < 1e-9
+    changed = filming.key_movement(0, 24, 8j, 0.5)(document)
+    assert [key.shift for key in changed.figure(0).movement] == [0, 8j]
+    assert filming.key_movement(0, 24, 8j, 0.5)(changed) is changed
+    gone = filming.delete_movement_key(0, 24)(filming.delete_movement_key(0, 0)(changed))
+    assert gone.figure(0).movement == ()
+
+
+def test_a_layer_is_painted_beside_another_one_from_a_frame_on():
+    document = layer_commands.duplicate_figure(0)(layer_commands.duplicate_figure(0)(EMPTY))
+    assert [each.id for each in in_order(document, 0)] == [0, 2, 1]
+    placed = filming.place_at(0, Placing(12, 1, in_front=True))(document)
+    assert [each.id for each in in_order(placed, 11)] == [0, 2, 1]
+    assert [each.id for each in in_order(placed, 12)] == [2, 1, 0]
+    behind = filming.place_at(0, Placing(12, 1, in_front=False))(placed)
+    assert [each.id for each in in_order(behind, 12)] == [2, 0, 1]
+    assert filming.unplace_at(0, 12)(behind).figure(0).placings == ()
+    with pytest.raises(LissomError):
+        filming.place_at(0, Placing(12, 0))(document)

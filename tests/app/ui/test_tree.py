@@ -7,7 +7,7 @@ from imgui_bundle import ImVec2
 from layered import openraster
 from PIL import Image, ImageDraw
 
-from app.document import choice_commands, group_commands, is_visible, key_commands
+from app.document import choice_commands, group_commands, in_order, is_visible, key_commands
 from app.editor import layering
 from app.editor.actions import editing, playback, posing
 
@@ -313,3 +313,25 @@ def test_a_group_of_mouths_is_offered_as_a_choice(window, scene, ids, use):
     window.frames(3)
     use(lambda robot: robot.item_click("**/No"))
     assert scene.declined == {"mouth"}
+
+
+def test_a_layer_is_moved_and_ordered_in_time_by_the_tab(window, scene, ids, use):
+    window.act(layering.choose, ids["stick"])
+    window.act(playback.seek, 12)
+    window.frames(3)
+    before = place(scene, "stick", window)
+    use(lambda robot: robot.item_input_value("**/##moved right", 25.0))
+    assert abs(place(scene, "stick", window) - before - 25) < 0.5
+    assert [key.frame for key in scene.document.figure(ids["stick"]).movement] == [12]
+    use(lambda robot: robot.item_click("**/No movement key at frame 12"))
+    assert scene.document.figure(ids["stick"]).movement == ()
+
+    def paint_in_front(robot):
+        robot.item_click("##painted")
+        robot.item_click(f"//$FOCUSED/###in front of {ids['oh']}")
+
+    use(paint_in_front)
+    assert [each.id for each in in_order(scene.document, 11)][-1] == ids["oh"]
+    assert [each.id for each in in_order(scene.document, 12)][-1] == ids["stick"]
+    use(lambda robot: robot.item_click("**/No change of order at frame 12"))
+    assert scene.document.figure(ids["stick"]).placings == ()

@@ -1,11 +1,11 @@
-"""Commands on what moves between keys of its own: the camera, and how opaque figures are."""
+"""Commands on what has keys of its own: the camera, and how figures fade, move and are ordered."""
 
 from dataclasses import replace
 
 from app.document.commands import keys_in_time
 from app.document.commands.command import command, figure_command
 from app.document.figure import Figure
-from app.document.layering import CameraKey, OpacityKey
+from app.document.layering import CameraKey, MoveKey, OpacityKey, Placing
 from app.document.model import Document
 from app.document.settings import FrameRange
 
@@ -51,6 +51,38 @@ def delete_opacity_key(figure: Figure, frame: int) -> Figure:
     if left:
         return replace(figure, opacities=left)
     return replace(figure, opacities=(), opacity=figure.opacities[0].opacity)
+
+
+@figure_command("Key movement")
+def key_movement(figure: Figure, frame: int, shift: complex, turn: float) -> Figure:
+    """Let a whole figure be moved and turned so at a frame, beside where its poses have it."""
+    row, new = figure.movement, MoveKey(frame=frame, shift=shift, turn=float(turn))
+    old = next((each for each in row if each.frame == frame), None)
+    if old is not None:
+        changed = keys_in_time.exchanged(row, {frame: replace(old, shift=shift, turn=new.turn)})
+        return figure if changed is row else replace(figure, movement=changed)
+    return replace(figure, movement=keys_in_time.inserted(row, new) if row else (new,))
+
+
+@figure_command("Delete movement key")
+def delete_movement_key(figure: Figure, frame: int) -> Figure:
+    """Delete a key of a figure's movement; without any it is where its poses have it."""
+    return replace(figure, movement=keys_in_time.without(figure.movement, {frame}))
+
+
+@figure_command("Set order from here on")
+def place_at(figure: Figure, placing: Placing) -> Figure:
+    """Paint a figure right in front of another one, or behind it, from a frame on."""
+    others = [each for each in figure.placings if each.frame != placing.frame]
+    placings = tuple(sorted([*others, placing], key=lambda each: each.frame))
+    return figure if placings == figure.placings else replace(figure, placings=placings)
+
+
+@figure_command("Change no order here")
+def unplace_at(figure: Figure, frame: int) -> Figure:
+    """Take back what is said of a figure's order from a frame on."""
+    placings = tuple(each for each in figure.placings if each.frame != frame)
+    return figure if placings == figure.placings else replace(figure, placings=placings)
 
 
 def _filmed(document: Document, camera: tuple[CameraKey, ...]) -> Document:

@@ -2,8 +2,9 @@
 
 from imgui_bundle import ImVec2, imgui
 
-from app.document import BLENDS, Choice, Document, Figure, Group, is_visible, opacity_at
+from app.document import BLENDS, Choice, Document, Figure, Group, is_visible
 from app.editor import Action, Project, do, layering
+from app.ui.panels.layers.in_time import draw_movement, draw_opacity, draw_order
 from app.ui.style import (
     FILL,
     LABEL_WIDTH,
@@ -31,7 +32,7 @@ def draw_settings(project: Project, look: Look, figure: Figure, frame: int) -> l
     )
     if entered or (imgui.is_item_deactivated_after_edit() and name != figure.name):
         actions.append(do(layering.rename, identity, name))
-    actions += _opacity(project.document, look, figure, frame)
+    actions += draw_opacity(project.document, look, figure, frame)
     label(look, "Blend")
     if imgui.begin_combo("##blend", figure.blend):
         actions += [
@@ -53,33 +54,14 @@ def draw_settings(project: Project, look: Look, figure: Figure, frame: int) -> l
         actions.append(do(layering.refer, identity))
     actions += _switch(project.document, look, figure, frame)
     actions += _joint(project, look, figure, frame)
+    actions += draw_movement(project.document, look, figure, frame)
+    actions += draw_order(project.document, look, figure, frame)
     if figure.still:
         small(look, "A still picture: it is shown as it was drawn.")
         if imgui.button("Let it be posed", ImVec2(FILL, 0)):
             actions.append(do(layering.stand_up, identity))
     elif imgui.button("Make it a still picture", ImVec2(FILL, 0)):
         actions.append(do(layering.stand_still, identity))
-    return actions
-
-
-def _opacity(document: Document, look: Look, figure: Figure, frame: int) -> list[Action]:
-    """Draw how opaque a layer is at a frame, and what keys it there."""
-    actions, opacity = [], opacity_at(document, figure, frame)
-    label(look, "Opacity")
-    hint = "How much of what lies behind is covered"
-    if figure.opacities:
-        hint += "; a change is a key at this frame"
-    faded = slider(look, "opacity", 100 * opacity, PERCENT, text="%.0f %%", hint=hint)
-    if faded is not None:
-        fade = layering.fade_here if figure.opacities else layering.fade
-        actions.append(do(fade, figure.id, min(max(faded.value / 100, 0.0), 1.0)))
-    is_keyed = any(key.frame == frame for key in figure.opacities)
-    changed, _ = imgui.checkbox("Opacity keyed here", is_keyed)
-    tip("It fades evenly from key to key")
-    if changed and is_keyed:
-        actions.append(do(layering.unfade_here, figure.id))
-    elif changed:
-        actions.append(do(layering.fade_here, figure.id, opacity))
     return actions
 
 
