@@ -31,6 +31,9 @@ VERBS = (
 # Calls that say what a thing is, and compute nothing.
 # That BLAS keeps to one thread is said once for all that the engine does.
 DECLARATIONS = {"RigidMotion", "TypeVar", "field", "get_args", "threadpool_limits"}
+# Ready motions are data, of these kinds of values.
+DECLARATIONS |= {"BodyKind", "Curve", "Gait", "Leap", "Limbs", "Motion", "Swell", "Wave", "even"}
+DECLARATIONS |= {"MappingProxyType"}
 
 
 def module_files() -> dict[str, Path]:

@@ -1,6 +1,7 @@
 """An animation written as a small JSON text: handles, keys and where each key drags the handles."""
 
 import json
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from math import inf
@@ -66,7 +67,7 @@ OWN_FIELDS = ("anchor", "handles", *MOVING_FIELDS, "stiff")
 STAGE_FIELDS = ("figures", "choices")
 FIGURE_FIELDS = ("layer", "variant", "bounds", "still", *OWN_FIELDS, "attach", "visible", "order")
 HANDLE_FIELDS = ("at", "front", "extent", "still")
-KEY_FIELDS = ("frame", "targets", "pull", "ease", "passing", "front")
+KEY_FIELDS = ("frame", "targets", "turn", "pull", "ease", "passing", "front")
 BOUND_FIELDS = ("k", "sigma_a", "sigma_b")
 
 
@@ -80,6 +81,8 @@ class PoseKey:
     ease: Easing = LINEAR
     passing: Passing = Passing.THROUGH
     fronts: Mapping[str, float] = field(default_factory=dict)
+    # By how much the shape turns at handles, in radians; others turn as they did before.
+    turns: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -306,7 +309,11 @@ def _key(content: object, where: str, handles: Mapping[str, ScriptHandle]) -> Po
         name: as_number(front, f"{where}.front.{name}")
         for name, front in as_object(key.get("front", {}), f"{where}.front").items()
     }
-    for name in (*targets, *fronts):
+    turns = {
+        name: math.radians(as_number(turn, f"{where}.turn.{name}"))
+        for name, turn in as_object(key.get("turn", {}), f"{where}.turn").items()
+    }
+    for name in (*targets, *fronts, *turns):
         require_handle(name, handles, where)
     pull = as_number(key["pull"], f"{where}.pull") if "pull" in key else inf
     if not pull > 0:
@@ -319,4 +326,5 @@ def _key(content: object, where: str, handles: Mapping[str, ScriptHandle]) -> Po
         ease=ease,
         passing=passing,
         fronts=fronts,
+        turns=turns,
     )

@@ -264,6 +264,7 @@ def _wishes_alike(rig: Rig, pose: Pose, other: Pose) -> bool:
     """Tell whether two poses are wanted alike where they are held."""
     return all(
         abs(pose.targets[held.id].position - other.targets[held.id].position) <= SAME_PLACE
+        and pose.targets[held.id].rotation == other.targets[held.id].rotation
         for held in rig.handles
     )
 
@@ -272,7 +273,8 @@ def _solve(rig: Rig, start: Pose, key: PoseKey) -> tuple[Pose, list[str]]:
     """Drag the handles from a pose to the targets of a key."""
     figure = rig.figure
     identities = {handle.name: handle.id for handle in figure.handles}
-    named = {identities[name]: Target(position=place) for name, place in key.targets.items()}
+    named = {identities[name]: place for name, place in key.targets.items()}
+    turned = {identities[name]: turn for name, turn in key.turns.items()}
     carried = figure.followers & named.keys()
     notices = [
         f"frame {key.frame}: {figure.handle(identity).name!r} follows by its spring, and goes "
@@ -281,8 +283,15 @@ def _solve(rig: Rig, start: Pose, key: PoseKey) -> tuple[Pose, list[str]]:
     ]
     for identity in carried:
         del named[identity]
-    targets = {**start.targets, **named}
-    if all(start.targets[i].position == target.position for i, target in targets.items()):
+    targets = dict(start.targets)
+    for identity in named.keys() | (turned.keys() - figure.followers):
+        before = targets[identity]
+        place = named.get(identity, before.position)
+        targets[identity] = Target(position=place, rotation=turned.get(identity, before.rotation))
+    if all(
+        (start.targets[i].position, start.targets[i].rotation) == (wished.position, wished.rotation)
+        for i, wished in targets.items()
+    ):
         return start, notices
     hands = tuple(Hand((identity,), key.pull) for identity in named)
     drag = _at_rest(Drag.begin(rig, start), targets, hands)

@@ -6,31 +6,48 @@ from types import MappingProxyType
 
 from engine.errors import EngineError
 
-MOST_LINKS = 24
-LINK = "joint.{}"
+_TRUNK = {"hips": "", "chest": "hips", "neck": "chest", "head": "neck", "tail": "hips"}
 _ARMS = {
-    name.format(side): parent.format(side)
-    for side in "LR"
-    for name, parent in {
-        "shoulder.{}": "chest",
-        "elbow.{}": "shoulder.{}",
-        "hand.{}": "elbow.{}",
-    }.items()
+    "shoulder.L": "chest",
+    "elbow.L": "shoulder.L",
+    "hand.L": "elbow.L",
+    "shoulder.R": "chest",
+    "elbow.R": "shoulder.R",
+    "hand.R": "elbow.R",
 }
 _LEGS = {
-    name.format(side): parent.format(side)
-    for side in "LR"
-    for name, parent in {"hip.{}": "hips", "knee.{}": "hip.{}", "foot.{}": "knee.{}"}.items()
+    "hip.L": "hips",
+    "knee.L": "hip.L",
+    "foot.L": "knee.L",
+    "hip.R": "hips",
+    "knee.R": "hip.R",
+    "foot.R": "knee.R",
 }
-_TRUNK = {"hips": "", "chest": "hips", "neck": "chest", "head": "neck", "tail": "hips"}
 _BODY: Mapping[str, str] = MappingProxyType(_TRUNK | _ARMS | _LEGS)
 _LINKS: Mapping[str, str] = MappingProxyType(
-    {LINK.format(n): LINK.format(n - 1) if n > 1 else "" for n in range(1, MOST_LINKS + 1)}
+    {
+        "joint.1": "",
+        "joint.2": "joint.1",
+        "joint.3": "joint.2",
+        "joint.4": "joint.3",
+        "joint.5": "joint.4",
+        "joint.6": "joint.5",
+        "joint.7": "joint.6",
+        "joint.8": "joint.7",
+        "joint.9": "joint.8",
+        "joint.10": "joint.9",
+        "joint.11": "joint.10",
+        "joint.12": "joint.11",
+        "joint.13": "joint.12",
+        "joint.14": "joint.13",
+        "joint.15": "joint.14",
+        "joint.16": "joint.15",
+    }
 )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Kind:
+class BodyKind:
     """What joints a body may have; any of them may be left out that no motion needs.
 
     Of four legs, the front ones are the arms of a biped: shoulder, elbow, hand. Seen from the side
@@ -54,55 +71,61 @@ class Kind:
         """Raise an `EngineError` where there is a joint that the kind does not have."""
         for joint in joints:
             if joint not in self.parents:
-                some = ", ".join(list(self.parents)[:MOST_LINKS])
-                known = some if self.parents else "none: it moves as a whole"
+                known = ", ".join(self.parents) or "none: it moves as a whole"
                 raise EngineError(f"{self.name!r} has no joint {joint!r}; it has {known}")
 
 
-_SOCKETS = {"hip.L", "hip.R", "shoulder.L", "shoulder.R"}
-_ALWAYS = tuple(joint for joint in _BODY if joint not in {"neck", "tail"})
+_LOWER_ARMS = ("elbow.L", "hand.L", "elbow.R", "hand.R")
+_LOWER_LEGS = ("knee.L", "foot.L", "knee.R", "foot.R")
+_ALWAYS = ("hips", "chest", "head", *_ARMS, *_LEGS)
 
-BIPED_FRONT = Kind(
+BIPED_FRONT = BodyKind(
     name="biped-front",
     label="Two legs, from the front",
     hint="A person, a robot, a bear that stands",
     parents=_BODY,
     usual=_ALWAYS,
 )
-BIPED_SIDE = Kind(
+BIPED_SIDE = BodyKind(
     name="biped-side",
     label="Two legs, from the side",
     hint="A person, a bird, a kangaroo",
     parents=_BODY,
-    usual=tuple(joint for joint in _ALWAYS if joint not in _SOCKETS),
+    usual=("hips", "chest", "head", *_LOWER_ARMS, *_LOWER_LEGS),
 )
-FOUR_LEGS = Kind(
+FOUR_LEGS = BodyKind(
     name="four-legs",
     label="Four legs, from the side",
     hint="A horse, a dog, a lizard",
     parents=_BODY,
-    usual=tuple(joint for joint in _BODY if joint not in _SOCKETS | {"neck"}),
+    usual=("hips", "chest", "head", "tail", *_LOWER_ARMS, *_LOWER_LEGS),
 )
-CHAIN = Kind(
+CHAIN = BodyKind(
     name="chain",
     label="A chain",
     hint="A snake, a fish, a tail, a scarf: from the end that leads, or is held, to the other one",
     parents=_LINKS,
-    usual=tuple(_LINKS)[:7],
+    usual=("joint.1", "joint.2", "joint.3", "joint.4", "joint.5", "joint.6", "joint.7"),
 )
-ANYTHING = Kind(
+ANYTHING = BodyKind(
     name="anything",
     label="Anything else",
     hint="A ghost, a tree, a teapot: it moves as a whole, without joints",
     parents=MappingProxyType({}),
     usual=(),
 )
-KINDS: Mapping[str, Kind] = MappingProxyType(
-    {kind.name: kind for kind in (BIPED_FRONT, BIPED_SIDE, FOUR_LEGS, CHAIN, ANYTHING)}
+KINDS: Mapping[str, BodyKind] = MappingProxyType(
+    {
+        "biped-front": BIPED_FRONT,
+        "biped-side": BIPED_SIDE,
+        "four-legs": FOUR_LEGS,
+        "chain": CHAIN,
+        "anything": ANYTHING,
+    }
 )
 
 
-def kind_named(name: str) -> Kind:
+def kind_named(name: str) -> BodyKind:
     """Return the kind of a name; raise an `EngineError` where there is none."""
     if name not in KINDS:
         raise EngineError(f"there is no kind {name!r}; the kinds are {', '.join(KINDS)}")

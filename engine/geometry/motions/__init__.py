@@ -1,0 +1,19 @@
+"""Ready motions: what a body does over a cycle, for whatever body it is.
+
+In: the joints of a drawing by name, and a motion with its parameters.
+Out: where each joint is at each moment.
+Imports: `engine.arrays`, `engine.errors`.
+"""
+
+from engine.geometry.motions.body import Body as Body
+from engine.geometry.motions.kinds import (
+    KINDS as KINDS,
+    BodyKind as BodyKind,
+    kind_named as kind_named,
+)
+from engine.geometry.motions.library import MOTIONS as MOTIONS
+from engine.geometry.motions.motion import (
+    Moment as Moment,
+    Motion as Motion,
+    Parameters as Parameters,
+)

@@ -1,0 +1,84 @@
+"""A drawing as motions see it: its joints at rest, its lengths, and which way it looks."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
+from typing import Self
+
+import numpy as np
+
+from engine.errors import EngineError
+from engine.geometry.motions.kinds import BodyKind
+
+SIDES = {"L": "R", "R": "L"}
+
+
+def other_side(joint: str) -> str:
+    """Return the joint on the other side; one without a side is its own."""
+    name, dot, side = joint.rpartition(".")
+    return f"{name}.{SIDES[side]}" if dot and side in SIDES else joint
+
+
+def plain(joint: str) -> str:
+    """Return a joint's name without its side."""
+    name, dot, side = joint.rpartition(".")
+    return name if dot and side in SIDES else joint
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Body:
+    """The joints of a drawing at rest.
+
+    Parameters
+    ----------
+    kind : BodyKind
+    joints : mapping of str to complex
+        Places at rest, y up; of a kind without joints, any points of it by any names.
+    box : tuple of complex
+        The lower left and the upper right corner of the drawing.
+    facing : int
+        1 where it looks to the right, -1 to the left; from the front 1.
+
+    Raises
+    ------
+    EngineError
+        If the kind has no such joint.
+    """
+
+    kind: BodyKind
+    joints: Mapping[str, complex]
+    box: tuple[complex, complex]
+    facing: int = 1
+    parents: Mapping[str, str] = field(init=False)
+
+    def __post_init__(self) -> None:
+        joints, parents = dict(self.joints), dict.fromkeys(self.joints, "")
+        if self.kind.parents:
+            self.kind.require_joints(self.joints)
+            joints = {name: joints[name] for name in self.kind.parents if name in joints}
+            parents = {name: self.kind.parent(name, joints) for name in joints}
+        object.__setattr__(self, "joints", MappingProxyType(joints))
+        object.__setattr__(self, "parents", MappingProxyType(parents))
+
+    def require(self, names: Iterable[str], what: str) -> None:
+        """Raise an `EngineError` where joints that something needs are not there."""
+        missing = [name for name in names if name not in self.joints]
+        if missing:
+            raise EngineError(f"{what} needs {', '.join(missing)} of {self.kind.name!r}")
+
+    def mirrored(self) -> Self:
+        """Return it with its sides swapped, looking the other way."""
+        joints = {other_side(name): place for name, place in self.joints.items()}
+        return replace(self, joints=joints, facing=-self.facing)
+
+    def limb(self, tip: str) -> tuple[str, ...]:
+        """Return the joints of an arm or a leg from its root, which is on the trunk, to its tip."""
+        path = [tip]
+        while path[-1] and plain(path[-1]) not in {"hip", "shoulder", "hips", "chest"}:
+            path.append(self.parents[path[-1]])
+        return tuple(name for name in reversed(path) if name)
+
+    def length(self, joints: Iterable[str]) -> float:
+        """Return how long the way is from joint to joint."""
+        places = np.array([self.joints[name] for name in joints])
+        return float(np.abs(np.diff(places)).sum())

@@ -1,0 +1,185 @@
+"""What goes on two legs; and how all walk."""
+
+from engine.geometry.motions.curves import Curve, even
+from engine.geometry.motions.library.four_legs import WALK_ON_FOUR
+from engine.geometry.motions.limbs import Limbs
+from engine.geometry.motions.motion import Motion
+from engine.geometry.motions.steps import Gait
+
+LEFT_RIGHT = (("foot.L", 0.0), ("foot.R", 0.5))
+FEET = ("hips", "foot.L", "foot.R")
+
+# Contact, down, passing, up, for each foot: the body is lowest after a foot came down, and highest
+# as the other one swings past it. Arms go against legs.
+WALK = Motion(
+    name="walk",
+    label="Walk",
+    hint="One foot after the other, arms against legs",
+    seconds=1.0,
+    keys=12,
+    courses={
+        "biped-side": Limbs(
+            gait=Gait(stance=0.6, stride=1.0, lift=0.13, falls=LEFT_RIGHT, roll=25),
+            rise=even(0.0, -0.02, 0.0, 0.02, 0.0, -0.02, 0.0, 0.02),
+            turns={
+                "chest": even(-3, -4, -3, -2, -3, -4, -3, -2),
+                "head": even(3, 5, 3, 1, 3, 5, 3, 1),
+                "elbow": even(-22, 0, 22, 0),
+                "hand": even(6, 10, 22, 14),
+                "tail": even(0, 6, 0, -6),
+            },
+            needed=FEET,
+        ),
+        "biped-front": Limbs(
+            gait=Gait(stance=0.6, stride=0.3, lift=0.13, falls=LEFT_RIGHT, gathered=0.0),
+            rise=even(0.0, -0.02, 0.0, 0.025, 0.0, -0.02, 0.0, 0.025),
+            shift=even(0.0, -0.05, -0.05, 0.0, 0.05, 0.05),
+            turns={
+                "hips": even(0, 2, 2, 0, -2, -2),
+                "chest": even(0, 1.5, 2, 0, -1.5, -2),
+                "head": even(0, -2, -3, 0, 2, 3),
+                "elbow": even(-6, 2, 10, 2),
+                "hand": even(0, 4, 12, 6),
+                "tail": even(0, 6, 0, -6),
+            },
+            needed=FEET,
+        ),
+        "four-legs": WALK_ON_FOUR,
+    },
+)
+
+# Both feet leave the ground between steps.
+RUN = Motion(
+    name="run",
+    label="Run",
+    hint="Long steps, and a moment in the air between them",
+    seconds=2 / 3,
+    keys=12,
+    courses={
+        "biped-side": Limbs(
+            gait=Gait(stance=0.36, stride=1.7, lift=0.3, falls=LEFT_RIGHT, roll=40),
+            rise=Curve(
+                ((0.0, 0.0), (0.17, -0.05), (0.42, 0.05), (0.5, 0.0), (0.67, -0.05), (0.92, 0.05))
+            ),
+            turns={
+                "chest": even(-9, -11, -9, -8, -9, -11, -9, -8),
+                "head": even(7, 9, 7, 6, 7, 9, 7, 6),
+                "elbow": even(-34, 0, 34, 0),
+                "hand": even(28, 34, 44, 36),
+                "tail": even(0, 9, 0, -9),
+            },
+            needed=FEET,
+        ),
+        "biped-front": Limbs(
+            gait=Gait(stance=0.36, stride=0.5, lift=0.24, falls=LEFT_RIGHT, gathered=0.0),
+            rise=Curve(
+                ((0.0, 0.0), (0.17, -0.05), (0.42, 0.05), (0.5, 0.0), (0.67, -0.05), (0.92, 0.05))
+            ),
+            shift=even(0.0, -0.03, -0.03, 0.0, 0.03, 0.03),
+            turns={
+                "hips": even(0, 3, 3, 0, -3, -3),
+                "chest": even(0, 2, 3, 0, -2, -3),
+                "head": even(0, -3, -4, 0, 3, 4),
+                "elbow": even(-4, 8, 22, 8),
+                "hand": even(6, 14, 28, 16),
+                "tail": even(0, 9, 0, -9),
+            },
+            needed=FEET,
+        ),
+    },
+)
+
+_RAISED = even(0, 30, 62, 66, 62, 66, 62, 66, 62, 46, 12, 0)
+_SHAKEN = even(0, 16, 56, 12, 56, 12, 56, 12, 56, 26, 6, 0)
+_GREETING = {
+    "chest": even(0, 1, 2, 3, 2, 3, 2, 3, 2, 1, 0, 0),
+    "head": even(0, 2, 4, 2, 4, 2, 4, 2, 4, 2, 0, 0),
+}
+WAVE = Motion(
+    name="wave",
+    label="Wave",
+    hint="An arm goes up, waves and comes down",
+    seconds=2.0,
+    keys=24,
+    courses={
+        kind: Limbs(
+            turns=_GREETING,
+            single={"elbow.R": _RAISED, "hand.R": _SHAKEN},
+            needed=("hips", "hand.R"),
+        )
+        for kind in ("biped-front", "biped-side")
+    },
+)
+
+NOD = Motion(
+    name="nod",
+    label="Nod",
+    hint="The head says yes, twice",
+    seconds=1.5,
+    keys=12,
+    courses={
+        "biped-side": Limbs(
+            turns={
+                "chest": even(0, -2, -1, -2, -1, 0),
+                "neck": even(0, -5, 1, -4, 1, 0),
+                "head": even(0, -5, -14, -4, 3, -4, -12, -4, 2, 1, 0, 0),
+            },
+            needed=("hips", "head"),
+        ),
+        # From the front a head that nods comes down and up again.
+        "biped-front": Limbs(
+            turns={"head": even(0, 1, 2, 1, 0, -1, -2, -1)},
+            rise=even(0, -0.02, -0.06, -0.02, 0.01, -0.02, -0.05, -0.02, 0.005, 0, 0, 0),
+            gait=Gait(stance=1.0, stride=0.0, lift=0.0, falls=LEFT_RIGHT, gathered=0.0),
+            needed=("hips", "head"),
+        ),
+    },
+)
+
+# Crouch, take off, fly, land, and come up.
+_LEAP = Limbs(
+    gait=Gait(
+        stance=0.62,
+        stride=0.0,
+        lift=0.42,
+        falls=(("foot.L", 0.72), ("foot.R", 0.72)),
+        gathered=0.0,
+        roll=24,
+    ),
+    lag=0.0,
+    rise=Curve(
+        (
+            (0.0, 0.0),
+            (0.2, -0.24),
+            (0.34, 0.0),
+            (0.53, 0.46),
+            (0.72, 0.0),
+            (0.82, -0.2),
+            (0.94, -0.03),
+        )
+    ),
+    turns={
+        "chest": Curve(
+            ((0.0, 0), (0.2, -12), (0.36, 2), (0.55, 0), (0.72, -3), (0.82, -10), (0.94, -2))
+        ),
+        "head": Curve(((0.0, 0), (0.2, 8), (0.36, 4), (0.55, -4), (0.72, 2), (0.82, 6), (0.94, 1))),
+        "elbow": Curve(
+            ((0.0, 0), (0.2, -26), (0.38, 30), (0.55, 44), (0.72, 20), (0.82, -6), (0.94, -3))
+        ),
+        "hand": Curve(
+            ((0.0, 0), (0.2, 8), (0.38, 20), (0.55, 26), (0.72, 16), (0.82, 10), (0.94, 2))
+        ),
+        "tail": Curve(
+            ((0.0, 0), (0.2, 10), (0.38, -14), (0.55, -6), (0.72, 10), (0.82, 14), (0.94, 3))
+        ),
+    },
+    needed=FEET,
+)
+JUMP = Motion(
+    name="jump",
+    label="Jump",
+    hint="Crouch, leap, land and rise again",
+    seconds=1.25,
+    keys=15,
+    courses={"biped-side": _LEAP, "biped-front": _LEAP},
+)

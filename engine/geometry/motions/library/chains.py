@@ -1,0 +1,22 @@
+"""What bends like a snake, a fish, a tail or a scarf."""
+
+from engine.geometry.motions.motion import Motion
+from engine.geometry.motions.waves import Wave
+
+SLITHER = Motion(
+    name="slither",
+    label="Slither",
+    hint="A wave runs from the head to the tail",
+    seconds=1.5,
+    keys=12,
+    courses={"chain": Wave(degrees=32, waves=1.0, first=0.6)},
+)
+
+WAG = Motion(
+    name="wag",
+    label="Wag",
+    hint="It is held at its first joint and swings, its tip last",
+    seconds=1.0,
+    keys=12,
+    courses={"chain": Wave(degrees=34, waves=0.35, first=0.15, held=True)},
+)

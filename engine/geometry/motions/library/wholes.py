@@ -1,0 +1,54 @@
+"""What needs no joints."""
+
+from engine.geometry.motions.curves import Curve, Leap, even
+from engine.geometry.motions.motion import Motion
+from engine.geometry.motions.swells import Swell
+
+BREATHE = Motion(
+    name="breathe",
+    label="Breathe",
+    hint="It swells and sinks, slowly",
+    seconds=3.0,
+    keys=8,
+    courses={
+        "anything": Swell(
+            swell=even(0.0, 0.03, 0.06, 0.05, 0.025, 0.005),
+            stretch=even(0.0, 0.01, 0.02, 0.018, 0.008, 0.0),
+        )
+    },
+)
+
+SWAY = Motion(
+    name="sway",
+    label="Sway",
+    hint="It leans from side to side on its foot, as in the wind",
+    seconds=2.5,
+    keys=12,
+    courses={
+        "anything": Swell(lean=even(0.0, 11, 13, 0.0, -11, -13), stretch=even(0, -0.01, -0.01))
+    },
+)
+
+HOP = Motion(
+    name="hop",
+    label="Hop",
+    hint="It squashes, stretches into the air and squashes as it lands",
+    seconds=1.0,
+    keys=16,
+    courses={
+        "anything": Swell(
+            stretch=Curve(
+                (
+                    (0.0, -0.02),
+                    (0.14, -0.22),
+                    (0.3, 0.1),
+                    (0.4, 0.14),
+                    (0.53, 0.02),
+                    (0.7, 0.1),
+                    (0.82, -0.2),
+                )
+            ),
+            rise=Leap(0.28, 0.76, 0.3),
+        )
+    },
+)

@@ -1,0 +1,157 @@
+"""Motions: what a body does over a cycle, told apart from whose body it is."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from engine.errors import EngineError
+from engine.geometry.motions.body import Body, other_side
+
+# How far each parameter goes.
+RANGES: Mapping[str, tuple[float, float]] = {
+    "speed": (0.1, 4.0),
+    "size": (0.05, 2.0),
+    "energy": (0.0, 2.0),
+}
+LEAST_FRAMES = 12
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Parameters:
+    """How a motion is given.
+
+    Raises
+    ------
+    EngineError
+        If one of them is out of its range.
+    """
+
+    speed: float = 1.0  # how many times as fast as usual
+    size: float = 1.0  # how far limbs swing, and how far steps go
+    energy: float = 1.0  # how much it bounces and sways, beside what limbs do
+    mirrored: bool = False  # as in a mirror: the other arm waves, a walk goes the other way
+    start: float = 0.0  # the share of the cycle at which it begins
+    travel: bool = False  # whether it gets on in the picture, and does not stay on the spot
+
+    def __post_init__(self) -> None:
+        for name, (least, most) in RANGES.items():
+            value = getattr(self, name)
+            if not least <= value <= most:
+                raise EngineError(f"{name} is from {least:g} to {most:g}, not {value:g}")
+        if not 0 <= self.start < 1:
+            raise EngineError(
+                f"start is a share of the cycle, from 0 to below 1, not {self.start:g}"
+            )
+
+
+class Moment(NamedTuple):
+    """Where joints are at one moment, how far some turn from rest, and which stand."""
+
+    places: Mapping[str, complex]
+    turns: Mapping[
+        str, float
+    ]  # in radians, counter-clockwise; joints that are not named turn freely
+    standing: frozenset[str]
+
+
+class Performance(ABC):
+    """What a motion does with one body, on the spot."""
+
+    @abstractmethod
+    def at(self, phase: float) -> Moment:
+        """Return a moment at a phase in [0, 1)."""
+
+    @property
+    def stride(self) -> float:
+        """How far the body gets on over a cycle, to the right, in pixels; 0 without steps."""
+        return 0.0
+
+
+class Course(ABC):
+    """What a motion does with any body of a kind."""
+
+    needed: tuple[str, ...] = ()  # joints without which it cannot be
+
+    @property
+    def travels(self) -> bool:
+        """Whether it has steps by which a body gets on."""
+        return False
+
+    @abstractmethod
+    def performed(self, body: Body, parameters: Parameters) -> Performance:
+        """Return what it does with a body."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Motion:
+    """One ready motion.
+
+    Its courses are by the kinds of bodies that it fits; what looks different from the front and
+    from the side has a course for each.
+    """
+
+    name: str
+    label: str
+    hint: str
+    seconds: float  # that a cycle takes at the usual speed
+    keys: int  # poses by which a cycle is keyed
+    courses: Mapping[str, Course] = field(repr=False)
+
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """The kinds of bodies that it fits."""
+        return tuple(self.courses)
+
+    @property
+    def travels(self) -> bool:
+        """Whether it has steps by which a body gets on."""
+        return any(course.travels for course in self.courses.values())
+
+    def course(self, kind: str) -> Course:
+        """Return what it does with bodies of a kind; raise an `EngineError` if it does not fit."""
+        if kind not in self.courses:
+            fitting = " or ".join(repr(each) for each in self.courses)
+            raise EngineError(f"{self.name!r} is a motion of {fitting}, and not of {kind!r}")
+        return self.courses[kind]
+
+    def frames(self, parameters: Parameters, fps: float) -> int:
+        """Return how many frames a cycle takes."""
+        return max(LEAST_FRAMES, round(self.seconds * fps / parameters.speed))
+
+    def moments(
+        self, body: Body, parameters: Parameters, shares: Sequence[float]
+    ) -> tuple[Moment, ...]:
+        """Return where a body's joints are after shares of the cycle, from where it begins.
+
+        With `travel` they are farther by that share of a stride, also beyond 1.
+
+        Raises
+        ------
+        EngineError
+            If the motion does not fit the kind, needs joints that are not there, or has no steps
+            to travel by.
+        """
+        course = self.course(body.kind.name)
+        if parameters.travel and not course.travels:
+            raise EngineError(f"{self.name!r} has no steps to travel by")
+        body = body.mirrored() if parameters.mirrored else body
+        body.require(course.needed, f"{self.name!r}")
+        performed = course.performed(body, parameters)
+        ways = [share * performed.stride if parameters.travel else 0.0 for share in shares]
+        moments = [performed.at((share + parameters.start) % 1.0) for share in shares]
+        if parameters.mirrored:
+            moments = [_swapped(moment) for moment in moments]
+        return tuple(_moved(moment, way) for moment, way in zip(moments, ways, strict=True))
+
+
+def _moved(moment: Moment, way: float) -> Moment:
+    """Return a moment farther to the right."""
+    return moment._replace(places={name: at + way for name, at in moment.places.items()})
+
+
+def _swapped(moment: Moment) -> Moment:
+    """Return a moment with its sides swapped."""
+    places = {other_side(name): place for name, place in moment.places.items()}
+    turns = {other_side(name): turn for name, turn in moment.turns.items()}
+    return Moment(places, turns, frozenset(map(other_side, moment.standing)))

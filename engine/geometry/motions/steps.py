@@ -1,0 +1,113 @@
+"""Steps: where a foot is over a cycle, and how the joints of its leg bend."""
+
+import cmath
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import NamedTuple
+
+from engine.geometry.motions.body import Body, plain
+from engine.geometry.motions.curves import bump, hermite
+
+# A leg that is drawn bent by so many degrees bends that way; a straighter one as its kind does.
+BENT = math.radians(12.0)
+# Of a leg's length: so near to straight it may come, so that the knee does not snap.
+STRAIGHT = 0.992
+GROUND = 0.15  # of a leg's length: feet that are drawn no higher above the lowest one stand
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Gait:
+    """How feet are set: for a share of the cycle each stands, then it swings ahead."""
+
+    stance: float  # the share of the cycle that a foot stands
+    stride: float  # how far the body gets on in a cycle, in lengths of a leg
+    lift: float  # how high a foot is lifted in the middle of its swing, in lengths of a leg
+    # When each foot comes down, as shares of the cycle.
+    falls: tuple[tuple[str, float], ...]
+    gathered: float = 0.2  # how far feet are set below the hips, rather than where they are drawn
+    roll: float = 0.0  # degrees by which a foot points down as it leaves the ground
+
+    def phase(self, foot: str, phase: float) -> float:
+        """Return how far a foot is in its own cycle, which begins as it comes down."""
+        return (phase - dict(self.falls)[foot]) % 1.0
+
+    def stands(self, foot: str, phase: float) -> bool:
+        """Tell whether a foot is on the ground."""
+        return self.phase(foot, phase) <= self.stance
+
+    def ahead(self, foot: str, phase: float) -> float:
+        """Return how far a foot is ahead of the middle of its stance, in strides."""
+        own, half = self.phase(foot, phase), self.stance / 2
+        if own <= self.stance:
+            return half - own
+        swing = 1 - self.stance
+        return hermite((own - self.stance) / swing, -half, half, -swing)
+
+    def lifted(self, foot: str, phase: float) -> float:
+        """Return how high a foot is, as a share of the most."""
+        own = self.phase(foot, phase)
+        return bump((own - self.stance) / (1 - self.stance))
+
+    def rolled(self, foot: str, phase: float) -> float:
+        """Return by how many degrees a foot points down; before it comes down, up."""
+        share = (self.phase(foot, phase) - self.stance) / (1 - self.stance)
+        return self.roll * (bump(share / 0.7) - 0.4 * bump((share - 0.5) / 0.5))
+
+
+class Leg(NamedTuple):
+    """A leg at rest: its joints from root to tip, how long it is, and to which side it bends."""
+
+    joints: tuple[str, ...]
+    lengths: tuple[float, ...]
+    bend: int
+
+    @property
+    def length(self) -> float:
+        """How far it reaches."""
+        return sum(self.lengths)
+
+
+def leg_of(body: Body, tip: str) -> Leg:
+    """Return the leg that ends at a foot; or at a hand, of what walks on them."""
+    joints = body.limb(tip)
+    places = [body.joints[name] for name in joints]
+    lengths = tuple(abs(b - a) for a, b in pairwise(places))
+    turn = 0.0
+    if len(places) == 3:
+        turn = cmath.phase((places[2] - places[1]) / (places[1] - places[0]))
+    bend = -1 if turn > 0 else 1
+    if abs(turn) < BENT:
+        bend = _usual_bend(body, tip)
+    return Leg(joints, lengths, bend)
+
+
+def _usual_bend(body: Body, tip: str) -> int:
+    """Return to which side the middle of a leg goes: 1 is counter-clockwise from root to tip."""
+    if body.kind.name == "biped-front":
+        return 1 if tip.endswith(".R") else -1
+    # A hock points backwards, knees and wrists forwards.
+    is_hock = body.kind.name == "four-legs" and plain(tip) == "foot"
+    return -body.facing if is_hock else body.facing
+
+
+def bent(leg: Leg, root: complex, tip: complex) -> dict[str, complex]:
+    """Return where the joints between a root and a tip are, at the leg's own lengths.
+
+    Where the tip is out of reach the middle is on the straight way to it.
+    """
+    if len(leg.lengths) < 2:
+        return {}
+    upper, lower = leg.lengths
+    away = min(max(abs(tip - root), abs(upper - lower) + 1e-9), upper + lower)
+    cosine = (upper**2 + away**2 - lower**2) / (2 * upper * away)
+    turn = leg.bend * math.acos(min(max(cosine, -1.0), 1.0))
+    direction = (tip - root) / abs(tip - root)
+    return {leg.joints[1]: root + upper * direction * cmath.exp(1j * turn)}
+
+
+def room_below(leg: Leg, root: complex, tip: complex) -> float:
+    """Return by how much a root must come down, so that its leg reaches the tip."""
+    reach = STRAIGHT * leg.length if len(leg.lengths) > 1 else leg.length
+    beside = min(abs((root - tip).real), reach)
+    return max(0.0, (root - tip).imag - math.sqrt(reach**2 - beside**2))

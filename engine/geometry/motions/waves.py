@@ -1,0 +1,51 @@
+"""Motions of chains: waves that run along them."""
+
+import cmath
+import math
+from dataclasses import dataclass
+
+from engine.geometry.motions.body import Body
+from engine.geometry.motions.motion import Course, Moment, Parameters, Performance
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Wave(Course):
+    """Links that swing one after the other, from the first joint to the last one."""
+
+    degrees: float  # by which links swing to either side
+    waves: float  # that are on the chain at a time
+    # How much the first link swings, as a share of the last one.
+    first: float = 1.0
+    held: bool = False  # whether the first joint stays where it is; else the middle of all does
+    needed: tuple[str, ...] = ("joint.1", "joint.2", "joint.3")
+
+    def performed(self, body: Body, parameters: Parameters) -> Performance:
+        """Return what it does with a chain."""
+        return _Performed(self, body, parameters)
+
+
+class _Performed(Performance):
+    """A wave along one chain."""
+
+    def __init__(self, course: Wave, body: Body, parameters: Parameters) -> None:
+        self.course, self.parameters, self.facing = course, parameters, body.facing
+        self.names = tuple(body.joints)
+        self.rest = tuple(body.joints.values())
+
+    def at(self, phase: float) -> Moment:
+        """Return where the joints are."""
+        course, links = self.course, len(self.rest) - 1
+        most = self.facing * math.radians(course.degrees) * self.parameters.size
+        # The rest of the swing is of the tip, more of it with more energy.
+        growth = (1 - course.first) * self.parameters.energy
+        places = [self.rest[0]]
+        for number in range(links):
+            share = number / max(1, links - 1)
+            swing = most * (course.first + growth * share)
+            turn = swing * math.sin(math.tau * (phase - course.waves * share))
+            bone = self.rest[number + 1] - self.rest[number]
+            places.append(places[-1] + bone * cmath.exp(1j * turn))
+        if not course.held:
+            off = sum(a - b for a, b in zip(self.rest, places, strict=True)) / len(places)
+            places = [place + off for place in places]
+        return Moment(dict(zip(self.names, places, strict=True)), {}, frozenset())
