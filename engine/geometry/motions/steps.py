@@ -9,8 +9,8 @@ from typing import NamedTuple
 from engine.geometry.motions.body import Body, plain
 from engine.geometry.motions.curves import bump, hermite
 
-# A leg that is drawn bent by so many degrees bends that way; a straighter one as its kind does.
-BENT = math.radians(12.0)
+# A leg that is drawn bent by so much bends that way; a straighter one as its kind does.
+BENT = 0.21  # radians
 # Of a leg's length: so near to straight it may come, so that the knee does not snap.
 STRAIGHT = 0.992
 GROUND = 0.15  # of a leg's length: feet that are drawn no higher above the lowest one stand
@@ -55,7 +55,7 @@ class Gait:
         return self.roll * (bump(share / 0.7) - 0.4 * bump((share - 0.5) / 0.5))
 
 
-class Leg(NamedTuple):
+class BodyLeg(NamedTuple):
     """A leg at rest: its joints from root to tip, how long it is, and to which side it bends."""
 
     joints: tuple[str, ...]
@@ -68,7 +68,7 @@ class Leg(NamedTuple):
         return sum(self.lengths)
 
 
-def leg_of(body: Body, tip: str) -> Leg:
+def leg_of(body: Body, tip: str) -> BodyLeg:
     """Return the leg that ends at a foot; or at a hand, of what walks on them."""
     joints = body.limb(tip)
     places = [body.joints[name] for name in joints]
@@ -79,7 +79,7 @@ def leg_of(body: Body, tip: str) -> Leg:
     bend = -1 if turn > 0 else 1
     if abs(turn) < BENT:
         bend = _usual_bend(body, tip)
-    return Leg(joints, lengths, bend)
+    return BodyLeg(joints, lengths, bend)
 
 
 def _usual_bend(body: Body, tip: str) -> int:
@@ -91,7 +91,7 @@ def _usual_bend(body: Body, tip: str) -> int:
     return -body.facing if is_hock else body.facing
 
 
-def bent(leg: Leg, root: complex, tip: complex) -> dict[str, complex]:
+def bent(leg: BodyLeg, root: complex, tip: complex) -> dict[str, complex]:
     """Return where the joints between a root and a tip are, at the leg's own lengths.
 
     Where the tip is out of reach the middle is on the straight way to it.
@@ -106,7 +106,7 @@ def bent(leg: Leg, root: complex, tip: complex) -> dict[str, complex]:
     return {leg.joints[1]: root + upper * direction * cmath.exp(1j * turn)}
 
 
-def room_below(leg: Leg, root: complex, tip: complex) -> float:
+def room_below(leg: BodyLeg, root: complex, tip: complex) -> float:
     """Return by how much a root must come down, so that its leg reaches the tip."""
     reach = STRAIGHT * leg.length if len(leg.lengths) > 1 else leg.length
     beside = min(abs((root - tip).real), reach)
