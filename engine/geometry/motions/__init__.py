@@ -13,7 +13,7 @@ from engine.geometry.motions.kinds import (
 )
 from engine.geometry.motions.library import MOTIONS as MOTIONS
 from engine.geometry.motions.motion import (
-    Moment as Moment,
     Motion as Motion,
     Parameters as Parameters,
+    Posture as Posture,
 )

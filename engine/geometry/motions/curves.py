@@ -8,7 +8,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
-Cycle = Callable[[float], float]  # of the phase, which comes round at 1
+Periodic = Callable[[float], float]  # of the phase, which comes round at 1
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,15 +8,15 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from engine.geometry.motions.body import Body, plain
-from engine.geometry.motions.curves import STEADY, Cycle, covering
-from engine.geometry.motions.motion import Course, Moment, Parameters, Performance
+from engine.geometry.motions.curves import STEADY, Periodic, covering
+from engine.geometry.motions.motion import Choreography, Parameters, Performance, Posture
 from engine.geometry.motions.steps import GROUND, Gait, bent, leg_of, room_below
 
 SAMPLES = 96  # of a cycle, at which the lowest place of the hips is looked for
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Limbs(Course):
+class Limbs(Choreography):
     """Angles of bones over a cycle, and where feet are set.
 
     Angles are in degrees, beside the drawing's own pose: by how much the bone that ends at a joint
@@ -25,12 +25,12 @@ class Limbs(Course):
     up and out. Those of the left side hold for both; the right one is later by `lag` cycles.
     """
 
-    turns: Mapping[str, Cycle] = field(default_factory=dict)
+    turns: Mapping[str, Periodic] = field(default_factory=dict)
     # Instead of those above, of joints of one side alone, such as the hand that waves.
-    single: Mapping[str, Cycle] = field(default_factory=dict)
+    single: Mapping[str, Periodic] = field(default_factory=dict)
     lag: float = 0.5
-    rise: Cycle = STEADY  # of the hips, in lengths of a leg
-    shift: Cycle = STEADY  # of the hips, forwards, likewise
+    rise: Periodic = STEADY  # of the hips, in lengths of a leg
+    shift: Periodic = STEADY  # of the hips, forwards, likewise
     gait: Gait | None = None
     needed: tuple[str, ...] = ()
 
@@ -66,7 +66,7 @@ class _Performed(Performance):
         gait = self.course.gait
         return 0.0 if gait is None else self.body.facing * self._strides(gait)
 
-    def at(self, phase: float) -> Moment:
+    def at(self, phase: float) -> Posture:
         """Return where the joints are."""
         places = self._trunk_and_arms(phase)
         gait, turns, standing = self.course.gait, {}, set()
@@ -77,7 +77,7 @@ class _Performed(Performance):
                 down = gait.rolled(foot, phase) * self.parameters.size
                 turns[foot] = -self.body.facing * math.radians(down)
                 standing |= {foot} if gait.stands(foot, phase) else set()
-        return Moment(places, turns, frozenset(standing))
+        return Posture(places, turns, frozenset(standing))
 
     def _room(self, phase: float) -> float:
         """Return by how much the hips are too high at a moment."""

@@ -45,7 +45,7 @@ class Parameters:
             )
 
 
-class Moment(NamedTuple):
+class Posture(NamedTuple):
     """Where joints are at one moment, how far some turn from rest, and which stand."""
 
     places: Mapping[str, complex]
@@ -59,7 +59,7 @@ class Performance(ABC):
     """What a motion does with one body, on the spot."""
 
     @abstractmethod
-    def at(self, phase: float) -> Moment:
+    def at(self, phase: float) -> Posture:
         """Return a moment at a phase in [0, 1)."""
 
     @property
@@ -68,7 +68,7 @@ class Performance(ABC):
         return 0.0
 
 
-class Course(ABC):
+class Choreography(ABC):
     """What a motion does with any body of a kind."""
 
     needed: tuple[str, ...] = ()  # joints without which it cannot be
@@ -96,7 +96,7 @@ class Motion:
     hint: str
     seconds: float  # that a cycle takes at the usual speed
     keys: int  # poses by which a cycle is keyed
-    courses: Mapping[str, Course] = field(repr=False)
+    courses: Mapping[str, Choreography] = field(repr=False)
 
     @property
     def kinds(self) -> tuple[str, ...]:
@@ -108,7 +108,7 @@ class Motion:
         """Whether it has steps by which a body gets on."""
         return any(course.travels for course in self.courses.values())
 
-    def course(self, kind: str) -> Course:
+    def course(self, kind: str) -> Choreography:
         """Return what it does with bodies of a kind; raise an `EngineError` if it does not fit."""
         if kind not in self.courses:
             fitting = " or ".join(repr(each) for each in self.courses)
@@ -121,7 +121,7 @@ class Motion:
 
     def moments(
         self, body: Body, parameters: Parameters, shares: Sequence[float]
-    ) -> tuple[Moment, ...]:
+    ) -> tuple[Posture, ...]:
         """Return where a body's joints are after shares of the cycle, from where it begins.
 
         With `travel` they are farther by that share of a stride, also beyond 1.
@@ -145,13 +145,13 @@ class Motion:
         return tuple(_moved(moment, way) for moment, way in zip(moments, ways, strict=True))
 
 
-def _moved(moment: Moment, way: float) -> Moment:
+def _moved(moment: Posture, way: float) -> Posture:
     """Return a moment farther to the right."""
     return moment._replace(places={name: at + way for name, at in moment.places.items()})
 
 
-def _swapped(moment: Moment) -> Moment:
+def _swapped(moment: Posture) -> Posture:
     """Return a moment with its sides swapped."""
     places = {other_side(name): place for name, place in moment.places.items()}
     turns = {other_side(name): turn for name, turn in moment.turns.items()}
-    return Moment(places, turns, frozenset(map(other_side, moment.standing)))
+    return Posture(places, turns, frozenset(map(other_side, moment.standing)))

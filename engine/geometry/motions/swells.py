@@ -5,24 +5,24 @@ import math
 from dataclasses import dataclass
 
 from engine.geometry.motions.body import Body
-from engine.geometry.motions.curves import STEADY, Cycle
-from engine.geometry.motions.motion import Course, Moment, Parameters, Performance
+from engine.geometry.motions.curves import STEADY, Periodic
+from engine.geometry.motions.motion import Choreography, Parameters, Performance, Posture
 
 # What is lower than such a share of the height stands where it is, and does not spread.
 FOOT = 0.12
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Swell(Course):
+class Swell(Choreography):
     """Shares of the height by which a body stretches and rises, and degrees by which its top leans.
 
     What it gains in height it loses in width, so that its area stays, but for what it swells.
     """
 
-    stretch: Cycle = STEADY
-    swell: Cycle = STEADY
-    rise: Cycle = STEADY
-    lean: Cycle = STEADY  # of the top, to the right
+    stretch: Periodic = STEADY
+    swell: Periodic = STEADY
+    rise: Periodic = STEADY
+    lean: Periodic = STEADY  # of the top, to the right
 
     def performed(self, body: Body, parameters: Parameters) -> Performance:
         """Return what it does with a body."""
@@ -38,7 +38,7 @@ class _Performed(Performance):
         self.tall = (high - low).imag
         self.base = complex((low + high).real / 2, low.imag)
 
-    def at(self, phase: float) -> Moment:
+    def at(self, phase: float) -> Posture:
         """Return where points of it are."""
         course, size = self.course, self.parameters.size
         stretch = 1 + size * self.parameters.energy * course.stretch(phase)
@@ -58,4 +58,4 @@ class _Performed(Performance):
             places[name] = self.base + turned + 1j * rise
             if height <= FOOT and abs(rise) <= 1e-9 * self.tall:
                 standing.add(name)
-        return Moment(places, {}, frozenset(standing))
+        return Posture(places, {}, frozenset(standing))

@@ -5,11 +5,11 @@ import math
 from dataclasses import dataclass
 
 from engine.geometry.motions.body import Body
-from engine.geometry.motions.motion import Course, Moment, Parameters, Performance
+from engine.geometry.motions.motion import Choreography, Parameters, Performance, Posture
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Wave(Course):
+class Wave(Choreography):
     """Links that swing one after the other, from the first joint to the last one."""
 
     degrees: float  # by which links swing to either side
@@ -32,7 +32,7 @@ class _Performed(Performance):
         self.names = tuple(body.joints)
         self.rest = tuple(body.joints.values())
 
-    def at(self, phase: float) -> Moment:
+    def at(self, phase: float) -> Posture:
         """Return where the joints are."""
         course, links = self.course, len(self.rest) - 1
         most = self.facing * math.radians(course.degrees) * self.parameters.size
@@ -48,4 +48,4 @@ class _Performed(Performance):
         if not course.held:
             off = sum(a - b for a, b in zip(self.rest, places, strict=True)) / len(places)
             places = [place + off for place in places]
-        return Moment(dict(zip(self.names, places, strict=True)), {}, frozenset())
+        return Posture(dict(zip(self.names, places, strict=True)), {}, frozenset())
