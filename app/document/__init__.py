@@ -86,6 +86,7 @@ from app.document.queries import (
     are_as_stiff as are_as_stiff,
     brushed_stiffness as brushed_stiffness,
     camera_at as camera_at,
+    carried_by as carried_by,
     changed_stretches as changed_stretches,
     clip_of as clip_of,
     closing_span as closing_span,

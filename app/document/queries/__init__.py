@@ -40,6 +40,7 @@ from app.document.queries.stage import (
     TreeRow as TreeRow,
     alternates as alternates,
     camera_at as camera_at,
+    carried_by as carried_by,
     composed as composed,
     in_order as in_order,
     is_visible as is_visible,

@@ -7,7 +7,11 @@ Imports: the values of `app.document`.
 
 from app.document.queries.stage.alternates import alternates as alternates
 from app.document.queries.stage.compositing import Composite as Composite, composed as composed
-from app.document.queries.stage.layer_tree import TreeRow as TreeRow, layer_tree as layer_tree
+from app.document.queries.stage.layer_tree import (
+    TreeRow as TreeRow,
+    carried_by as carried_by,
+    layer_tree as layer_tree,
+)
 from app.document.queries.stage.moves import (
     Shot as Shot,
     camera_at as camera_at,
