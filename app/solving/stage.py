@@ -19,8 +19,7 @@ from app.document import (
 )
 from app.errors import LissomError
 from app.motion import Joints, anchor_of, hand_over
-from app.solving.script import FigureScript, PoseScript
-from app.solving.script_stage import ScriptJoint
+from app.solving.script import FigureScript, PoseScript, ScriptJoint
 
 
 def layer_named(document: Document, name: str) -> Figure:

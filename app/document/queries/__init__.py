@@ -14,6 +14,10 @@ from app.document.queries.fronts import (
     Front as Front,
     fronts_at as fronts_at,
 )
+from app.document.queries.given import (
+    digest_of_keys as digest_of_keys,
+    is_as_given as is_as_given,
+)
 from app.document.queries.material import (
     are_as_stiff as are_as_stiff,
     brushed_stiffness as brushed_stiffness,
