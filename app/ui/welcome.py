@@ -47,14 +47,14 @@ FLAGS = (
 )
 
 
-class SmallPictures(NamedTuple):
+class Previews(NamedTuple):
     """Where small pictures are looked up: that of a file, and those of a small animation."""
 
     still: Callable[[Path], Thumbnail | None]
     moving: Callable[[Path], list[Thumbnail]]
 
 
-def draw(session: Session, look: Look, pictures: SmallPictures) -> list[Action]:
+def draw(session: Session, look: Look, pictures: Previews) -> list[Action]:
     """Cover the window with samples to open and the ways to open one's own picture."""
     viewport = imgui.get_main_viewport()
     imgui.set_next_window_pos(viewport.work_pos)
@@ -97,7 +97,7 @@ def _greeting(session: Session, look: Look) -> list[Action]:
     return actions
 
 
-def _first(look: Look, pictures: SmallPictures) -> list[Action]:
+def _first(look: Look, pictures: Previews) -> list[Action]:
     """Draw the way to a first animation, by the giraffe or by an own drawing."""
     sample = next((each for each in files.samples() if each.name == LED), None)
     if sample is None:
@@ -127,7 +127,7 @@ def _first(look: Look, pictures: SmallPictures) -> list[Action]:
     return actions
 
 
-def _samples(look: Look, pictures: SmallPictures) -> list[Action]:
+def _samples(look: Look, pictures: Previews) -> list[Action]:
     actions: list[Action] = []
     bold(look, "Try one of these")
     imgui.dummy(ImVec2(0, 0.2 * look.em))
@@ -141,7 +141,7 @@ def _samples(look: Look, pictures: SmallPictures) -> list[Action]:
     return actions
 
 
-def _card(look: Look, sample: files.SampleFile, pictures: SmallPictures) -> bool:
+def _card(look: Look, sample: files.SampleFile, pictures: Previews) -> bool:
     palette, em = look.palette, look.em
     corner, size = imgui.get_cursor_screen_pos(), ImVec2(CARD * em, TALL * em)
     pressed = imgui.invisible_button(f"sample {sample.name}", size)
@@ -169,7 +169,7 @@ def _frame(look: Look, corner: ImVec2, size: ImVec2, *, is_hot: bool) -> None:
 
 
 def _show_sample(
-    sample: files.SampleFile, pictures: SmallPictures, corner: ImVec2, room: ImVec2
+    sample: files.SampleFile, pictures: Previews, corner: ImVec2, room: ImVec2
 ) -> None:
     """Show a sample, and how it moves while the pointer is on its card, the last item."""
     began, now = imgui.get_id(f"{sample.name} since"), imgui.get_time()
@@ -185,7 +185,7 @@ def _show_sample(
         show_picture(image.texture, image.size, corner, room)
 
 
-def _recent(session: Session, look: Look, pictures: SmallPictures) -> list[Action]:
+def _recent(session: Session, look: Look, pictures: Previews) -> list[Action]:
     actions: list[Action] = []
     recent = files.recent_files(session)[:MOST_RECENT]
     if not recent:

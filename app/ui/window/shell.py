@@ -194,7 +194,7 @@ class Shell:
         self._actions += pressed(session)
         self._docking.draw_tabs()
         if session.project is None:
-            pictures = welcome.SmallPictures(self._thumbnail, self._moments)
+            pictures = welcome.Previews(self._thumbnail, self._moments)
             self._part("The welcome view", partial(welcome.draw, pictures=pictures))()
         self._part("The guide", partial(self._callout.draw, places=self._seen))()
         self._part("The dialog", partial(self._dialogs.draw, thumbnail=self._thumbnail))()
