@@ -108,7 +108,7 @@ def licence_of(name: str) -> str:
     said = metadata(name)
     classes = (line.rpartition(" :: ")[2] for line in said.get_all("Classifier", ()))
     licences = ", ".join(line for line in classes if "License" in line)
-    return said.get("License-Expression") or licences or "see its folder"
+    return said.get("License-Expression") or licences or said.get("License", "see its folder")
 
 
 def newest_libc(folder: Path) -> str:
