@@ -8,6 +8,7 @@ Imports: `app.document`.
 
 from app.storage.assets import (
     app_icon as app_icon,
+    manual_page as manual_page,
     sample_images as sample_images,
     shader_source as shader_source,
 )

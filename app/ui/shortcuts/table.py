@@ -28,6 +28,7 @@ from app.editor.poses import copying, library, pasting, receiving
 from app.editor.tools import moving
 from app.ui.panel import bring_to_front
 from app.ui.shortcuts.binding import Binding
+from app.ui.shortcuts.manual import open_manual
 
 
 def _undo_label(_: Session, project: Project) -> str:
@@ -577,8 +578,9 @@ MENUS: dict[str, dict[str, Binding]] = {
         "repeat no more": Binding("Stop repeating", do(cycles.stop), possible=cycles.cycle_here),
     },
     "Help": {
+        "manual": Binding("Manual", do(open_manual), "F1", needs_project=False),
         "shortcuts": Binding(
-            "Keys and mouse", do(viewing.show_shortcuts), "F1", needs_project=False
+            "Keys and mouse", do(viewing.show_shortcuts), "Shift+F1", needs_project=False
         ),
         "import": Binding("What opening it told", do(files.show_summary), possible=_has_summary),
     },
