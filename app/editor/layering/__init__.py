@@ -34,6 +34,7 @@ from app.editor.layering.choosing import (
     choose_too as choose_too,
     choose_up_to as choose_up_to,
     look_at_alone as look_at_alone,
+    tidy_rows as tidy_rows,
     toggle as toggle,
 )
 from app.editor.layering.filming import (

@@ -24,16 +24,15 @@ from app.document import (
     Variant,
 )
 from app.errors import LissomError
-from app.solving.script_clocks import parse_cycles, parse_springs, parse_tracks, require_rounds
-from app.solving.script_fields import (
+from app.solving.script.clocks import parse_cycles, parse_springs, parse_tracks, require_rounds
+from app.solving.script.fields import (
     fields_in,
     frame_of,
     passage_of,
     require_handle,
     require_order,
 )
-from app.solving.script_material import StiffPart, parse_material
-from app.solving.script_stage import (
+from app.solving.script.layers import (
     ScriptChoice,
     ScriptJoint,
     ScriptPlacing,
@@ -46,6 +45,7 @@ from app.solving.script_stage import (
     parse_order,
     parse_visible,
 )
+from app.solving.script.material import StiffPart, parse_material
 from app.storage import (
     JsonObject,
     as_flag,

@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 
 from app.document import CameraKey, MoveKey, OpacityKey
 from app.errors import LissomError
-from app.solving.script_fields import fields_in, frame_of, made_of, passage_of, require_order
+from app.solving.script.fields import fields_in, frame_of, made_of, passage_of, require_order
 from app.storage import (
     JsonObject,
     as_flag,
