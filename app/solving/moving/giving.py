@@ -18,7 +18,7 @@ from app.document import (
 from app.errors import LissomError
 from app.solving.drag import Drag, Rig, pose_at
 from app.solving.moving.moments import JointMoment, held_by, moments_of
-from app.solving.moving.order import MotionOrder, body_of, with_handles_at_joints
+from app.solving.moving.order import MotionOrder, body_of, with_handles_at_joints, with_limits
 from app.solving.moving.splicing import lead_before, spliced
 from engine.geometry.motions import Body
 from engine.maps import Certificate, HarmonicMap
@@ -157,8 +157,9 @@ def begin_giving(document: Document, identity: int, order: MotionOrder) -> Givin
     if before.still:
         raise LissomError(f"{before.name!r} stands still: there is no shape on it to be moved.")
     body = body_of(before, order)
-    into, joints = with_handles_at_joints(document, identity, body, order.bones)
-    document = document.with_figure(into)
+    document, joints = with_handles_at_joints(document, identity, body, order)
+    document = with_limits(document, identity, order.limits)
+    into = document.figure(identity)
     lead_frames = lead_before(before, order.first, document.fps)
     start = order.first + lead_frames
     period = order.ready.frames(order.parameters, document.fps)

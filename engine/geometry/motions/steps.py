@@ -13,7 +13,6 @@ from engine.geometry.motions.curves import bump, hermite
 BENT = 0.21  # radians
 # Of a leg's length: so near to straight it may come, so that the knee does not snap.
 STRAIGHT = 0.992
-GROUND = 0.15  # of a leg's length: feet that are drawn no higher above the lowest one stand
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,13 +45,17 @@ class Gait:
 
     def lifted(self, foot: str, phase: float) -> float:
         """Return how high a foot is, as a share of the most."""
-        own = self.phase(foot, phase)
-        return bump((own - self.stance) / (1 - self.stance))
+        return bump(self._swung(foot, phase))
 
     def rolled(self, foot: str, phase: float) -> float:
         """Return by how many degrees a foot points down; before it comes down, up."""
-        share = (self.phase(foot, phase) - self.stance) / (1 - self.stance)
+        share = self._swung(foot, phase)
         return self.roll * (bump(share / 0.7) - 0.4 * bump((share - 0.5) / 0.5))
+
+    def _swung(self, foot: str, phase: float) -> float:
+        """Return how much of its swing a foot has done, 0 while it stands."""
+        own = self.phase(foot, phase)
+        return 0.0 if own <= self.stance else (own - self.stance) / (1 - self.stance)
 
 
 class BodyLeg(NamedTuple):

@@ -19,13 +19,13 @@ WALK = Motion(
     keys=12,
     courses={
         "biped-side": Limbs(
-            gait=Gait(stance=0.6, stride=1.0, lift=0.13, falls=LEFT_RIGHT, roll=25),
+            gait=Gait(stance=0.6, stride=0.8, lift=0.1, falls=LEFT_RIGHT, roll=25, gathered=0.1),
             rise=even(0.0, -0.02, 0.0, 0.02, 0.0, -0.02, 0.0, 0.02),
             turns={
                 "chest": even(-3, -4, -3, -2, -3, -4, -3, -2),
                 "head": even(3, 5, 3, 1, 3, 5, 3, 1),
-                "elbow": even(-22, 0, 22, 0),
-                "hand": even(6, 10, 22, 14),
+                "elbow": even(-17, 0, 17, 0),
+                "hand": even(2, 5, 14, 8),
                 "tail": even(0, 6, 0, -6),
             },
             needed=FEET,
