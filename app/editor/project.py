@@ -395,8 +395,8 @@ class Project:
         return (
             own is not None
             and (before.frames, before.loop) == (document.frames, document.loop)
-            and (own.joints, own.anchor, own.domain, own.movement)
-            == (figure.joints, figure.anchor, figure.domain, figure.movement)
+            and (own.joints, own.anchor, own.domain, own.movement, own.cycles)
+            == (figure.joints, figure.anchor, figure.domain, figure.movement, figure.cycles)
             and all(was.get(each.id) is each for each in document.all_carriers(figure.id))
         )
 

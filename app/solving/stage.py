@@ -8,11 +8,14 @@ from app.document import (
     Attachment,
     Document,
     Figure,
+    MoveKey,
+    OpacityKey,
     Placing,
     Turn,
     choice_commands,
     is_visible,
     layer_commands,
+    repeating,
 )
 from app.errors import LissomError
 from app.motion import Joints, anchor_of, hand_over
@@ -130,6 +133,30 @@ def unmoved(document: Document, script: PoseScript) -> list[str]:
             notices.append(
                 f"{part.layer} hangs on {carriers[0][0].name} and goes with it: its own movement "
                 "is not seen"
+            )
+    return notices
+
+
+def unrepeated(figure: Figure, part: FigureScript) -> list[str]:
+    """Tell of what a script lets repeat that has nothing to repeat, or does not come round."""
+    opacity = part.opacity if isinstance(part.opacity, tuple) else ()
+    keyed = [key.frame for key in part.keys] + [switch.frame for switch in figure.switches]
+    keyed += [key.frame for key in part.movement] + [key.frame for key in opacity]
+    keyed += [placing.frame for placing in part.order]
+    notices = [
+        f"nothing is keyed in {cycle.told}: there is nothing to repeat"
+        for cycle in part.cycles
+        if not (
+            any(map(cycle.has, keyed)) or any(cycle.takes(track.keys) for track in figure.tracks)
+        )
+    ]
+    rows: dict[str, tuple[MoveKey, ...] | tuple[OpacityKey, ...]]
+    rows = {"movement": part.movement, "opacity": opacity}
+    for name, row in rows.items():
+        cycle = next((each for each in part.cycles if len(row) > 1 and each.takes(row)), None)
+        if cycle is not None and repeating(figure, row) is None:
+            notices.append(
+                f"its {name} ends otherwise than it begins in {cycle.told}, and does not repeat"
             )
     return notices
 

@@ -176,18 +176,29 @@ def _hand_down(session: Session, project: Project, *identities: int) -> None:
 
 
 def _inherit(joints: Joints, child: int, gone: Collection[int], frame: int) -> Command:
-    """Return the command by which a figure hangs on what carries those that go."""
+    """Return the command by which a figure hangs on what carries those that go, at all times.
+
+    At the frame nothing moves; where it is handed over to one of them it does not jump.
+    """
     document = joints.document
-    figure, (_, *carriers) = document.figure(child), document.carriers(child, frame)
-    joint = figure.joint_at(frame)
-    if joint is not None and joint.to in gone:
+    figure, here = document.figure(child), document.figure(child).joint_at(frame)
+    lost = [joint for joint in figure.joints if joint.to in gone]
+    found: list[Command] = []
+    hangs = len(lost) < len(figure.joints)
+    for joint in lost:
+        at = frame if joint is here else joint.frame
+        carriers = document.carriers(child, at)[1:]
         heir = next((each.id for each in carriers if each.id not in gone), None)
-        if heir is not None:
-            held = joint_at_rest(joints, child, heir, frame, turns=joint.turns)
-            return layer_commands.attach(child, *held)
-        if all(each.to in gone for each in figure.joints):
-            return _detach(document, child, frame, joints.placement(child, frame))
-    return in_turn("Attach", ())
+        hangs |= heir is not None
+        held = anchor_of(figure), Attachment(to=None, frame=joint.frame, keeps=True)
+        if heir is not None and joint.keeps and joint is not here:
+            held = held[0], joint_that_keeps(joints, child, heir, at, turns=joint.turns)
+        elif heir is not None:
+            held = joint_at_rest(joints, child, heir, at, turns=joint.turns)
+        found.append(layer_commands.attach(child, *held))
+    if lost and not hangs:
+        return _detach(document, child, frame, joints.placement(child, frame))
+    return in_turn("Attach", found)
 
 
 def _detach(document: Document, child: int, frame: int, placement: RigidMotion) -> Command:

@@ -221,6 +221,20 @@ def test_what_hung_on_a_layer_that_is_deleted_hangs_on_what_that_hung_on(window,
     assert scene.history.undo_label == "Delete layer"
     window.act(editing.undo)
     assert scene.document is before
+    # Also where it is handed over to it at another time, and without a jump.
+    window.act(layering.hang, ids["ah"], ids["stick"])
+    window.settle()
+    window.act(playback.seek, 10)
+    window.act(layering.hand_over, ids["ah"], ids["hat"])
+    window.settle()
+    there = place(scene, "ah", window)
+    window.act(playback.seek, 0)
+    window.act(layering.remove, ids["hat"])
+    window.settle()
+    joints = scene.document.figure(ids["ah"]).joints
+    assert [(each.frame, each.to) for each in joints] == [(0, ids["stick"]), (10, ids["head"])]
+    window.act(playback.seek, 10)
+    assert abs(place(scene, "ah", window) - there) < 0.1
 
 
 def test_a_layer_is_handed_over_and_let_go_without_a_jump(window, scene, ids, use):

@@ -65,6 +65,21 @@ def layer_tree(
     return tuple(listed)
 
 
+def carried_by(document: Document, figure: Figure, frame: float) -> tuple[int, str]:
+    """Return on how many others a figure hangs at a frame, one on the other, and in words on which.
+
+    The words are empty where it hangs on nothing at any time; an ellipsis tells of others at other
+    times.
+    """
+    parents = {joint.to for joint in figure.joints if joint.to is not None}
+    _, *carriers = document.carriers(figure.id, frame)
+    if not parents:
+        return 0, ""
+    now = carriers[0].name if carriers else "nothing"
+    others = parents - {each.id for each in carriers[:1]}
+    return len(carriers), f"on {now}…" if others else f"on {now}"
+
+
 def _whole_tree(document: Document, toggled: Collection[str]) -> Iterator[TreeRow]:
     order = _in_order(document)
     path: tuple[str, ...] = ()
