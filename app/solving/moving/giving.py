@@ -23,7 +23,8 @@ from app.solving.moving.splicing import lead_before, spliced
 from engine.geometry.motions import Body
 from engine.maps import Certificate, HarmonicMap
 
-MOST_STEPS, STEPS_AT_ONCE = 1500, 25
+# A pose that is not at rest by then creeps along a limit.
+MOST_STEPS, STEPS_AT_ONCE = 150, 25
 TRIES = 4  # by which the largest one is looked for
 WORST = 4  # keys that it is looked for by
 
@@ -177,6 +178,7 @@ def begin_giving(document: Document, identity: int, order: MotionOrder) -> Givin
     lead = None
     if lead_frames:
         lead = pose_at(Rig.of(into), clip_of(document, identity), order.first)
+    wanted, standing = moments_of(order, body, given)
     return Giving(
         document=document,
         before=before,
@@ -184,8 +186,8 @@ def begin_giving(document: Document, identity: int, order: MotionOrder) -> Givin
         body=body,
         given=given,
         lead=lead,
-        wanted=moments_of(order, body, given),
-        rig=Rig.of(held_by(into, frozenset(joints.values()))),
+        wanted=wanted,
+        rig=Rig.of(held_by(into, frozenset(joints.values()), standing)),
         short={},
         sizes=(0.0, order.parameters.size),
     )
@@ -231,7 +233,7 @@ def _smaller(giving: Giving) -> Giving:
     worst = [
         (moment, pose)
         for moment, pose in zip(
-            moments_of(order, giving.body, giving.given), giving.poses, strict=True
+            moments_of(order, giving.body, giving.given)[0], giving.poses, strict=True
         )
         if moment.frame in frames
     ][:WORST]

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from engine.geometry.motions.body import Body, plain
+from engine.geometry.motions.body import Body, other_side, plain
 from engine.geometry.motions.curves import STEADY, Periodic, covering
 from engine.geometry.motions.motion import Choreography, Parameters, Performance, Posture
 from engine.geometry.motions.stepping import Stepping
@@ -36,6 +36,7 @@ class Limbs(Choreography):
     shift: Periodic = STEADY  # of the hips, forwards, likewise
     gait: Gait | None = None
     needed: tuple[str, ...] = ()
+    either: tuple[str, ...] = ()
 
     @property
     def travels(self) -> bool:
@@ -53,13 +54,15 @@ class _Performed(Performance):
     def __init__(self, course: Limbs, body: Body, parameters: Parameters) -> None:
         self.course, self.body, self.parameters = course, body, parameters
         gait = course.gait or STANDING
-        self.steps = Stepping(body, gait, parameters.size)
+        self.steps = Stepping(body, gait, parameters)
         self.hips = next(iter(body.joints))
+        # What one side does alone, the other one does where the first is not there.
+        self.is_first_side = not course.either or course.either[0] in body.joints
         tall = (body.box[1] - body.box[0]).imag
         self.reach = self.steps.reach or tall / 3
         self.lowered = STEADY
         if self.steps.legs:
-            # Standing feet are within reach of their legs at all times.
+            # Feet are within reach of their legs at all times, so that these keep their lengths.
             phases = np.arange(SAMPLES) / SAMPLES
             self.lowered = covering([self._room(phase) for phase in phases.tolist()])
 
@@ -91,7 +94,6 @@ class _Performed(Performance):
             (
                 room_below(leg, places[leg.joints[0]], self.steps.foot(foot, phase))
                 for foot, leg in self.steps.legs.items()
-                if self.steps.gait.stands(foot, phase)
             ),
             default=0.0,
         )
@@ -119,8 +121,9 @@ class _Performed(Performance):
         has_side = kept != name
         late = course.lag if name.endswith(".R") else 0.0
         curve = course.turns.get(kept)
-        if name in course.single:
-            curve, late = course.single[name], 0.0
+        alone = name if self.is_first_side else other_side(name)
+        if alone in course.single:
+            curve, late = course.single[alone], 0.0
         if curve is None:
             return 0.0
         way = self.body.facing

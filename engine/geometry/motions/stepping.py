@@ -1,16 +1,18 @@
 """Where the feet of one body are over a cycle, and how high that lets its hips be."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
 from engine.geometry.motions.body import Body, other_side
+from engine.geometry.motions.motion import Parameters
 from engine.geometry.motions.steps import STRAIGHT, BodyLeg, Gait, leg_of
 
 GROUND = 0.15  # of a leg's length: feet that are drawn no higher above the lowest one stand
 # Legs of one drawing cannot pass through each other: so near, in lengths of a leg, feet of a pair
 # come at most, and by so much they are set farther apart than they are drawn.
-CLEAR, SPREAD = 0.14, 0.3
+CLEAR, SPREAD = 0.14, 0.22
 
 
 class Stepping:
@@ -20,12 +22,13 @@ class Stepping:
     ----------
     body : Body
     gait : Gait
-    size : float
-        How far and how high steps go, over what the gait says.
+    parameters : Parameters
     """
 
-    def __init__(self, body: Body, gait: Gait, size: float) -> None:
-        self.body, self.gait, self.size = body, gait, size
+    def __init__(self, body: Body, gait: Gait, parameters: Parameters) -> None:
+        if not (gait.treads or parameters.travel):
+            gait = replace(gait, stride=0.0)
+        self.body, self.gait, self.size = body, gait, parameters.size
         feet = [foot for foot, _ in gait.falls if foot in body.joints]
         self.legs: dict[str, BodyLeg] = {foot: leg_of(body, foot) for foot in feet}
         self.reach = min(leg.length for leg in self.legs.values()) if feet else 0.0

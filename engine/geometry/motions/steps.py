@@ -25,6 +25,7 @@ class Gait:
     # When each foot comes down, as shares of the cycle.
     falls: tuple[tuple[str, float], ...]
     gathered: float = 0.2  # how far feet are set below the hips, rather than where they are drawn
+    treads: bool = True  # whether, on the spot, feet go back on the ground as under who walks
     roll: float = 0.0  # degrees by which a foot points down as it leaves the ground
 
     def phase(self, foot: str, phase: float) -> float:
@@ -88,7 +89,8 @@ def leg_of(body: Body, tip: str) -> BodyLeg:
 def _usual_bend(body: Body, tip: str) -> int:
     """Return to which side the middle of a leg goes: 1 is counter-clockwise from root to tip."""
     if body.kind.name == "biped-front":
-        return 1 if tip.endswith(".R") else -1
+        middle = body.joints[next(iter(body.joints))].real
+        return 1 if body.joints[tip].real < middle else -1
     # A hock points backwards, knees and wrists forwards.
     is_hock = body.kind.name == "four-legs" and plain(tip) == "foot"
     return -body.facing if is_hock else body.facing
