@@ -19,8 +19,9 @@ from app.storage import (
     save_project,
 )
 from engine.domain import guessed_kind, suggested_joints
-from engine.geometry.motions import MOTIONS, Parameters, kind_named
+from engine.geometry.motions import MOTIONS, Motion, Parameters, kind_named, motion_named
 
+WHOLE = "anything"  # what moves as a whole may be anything
 NO_JOINTS = ToldJoints(kind=None, joints={})
 
 
@@ -41,7 +42,7 @@ def run(arguments: argparse.Namespace) -> int:
             raise LissomError(f"{option} is missing; 'lissom move --help' tells what is said")
     read = arguments.picture, arguments.joints, arguments.mask
     check_writable(arguments.out, sources=filter(None, read))
-    parameters = _parameters(arguments)
+    motion, parameters = motion_named(arguments.motion), _parameters(arguments)
     told = NO_JOINTS if arguments.joints is None else load_joints(arguments.joints)
     if arguments.kind is not None:
         kind_named(arguments.kind)
@@ -51,7 +52,7 @@ def run(arguments: argparse.Namespace) -> int:
             )
     opened = _opened(arguments)
     figure = opened.document.figures[0]
-    found = _found(figure, arguments.kind or told.kind, told)
+    found = _found(figure, motion, arguments.kind or told.kind, told)
     order = MotionOrder(
         motion=arguments.motion,
         kind=found.kind,
@@ -95,13 +96,15 @@ def _opened(arguments: argparse.Namespace) -> OpenedScene:
     return opened
 
 
-def _found(figure: Figure, kind: str | None, told: ToldJoints) -> _Found:
+def _found(figure: Figure, motion: Motion, kind: str | None, told: ToldJoints) -> _Found:
     """Return the kind of a drawing and its joints, guessed where they are not told."""
     loops = figure.domain.loops
     if kind is None:
         if told.joints:
             raise LissomError("the file of joints does not say of which kind; add kind, or --kind")
         kind = guessed_kind(loops).name
+        if kind not in motion.kinds and WHOLE in motion.kinds:
+            kind = WHOLE
         say(f"kind: {kind} (guessed)")
     joints = told.in_picture(figure.picture.size[1])
     if not joints and kind_named(kind).parents:

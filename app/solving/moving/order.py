@@ -21,14 +21,15 @@ from app.solving.moving.wholes import points_of_whole
 from engine.arrays import Complexes
 from engine.errors import EngineError
 from engine.geometry import box_diagonal
-from engine.geometry.motions import MOTIONS, Body, Motion, Parameters, facing_of, kind_named
+from engine.geometry.motions import Body, Motion, Parameters, facing_of, kind_named, motion_named
 from engine.maps import Bounds
 
 # Of the diagonal of the drawing: a joint is the handle that is so near to it, and one that is so
 # little outside comes to the outline.
 SAME_JOINT, BESIDE = 0.004, 0.01
 TRUNK = ("neck", "head", "chest")
-STIFF_TRUNK, STIFF_LIMB = 10.0, 3.0  # as bones are
+STIFF_TRUNK, STIFF_LIMB, STIFF_HEAD = 10.0, 3.0, 20.0
+HEAD = 1.5  # times as far as the nearest outline around its joint
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,12 +60,8 @@ class MotionOrder:
     @property
     def ready(self) -> Motion:
         """The motion itself."""
-        if self.motion not in MOTIONS:
-            raise EngineError(
-                f"there is no motion {self.motion!r}; the motions are {', '.join(MOTIONS)}"
-            )
         kind_named(self.kind)
-        return MOTIONS[self.motion]
+        return motion_named(self.motion)
 
 
 def order_of(figure: Figure, given: GivenMotion) -> MotionOrder:
@@ -151,7 +148,16 @@ def with_handles_at_joints(
         # Where the way between two joints leaves the drawing, the limb bends as it likes.
         with suppress(EngineError):
             document = material_commands.add_bone(identity, ends, amount)(document)
+    if order.stiff and "head" in joints:
+        document = _with_stiff_head(document, identity, body.joints["head"])
     return document, joints
+
+
+def _with_stiff_head(document: Document, identity: int, head: complex) -> Document:
+    """Return a document whose figure's head keeps its shape."""
+    outline = document.figure(identity).domain.outline
+    radius = HEAD * float(np.abs(outline - head).min())
+    return material_commands.paint(identity, [head], radius=radius, amount=STIFF_HEAD)(document)
 
 
 def with_limits(document: Document, identity: int, limits: Bounds | None) -> Document:

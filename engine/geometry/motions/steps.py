@@ -12,7 +12,7 @@ from engine.geometry.motions.curves import bump, hermite
 # A leg that is drawn bent by so much bends that way; a straighter one as its kind does.
 BENT = 0.21  # radians
 # Of a leg's length: so near to straight it may come, so that the knee does not snap.
-STRAIGHT = 0.992
+STRAIGHT = 0.997
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -90,7 +90,7 @@ def _usual_bend(body: Body, tip: str) -> int:
     """Return to which side the middle of a leg goes: 1 is counter-clockwise from root to tip."""
     if body.kind.name == "biped-front":
         middle = body.joints[next(iter(body.joints))].real
-        return 1 if body.joints[tip].real < middle else -1
+        return -1 if body.joints[tip].real < middle else 1
     # A hock points backwards, knees and wrists forwards.
     is_hock = body.kind.name == "four-legs" and plain(tip) == "foot"
     return -body.facing if is_hock else body.facing

@@ -1,6 +1,7 @@
 """Ready motions loop smoothly, keep lengths, and set feet on the ground."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -54,7 +55,7 @@ def test_planted_feet_have_one_ground_speed(name, kind):
     shares = np.linspace(0, 1, 121)
     moments = MOTIONS[name].moments(body(kind), USUAL, shares.tolist())
     seen, steps = set(), []
-    for before, after in zip(moments, moments[1:], strict=False):
+    for before, after in pairwise(moments):
         for foot in before.standing & after.standing:
             seen.add(foot)
             steps.append(after.places[foot] - before.places[foot])
@@ -68,7 +69,7 @@ def test_travelling_plants_feet_and_gets_on_by_a_stride(name, kind):
     travelling = Parameters(travel=True)
     shares = np.linspace(0, 2, 161)
     moments = MOTIONS[name].moments(body(kind), travelling, shares.tolist())
-    for before, after in zip(moments, moments[1:], strict=False):
+    for before, after in pairwise(moments):
         for foot in before.standing & after.standing:
             assert_allclose(after.places[foot], before.places[foot], atol=1e-9 * SIZE)
     strides = {
