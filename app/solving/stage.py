@@ -184,11 +184,16 @@ def unseen(document: Document, script: PoseScript) -> list[str]:
             )
         else:
             notices.append(f"{part.layer} is never seen: its visible shows it at no frame")
-    for choice in script.choices:
-        notices += [
-            f"choice {choice.name!r}: {layer} from frame {frame} on is never seen, as the "
-            f"animation ends at frame {last}"
-            for frame, layer in choice.turns
-            if frame > last
-        ]
-    return notices
+    late_changes = [
+        (f"choice {choice.name!r}: {layer}", frame)
+        for choice in script.choices
+        for frame, layer in choice.turns
+    ]
+    for part in script.figures:
+        late_changes += [(f"what {part.layer} hangs on", joint.frame) for joint in part.attach]
+        late_changes += [(f"the order of {part.layer}", each.frame) for each in part.order]
+    return notices + [
+        f"{what} from frame {frame} on is never seen, as the animation ends at frame {last}"
+        for what, frame in late_changes
+        if frame > last
+    ]
