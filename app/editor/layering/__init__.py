@@ -19,6 +19,7 @@ from app.editor.layering.arranging import (
     list_active as list_active,
     lock as lock,
     move as move,
+    move_beside as move_beside,
     refer as refer,
     rename as rename,
     rename_group as rename_group,
@@ -52,6 +53,7 @@ from app.editor.layering.filming import (
 from app.editor.layering.hanging import (
     hand_over as hand_over,
     hang as hang,
+    hang_together as hang_together,
     hangs_on as hangs_on,
     let_hang as let_hang,
     remove as remove,

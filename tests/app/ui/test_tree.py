@@ -225,6 +225,25 @@ def test_a_row_that_is_dropped_on_another_one_hangs_there(window, scene, ids, us
     assert scene.document.figure(ids["head"]).joints == ()
 
 
+def test_chosen_layers_are_dropped_together(window, scene, ids, use):
+    before, both = scene.document, (ids["hat"], ids["stick"])
+    places = [place(scene, name, window) for name in ("hat", "stick")]
+    window.act(layering.choose_all, *both)
+    use(lambda robot: drop(robot, ids["stick"], ids["head"]))
+    window.settle()
+    assert [scene.document.figure(each).joints[0].to for each in both] == [ids["head"]] * 2
+    for name, there in zip(("hat", "stick"), places, strict=True):
+        assert abs(place(scene, name, window) - there) < 0.1
+    assert scene.history.undo_label == "Attach 2 layers"
+    window.act(editing.undo)
+    assert scene.document is before
+    use(lambda robot: drop(robot, ids["stick"], ids["oh"], 0.1))
+    order = [each.name for each in reversed(scene.document.figures)]
+    assert order == ["hat", "stick", "oh", "ah", "head"]
+    window.act(editing.undo)
+    assert scene.document is before
+
+
 def test_what_hung_on_a_layer_that_is_deleted_hangs_on_what_that_hung_on(window, scene, ids):
     for child, parent in (("ah", "hat"), ("hat", "head")):
         window.act(layering.hang, ids[child], ids[parent])
