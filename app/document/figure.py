@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from app.document.body import SIDES, Bone, pairs_by_name
+from app.document.body import SIDES, Bone, GivenMotion, pairs_by_name
 from app.document.checks import (
     NOTHING,
     Unknown,
@@ -88,6 +88,9 @@ class Figure:
     # usual material, 1 everywhere.
     stiffness: Floats | None = field(default=None, hash=False)
     bones: tuple[Bone, ...] = ()
+    # Ready motions that its keys were made by, in the order of their frames; they tell nothing of
+    # keys that were edited since.
+    motions: tuple[GivenMotion, ...] = ()
     variant: Variant = Variant.METRIC  # it may be given by its name
     bounds: Bounds = NATURAL.bounds  # distortion that the solver allows in new poses
     library: tuple[KeptPose, ...] = ()  # poses that are kept to be used again

@@ -8,16 +8,18 @@ from app.document import (
     Attachment,
     Document,
     Figure,
+    MoveKey,
+    OpacityKey,
     Placing,
     Turn,
     choice_commands,
     is_visible,
     layer_commands,
+    repeating,
 )
 from app.errors import LissomError
 from app.motion import Joints, anchor_of, hand_over
-from app.solving.script import FigureScript, PoseScript
-from app.solving.script_stage import ScriptJoint
+from app.solving.script import FigureScript, PoseScript, ScriptJoint
 
 
 def layer_named(document: Document, name: str) -> Figure:
@@ -135,18 +137,45 @@ def unmoved(document: Document, script: PoseScript) -> list[str]:
     return notices
 
 
+def unrepeated(figure: Figure, part: FigureScript) -> list[str]:
+    """Tell of what a script lets repeat that has nothing to repeat, or does not come round."""
+    opacity = part.opacity if isinstance(part.opacity, tuple) else ()
+    keyed = [key.frame for key in part.keys] + [switch.frame for switch in figure.switches]
+    keyed += [key.frame for key in part.movement] + [key.frame for key in opacity]
+    keyed += [placing.frame for placing in part.order]
+    notices = [
+        f"nothing is keyed in {cycle.told}: there is nothing to repeat"
+        for cycle in part.cycles
+        if not (
+            any(map(cycle.has, keyed)) or any(cycle.takes(track.keys) for track in figure.tracks)
+        )
+    ]
+    rows: dict[str, tuple[MoveKey, ...] | tuple[OpacityKey, ...]]
+    rows = {"movement": part.movement, "opacity": opacity}
+    for name, row in rows.items():
+        cycle = next((each for each in part.cycles if len(row) > 1 and each.takes(row)), None)
+        if cycle is not None and repeating(figure, row) is None:
+            notices.append(
+                f"its {name} ends otherwise than it begins in {cycle.told}, and does not repeat"
+            )
+    return notices
+
+
 def unseen(document: Document, script: PoseScript) -> list[str]:
     """Tell of layers that a script poses, switches or chooses, and that are never seen so."""
     first, last = document.frames.first, document.frames.last
     notices = []
     for part in script.figures:
-        if part.layer is None or document.choice_of(layer_named(document, part.layer).id):
+        if part.layer is None:
             continue
         figure = layer_named(document, part.layer)
+        choice = document.choice_of(figure.id)
         late = [frame for frame, visible in part.visible or () if visible and frame > last]
         if any(is_visible(document, figure, frame) for frame in range(first, last + 1)):
             continue
-        if part.visible is None:
+        if choice is not None:
+            notices.append(f"{part.layer} is never seen: the choice {choice.name!r} never shows it")
+        elif part.visible is None:
             notices.append(
                 f"{part.layer} is hidden in the drawing, and so never seen; with "
                 '"visible": [[0, true]] it is'
@@ -158,11 +187,16 @@ def unseen(document: Document, script: PoseScript) -> list[str]:
             )
         else:
             notices.append(f"{part.layer} is never seen: its visible shows it at no frame")
-    for choice in script.choices:
-        notices += [
-            f"choice {choice.name!r}: {layer} from frame {frame} on is never seen, as the "
-            f"animation ends at frame {last}"
-            for frame, layer in choice.turns
-            if frame > last
-        ]
-    return notices
+    late_changes = [
+        (f"choice {given.name!r}: {layer}", frame)
+        for given in script.choices
+        for frame, layer in given.turns
+    ]
+    for part in script.figures:
+        late_changes += [(f"what {part.layer} hangs on", joint.frame) for joint in part.attach]
+        late_changes += [(f"the order of {part.layer}", each.frame) for each in part.order]
+    return notices + [
+        f"{what} from frame {frame} on is never seen, as the animation ends at frame {last}"
+        for what, frame in late_changes
+        if frame > last
+    ]

@@ -52,6 +52,7 @@ from app.storage.layers import (
     is_layered as is_layered,
     layer_figure as layer_figure,
     open_layered as open_layered,
+    open_merged as open_merged,
     open_pictures as open_pictures,
     read_layered as read_layered,
     still_figure as still_figure,
@@ -94,6 +95,7 @@ from app.storage.project_file import (
 )
 from app.storage.thumbnail import (
     draw_thumbnail as draw_thumbnail,
+    read_moments as read_moments,
     read_thumbnail as read_thumbnail,
     shrink as shrink,
 )

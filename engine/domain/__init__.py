@@ -2,7 +2,7 @@
 
 In: a picture, uint8 (h, w, 4), and what tells its subject from the rest.
 Out: a `Domain`: outlines, cages and triangulation in the picture's pixels, y up; the texture that
-    is painted on it, and where handles are useful in it.
+    is painted on it, where handles are useful in it, and where the joints of a body may be.
 Imports: `engine.geometry`.
 """
 
@@ -17,7 +17,9 @@ from engine.domain.build import (
 )
 from engine.domain.limbs import (
     SuggestedHandle as SuggestedHandle,
+    guessed_kind as guessed_kind,
     suggest_handles as suggest_handles,
+    suggested_joints as suggested_joints,
 )
 from engine.domain.outline import (
     SLIT_WIDTH as SLIT_WIDTH,

@@ -1,10 +1,11 @@
-"""What handles are to each other and to the drawing: pairs on two sides, and bones in limbs.
+"""What handles are to each other and to the drawing: pairs on two sides, bones, and joints.
 
 In: handles.
-Out: their partners, bones, and the material that these make.
+Out: their partners, bones and the material that these make, and motions that joints were given.
 Imports: the values of `app.document`.
 """
 
+from app.document.body.given import GivenMotion as GivenMotion
 from app.document.body.material import (
     USUAL_STRENGTH as USUAL_STRENGTH,
     Bone as Bone,

@@ -15,7 +15,11 @@ from app.document.commands import (
     scene_commands as scene_commands,
     track_commands as track_commands,
 )
-from app.document.commands.command import Command as Command, in_turn as in_turn
+from app.document.commands.command import (
+    Command as Command,
+    in_turn as in_turn,
+    numbered as numbered,
+)
 from app.document.commands.pose_commands import Settled as Settled, exchanged as exchanged
 from app.document.commands.staging import (
     choice_commands as choice_commands,

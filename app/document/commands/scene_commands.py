@@ -4,10 +4,11 @@ from collections.abc import Iterable
 from dataclasses import replace
 from itertools import pairwise
 
-from app.document.body import SidePairs
+from app.document.body import GivenMotion, SidePairs
 from app.document.commands.command import command, numbered
 from app.document.commands.key_commands import stretched
 from app.document.commands.keys_in_time import in_order, require_factor, scaled
+from app.document.figure import Figure
 from app.document.model import Document
 from app.document.settings import ExportSettings, FrameRange, Marker
 from app.errors import LissomError
@@ -145,3 +146,38 @@ def _with_markers(document: Document, markers: Iterable[Marker]) -> Document:
                 f"Two markers would be at frame {one.frame}; move or delete the one there first."
             )
     return replace(document, markers=tuple(ordered))
+
+
+@command("Give a motion")
+def give_motion(document: Document, moved: Figure, given: GivenMotion) -> Document:
+    """Put a figure with a motion in its place; where nothing moved yet, the scene becomes its loop.
+
+    Parameters
+    ----------
+    moved : Figure
+        The figure with the keys that were made, `given` among its motions.
+    given : GivenMotion
+    """
+    is_new = not _moves(document)
+    document = document.with_figure(moved)
+    if is_new and given.first == document.frames.first:
+        loop = not given.parameters.travel and given.start == given.first
+        return replace(document, frames=FrameRange(given.first, given.last), loop=loop)
+    return document
+
+
+def _moves(document: Document) -> bool:
+    """Tell whether anything of a scene has a time."""
+    has_time = bool(document.preview or document.markers or document.camera)
+    has_time |= any(choice.turns[1:] for choice in document.choices)
+    return has_time or any(
+        each.keys[1:]
+        or each.tracks
+        or each.cycles
+        or each.switches
+        or each.movement
+        or each.opacities
+        or each.placings
+        or each.joints[1:]
+        for each in document.figures
+    )

@@ -22,6 +22,7 @@ from app.document import (
     Figure,
     FormatPictures,
     FrameRange,
+    GivenMotion,
     Group,
     Handle,
     KeptPose,
@@ -67,6 +68,7 @@ from app.storage.pictures import require_memory
 from app.storage.project.archive import Archive
 from app.storage.project.members import FigureMembers
 from engine.domain import CutOut, Slit, Stroke
+from engine.geometry.motions import Parameters
 from engine.maps import Boundary, Bounds, HarmonicMap, certify
 
 SCHEMA = 2
@@ -81,6 +83,12 @@ MARKER = record(Marker, Field("frame", WHOLE), Field("name", TEXT))
 def _counts(lines: Sequence[Stroke] | Sequence[Slit]) -> tuple[int, ...]:
     """Return how many points each of some lines has."""
     return tuple(len(line.points) for line in lines)
+
+
+def _read_joints(content: object, where: str) -> dict[str, int]:
+    """Return the handles of joints by their names."""
+    joints = as_object(content, where)
+    return {name: as_whole(handle, f"{where}.{name}") for name, handle in joints.items()}
 
 
 def _options(usual: FormatOptions) -> Codec:
@@ -199,6 +207,26 @@ BONE = record(
     Field("amount", NUMBER),
     Field("is_shown", FLAG, usual=True),
 )
+MOTION = record(
+    GivenMotion,
+    Field("motion", TEXT),
+    Field("kind", TEXT),
+    Field(
+        "joints",
+        Codec(dict, _read_joints),
+    ),
+    Field("facing", WHOLE),
+    Field(
+        "parameters",
+        part(
+            Parameters,
+            *(Field(name, NUMBER) for name in ("speed", "size", "energy", "start")),
+            *(Field(name, FLAG) for name in ("mirrored", "travel")),
+        ),
+    ),
+    *(Field(name, WHOLE) for name in ("first", "start", "last", "rounds")),
+    Field("digest", TEXT),
+)
 BACKGROUND = Codec(
     lambda value: list(value) if isinstance(value, tuple) else value,
     lambda content, where: (several(WHOLE) if isinstance(content, list) else TEXT).read(
@@ -275,6 +303,7 @@ FIGURE = record(
     Field("springs", several(SPRING), usual=()),
     Field("cycles", several(CYCLE), usual=()),
     Field("bones", several(BONE), usual=()),
+    Field("motions", several(MOTION), usual=()),
     Field("stiffness", FLAG, lambda figure: figure.stiffness is not None, usual=False),
     Field("variant", TEXT),
     Field("bounds", part(Bounds, *(Field(name, NUMBER) for name in ("k", "sigma_a", "sigma_b")))),

@@ -124,6 +124,24 @@ class Skeleton:
                 self.near[one].add(other)
                 self.near[other].add(one)
 
+    def open_rings(self, ground: float) -> None:
+        """Cut all ways around holes: between feet on the ground, else where they are narrowest."""
+        places, _, links, gates = self.axis
+        heights = places.imag[links].mean(axis=1)
+        order = np.lexsort((gates, np.where(heights <= ground, heights, np.inf)))
+        while ring := set(self.ring()):
+            for link in order.tolist():
+                one, other = links[link].tolist()
+                if not {one, other} <= ring or other not in self.near[one]:
+                    continue
+                self.near[one].discard(other)
+                self.near[other].discard(one)
+                if np.isfinite(self.ways([one])[0][other]):
+                    break
+                # It led from one ring to another.
+                self.near[one].add(other)
+                self.near[other].add(one)
+
     def ways(self, starts: Iterable[int]) -> tuple[Floats, Indices]:
         """Return how far nodes are along it from the nearest of some, inf if cut off or not linked.
 

@@ -4,14 +4,14 @@ import re
 
 import numpy as np
 import pytest
-import shapely
+from bodies import drawn
 from numpy.testing import assert_allclose
 from shapes import regular_polygon
 
 from engine.domain import suggest_handles
-from engine.domain.limbs.handle_places import _Body
+from engine.domain.limbs.anatomy import Anatomy
 from engine.domain.limbs.medial_axis import medial_axis
-from engine.geometry import as_xy, contains
+from engine.geometry import contains
 
 
 def suggested(*loops):
@@ -80,19 +80,6 @@ def test_a_ring_is_held_all_around():
     assert_allclose(np.abs(handles), 160, rtol=0, atol=3)
     between = np.diff(np.sort(np.angle(handles)), append=np.sort(np.angle(handles))[0] + 2 * np.pi)
     assert between.max() < np.radians(110)
-
-
-def drawn(*strokes):
-    """Return the outline and holes of what strokes (points, width) paint."""
-    lines = [shapely.LineString(as_xy(np.asarray(points))) for points, _ in strokes]
-    widths = [width for _, width in strokes]
-    whole = shapely.union_all(shapely.buffer(lines, np.array(widths) / 2))
-    loops = [whole.exterior, *whole.interiors]
-    oriented = [np.array(loop.coords)[:-1] @ [1, 1j] for loop in loops]
-    return [
-        loop if shapely.LinearRing(as_xy(loop)).is_ccw == (number == 0) else loop[::-1]
-        for number, loop in enumerate(oriented)
-    ]
 
 
 def figure(*, spread=40, boots=40, head=70):
@@ -195,7 +182,7 @@ def test_limbs_that_leave_a_body_at_its_neck_belong_to_it(width, head, up):
         strokes += [(np.array([side * 20, side * 60 - 200j]), 34)]
         strokes += [(np.array([50j, side * 200 + 10j]), 28)]
     loops = drawn(*strokes)
-    body = _Body(loops)
+    body = Anatomy(loops)
     assert body.neck == body.middle
     handles = suggested(*loops)
     assert {"head", "left foot", "left knee", "right foot", "right knee"} <= handles.keys()

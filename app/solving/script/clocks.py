@@ -16,7 +16,7 @@ from app.document import (
     require_repeatable,
 )
 from app.errors import LissomError
-from app.solving.script_fields import (
+from app.solving.script.fields import (
     fields_in,
     frame_of,
     made_of,

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from app.document import Bone
 from app.errors import LissomError
-from app.solving.script_fields import fields_in, require_handle
+from app.solving.script.fields import fields_in, require_handle
 from app.storage import as_list, as_number, as_object, as_point, as_text
 from engine.maps import SOFTEST, STIFFEST
 

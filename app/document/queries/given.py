@@ -1,0 +1,40 @@
+"""Whether motions that a figure was given are still as they were made."""
+
+import hashlib
+
+from app.document.body import GivenMotion
+from app.document.figure import Figure
+from app.document.keyframe import Keyframe
+
+
+def digest_of_keys(figure: Figure, first: int, last: int) -> str:
+    """Return a digest of what is keyed from one frame to another, both included.
+
+    It is of what a person edits: where keys are, what they want of handles, how they are passed,
+    and what repeats. Poses that are solved anew, within other limits or on another mesh, change
+    nothing of it.
+    """
+    digest = hashlib.sha256()
+    for key in figure.keys:
+        if first <= key.frame <= last:
+            digest.update(repr(_told(key, first)).encode())
+    for cycle in figure.cycles:
+        if cycle.first < last and cycle.covers(first):
+            digest.update(repr((cycle.first, cycle.last, cycle.until)).encode())
+    return digest.hexdigest()
+
+
+def is_as_given(figure: Figure, given: GivenMotion) -> bool:
+    """Tell whether nothing of a motion was edited since it was given to a figure."""
+    return digest_of_keys(figure, given.first, given.last) == given.digest
+
+
+def _told(key: Keyframe, first: int) -> tuple[object, ...]:
+    """Return what a person says of a key, as its digest takes it."""
+    wanted = [
+        (identity, target.position, target.rotation)
+        for identity, target in sorted(key.pose.targets.items())
+    ]
+    fronts = sorted(key.fronts.items())
+    way = key.easing.curve, key.passing.value, key.turns
+    return key.frame - first, wanted, fronts, way

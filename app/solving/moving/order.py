@@ -1,0 +1,173 @@
+"""What a figure is asked to do, and the joints by which it does it."""
+
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from app.document import (
+    RUBBERY,
+    Document,
+    Figure,
+    GivenMotion,
+    figure_commands,
+    handle_commands,
+    material_commands,
+    numbered,
+)
+from app.errors import LissomError
+from app.solving.moving.wholes import points_of_whole
+from engine.arrays import Complexes
+from engine.errors import EngineError
+from engine.geometry import box_diagonal
+from engine.geometry.motions import Body, Motion, Parameters, facing_of, kind_named, motion_named
+from engine.maps import Bounds
+
+# Of the diagonal of the drawing: a joint is the handle that is so near to it, and one that is so
+# little outside comes to the outline.
+SAME_JOINT, BESIDE = 0.004, 0.01
+TRUNK = ("neck", "head", "chest")
+STIFF_TRUNK, STIFF_LIMB, STIFF_HEAD = 10.0, 3.0, 20.0
+HEAD = 1.5  # times as far as the nearest outline around its joint
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MotionOrder:
+    """A motion for a figure.
+
+    Raises
+    ------
+    EngineError
+        If there is no such motion or kind, or the one does not fit the other.
+    """
+
+    motion: str
+    kind: str
+    joints: Mapping[str, complex]  # at rest, in pixels of the canvas, y up
+    parameters: Parameters = field(default_factory=Parameters)
+    first: int = 0  # the frame from which on it is given
+    rounds: int = 1  # how often its cycle is there
+    facing: int | None = None  # 1 looks to the right, -1 to the left; None guesses
+    stiff: bool = True  # whether the trunk becomes stiff, so that limbs move and not all
+    bones: bool = False  # whether limbs get bones, too
+    # Limits that the figure has at least; None leaves them as they are.
+    limits: Bounds | None = RUBBERY.bounds
+
+    def __post_init__(self) -> None:
+        self.ready.course(self.kind)
+
+    @property
+    def ready(self) -> Motion:
+        """The motion itself."""
+        kind_named(self.kind)
+        return motion_named(self.motion)
+
+
+def order_of(figure: Figure, given: GivenMotion) -> MotionOrder:
+    """Return the order by which a figure was given a motion, to be given in another way."""
+    return MotionOrder(
+        motion=given.motion,
+        kind=given.kind,
+        joints={name: figure.handle(each).position for name, each in given.joints.items()},
+        parameters=given.parameters,
+        first=given.first,
+        rounds=given.rounds,
+        facing=given.facing,
+        stiff=False,
+        limits=None,
+    )
+
+
+def facing_in(figure: Figure, order: MotionOrder) -> int:
+    """Return which way a figure looks: 1 to the right, -1 to the left."""
+    if order.facing is not None:
+        return order.facing
+    return facing_of(kind_named(order.kind), order.joints, figure.domain.outline)
+
+
+def body_of(figure: Figure, order: MotionOrder) -> Body:
+    """Return the body of a figure at rest.
+
+    Raises
+    ------
+    LissomError, EngineError
+        If a joint is not on the drawing, or the kind has no such joint.
+    """
+    outline, kind = figure.domain.outline, kind_named(order.kind)
+    x, y = outline.real, outline.imag
+    joints = dict(order.joints) if kind.parents else points_of_whole(figure.domain)
+    if kind.parents:
+        kind.require_joints(joints)
+        joints = _on_drawing(figure, joints)
+    return Body(
+        kind=kind,
+        joints=joints,
+        box=(complex(x.min(), y.min()), complex(x.max(), y.max())),
+        facing=facing_in(figure, order),
+    )
+
+
+def _on_drawing(figure: Figure, joints: Mapping[str, complex]) -> dict[str, complex]:
+    """Return joints on a figure; those that are hardly beside it come to its outline."""
+    beside = BESIDE * box_diagonal(figure.domain.outline)
+    points: Complexes = np.array(list(joints.values()), dtype=np.complex128)
+    covered = figure.covers(points, tolerance=beside)
+    for (name, place), is_on_it in zip(joints.items(), covered, strict=True):
+        if not is_on_it:
+            raise LissomError(
+                f"the joint {name!r} at ({place.real:g}, {place.imag:g}) is not on the drawing"
+            )
+    nearest = figure.domain.nearest(points).tolist()
+    return dict(zip(joints, nearest, strict=True))
+
+
+def with_handles_at_joints(
+    document: Document, identity: int, body: Body, order: MotionOrder
+) -> tuple[Document, dict[str, int]]:
+    """Return a document whose figure has a handle at each joint, and bones; and which those are."""
+    joints = dict[str, int]()
+    near = SAME_JOINT * box_diagonal(document.figure(identity).domain.outline)
+    for name, place in body.joints.items():
+        figure = document.figure(identity)
+        beside = {abs(each.position - place): each.id for each in figure.handles}
+        found = beside[min(beside)] if beside and min(beside) <= near else None
+        if found is None or found in joints.values():
+            found = figure.next_handle
+            taken = {handle.name for handle in figure.handles}
+            free = name if name not in taken else numbered(name, taken, 2)
+            document = handle_commands.add_handle(identity, place, name=free)(document)
+        joints[name] = found
+    for name, before in body.parents.items():
+        amount = STIFF_TRUNK if name in TRUNK else STIFF_LIMB
+        if not before or not (order.stiff if name in TRUNK else order.bones):
+            continue
+        ends = joints[before], joints[name]
+        if any(bone.is_between(ends) for bone in document.figure(identity).bones):
+            continue
+        # Where the way between two joints leaves the drawing, the limb bends as it likes.
+        with suppress(EngineError):
+            document = material_commands.add_bone(identity, ends, amount)(document)
+    if order.stiff and "head" in joints:
+        document = _with_stiff_head(document, identity, body.joints["head"])
+    return document, joints
+
+
+def _with_stiff_head(document: Document, identity: int, head: complex) -> Document:
+    """Return a document whose figure's head keeps its shape."""
+    outline = document.figure(identity).domain.outline
+    radius = HEAD * float(np.abs(outline - head).min())
+    return material_commands.paint(identity, [head], radius=radius, amount=STIFF_HEAD)(document)
+
+
+def with_limits(document: Document, identity: int, limits: Bounds | None) -> Document:
+    """Return a document whose figure may be distorted as far as some limits, or its own, allow."""
+    own = document.figure(identity).bounds
+    if limits is None:
+        return document
+    wider = Bounds(
+        k=max(own.k, limits.k),
+        sigma_a=max(own.sigma_a, limits.sigma_a),
+        sigma_b=min(own.sigma_b, limits.sigma_b),
+    )
+    return figure_commands.set_bounds(identity, wider)(document)

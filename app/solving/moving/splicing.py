@@ -1,0 +1,69 @@
+"""How the keys of a motion come among those that a figure has."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from app.document import (
+    Cycle,
+    Document,
+    Figure,
+    GivenMotion,
+    Keyframe,
+    cycle_commands,
+    digest_of_keys,
+)
+
+BLEND = 0.25  # seconds over which a motion blends in from what is before it
+
+
+def lead_before(figure: Figure, first: int, fps: float) -> int:
+    """Return over how many frames a motion blends in that is given at a frame.
+
+    It does where the figure is keyed before; else its first key takes the place of what is there.
+    """
+    if any(key.frame < first for key in figure.keys):
+        return max(2, round(BLEND * fps))
+    return 0
+
+
+def spliced(
+    document: Document, identity: int, keys: Sequence[Keyframe], given: GivenMotion
+) -> Figure:
+    """Return a figure with the keys of a motion in place of those that it has meanwhile.
+
+    Parameters
+    ----------
+    document : Document
+    identity : int
+        The id of the figure.
+    keys : sequence of Keyframe
+        Of one cycle, and of how the motion blends in.
+    given : GivenMotion
+        It gets the digest of its keys. Other motions that it interrupts are forgotten, and what
+        repeats into it becomes keys.
+    """
+    first, last = given.first, given.last
+    for cycle in document.figure(identity).cycles:
+        if cycle.first < last and cycle.covers(first + 1):
+            make_keys = cycle_commands.make_keys(identity, cycle.first, document.frames.last)
+            document = make_keys(document)
+    figure = document.figure(identity)
+    cycles = [each for each in figure.cycles if not _is_during(each, first, last)]
+    if given.rounds > 1 and not given.parameters.travel:
+        period = (last - given.start) // given.rounds
+        cycles.append(Cycle(first=given.start, last=given.start + period, until=last))
+    kept = [key for key in figure.keys if not first <= key.frame <= last]
+    motions = [each for each in figure.motions if not each.overlaps(first, last)]
+    figure = replace(
+        figure,
+        keys=tuple(sorted([*kept, *keys], key=lambda key: key.frame)),
+        cycles=tuple(sorted(cycles, key=lambda cycle: cycle.first)),
+    )
+    given = replace(given, digest=digest_of_keys(figure, first, last))
+    motions.append(given)
+    return replace(figure, motions=tuple(sorted(motions, key=lambda each: each.first)))
+
+
+def _is_during(cycle: Cycle, first: int, last: int) -> bool:
+    """Tell whether what repeats does so at some time strictly between two frames."""
+    return cycle.first < last and (cycle.until is None or cycle.until > first)

@@ -1,0 +1,16 @@
+"""Pose scripts: animations written as small JSON texts.
+
+In: the file.
+Out: what it says of each figure, checked.
+Imports: `app.document`, `app.storage`.
+"""
+
+from app.solving.script.layers import ScriptJoint as ScriptJoint
+from app.solving.script.pose_script import (
+    FigureScript as FigureScript,
+    PoseKey as PoseKey,
+    PoseScript as PoseScript,
+    ScriptHandle as ScriptHandle,
+    load_pose_script as load_pose_script,
+    parse_pose_script as parse_pose_script,
+)

@@ -1,0 +1,87 @@
+"""What kind of body a shape looks like, and where its joints may be."""
+
+import numpy as np
+import pytest
+from bodies import BODIES, CHILD, FISH, HORSE, KANGAROO, SNAKE, WALKER, dot, drawn
+
+from engine.domain import guessed_kind, suggested_joints
+from engine.geometry import contains
+from engine.geometry.motions import KINDS, kind_named
+
+
+def suggested(loops, kind):
+    """Return the joints by their names, all of them inside and of the kind."""
+    joints = suggested_joints(loops, kind_named(kind))
+    places = np.array(list(joints.values()), dtype=complex)
+    assert contains(loops[0], places, holes=loops[1:]).all()
+    kind_named(kind).require_joints(joints)
+    return joints
+
+
+@pytest.mark.parametrize("name", BODIES)
+@pytest.mark.parametrize("flip", [False, True])
+def test_a_kind_is_guessed_from_either_side_and_every_kind_has_joints_inside(name, flip):
+    kind, strokes = BODIES[name]
+    loops = drawn(*((-np.conj(points) if flip else points, width) for points, width in strokes))
+    assert guessed_kind(loops).name == kind
+    for other in KINDS:
+        suggested(loops, other)
+
+
+def test_a_child_from_the_front_has_its_left_on_the_right_of_the_picture():
+    joints = suggested(drawn(*CHILD), "biped-front")
+    assert joints.keys() >= set(kind_named("biped-front").usual)
+    assert "tail" not in joints
+    for side, way in (("L", 1), ("R", -1)):
+        assert abs(joints[f"hand.{side}"] - complex(way * 215, 285)) < 25
+        assert abs(joints[f"foot.{side}"] - complex(way * 50, 25)) < 35
+        assert 30 < way * joints[f"shoulder.{side}"].real < 90
+        assert 20 < way * joints[f"hip.{side}"].real < 60
+    assert joints["head"].imag > 470
+    assert 310 > joints["chest"].imag > joints["hips"].imag + 40
+
+
+def test_from_the_side_the_leg_ahead_goes_with_the_arm_behind():
+    joints = suggested(drawn(*WALKER), "biped-side")
+    assert joints["foot.L"].real > 40 > -40 > joints["foot.R"].real
+    assert joints["hand.R"].real > 40 > -40 > joints["hand.L"].real
+    for ankle in ("foot.L", "foot.R"):
+        assert joints[ankle].imag < 50
+    assert not any(name.startswith(("hip.", "shoulder.")) for name in joints)
+
+
+def test_a_kangaroo_on_its_tail_has_one_leg_and_a_heel():
+    joints = suggested(drawn(*KANGAROO), "biped-side")
+    assert "foot.R" not in joints, "there is but one"
+    assert abs(joints["foot.L"] - (-45 + 25j)) < 30, "not at its toes"
+    assert joints["tail"].real < -240
+    assert joints["head"].imag > 420
+
+
+def test_a_horse_has_two_pairs_of_legs_with_the_outer_ones_on_one_side():
+    joints = suggested(drawn(*HORSE), "four-legs")
+    feet = {"foot.L": -185, "foot.R": -115, "hand.R": 55, "hand.L": 125}
+    assert all(abs(joints[name] - complex(x, 25)) < 30 for name, x in feet.items())
+    assert joints["hips"].real < -80 < 40 < joints["chest"].real
+    assert joints["tail"].real < -220 < 130 < joints["head"].real
+
+
+def test_legs_whose_feet_touch_are_two():
+    loops = drawn(([100j, 250j], 120), ([-40 + 100j, -40, 0], 24), ([40 + 100j, 40, 0], 24))
+    assert len(loops) == 2
+    joints = suggested(loops, "biped-front")
+    assert joints["foot.R"].real < -15 < 15 < joints["foot.L"].real
+
+
+@pytest.mark.parametrize(("strokes", "head"), [([*SNAKE, dot(245 + 15j, 34)], 240), (FISH, 60)])
+def test_a_chain_begins_at_its_head(strokes, head):
+    joints = list(suggested(drawn(*strokes), "chain").values())
+    assert joints[0].real > head
+    assert joints[-1].real < -90
+    assert len(joints) >= 4
+    steps = np.abs(np.diff(joints))
+    assert steps.max() < 1.6 * steps.min()
+
+
+def test_what_is_anything_has_no_joints():
+    assert suggested(drawn(*CHILD), "anything") == {}
