@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 from app.document import Baseline, Meshing, Variant
 from app.editor.action import Action
-from app.editor.dialogs import Dialog, FileDialog, ShortcutSheet
+from app.editor.dialogs import Dialog, FileDialog, ProblemReport, ShortcutSheet
 from app.editor.project import Project, view_around
 from app.editor.session import CurveKind, HeatMap, Session, Tint, Toast, with_project
 from app.errors import LissomError
@@ -244,8 +244,9 @@ def open_manual(session: Session, page: str) -> None:
 
 
 def close_dialog(session: Session) -> None:
-    """Close the dialog without doing anything."""
-    session.dialog = None
+    """Close the dialog without doing anything; what a report was asked for from comes back."""
+    dialog = session.dialog
+    session.dialog = dialog.behind if isinstance(dialog, ProblemReport) else None
 
 
 def answer(session: Session, action: Action) -> None:
