@@ -1,9 +1,11 @@
 """Outlines of people, animals and things, painted by strokes."""
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 import numpy as np
 import shapely
+from PIL import Image, ImageDraw
 
 from engine.arrays import Complexes
 from engine.geometry import as_xy
@@ -85,3 +87,22 @@ BODIES: Mapping[str, tuple[str, Sequence[Stroke]]] = {
     "ghost": ("anything", GHOST),
     "tree": ("anything", TREE),
 }
+
+
+def paint(folder: Path, name: str, *, size: int = 200) -> Path:
+    """Return a picture of a body, so many pixels high."""
+    loops = drawn(*BODIES[name][1])
+    outline = loops[0]
+    low = complex(outline.real.min(), outline.imag.min())
+    scale = 0.9 * size / float(np.ptp(outline.imag))
+    margin = 0.05 * size
+    width = round(scale * float(np.ptp(outline.real)) + 2 * margin)
+    picture = Image.new("RGBA", (width, size))
+    pen = ImageDraw.Draw(picture)
+    for loop, colour in zip(loops, ["#c06040", *["#0000"] * (len(loops) - 1)], strict=True):
+        places = scale * (loop - low)
+        corners = [(x + margin, size - margin - y) for x, y in as_xy(places).tolist()]
+        pen.polygon(corners, fill=colour)
+    path = folder / f"{name}.png"
+    picture.save(path)
+    return path
