@@ -128,9 +128,9 @@ def test_no_motion_of_the_friend_is_slowed_down_by_its_limits():
             assert min(store.velocity_shares(clip).values(), default=1.0) > 0.6, figure.name
 
 
-@pytest.mark.parametrize("name", ["character", "giraffe"])
-def test_a_sample_keeps_its_bounds(name):
-    report = certify_clip(clip_of(load_project(SAMPLES / f"{name}.lissom"), 0))
+def test_a_sample_keeps_its_bounds():
+    # The command tries the giraffe.
+    report = certify_clip(clip_of(load_project(SAMPLES / "character.lissom"), 0))
     # In between handles stay where two keys have them: that is measured, frame by frame.
     assert report.verdict is Verdict.MEASURED
     assert {interval.verdict for interval in report.intervals} == {Verdict.PROVEN}

@@ -221,7 +221,8 @@ class Document:
     def _refuse_circle(self, circle: Sequence[Figure], frame: float) -> NoReturn:
         """Refuse figures each of which hangs on the next one, the last one being the first."""
         links = ", ".join(f"{one.name!r} on {other.name!r}" for one, other in pairwise(circle))
-        when = f" at frame {frame:g}" if any(len(figure.joints) > 1 for figure in circle) else ""
+        changes = any(joint.frame > 0 for figure in circle for joint in figure.joints)
+        when = f" at frame {frame:g}" if changes else ""
         raise LissomError(
             f"{circle[0].name!r} would hang on itself{when}: {links}; detach one of them first."
         )

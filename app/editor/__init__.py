@@ -24,6 +24,8 @@ from app.editor.session import (
     CutTool as CutTool,
     EntryMark as EntryMark,
     ExportRun as ExportRun,
+    Guide as Guide,
+    GuideStep as GuideStep,
     HeatMap as HeatMap,
     Hint as Hint,
     JointMark as JointMark,

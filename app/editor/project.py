@@ -221,6 +221,8 @@ class Project:
     solo: frozenset[int] = frozenset()
     toggled: frozenset[str] = frozenset()  # rows of the tree of layers, open or closed by hand
     declined: frozenset[str] = frozenset()  # groups of which no choice is to be made
+    # Layers that were posed, and whose rows stay until the pointer is over the drawing again.
+    lingering: frozenset[int] = frozenset()
     listed: int | None = None  # the figure that the list of layers was scrolled to
 
     @property
@@ -241,7 +243,7 @@ class Project:
     @property
     def tree(self) -> tuple[TreeRow, ...]:
         """The rows of the layers that are listed, the one in front on top."""
-        return layer_tree(self.document, self.toggled, self.active)
+        return layer_tree(self.document, self.toggled, self.lingering | {self.active})
 
     @property
     def layers(self) -> tuple[int, ...]:
@@ -410,8 +412,8 @@ class Project:
         return (
             own is not None
             and (before.frames, before.loop) == (document.frames, document.loop)
-            and (own.joints, own.anchor, own.domain, own.movement)
-            == (figure.joints, figure.anchor, figure.domain, figure.movement)
+            and (own.joints, own.anchor, own.domain, own.movement, own.cycles)
+            == (figure.joints, figure.anchor, figure.domain, figure.movement, figure.cycles)
             and all(was.get(each.id) is each for each in document.all_carriers(figure.id))
         )
 

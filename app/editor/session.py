@@ -24,6 +24,7 @@ CutTool = Literal["keep", "remove", "knife", "pick", "holes"]
 Tint = Literal["depth", "stiffness"]
 MaterialTool = Literal["stiff", "soft", "normal", "bone"]
 Tone = Literal["info", "good", "error"]
+GuideStep = Literal["handle", "time", "pose", "play", "export", "done"]
 P = ParamSpec("P")
 
 
@@ -198,6 +199,22 @@ class ExportRun:
     done: int = 0
 
 
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Guide:
+    """How far somebody has come who is led through a first animation.
+
+    Where the drawing is a sample, a handle is to be put at its `aim` and dragged to its `goal`.
+    """
+
+    project: Project | None = None  # None while the drawing is chosen and opened
+    handles: frozenset[tuple[int, int]] = frozenset()  # those that were there, by figure and id
+    aim: complex | None = None
+    goal: complex | None = None
+    step: GuideStep = "handle"
+    has_played: bool = False  # since it moves
+    exported: ExportPlan | None = None  # the last export before the one that is awaited
+
+
 @dataclass(slots=True, kw_only=True, eq=False)
 class Session:
     """Everything that one window changes while it runs."""
@@ -218,7 +235,9 @@ class Session:
     dialog: Dialog | None = None
     system_dialogs: bool = False  # whether the system's own file dialogs are used
     export: ExportRun | None = None
+    exported: ExportPlan | None = None  # that was completed last
     cancellation: Cancellation = field(default_factory=Cancellation)  # of an export
+    guide: Guide | None = None  # through a first animation
     named_layer: int | None = None  # for which a name is asked
     pointed_layer: int | None = None  # on whose row in the list the pointer is
     wanted_panel: str = ""  # is brought to the front by the next frame of the window

@@ -77,7 +77,7 @@ def _cycle_of(document: Document, track: Track) -> Cycle | None:
     """Return the cycle with which a track repeats, if there is one."""
     figure = next((each for each in document.figures if track in each.tracks), None)
     cycles = () if figure is None else figure.cycles
-    return next((cycle for cycle in cycles if cycle.takes(track)), None)
+    return next((cycle for cycle in cycles if cycle.takes(track.keys)), None)
 
 
 def own_frame(document: Document, track: Track, seen: int) -> int | None:

@@ -27,6 +27,7 @@ from app.solving.script import FigureScript, PoseKey, PoseScript
 from app.solving.stage import (
     layer_named,
     unmoved,
+    unrepeated,
     unseen,
     with_choices,
     with_joints,
@@ -244,11 +245,8 @@ def _posed(
                 frame=key.frame, pose=pose, easing=key.ease, passing=key.passing, fronts=fronts
             )
         )
-    keyed = [key.frame for key in keys] + [switch.frame for switch in figure.switches]
-    for cycle in part.cycles:
-        if not (any(map(cycle.has, keyed)) or any(map(cycle.takes, figure.tracks))):
-            notices.append(f"{whose}nothing is keyed in {cycle.told}: there is nothing to repeat")
-    return replace(figure, keys=tuple(keys), cycles=part.cycles), notices
+    posed = replace(figure, keys=tuple(keys), cycles=part.cycles)
+    return posed, [*notices, *(whose + notice for notice in unrepeated(posed, part))]
 
 
 def _repeated(part: FigureScript, keys: Sequence[Keyframe], key: PoseKey) -> Keyframe | None:

@@ -8,11 +8,14 @@ from app.document import (
     Attachment,
     Document,
     Figure,
+    MoveKey,
+    OpacityKey,
     Placing,
     Turn,
     choice_commands,
     is_visible,
     layer_commands,
+    repeating,
 )
 from app.errors import LissomError
 from app.motion import Joints, anchor_of, hand_over
@@ -134,6 +137,30 @@ def unmoved(document: Document, script: PoseScript) -> list[str]:
     return notices
 
 
+def unrepeated(figure: Figure, part: FigureScript) -> list[str]:
+    """Tell of what a script lets repeat that has nothing to repeat, or does not come round."""
+    opacity = part.opacity if isinstance(part.opacity, tuple) else ()
+    keyed = [key.frame for key in part.keys] + [switch.frame for switch in figure.switches]
+    keyed += [key.frame for key in part.movement] + [key.frame for key in opacity]
+    keyed += [placing.frame for placing in part.order]
+    notices = [
+        f"nothing is keyed in {cycle.told}: there is nothing to repeat"
+        for cycle in part.cycles
+        if not (
+            any(map(cycle.has, keyed)) or any(cycle.takes(track.keys) for track in figure.tracks)
+        )
+    ]
+    rows: dict[str, tuple[MoveKey, ...] | tuple[OpacityKey, ...]]
+    rows = {"movement": part.movement, "opacity": opacity}
+    for name, row in rows.items():
+        cycle = next((each for each in part.cycles if len(row) > 1 and each.takes(row)), None)
+        if cycle is not None and repeating(figure, row) is None:
+            notices.append(
+                f"its {name} ends otherwise than it begins in {cycle.told}, and does not repeat"
+            )
+    return notices
+
+
 def unseen(document: Document, script: PoseScript) -> list[str]:
     """Tell of layers that a script poses, switches or chooses, and that are never seen so."""
     first, last = document.frames.first, document.frames.last
@@ -157,11 +184,16 @@ def unseen(document: Document, script: PoseScript) -> list[str]:
             )
         else:
             notices.append(f"{part.layer} is never seen: its visible shows it at no frame")
-    for choice in script.choices:
-        notices += [
-            f"choice {choice.name!r}: {layer} from frame {frame} on is never seen, as the "
-            f"animation ends at frame {last}"
-            for frame, layer in choice.turns
-            if frame > last
-        ]
-    return notices
+    late_changes = [
+        (f"choice {choice.name!r}: {layer}", frame)
+        for choice in script.choices
+        for frame, layer in choice.turns
+    ]
+    for part in script.figures:
+        late_changes += [(f"what {part.layer} hangs on", joint.frame) for joint in part.attach]
+        late_changes += [(f"the order of {part.layer}", each.frame) for each in part.order]
+    return notices + [
+        f"{what} from frame {frame} on is never seen, as the animation ends at frame {last}"
+        for what, frame in late_changes
+        if frame > last
+    ]

@@ -93,6 +93,7 @@ from app.storage.project_file import (
 )
 from app.storage.thumbnail import (
     draw_thumbnail as draw_thumbnail,
+    read_moments as read_moments,
     read_thumbnail as read_thumbnail,
     shrink as shrink,
 )

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import IO
 
 import numpy as np
-from PIL import Image
+from PIL import Image, ImageSequence
 
 from app.errors import LissomError
 from app.storage.files import opened_file
@@ -51,6 +51,16 @@ def read_thumbnail(path: Path) -> Bytes | None:
             return _small(file, tuple(FORMATS))
     except (LissomError, MemoryError, *DECODER_ERRORS, *BOMBS):
         return None
+
+
+def read_moments(path: Path) -> list[Bytes]:
+    """Return the pictures of a small animation, uint8 (h, w, 4); none where it cannot be read."""
+    try:
+        with opened_file(path) as (file, _), Image.open(file, formats=("WEBP",)) as moving:
+            frames = ImageSequence.Iterator(moving)
+            return [np.asarray(frame.convert("RGBA")) for frame in frames]
+    except (LissomError, MemoryError, *DECODER_ERRORS, *BOMBS):
+        return []
 
 
 def _small(file: IO[bytes], formats: tuple[str, ...]) -> Bytes | None:

@@ -2,18 +2,38 @@
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import NamedTuple
 
-from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui, imgui_ctx
+from imgui_bundle import (
+    ImVec2,
+    hello_imgui,
+    icons_fontawesome_6 as icons,
+    imgui,
+    imgui_ctx,
+)
 
 from app.editor import Action, Session, do
-from app.editor.actions import files
+from app.editor.actions import files, guiding
 from app.errors import shown_name
 from app.render import Thumbnail
 from app.ui.shortcuts import BINDINGS
-from app.ui.style import LARGE, SMALL, TITLE, Look, bold, ink, main_button, show_picture, sized
+from app.ui.style import (
+    LARGE,
+    SMALL,
+    TITLE,
+    Look,
+    bold,
+    ink,
+    main_button,
+    show_picture,
+    sized,
+    text_button,
+)
 
-Look_up = Callable[[Path], Thumbnail | None]
-CARD, GAP, ROW = 11.5, 1.0, 2.5  # em
+CARD, TALL, GAP, ROW = 11.5, 11.2, 1.0, 2.5  # em
+FIRST, FOOT = 6.4, 3.5  # em: height of the card that begins, and of the words on the others
+LED = "Giraffe"  # the sample by which one begins
+MOMENTS = 10.0  # pictures of a moving sample in a second
 WIDTH = 4 * CARD + 3 * GAP
 MOST_RECENT = 6
 FLAGS = (
@@ -27,7 +47,14 @@ FLAGS = (
 )
 
 
-def draw(session: Session, look: Look, thumbnail: Look_up) -> list[Action]:
+class Previews(NamedTuple):
+    """Where small pictures are looked up: that of a file, and those of a small animation."""
+
+    still: Callable[[Path], Thumbnail | None]
+    moving: Callable[[Path], list[Thumbnail]]
+
+
+def draw(session: Session, look: Look, pictures: Previews) -> list[Action]:
     """Cover the window with samples to open and the ways to open one's own picture."""
     viewport = imgui.get_main_viewport()
     imgui.set_next_window_pos(viewport.work_pos)
@@ -42,8 +69,10 @@ def draw(session: Session, look: Look, thumbnail: Look_up) -> list[Action]:
     imgui.set_cursor_pos(ImVec2(left, max(1.5 * look.em, 0.07 * viewport.work_size.y)))
     imgui.begin_group()
     actions = _greeting(session, look)
-    actions += _samples(look, thumbnail)
-    actions += _recent(session, look, thumbnail)
+    # Who has files of their own looks for these, and not for what there is to try.
+    actions += _recent(session, look, pictures)
+    actions += _first(look, pictures)
+    actions += _samples(look, pictures)
     imgui.end_group()
     imgui.end()
     return actions
@@ -68,7 +97,37 @@ def _greeting(session: Session, look: Look) -> list[Action]:
     return actions
 
 
-def _samples(look: Look, thumbnail: Look_up) -> list[Action]:
+def _first(look: Look, pictures: Previews) -> list[Action]:
+    """Draw the way to a first animation, by the giraffe or by an own drawing."""
+    sample = next((each for each in files.samples() if each.name == LED), None)
+    if sample is None:
+        return []
+    actions: list[Action] = []
+    palette, em = look.palette, look.em
+    corner, size = imgui.get_cursor_screen_pos(), ImVec2(WIDTH * em, FIRST * em)
+    imgui.set_next_item_allow_overlap()
+    if imgui.invisible_button("make it bow", size):
+        actions.append(do(guiding.begin))
+    _frame(look, corner, size, is_hot=imgui.is_item_hovered())
+    room = ImVec2(FIRST * em, size.y - 0.8 * em)
+    _show_sample(sample, pictures, corner + ImVec2(0.8 * em, 0.4 * em), room)
+    draw_list, left = imgui.get_window_draw_list(), corner.x + (FIRST + 2.2) * em
+    with sized(LARGE, look.bold):
+        draw_list.add_text(
+            ImVec2(left, corner.y + 0.9 * em), ink(palette.text), "Make this giraffe bow"
+        )
+    told = "Five steps to a first animation, from a handle to a GIF. It takes about a minute."
+    draw_list.add_text(ImVec2(left, corner.y + 2.5 * em), ink(palette.dim), told)
+    below = imgui.get_cursor_pos()
+    imgui.set_cursor_screen_pos(ImVec2(left, corner.y + 4.1 * em))
+    if text_button("…or with your own drawing", hint="Open it, and go through the same steps"):
+        actions.append(do(guiding.begin_with_own))
+    imgui.set_cursor_pos(below)
+    imgui.dummy(ImVec2(0, 0.4 * em))
+    return actions
+
+
+def _samples(look: Look, pictures: Previews) -> list[Action]:
     actions: list[Action] = []
     bold(look, "Try one of these")
     imgui.dummy(ImVec2(0, 0.2 * look.em))
@@ -77,42 +136,60 @@ def _samples(look: Look, thumbnail: Look_up) -> list[Action]:
             imgui.same_line(0, GAP * look.em)
         elif index:
             imgui.dummy(ImVec2(0, GAP * look.em - 2 * imgui.get_style().item_spacing.y))
-        if _card(look, sample, thumbnail(sample.picture)):
+        if _card(look, sample, pictures):
             actions.append(do(files.open_file, sample.file))
     return actions
 
 
-def _card(look: Look, sample: files.SampleFile, image: Thumbnail | None) -> bool:
-    palette = look.palette
-    size = ImVec2(CARD * look.em, 0.88 * CARD * look.em)
-    corner = imgui.get_cursor_screen_pos()
+def _card(look: Look, sample: files.SampleFile, pictures: Previews) -> bool:
+    palette, em = look.palette, look.em
+    corner, size = imgui.get_cursor_screen_pos(), ImVec2(CARD * em, TALL * em)
     pressed = imgui.invisible_button(f"sample {sample.name}", size)
-    hovered = imgui.is_item_hovered()
-    opposite = corner + size
-    draw_list = imgui.get_window_draw_list()
-    ground, edge, width = palette.panel, palette.line, 1.0
-    if hovered:
-        ground, edge, width = palette.raised, palette.accent, 1.5
-    draw_list.add_rect_filled(corner, opposite, ink(ground), 0.6 * look.em)
-    draw_list.add_rect(corner, opposite, ink(edge), 0.6 * look.em, width)
-    foot = 2.3 * look.em
-    if image is not None:
-        place = corner + ImVec2(0.7 * look.em, 0.7 * look.em)
-        room = ImVec2(size.x - 1.4 * look.em, size.y - foot - 0.8 * look.em)
-        show_picture(image.texture, image.size, place, room)
-    text = ImVec2(corner.x + 0.9 * look.em, opposite.y - foot + 0.45 * look.em)
+    _frame(look, corner, size, is_hot=imgui.is_item_hovered())
+    room = ImVec2(size.x - 1.4 * em, size.y - (FOOT + 0.8) * em)
+    _show_sample(sample, pictures, corner + ImVec2(0.7 * em, 0.7 * em), room)
+    draw_list, opposite = imgui.get_window_draw_list(), corner + size
+    text = ImVec2(corner.x + 0.9 * em, opposite.y - (FOOT - 0.45) * em)
     draw_list.add_text(text, ink(palette.text), sample.name)
-    end = ImVec2(opposite.x - 0.9 * look.em - imgui.calc_text_size(sample.what).x, text.y)
+    end = ImVec2(opposite.x - 0.9 * em - imgui.calc_text_size(sample.what).x, text.y)
     draw_list.add_text(end, ink(palette.dim), sample.what)
+    with sized(SMALL):
+        draw_list.add_text(text + ImVec2(0, 1.4 * em), ink(palette.dim), sample.story)
     return pressed
 
 
-def _recent(session: Session, look: Look, thumbnail: Look_up) -> list[Action]:
+def _frame(look: Look, corner: ImVec2, size: ImVec2, *, is_hot: bool) -> None:
+    """Draw the ground of a card, which shows whether the pointer is on it."""
+    palette, draw_list, opposite = look.palette, imgui.get_window_draw_list(), corner + size
+    ground, edge, width = palette.panel, palette.line, 1.0
+    if is_hot:
+        ground, edge, width = palette.raised, palette.accent, 1.5
+    draw_list.add_rect_filled(corner, opposite, ink(ground), 0.6 * look.em)
+    draw_list.add_rect(corner, opposite, ink(edge), 0.6 * look.em, width)
+
+
+def _show_sample(
+    sample: files.SampleFile, pictures: Previews, corner: ImVec2, room: ImVec2
+) -> None:
+    """Show a sample, and how it moves while the pointer is on its card, the last item."""
+    began, now = imgui.get_id(f"{sample.name} since"), imgui.get_time()
+    storage = imgui.get_state_storage()
+    image = pictures.still(sample.picture)
+    if not imgui.is_item_hovered():
+        storage.set_float(began, now)
+    elif moments := pictures.moving(sample.moving):
+        # Another picture is due soon, whatever else goes on.
+        hello_imgui.request_refresh()
+        image = moments[int((now - storage.get_float(began, now)) * MOMENTS) % len(moments)]
+    if image is not None:
+        show_picture(image.texture, image.size, corner, room)
+
+
+def _recent(session: Session, look: Look, pictures: Previews) -> list[Action]:
     actions: list[Action] = []
     recent = files.recent_files(session)[:MOST_RECENT]
     if not recent:
         return actions
-    imgui.dummy(ImVec2(0, 0.8 * look.em))
     bold(look, "Recent")
     for index, (path, is_there) in enumerate(recent):
         if index % 2:
@@ -120,9 +197,10 @@ def _recent(session: Session, look: Look, thumbnail: Look_up) -> list[Action]:
         # Greyed and not disabled: a click takes it off the list.
         colour = imgui.Col_.text if is_there else imgui.Col_.text_disabled
         imgui.push_style_color(imgui.Col_.text, imgui.get_style_color_vec4(colour))
-        if _row(look, path, index, thumbnail(path) if is_there else None, is_there=is_there):
+        if _row(look, path, index, pictures.still(path) if is_there else None, is_there=is_there):
             actions.append(do(files.open_recent, path))
         imgui.pop_style_color()
+    imgui.dummy(ImVec2(0, 0.4 * look.em))
     return actions
 
 

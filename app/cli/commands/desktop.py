@@ -104,7 +104,7 @@ def _data_home() -> Path:
 
 
 def _install(home: Path) -> None:
-    for place, content in _contents(_program()).items():
+    for place, content in contents(_program()).items():
         _write(home / place, content)
     _refresh(home)
 
@@ -124,8 +124,8 @@ def _remove(home: Path) -> None:
             (home / folder).rmdir()
 
 
-def _contents(program: str) -> dict[str, bytes]:
-    """Return what is written, by its place."""
+def contents(program: str) -> dict[str, bytes]:
+    """Return what enters the program of this path into a desktop, by its place in a data folder."""
     icon = decode_picture(app_icon(), "the icon of Lissom").rgba
     said = {"program": _escaped(program), "quoted": _quoted(program)}
     return {
@@ -138,6 +138,8 @@ def _contents(program: str) -> dict[str, bytes]:
 
 def _program() -> str:
     """Return the path of this very program; that of another installation may come first on PATH."""
+    if getattr(sys, "frozen", False):
+        return sys.executable  # a bundle, which has no Python beside it
     own = Path(sysconfig.get_path("scripts")) / PROGRAM
     program = str(own) if own.is_file() else shutil.which(PROGRAM)
     if program is None:

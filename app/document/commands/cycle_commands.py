@@ -2,17 +2,21 @@
 
 from collections.abc import Iterable
 from dataclasses import replace
+from typing import TypeVar
 
 from app.document.commands.command import figure_command
-from app.document.commands.keys_in_time import in_order
+from app.document.commands.keys_in_time import Row, in_order
 from app.document.figure import Figure
 from app.document.keyframe import Keyframe
-from app.document.queries import are_alike, repeated
+from app.document.layering import MoveKey, OpacityKey
+from app.document.queries import AS_DRAWN, are_alike, repeated, repeating
 from app.document.timing import Cycle, Track, TrackKey
 from app.errors import LissomError
 
 # By how much the ends of a track may differ, in pixels and radians, that wants nothing there.
 NOWHERE = 1e-6
+
+Moving = TypeVar("Moving", MoveKey, OpacityKey)
 
 
 @figure_command("Repeat stretch")
@@ -49,7 +53,13 @@ def stop(figure: Figure, first: int) -> Figure:
     keys = figure.keys
     if len(own) > 1 and own[0].frame == first and cycle.last not in figure.key_frames:
         keys = in_order((*keys, replace(own[0], frame=cycle.last)))
-    return replace(figure, keys=keys, cycles=cycles)
+    return replace(
+        figure,
+        keys=keys,
+        cycles=cycles,
+        movement=_copied(figure, figure.movement, cycle, cycle.last),
+        opacities=_copied(figure, figure.opacities, cycle, cycle.last),
+    )
 
 
 @figure_command("Make repeats into keys")
@@ -92,10 +102,13 @@ def make_keys(figure: Figure, first: int, end: int) -> Figure:
         keys=in_order((*figure.keys, *copies)),
         cycles=_ordered((*others, *left)),
         tracks=tuple(
-            _repeated(figure, track, cycle, starts) if cycle.takes(track) else track
+            _repeated(figure, track, cycle, starts) if cycle.takes(track.keys) else track
             for track in figure.tracks
         ),
-        switches=repeated(figure.switches, (cycle,), until),
+        movement=_copied(figure, figure.movement, cycle, until),
+        opacities=_copied(figure, figure.opacities, cycle, until),
+        switches=repeated(figure.switches, (cycle,), until, figure.switches[:1]),
+        placings=repeated(figure.placings, (cycle,), until, AS_DRAWN),
     )
 
 
@@ -175,6 +188,23 @@ def _with_fronts(figure: Figure, cycle: Cycle, copy: Keyframe) -> Keyframe:
         if key.frame <= own[0].frame:
             depths.update(key.fronts)
     return replace(copy, fronts={handle: depths[handle] for handle in changed})
+
+
+def _copied(figure: Figure, row: Row[Moving], cycle: Cycle, until: int) -> Row[Moving]:
+    """Return keys of a movement or an opacity in each repeat until a frame, if they repeat."""
+    if repeating(figure, row) is not cycle:
+        return row
+    first, last = row[0], row[-1]
+    is_whole = last.frame - first.frame == cycle.period
+    copies: list[Moving] = []
+    for count, at in enumerate(range(0, until - cycle.first + 1, cycle.period)):
+        for key in row[:-1] if is_whole else row:
+            copy = replace(key, frame=key.frame + at)
+            if is_whole and isinstance(first, MoveKey) and isinstance(last, MoveKey):
+                # What turns round and round goes on turning.
+                copy = replace(copy, turn=copy.turn + count * (last.turn - first.turn))
+            copies += [copy] if copy.frame <= until else []
+    return in_order(copies)
 
 
 def _repeated(figure: Figure, track: Track, cycle: Cycle, starts: list[int]) -> Track:

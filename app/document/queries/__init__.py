@@ -39,18 +39,22 @@ from app.document.queries.spans import (
     spans as spans,
 )
 from app.document.queries.stage import (
+    AS_DRAWN as AS_DRAWN,
     Composite as Composite,
     Shot as Shot,
     TreeRow as TreeRow,
     alternates as alternates,
     camera_at as camera_at,
+    carried_by as carried_by,
     composed as composed,
     in_order as in_order,
     is_visible as is_visible,
+    keyed_frame as keyed_frame,
     layer_tree as layer_tree,
     movement_at as movement_at,
     opacity_at as opacity_at,
     repeated as repeated,
+    repeating as repeating,
     sights_of as sights_of,
 )
 from app.document.queries.timeline import (

@@ -85,7 +85,7 @@ def _time(track: Track, clip: Clip, frame: float) -> float | None:
 
 def _cycle(track: Track, clip: Clip) -> Cycle | None:
     """Return the cycle with which a track repeats, if there is one."""
-    return next((cycle for cycle in clip.figure.cycles if cycle.takes(track)), None)
+    return next((cycle for cycle in clip.figure.cycles if cycle.takes(track.keys)), None)
 
 
 def _interval(track: Track, time: float) -> int:

@@ -6,7 +6,7 @@ from itertools import pairwise
 from typing import Self
 
 from app.document.checks import NOTHING, Unknown, require
-from app.document.timing.tracks import Track
+from app.document.timing.moving_key import MovingKey
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,14 +48,22 @@ class Cycle:
         """Tell whether a frame is in the stretch or in its repeats."""
         return self.first <= frame and (self.until is None or frame <= self.until)
 
-    def takes(self, track: Track) -> bool:
-        """Tell whether a track repeats with it: one that goes on beyond it has its own time."""
-        return self.has(track.keys[0].frame) and track.keys[-1].frame <= self.last
+    def takes(self, keys: Sequence[MovingKey]) -> bool:
+        """Tell whether keys repeat with it: those that go on beyond it have their own time."""
+        return self.has(keys[0].frame) and keys[-1].frame <= self.last
 
     def moved(self, to: Callable[[int], int]) -> Self:
         """Return the cycle with its frames where a function has them."""
         until = None if self.until is None else to(self.until)
         return replace(self, first=to(self.first), last=to(self.last), until=until)
+
+    def held(self, frame: float, end: int) -> float:
+        """Return the frame of the stretch that a frame shows of what is held before and after it.
+
+        The last frame of the scene is where repeats without an end are over.
+        """
+        until = max(self.last, end) if self.until is None else self.until
+        return self.source(min(max(frame, self.first), until))
 
     def source(self, frame: float) -> float:
         """Return the frame of the stretch that a frame shows while it repeats."""

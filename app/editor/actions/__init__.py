@@ -9,6 +9,7 @@ from app.editor.actions import (
     editing as editing,
     exporting as exporting,
     files as files,
+    guiding as guiding,
     playback as playback,
     posing as posing,
     saving as saving,

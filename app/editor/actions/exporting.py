@@ -286,6 +286,7 @@ def finish(session: Session, run: ExportRun, notices: Sequence[str]) -> None:
     if run.for_clipboard:
         _copy(session, run.plan.out)
         return
+    session.exported = run.plan
     folder = run.plan.out if run.plan.out.is_dir() else run.plan.out.parent
     count = len(run.plan.times)
     frames = "1 frame" if count == 1 else f"{count} frames"

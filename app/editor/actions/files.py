@@ -48,6 +48,19 @@ OPENABLE = (PROJECT, *PICTURES, *LAYERED)
 LOOK = 2.0  # seconds between two looks at whether files are still there
 
 
+# What samples are about, by the names of their files, in as many words as a card has room for.
+STORIES = {
+    "bar": "A bar to bend as you like",
+    "character": "Waves a hand",
+    "dragon": "Nods and sweeps its tail",
+    "friend": "Layers that wave and laugh",
+    "giraffe": "Bends down and comes up",
+    "octopus": "Arms that curl without end",
+    "ring": "A hole that opens and closes",
+    "s": "A spine to curl or straighten",
+}
+
+
 class SampleFile(NamedTuple):
     """A picture, or a project with its picture, that ships with Lissom."""
 
@@ -55,6 +68,8 @@ class SampleFile(NamedTuple):
     file: Path
     picture: Path
     what: str
+    story: str
+    moving: Path  # a small animation, if it is there
 
 
 @cache
@@ -66,14 +81,15 @@ def samples() -> tuple[SampleFile, ...]:
     # A drawing on layers has no picture but the small one in its project.
     for name in sorted(projects.keys() | pictures.keys()):
         picture = pictures.get(name, projects.get(name, Path()))
-        project = projects.get(name, picture)
         is_animated = name in projects
         found.append(
             SampleFile(
-                picture.stem.capitalize(),
-                project if is_animated else picture,
-                picture,
-                "animated" if is_animated else "picture",
+                name=picture.stem.capitalize(),
+                file=projects.get(name, picture),
+                picture=picture,
+                what="animated" if is_animated else "picture",
+                story=STORIES.get(name, ""),
+                moving=sample_images() / "moving" / f"{name}.webp",
             )
         )
     return tuple(sorted(found, key=lambda sample: sample.what))
@@ -294,10 +310,11 @@ def _read(path: Path, meshing: Meshing) -> Opened:
 def _read_project(path: Path) -> Opened:
     # Before, so that what somebody saves meanwhile is taken for a change, and never for ours.
     digest = project_digest(path)
-    return _decoded(load_project(path), path.name)._replace(read_as=digest)
+    return decoded(load_project(path), path.name)._replace(read_as=digest)
 
 
-def _decoded(document: Document, name: str) -> Opened:
+def decoded(document: Document, name: str) -> Opened:
+    """Return a project's document with its figures as a window has them."""
     files = list(dict.fromkeys(figure.picture for figure in document.figures))
     decoded = decode_pictures([(file.data, f"the picture of {name}") for file in files])
     by_file = dict(zip(files, decoded, strict=True))
@@ -366,7 +383,7 @@ def recover(session: Session, path: Path) -> None:
 
 def _read_leftover(path: Path) -> tuple[Opened, Origin]:
     document, origin = load_leftover(path)
-    return _decoded(document, origin.name), origin
+    return decoded(document, origin.name), origin
 
 
 def throw_away(session: Session, path: Path) -> None:

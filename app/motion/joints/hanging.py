@@ -38,8 +38,8 @@ def hang(
         Where nothing moves. The joint holds as long as the one that holds there now, or always.
     place : complex, optional
         Of the joint, in the scene; by default that of the child's anchor, or, where the parent is
-        not there, the middle of where the two overlap. Where the parent is not at the place, the
-        child hangs beside its nearest point.
+        not there and no joint at another time needs it, the middle of where the two overlap. Where
+        the parent is not at the place, the child hangs beside its nearest point.
     turns : bool
         Whether the child turns with the parent.
 
@@ -58,7 +58,8 @@ def hang(
     held = own.joint_at(frame)
     here, there = joints.placement(child, frame), joints.placement(parent, frame)
     if place is None:
-        anchor = _common_point(joints, own, other, frame)
+        others = [joint for joint in own.joints if joint is not held]
+        anchor = anchor_of(own) if others else _common_point(joints, own, other, frame)
         place = complex(here.on(np.array([_hinge(joints, own, anchor, frame).place]))[0])
     else:
         anchor = _source(joints, own, here.back(place), frame)

@@ -95,6 +95,7 @@ def _format(look: Look, settings: ExportSettings) -> ExportSettings:
             small(look, format_.use)
             imgui.unindent()
         imgui.end_combo()
+    look.note_place("format")
     tip(now.use)
     if missing(settings.format):
         small(look, f"It needs {now.library}: {missing(settings.format)}")
@@ -274,6 +275,7 @@ def _output(session: Session, look: Look, project: Project) -> list[Action]:
         return [*actions, do(exporting.cancel)] if progress(share, text) else actions
     if main_button(look, f"{icons.ICON_FA_FILE_EXPORT}  Export###start", FILL):
         actions.append(do(exporting.repeat))
+    look.note_place("start export")
     tip("Export now", BINDINGS["export again"].keys_in_words)
     if EXPORT_FORMATS[project.document.export.format].is_still:
         text, hint = f"{icons.ICON_FA_COPY}  Copy###copy", "Put the picture on the clipboard"

@@ -16,6 +16,7 @@ from app.editor.actions import (
     exporting,
     files,
     giving,
+    guiding,
     keys,
     material,
     placing,
@@ -73,12 +74,19 @@ def _all(session: Session, _: Project) -> str:
     return "keys" if session.in_timeline else "handles"
 
 
-def _can_deselect(session: Session, project: Project) -> bool:
-    """Tell whether something is selected, and nothing is under way that Esc ends first."""
+def _is_idle(session: Session, project: Project) -> bool:
+    """Tell whether nothing is under way that Esc ends first."""
     in_hand = session.pointer or not session.poses or project.timing.gesture
-    return not (in_hand or _records(session, project)) and bool(
-        project.selected or project.chosen_of
-    )
+    return not (in_hand or _records(session, project))
+
+
+def _can_deselect(session: Session, project: Project) -> bool:
+    is_chosen = bool(project.selected or project.chosen_of)
+    return is_chosen and _is_idle(session, project) and not guiding.is_led(session)
+
+
+def _can_leave(session: Session, project: Project) -> bool:
+    return guiding.is_led(session) and _is_idle(session, project)
 
 
 def _records(session: Session, project: Project) -> bool:
@@ -630,6 +638,10 @@ MENUS: dict[str, dict[str, Binding]] = {
         "shortcuts": Binding(
             "Keys and mouse", do(viewing.show_shortcuts), "F1", needs_project=False
         ),
+        "first animation": Binding(
+            "Make a giraffe bow", do(guiding.begin), needs_project=False, parted=True
+        ),
+        "leave guide": Binding("Leave the guide", do(guiding.leave), "Escape", possible=_can_leave),
         "import": Binding("What opening it told", do(files.show_summary), possible=_has_summary),
     },
 }

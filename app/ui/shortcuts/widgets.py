@@ -50,4 +50,5 @@ def bound_button(session: Session, look: Look, name: str, icon: str = "") -> lis
         active=binding.is_active(session),
         enabled=binding.is_possible(session),
     )
+    look.note_place(name)
     return [binding.action] if is_pressed else []

@@ -1,6 +1,6 @@
 """The two themes: colours, spacing, rounding and type, given to Dear ImGui in one place."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from imgui_bundle import ImVec2, ImVec4, hello_imgui, imgui
 
@@ -99,6 +99,12 @@ class Look:
     palette: Palette
     bold: imgui.ImFont
     em: float  # pixels
+    # Upper left and lower right corners of what was drawn in this frame and may be pointed at.
+    places: dict[str, tuple[ImVec2, ImVec2]] = field(default_factory=dict)
+
+    def note_place(self, name: str) -> None:
+        """Note where the last item is, for whoever is led there."""
+        self.places[name] = imgui.get_item_rect_min(), imgui.get_item_rect_max()
 
 
 def interface_scale(scale: float) -> float:

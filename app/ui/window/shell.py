@@ -8,7 +8,7 @@ from pathlib import Path
 from imgui_bundle import ImVec2, hello_imgui, imgui, implot
 
 from app.editor import Action, FileDialog, Project, Session, do, promises, sentence
-from app.editor.actions import editing, playback, saving, upkeep
+from app.editor.actions import editing, guiding, playback, saving, upkeep
 from app.errors import EXPECTED_ERRORS
 from app.render import Thumbnail
 from app.ui import bars, toasts, welcome
@@ -16,6 +16,7 @@ from app.ui.dialogs import Dialogs
 from app.ui.panel import Panel, bring_to_front
 from app.ui.shortcuts import pressed
 from app.ui.style import FONT_SIZE, PALETTES, Look, apply_theme, interface_scale, load_fonts
+from app.ui.window.callout import Callout
 from app.ui.window.docking import Docking
 from app.ui.window.guard import allow_recovery, guard
 
@@ -36,14 +37,20 @@ class Shell:
         session: Session,
         panels: Sequence[Panel],
         thumbnail: Callable[[Path], Thumbnail | None],
+        moments: Callable[[Path], list[Thumbnail]],
     ) -> None:
         self.session = session
         self._thumbnail = thumbnail
+        self._moments = moments
         self._panels = panels
         self._docking = Docking(panels)
         self._bold: imgui.ImFont | None = None
         self._themed: tuple[str, float] | None = None
         self._dialogs = Dialogs()
+        self._callout = Callout()
+        # Where things are drawn in this frame, and were in the one before.
+        self._places: dict[str, tuple[ImVec2, ImVec2]] = {}
+        self._seen: dict[str, tuple[ImVec2, ImVec2]] = {}
         self._actions: list[Action] = []
         self._asked: list[Action] = []
         self._awake_until = 0.0
@@ -110,6 +117,7 @@ class Shell:
             palette=PALETTES[preferences.theme],
             bold=self._bold,
             em=imgui.get_font_size() or FONT_SIZE * interface_scale(preferences.scale),
+            places=self._places,
         )
 
     def _layout(self) -> hello_imgui.DockingParams:
@@ -167,6 +175,7 @@ class Shell:
 
     def _begin_frame(self) -> None:
         session = self.session
+        self._seen, self._places = self._places, {}
         if self._themed != self._theme:
             self._apply_theme()
         self._docking.begin_frame(interface_scale(session.preferences.scale))
@@ -185,7 +194,9 @@ class Shell:
         self._actions += pressed(session)
         self._docking.draw_tabs()
         if session.project is None:
-            self._part("The welcome view", partial(welcome.draw, thumbnail=self._thumbnail))()
+            pictures = welcome.Previews(self._thumbnail, self._moments)
+            self._part("The welcome view", partial(welcome.draw, pictures=pictures))()
+        self._part("The guide", partial(self._callout.draw, places=self._seen))()
         self._part("The dialog", partial(self._dialogs.draw, thumbnail=self._thumbnail))()
         self._part("The messages", toasts.draw)()
         # Where the pointer is down on no widget, that counts as one.
@@ -206,6 +217,7 @@ class Shell:
         self.attempt(partial(promises.go_on, self.session))
         self.attempt(partial(upkeep.maintain, self.session))
         self.attempt(partial(saving.maintain, self.session))
+        self.attempt(partial(guiding.follow, self.session))
         self._idle_frames = self._idle_frames + 1 if _awaits_in_between(self.session) else 0
         if self.session.quitting:
             hello_imgui.get_runner_params().app_shall_exit = True

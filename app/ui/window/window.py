@@ -90,7 +90,7 @@ class Window:
         self._canvas: Canvas | None = None
         self._exporter: Exporter | None = None
         self._renderer: Renderer | None = None
-        self._shell = Shell(session, self._panels(), self._thumbnail)
+        self._shell = Shell(session, self._panels(), self._thumbnail, self._moments)
         self._memory = FreeMemory(session)
         self._taps = Taps()
         self._title = NAME
@@ -297,3 +297,6 @@ class Window:
 
     def _thumbnail(self, path: Path) -> Thumbnail | None:
         return self._thumbnails.get(path) if self._thumbnails else None
+
+    def _moments(self, path: Path) -> list[Thumbnail]:
+        return self._thumbnails.moments(path) if self._thumbnails else []

@@ -63,6 +63,15 @@ def test_the_menu_has_lissom_and_opens_projects_with_it(home, capsys):
     assert shlex.split(said["Exec"]) == [str(PROGRAM), "%f"]
 
 
+def test_a_bundle_enters_itself(home, tmp_path, monkeypatch):
+    program = str(tmp_path / "lissom" / "lissom")
+    monkeypatch.setattr(sys, "frozen", True, raising=False)
+    monkeypatch.setattr(sys, "executable", program)
+    assert main(["desktop", "--install"]) == 0
+    said = entry(home / "applications/lissom.desktop", "Desktop Entry")
+    assert said["TryExec"] == shlex.split(said["Exec"])[0] == program
+
+
 def test_icons_of_every_size_lie_in_the_theme_that_all_fall_back_to(home):
     main(["desktop", "--install"])
     for path in home.glob("icons/hicolor/*/apps/lissom.png"):

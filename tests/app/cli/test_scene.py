@@ -284,7 +284,7 @@ def test_a_figure_that_is_not_there_is_told(project, folder, capsys):
     assert "the layers are wall, body, arm, patch" in capsys.readouterr().err
 
 
-def test_what_changes_hands_does_not_jump(folder):
+def test_what_changes_hands_does_not_jump(folder, capsys):
     patch = {
         **SCRIPT["figures"][2],
         "visible": [],
@@ -292,6 +292,7 @@ def test_what_changes_hands_does_not_jump(folder):
             {"to": "arm", "at": [180, 120]},
             {"frame": 3, "to": "body", "keep": True},
             {"frame": 6, "to": None, "keep": True},
+            {"frame": 30, "to": "arm", "keep": True},
         ],
     }
     script = {**SCRIPT, "figures": [*SCRIPT["figures"][:2], patch]}
@@ -299,9 +300,11 @@ def test_what_changes_hands_does_not_jump(folder):
     out = folder / "hands.lissom"
     arguments = [str(folder / "man.ora"), str(folder / "hands.json"), "--out", str(out)]
     assert main(["pose", *arguments, "--triangles", "4000"]) == 0
+    told = " ".join(capsys.readouterr().err.split())
+    assert "what patch hangs on from frame 30 on is never seen, as the animation ends" in told
     document = load_project(out)
     patch, body = (next(f for f in document.figures if f.name == n) for n in ("patch", "body"))
-    assert [joint.frame for joint in patch.joints] == [0, 3, 6]
+    assert [joint.frame for joint in patch.joints] == [0, 3, 6, 30]
     assert patch.joints[1].to == body.id
     joints = Joints(document)
     for frame in (3, 6):

@@ -8,12 +8,13 @@ from documents import altered
 from key_rows import jump, prepared, row
 from numpy.testing import assert_allclose
 
-from app.document.commands import key_commands
+from app.document.commands import cycle_commands, filming_commands, key_commands
 from app.document.keyframe import Handle, Passing, Target
-from app.document.layering import Switch
+from app.document.layering import MoveKey, OpacityKey, Placing, Switch
 from app.document.queries.clips import clip_of
 from app.document.queries.fronts import fronts_at
 from app.document.queries.spans import intervals
+from app.document.queries.stage.moves import in_order, movement_at, opacity_at
 from app.document.queries.stage.sight import is_visible
 from app.document.queries.timeline import exported_frames, time_of
 from app.document.settings import FrameRange
@@ -236,3 +237,42 @@ def test_what_is_in_front_and_seen_repeats_with_it():
     figure = document.figures[0]
     shown = [is_visible(document, figure, frame) for frame in (29, 30, 43, 44, 53, 54, 91, 92, 120)]
     assert shown == [True, False, False, True, True, False, False, True, True]
+
+
+def test_what_moves_fades_and_is_ordered_repeats_with_it():
+    wait, end = 2.5, WALK.until
+    bob = tuple(MoveKey(frame=f, shift=s) for f, s in ((20, 0j), (30, 9j), (44, 0j)))
+    blink = tuple(OpacityKey(frame=f, opacity=o) for f, o in ((22, 1.0), (28, 0.2), (40, 1.0)))
+    document = cycling(*KEYS, cycle=WALK, last=120, movement=bob, opacities=blink)
+    behind = replace(document.figures[0], id=1, name="behind", placings=())
+    weave = replace(document.figures[0], placings=(Placing(30, 1),))
+    document = replace(document, figures=(weave, behind))
+
+    def shown(document, frame):
+        figure = document.figure(0)
+        moved = movement_at(document, figure, frame).shift
+        order = [each.id for each in in_order(document, frame)]
+        return moved, opacity_at(document, figure, frame), order
+
+    for frame in (20, 23, 30 + wait, 39, 43):
+        for again in (24, 48):
+            moved, opacity, order = shown(document, frame + again)
+            assert abs(moved - shown(document, frame)[0]) < 1e-9
+            assert abs(opacity - shown(document, frame)[1]) < 1e-9
+            assert order == shown(document, frame)[2]
+    assert [shown(document, frame)[2] for frame in (29, 30, 44, 54)] == [[0, 1], [1, 0]] * 2
+    # Through the seam at one velocity; before and after the repeats it is held.
+    before, at, after = (shown(document, 44 + by)[0] for by in (-1e-4, 0, 1e-4))
+    assert abs((after - at) - (at - before)) < 1e-3 * abs(after - before)
+    assert shown(document, end) == shown(document, end + 9) == shown(document, 20)
+    # Posed in one, all change; made into keys, nothing is seen to.
+    changed = filming_commands.key_movement(0, 44, 5 + 0j, 0.0)(document)
+    assert [shown(changed, frame)[0] for frame in (20, 44, 92)] == [5, 5, 5]
+    keyed = cycle_commands.make_keys(0, 20, 120)(document)
+    for frame in (30, 46, 54, 67, 78, 91):
+        assert abs(shown(keyed, frame)[0] - shown(document, frame)[0]) < 1.5
+        assert shown(keyed, frame)[2] == shown(document, frame)[2]
+    # Who goes on beyond the stretch, or comes elsewhere, has a time of their own.
+    for last in (MoveKey(frame=60, shift=9), MoveKey(frame=44, shift=9)):
+        walk = replace(document.figure(0), movement=(MoveKey(frame=20), last))
+        assert shown(document.with_figure(walk), 92)[0] == 9

@@ -8,7 +8,7 @@ from chains import bent, chain, exactly, seen
 from documents import CENTRE
 from numpy.testing import assert_allclose
 
-from app.document import Spring, clip_of, layer_commands as layers, scene_commands
+from app.document import Spring, carried_by, clip_of, layer_commands as layers, scene_commands
 from app.document.keyframe import Handle, Target
 from app.document.layering import Attachment
 from app.errors import LissomError
@@ -129,6 +129,16 @@ def test_circles_at_any_frame_are_refused_by_name(hands):
         layers.attach(1, CENTRE, Attachment(to=2, at=CENTRE, frame=30))(document)
     # The other way round it is none before the first lets go.
     layers.attach(1, CENTRE, Attachment(to=0, at=CENTRE, frame=30))(document)
+
+
+def test_it_is_listed_below_what_carries_it_then(hands):
+    document = layers.attach(2, CENTRE, Attachment(to=None, frame=20))(hands)
+    assert [carried_by(document, document.figure(2), frame) for frame in (19, 20)] == [
+        (1, "on 0"),
+        (0, "on nothing…"),
+    ]
+    document = layers.attach(2, CENTRE, Attachment(to=1, at=CENTRE, frame=20))(chain())
+    assert carried_by(document, document.figure(2), 20) == (2, "on 1")
 
 
 def test_joints_are_taken_back_moved_and_stretched_in_time(hands):

@@ -1,6 +1,7 @@
 """What repeats in the window: made of chosen keys, edited in one place, ended by its handle."""
 
 import pytest
+from bars import bend_bar
 from imgui_bundle import ImVec2
 
 from app.document import (
@@ -22,20 +23,28 @@ MENU = "//$FOCUSED/###"
 
 
 @pytest.fixture
-def swinging(window, bent):
+def swinging(window):
     """The bar that swings to and fro: keys at 0 and 24, and at 48 as at 0, in 150 frames."""
+    return window.again(swing)
+
+
+@pytest.fixture
+def cycling(window):
+    return window.again(repeat_swings)
+
+
+def swing(window):
+    bent = bend_bar(window)
     editing.edit(window.session, key_commands.copy_keys(bent.active, {0}, 48))
     editing.edit(window.session, scene_commands.set_frames(FrameRange(0, 150)))
     editing.choose_keys(window.session, frozenset({0, 24, 48}))
     window.settle()
-    return bent
 
 
-@pytest.fixture
-def cycling(window, swinging):
+def repeat_swings(window):
+    swing(window)
     window.act(cycles.repeat)
     window.settle()
-    return swinging
 
 
 def frames_of(project):

@@ -22,7 +22,7 @@ MOVES = {16: (0.13 + 0.12j, -0.05 + 0.1j), 32: (0.02 - 0.08j, 0.02 - 0.05j)}
 def dragon(window):
     """The dragon with three keys that nod its head and sweep its tail."""
     session = window.session
-    session.meshing = Meshing(triangles=12_000)
+    session.meshing = Meshing(triangles=4_000)
     project = window.open(sample_images() / "dragon.png")
     size = complex(*project.document.canvas)
 

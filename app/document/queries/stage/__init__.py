@@ -7,13 +7,20 @@ Imports: the values of `app.document`.
 
 from app.document.queries.stage.alternates import alternates as alternates
 from app.document.queries.stage.compositing import Composite as Composite, composed as composed
-from app.document.queries.stage.layer_tree import TreeRow as TreeRow, layer_tree as layer_tree
+from app.document.queries.stage.layer_tree import (
+    TreeRow as TreeRow,
+    carried_by as carried_by,
+    layer_tree as layer_tree,
+)
 from app.document.queries.stage.moves import (
+    AS_DRAWN as AS_DRAWN,
     Shot as Shot,
     camera_at as camera_at,
     in_order as in_order,
+    keyed_frame as keyed_frame,
     movement_at as movement_at,
     opacity_at as opacity_at,
+    repeating as repeating,
 )
 from app.document.queries.stage.sight import (
     is_visible as is_visible,

@@ -37,7 +37,7 @@ class TreeRow:
 
 
 def layer_tree(
-    document: Document, toggled: Collection[str] = (), kept: int | None = None
+    document: Document, toggled: Collection[str] = (), kept: Collection[int] = ()
 ) -> tuple[TreeRow, ...]:
     """Return the rows of a document's layers, the one in front on top.
 
@@ -49,20 +49,35 @@ def layer_tree(
     ----------
     document : Document
     toggled : collection of str
-    kept : int, optional
-        The id of a layer that is listed even where a row around it is closed.
+    kept : collection of int
+        The ids of layers that are listed even where a row around them is closed.
     """
     rows = _whole_tree(document, toggled)
     listed: list[TreeRow] = []
     closed: int | None = None  # the depth of the row around that is closed
     for row in rows:
         if closed is not None and row.depth > closed:
-            if row.figure is not None and row.figure.id == kept:
+            if row.figure is not None and row.figure.id in kept:
                 listed.append(row)
             continue
         closed = None if row.is_open else row.depth
         listed.append(row)
     return tuple(listed)
+
+
+def carried_by(document: Document, figure: Figure, frame: float) -> tuple[int, str]:
+    """Return on how many others a figure hangs at a frame, one on the other, and in words on which.
+
+    The words are empty where it hangs on nothing at any time; an ellipsis tells of others at other
+    times.
+    """
+    parents = {joint.to for joint in figure.joints if joint.to is not None}
+    _, *carriers = document.carriers(figure.id, frame)
+    if not parents:
+        return 0, ""
+    now = carriers[0].name if carriers else "nothing"
+    others = parents - {each.id for each in carriers[:1]}
+    return len(carriers), f"on {now}…" if others else f"on {now}"
 
 
 def _whole_tree(document: Document, toggled: Collection[str]) -> Iterator[TreeRow]:

@@ -1,15 +1,18 @@
 """What the camera shows at a frame, and where, how opaque and in which order figures are."""
 
 from bisect import bisect_right
+from collections.abc import Sequence
 from math import exp, log
 from typing import NamedTuple, TypeVar
 
 import numpy as np
 
 from app.document.figure import Figure
-from app.document.layering import CameraKey, MoveKey, OpacityKey
+from app.document.layering import CameraKey, MoveKey, OpacityKey, Placing
 from app.document.model import Document
 from app.document.queries.passages import Leg, Moved, Passages, Value, value_on
+from app.document.queries.stage.sight import repeated
+from app.document.timing import Cycle
 from engine.arrays import Complexes
 from engine.geometry import HERE, RigidMotion, Similarity
 
@@ -22,6 +25,7 @@ ZOOM = Moved[CameraKey, float](lambda key: log(key.zoom), SAME_ZOOM)
 CAMERA_TURN = Moved[CameraKey, float](lambda key: key.turn, SAME_TURN)
 SHIFT = Moved[MoveKey, complex](lambda key: key.shift, SAME_PLACE)
 TURN = Moved[MoveKey, float](lambda key: key.turn, SAME_TURN)
+AS_DRAWN = (Placing(0, None),)
 OPACITY = Moved[OpacityKey, float](lambda key: key.opacity, SAME_OPACITY)
 
 
@@ -62,10 +66,11 @@ def camera_at(document: Document, frame: float) -> Shot | None:
 
 def movement_at(document: Document, figure: Figure, frame: float) -> RigidMotion:
     """Return by which a figure is moved as a whole at a frame, as the camera is."""
-    keys = figure.movement
+    keys, cycle = figure.movement, repeating(figure, figure.movement)
     if not keys:
         return HERE
-    shift, turn = (_value_at(document, keys, SHIFT, frame), _value_at(document, keys, TURN, frame))
+    shift = _value_at(document, keys, SHIFT, frame, cycle)
+    turn = _value_at(document, keys, TURN, frame, cycle)
     factor = complex(np.exp(1j * turn))
     return RigidMotion(factor, figure.pivot + shift - factor * figure.pivot)
 
@@ -75,7 +80,41 @@ def opacity_at(document: Document, figure: Figure, frame: float) -> float:
     keys = figure.opacities
     if not keys:
         return figure.opacity
-    return min(max(_value_at(document, keys, OPACITY, frame), 0.0), 1.0)
+    found = _value_at(document, keys, OPACITY, frame, repeating(figure, keys))
+    return min(max(found, 0.0), 1.0)
+
+
+def repeating(figure: Figure, keys: Sequence[MoveKey] | Sequence[OpacityKey]) -> Cycle | None:
+    """Return the cycle of a figure with which its movement or its opacity repeats, if one does.
+
+    That has all of their keys, and where one is at its end it is as that at its beginning, but for
+    whole turns. What goes on elsewhere has its own time.
+    """
+    if len(keys) < 2:
+        return None
+    first, last = keys[0], keys[-1]
+    for cycle in figure.cycles:
+        if cycle.takes(keys) and (last.frame - first.frame < cycle.period or _alike(first, last)):
+            return cycle
+    return None
+
+
+def keyed_frame(figure: Figure, keys: Sequence[MoveKey] | Sequence[OpacityKey], frame: int) -> int:
+    """Return the frame at which a figure's movement or opacity at a frame is keyed.
+
+    It is another one where they repeat.
+    """
+    cycle = repeating(figure, keys)
+    return int(cycle.source(frame)) if cycle is not None and cycle.covers(frame) else frame
+
+
+def _alike(first: MoveKey | OpacityKey, last: MoveKey | OpacityKey) -> bool:
+    if isinstance(first, MoveKey) and isinstance(last, MoveKey):
+        turned = abs(np.exp(1j * first.turn) - np.exp(1j * last.turn)) <= SAME_TURN
+        return bool(turned) and SHIFT.is_same(first, last)
+    if isinstance(first, OpacityKey) and isinstance(last, OpacityKey):
+        return OPACITY.is_same(first, last)
+    return False
 
 
 def in_order(document: Document, frame: float) -> tuple[Figure, ...]:
@@ -86,7 +125,8 @@ def in_order(document: Document, frame: float) -> tuple[Figure, ...]:
     """
     placed: dict[int, tuple[int, int, bool]] = {}
     for figure in document.figures:
-        placing = next((each for each in reversed(figure.placings) if each.frame <= frame), None)
+        placings = repeated(figure.placings, figure.cycles, document.frames.last, AS_DRAWN)
+        placing = next((each for each in reversed(placings) if each.frame <= frame), None)
         if placing is not None and placing.beside is not None:
             placed[figure.id] = placing.frame, placing.beside, placing.in_front
     order = [figure.id for figure in document.figures]
@@ -100,28 +140,34 @@ def in_order(document: Document, frame: float) -> tuple[Figure, ...]:
 
 
 def _value_at(
-    document: Document, keys: tuple[Key, ...], moved: Moved[Key, Value], frame: float
+    document: Document,
+    keys: tuple[Key, ...],
+    moved: Moved[Key, Value],
+    frame: float,
+    cycle: Cycle | None = None,
 ) -> Value:
     """Return what moves between keys at a frame; from rest and to rest where it is held."""
-    frame = document.in_time(frame)
+    frame, period = document.in_time(frame), document.frames.last - document.frames.first
+    if cycle is not None:
+        frame, period = cycle.held(frame, document.frames.last), cycle.period
     first, last = keys[0].frame, keys[-1].frame
-    passages = _round(document, keys, moved)
+    passages = _round(keys, moved, period if document.loop or cycle is not None else 0)
     if first <= frame < last:
         index = bisect_right(keys, frame, key=lambda key: key.frame) - 1
         leg = Leg(index, index + 1, keys[index + 1].frame - keys[index].frame)
     elif passages.gap:
         leg = Leg(len(keys) - 1, 0, passages.gap)
-        frame += 0 if frame >= last else document.frames.last - document.frames.first
+        frame += 0 if frame >= last else period
     else:
         return moved.of(keys[0] if frame < first else keys[-1])
     return value_on(passages, leg, (frame - keys[leg.first].frame) / leg.frames, moved)
 
 
-def _round(document: Document, keys: tuple[Key, ...], moved: Moved[Key, Value]) -> Passages[Key]:
-    """Return how keys are passed; in a loop the last one leads on to the first one."""
+def _round(keys: tuple[Key, ...], moved: Moved[Key, Value], period: int) -> Passages[Key]:
+    """Return how keys are passed; where they come round the last one leads on to the first one."""
     gap = None
-    if document.loop:
-        gap = document.frames.last - document.frames.first - (keys[-1].frame - keys[0].frame)
+    if period:
+        gap = period - (keys[-1].frame - keys[0].frame)
         if not gap and not moved.is_same(keys[0], keys[-1]):
             gap = None
     return Passages(keys=keys, gap=gap, is_same=moved.is_same, ends_rest=True)

@@ -1,11 +1,14 @@
 """What is seen at a frame."""
 
 from dataclasses import replace
+from typing import TypeVar
 
 from app.document.figure import Figure
-from app.document.layering import Switch
+from app.document.layering import Placing, Switch
 from app.document.model import Document
 from app.document.timing import Cycle
+
+Change = TypeVar("Change", Switch, Placing)
 
 
 def is_visible(document: Document, figure: Figure, frame: float) -> bool:
@@ -30,7 +33,8 @@ def sights_of(document: Document, figure: Figure) -> tuple[Switch, ...]:
     if choice is None:
         if figure.hidden:
             return (Switch(0, visible=False),)
-        return repeated(figure.switches, figure.cycles, document.frames.last)
+        rest = figure.switches[:1]
+        return repeated(figure.switches, figure.cycles, document.frames.last, rest)
     switches: list[Switch] = []
     first = document.frames.first
     for frame in (first, *(turn.frame for turn in choice.turns if turn.frame > first)):
@@ -41,26 +45,27 @@ def sights_of(document: Document, figure: Figure) -> tuple[Switch, ...]:
 
 
 def repeated(
-    switches: tuple[Switch, ...], cycles: tuple[Cycle, ...], end: int
-) -> tuple[Switch, ...]:
-    """Return switches with those of cycles in each repeat, up to the end of the scene.
+    changes: tuple[Change, ...], cycles: tuple[Cycle, ...], end: int, rest: tuple[Change, ...]
+) -> tuple[Change, ...]:
+    """Return switches, or placings, with those of cycles in each repeat, up to the scene's end.
 
-    Each repeat, and what follows the last one, begins as the stretch does.
+    Each repeat, and what follows the last one, begins as the stretch does: before the first change
+    as `rest` has it.
     """
     for cycle in cycles:
-        own = [each for each in switches if cycle.first < each.frame < cycle.last]
+        own = [each for each in changes if cycle.first < each.frame < cycle.last]
         if not own:
             continue
         until = end if cycle.until is None else cycle.until
-        before = [each for each in switches if each.frame <= cycle.first]
-        shown = (before[-1] if before else switches[0]).visible
-        again: dict[int, Switch] = {}
+        before = [each for each in changes if each.frame <= cycle.first]
+        begun = before[-1] if before else rest[0]
+        again: dict[int, Change] = {}
         for start in range(cycle.last, until + 1, cycle.period):
-            again[start] = Switch(start, shown)
+            again[start] = replace(begun, frame=start)
             for each in own:
                 at = each.frame + start - cycle.first
                 if at <= until:
                     again[at] = replace(each, frame=at)
-        again |= {each.frame: each for each in switches}
-        switches = tuple(again[frame] for frame in sorted(again))
-    return switches
+        again |= {each.frame: each for each in changes}
+        changes = tuple(again[frame] for frame in sorted(again))
+    return changes

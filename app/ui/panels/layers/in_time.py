@@ -4,7 +4,7 @@ import math
 
 from imgui_bundle import imgui
 
-from app.document import Document, Figure, movement_at, opacity_at
+from app.document import Document, Figure, keyed_frame, movement_at, opacity_at
 from app.editor import Action, do, layering
 from app.ui.style import FILL, Look, Scale, label, number, slider, small, text_button, tip
 
@@ -23,7 +23,8 @@ def draw_opacity(document: Document, look: Look, figure: Figure, frame: int) -> 
     if faded is not None:
         fade = layering.fade_here if figure.opacities else layering.fade
         actions.append(do(fade, figure.id, min(max(faded.value / 100, 0.0), 1.0)))
-    is_keyed = any(key.frame == frame for key in figure.opacities)
+    keyed = keyed_frame(figure, figure.opacities, frame)
+    is_keyed = any(key.frame == keyed for key in figure.opacities)
     changed, _ = imgui.checkbox("Opacity keyed here", is_keyed)
     tip("It fades evenly from key to key")
     if changed and is_keyed:
@@ -61,8 +62,9 @@ def draw_movement(document: Document, look: Look, figure: Figure, frame: int) ->
         right, up = entered.get("right", shift.real), entered.get("up", shift.imag)
         radians = math.radians(entered.get("turn", turn))
         actions.append(do(layering.move_here, figure.id, complex(right, up), radians))
-    if any(key.frame == frame for key in figure.movement) and text_button(
-        f"No movement key at frame {frame}", FILL, "It goes on between the keys around"
+    keyed = keyed_frame(figure, figure.movement, frame)
+    if any(key.frame == keyed for key in figure.movement) and text_button(
+        f"No movement key at frame {keyed}", FILL, "It goes on between the keys around"
     ):
         actions.append(do(layering.unmove_here, figure.id))
     if figure.hangs and figure.movement:

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
-from app.document import Document, Figure, TreeRow, is_visible
+from app.document import Document, Figure, TreeRow, carried_by, is_visible
 from app.editor import Action, Project, Session, do, layering
 from app.editor.actions import playback
 from app.render import Thumbnail
@@ -115,7 +115,9 @@ def _row(
     imgui.set_cursor_screen_pos(ImVec2(corner.x, middle - imgui.get_frame_height() / 2))
     frame = playback.current_frame(session, project)
     actions += _switches(look, project, row, frame)
-    left = imgui.get_item_rect_max().x + (GAP + INDENT * min(row.depth, DEEPEST_INDENT)) * em
+    hung, told = (0, "") if figure is None else carried_by(project.document, figure, frame)
+    depth = min(row.depth + hung, DEEPEST_INDENT)
+    left = imgui.get_item_rect_max().x + (GAP + INDENT * depth) * em
     is_seen = _is_seen(project, row, frame)
     shown = _shown(project.document, row, frame)
     if not row.toggle:
@@ -130,7 +132,10 @@ def _row(
             box = ImVec2(left, low.y), ImVec2(left + WIDE * em, high.y)
             write_in(*box, icon, ink(look.palette.text if is_seen else look.palette.dim))
     start = left + (WIDE + GAP) * em
-    _text(look, project, row, shown, start, ImVec2(high.x, middle), is_seen=is_seen)
+    if figure is None:
+        # What is seen of a choice, and how many are in a group.
+        told = shown.name if row.choice is not None else f"{len(row.figures)}"
+    _text(look, project, row, told, start, ImVec2(high.x, middle), is_seen=is_seen)
     imgui.set_cursor_screen_pos(after)
     return actions
 
@@ -314,13 +319,13 @@ def _text(
     look: Look,
     project: Project,
     row: TreeRow,
-    shown: Figure,
+    told: str,
     left: float,
     end: ImVec2,
     *,
     is_seen: bool,
 ) -> None:
-    """Write a row's name up to a point, and before that what it is besides."""
+    """Write a row's name, what is told behind it, and up to a point what it is besides."""
     palette, em = look.palette, look.em
     draw_list, middle = imgui.get_window_draw_list(), end.y
     right = end.x - GAP * em
@@ -334,19 +339,8 @@ def _text(
     name = shortened(row.name, right - left)
     draw_list.add_text(ImVec2(left, top), ink(palette.text if is_seen else palette.dim), name)
     left += imgui.calc_text_size(name).x + 2 * GAP * em
-    told = _told(project.document, row, shown)
     with sized(SMALL):
         size = imgui.calc_text_size(told)
         if told and right - left > 2 * em:
             told = shortened(told, right - left)
             draw_list.add_text(ImVec2(left, middle - size.y / 2), ink(palette.dim), told)
-
-
-def _told(document: Document, row: TreeRow, shown: Figure) -> str:
-    """Return what is written behind a name: what is seen of a choice, what carries a layer."""
-    if row.choice is not None:
-        return shown.name
-    if row.group is not None:
-        return f"{len(row.figures)}"
-    parents = [document.figure(each.to).name for each in shown.joints if each.to is not None]
-    return f"on {parents[0]}" + ("…" if len(set(parents)) > 1 else "") if parents else ""

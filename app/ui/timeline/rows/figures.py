@@ -4,7 +4,7 @@ from itertools import pairwise
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
-from app.document import Document, Figure, Switch, is_visible, layer_commands, sights_of
+from app.document import Document, Figure, Switch, carried_by, is_visible, layer_commands, sights_of
 from app.editor import Action, SwitchDrag, do
 from app.editor.actions import editing, timeline_pointing
 from app.ui.style import CHOSEN, SMALL, begin_tip, in_hand, ink, is_pressed, shortened, sized
@@ -16,6 +16,8 @@ from app.ui.timeline.tracks import FOLD, draw_fold, draw_names, draw_ways
 HATCH = 0.55  # em between the lines over a time in which a figure is hidden
 EYE = 0.62  # em: half the width of the mark where a figure is shown or hidden
 BESIDE = 0.35  # em that it makes way for a key at the same frame
+DEEPEST_INDENT = 5  # rows that are deeper are not shifted any more
+LEAST_TOLD = 1.8  # em: with less room behind a name its carrier is told by the tooltip alone
 
 
 def draw_rows(bands: Bands, frame: int) -> list[Action]:
@@ -62,15 +64,27 @@ def _draw_names(bands: Bands, frame: int) -> list[Action]:
         if row.is_active or in_hand():
             colour = ink(palette.accent, CHOSEN) if row.is_active else ink(palette.hovered)
             draw_list.add_rect_filled(*box, colour, 0.2 * em)
+        hung, carrier = carried_by(document, row.figure, frame)
+        if begin_tip():
+            imgui.text_unformatted(row.figure.name)
+            if carrier:
+                imgui.text_disabled(f"Hangs {carrier}")
+            imgui.end_tooltip()
         icon = icons.ICON_FA_IMAGE if row.figure.still else icons.ICON_FA_PERSON
         colour = ink(palette.text if is_visible(document, row.figure, frame) else palette.dim)
+        indent = low.x + INDENT * min(row.depth + hung, DEEPEST_INDENT) * em
         with sized(SMALL):
-            left = low.x + (FOLD * bool(row.figure.tracks) + INDENT * row.depth) * em
-            text = shortened(row.figure.name, box[1].x - left - 2.6 * em)
+            left = indent + (1.8 + FOLD * bool(row.figure.tracks)) * em
+            room = box[1].x - left - 0.8 * em
+            text = shortened(row.figure.name, room)
             top = row.middle - imgui.get_text_line_height() / 2
-            draw_list.add_text(ImVec2(left + 0.4 * em, top), colour, icon)
-            draw_list.add_text(ImVec2(left + 1.8 * em, top), colour, text)
-        actions += draw_fold(bands, row, low.x + INDENT * row.depth * em)
+            draw_list.add_text(ImVec2(left - 1.4 * em, top), colour, icon)
+            draw_list.add_text(ImVec2(left, top), colour, text)
+            taken = imgui.calc_text_size(text).x + 0.5 * em
+            if carrier and room - taken > LEAST_TOLD * em:
+                told = shortened(carrier, room - taken)
+                draw_list.add_text(ImVec2(left + taken, top), ink(palette.dim), told)
+        actions += draw_fold(bands, row, indent)
     actions += draw_stage_names(bands, frame)
     actions += draw_names(bands)
     _draw_scrolled(bands)

@@ -16,6 +16,7 @@ MULTIPLES = (2, 5, 10, 30, 60, 120, 300, 600, 1800, 3600, 7200, 18000)
 def draw_ruler(bands: Bands, frame: int) -> list[Action]:
     """Draw frame numbers and seconds; a press there takes the playhead along."""
     bands.button("ruler", ImVec2(bands.left, bands.ruler_top), ImVec2(bands.right, bands.marks_top))
+    bands.look.note_place("ruler")
     actions: list[Action] = []
     if is_pressed():
         actions += [
@@ -86,6 +87,7 @@ def draw_playhead(bands: Bands, frame: int) -> list[Action]:
     actions: list[Action] = []
     if bands.shows(low.x, high.x):
         bands.button("playhead", low, high)
+        bands.look.note_place("playhead")
         if is_pressed():
             scrub = Scrub(offset=frame - bands.pointed)
             actions.append(do(timeline_pointing.begin, scrub, bands.strip))

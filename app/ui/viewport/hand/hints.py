@@ -4,14 +4,13 @@ from functools import reduce
 
 from imgui_bundle import ImVec2, imgui
 
-from app.document import Figure
 from app.editor import Action, Hint, Project, Session
+from app.editor.actions import guiding
 from app.editor.tools import Spot, tools_of
 from app.ui.shortcuts import ALT, BINDINGS, CTRL, SHIFT, Binding, with_key
 from app.ui.style import Look, ink, tip
 from app.ui.viewport.marks import staying
 from app.ui.viewport.screen import Screen
-from engine.maps import HarmonicMap
 
 HINTS = (
     "Click on the drawing to add a handle.",
@@ -73,7 +72,7 @@ def draw_badges(
     if mode:
         return draw_mode(look, mode, corner, room)
     step = first_step(project)
-    if step is None:
+    if step is None or guiding.is_led(session):
         return []
     return _pill(look, HINTS[step], corner + ImVec2(room.x / 2, room.y - 3.2 * look.em))
 
@@ -103,14 +102,7 @@ def first_step(project: Project) -> int | None:
         return 0
     if len(figure.keys) > 1 or project.playhead.since is not None:
         return None
-    return 2 if _is_posed(figure) else 1
-
-
-def _is_posed(figure: Figure) -> bool:
-    """Tell whether the first pose is another than the one in which the picture was drawn."""
-    pose = figure.keys[0].pose
-    rest = HarmonicMap.identity(figure.domain.cage, figure.domain.holes)
-    return not figure.map_of(pose).is_same(rest)
+    return 2 if guiding.is_posed(figure) else 1
 
 
 def _pill(look: Look, text: str, place: ImVec2, remedy: Binding | None = None) -> list[Action]:

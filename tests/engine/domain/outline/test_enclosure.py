@@ -69,7 +69,7 @@ strokes = st.tuples(
 )
 
 
-@settings(max_examples=25)
+@settings(max_examples=15)
 @given(
     ends=st.lists(strokes, min_size=1, max_size=7),
     size=st.sampled_from([64, 200, 400]),

@@ -1,0 +1,228 @@
+"""A first animation in five steps: the real gestures lead on, and anything else is allowed."""
+
+import pytest
+from newcomer import Newcomer
+from PIL import Image
+
+from app.document.keyframe import Target
+from app.document.settings import ExportSettings
+from app.editor.actions import editing, exporting, files, guiding, keys, playback, posing, viewing
+from app.storage.assets import sample_images
+from app.ui.window.callout import NAME
+
+
+class Pupil(Newcomer):
+    """Whoever does what the card says, and nothing else."""
+
+    @property
+    def step(self):
+        """The step that the card tells; empty where there is none."""
+        guide = self.window.session.guide
+        return "" if guide is None else guide.step
+
+    def tap(self, place):
+        """Click on a place of the drawing."""
+
+        def act(robot):
+            robot.mouse_move_to_pos(self.window.point(place))
+            robot.mouse_click(0)
+
+        self.window.run(act)
+        self.wait()
+
+    def play(self):
+        """Let it play, and stop it."""
+        self.click("//Timeline/**/Play")
+        self.window.frames(5)
+        self.click("//Timeline/**/Play")
+
+    def export(self, folder):
+        """Export what the tab Export has, to where the dialog proposes it in a folder."""
+        session = self.window.session
+        session.preferences = type(session.preferences)(folder=folder)
+        self.click("//Export/**/###start")
+        self.click("//###dialog/Export")
+        self.window.until(lambda: not exporting.is_under_way(session))
+        self.window.frames(2)
+
+
+class HastyPupil(Pupil):
+    """Who does not wait for all that is measured of a large drawing."""
+
+    def wait(self):
+        """Wait for a few pictures."""
+        self.window.frames(5)
+
+
+@pytest.fixture
+def pupil(window):
+    return Pupil(window)
+
+
+@pytest.fixture
+def led(window, pupil):
+    """Somebody who is led through an animation of the bar, at the first step."""
+    window.frames(10)
+    pupil.click("//Welcome/**/…or with your own drawing")
+    dialog = window.session.dialog
+    window.act(viewing.choose, dialog, sample_images() / "bar.png")
+    window.settle()
+    assert pupil.step == "handle"
+    return pupil
+
+
+def places_of_bar(window):
+    width, height = window.session.project.document.canvas
+    return complex(0.1 * width, height / 2), complex(0.9 * width, height / 2)
+
+
+def words(window):
+    """What the card tells."""
+    return window._window._shell._callout.told
+
+
+def test_the_giraffe_bows(window):
+    window.frames(10)
+    before = (sample_images() / guiding.SAMPLE).read_bytes()
+    pupil = HastyPupil(window)
+    pupil.click("//Welcome/**/make it bow")
+    window.until(lambda: pupil.step == "handle")
+    session, project = window.session, window.session.project
+    assert project.path is None
+    assert [len(project.figure.keys), len(project.figure.handles)] == [1, 7]
+    export = project.document.export
+    assert (export.format, export.size) == (guiding.FORMAT, guiding.SIZE)
+    window.frames(3)
+    aim, goal = session.guide.aim, session.guide.goal
+    pupil.tap(aim)
+    assert pupil.step == "time"
+    pupil.drag_playhead(0.5)
+    assert pupil.step == "pose"
+    pupil.drag(aim, goal)
+    window.until(lambda: pupil.step == "play")
+    window.until(lambda: abs(complex(project.puppet.shown.handle_places[-1]) - goal) < 20)
+    pupil.play()
+    assert pupil.step == "export"
+    assert (sample_images() / guiding.SAMPLE).read_bytes() == before
+
+
+def test_the_same_steps_lead_through_an_own_drawing(window, led, tmp_path):
+    project = window.session.project
+    for place in places_of_bar(window):
+        assert led.step == "handle"
+        led.tap(place)
+    assert led.step == "time"
+    led.drag_playhead(0.5)
+    assert led.step == "pose"
+    start = places_of_bar(window)[1]
+    led.drag(start, start + 100j)
+    assert led.step == "play"
+    led.play()
+    assert led.step == "export"
+    led.show_tab("Export")
+    assert "Choose GIF" in words(window)
+    window.act(exporting.set_export, ExportSettings(format=guiding.FORMAT, size=(120, 40)))
+    window.frames(2)
+    assert "Click Export" in words(window)
+    led.export(tmp_path)
+    assert led.step == "done"
+    with Image.open(tmp_path / "bar.gif") as gif:
+        assert gif.n_frames == project.document.frames.last + 1
+    led.click(f"//{NAME}###guide/###leave")
+    assert led.step == ""
+
+
+def test_whoever_does_something_else_first_is_led_from_there(window, led):
+    session = window.session
+    first, second = places_of_bar(window)
+    window.act(playback.toggle_play)
+    assert led.step == "handle"
+    window.act(playback.scrub, 20)
+    assert led.step == "handle", "no handle is there yet"
+    window.act(posing.add_handle, first)
+    window.act(posing.add_handle, second)
+    window.settle()
+    assert led.step == "pose", "the playhead was moved before"
+    window.act(keys.insert)
+    window.settle()
+    assert led.step == "pose", "two keys with one pose do not move"
+    window.act(playback.scrub, 0)
+    assert led.step == "time"
+    window.act(playback.scrub, 30)
+    window.act(viewing.toggle_auto_key)
+    posing.wish(session, {1: Target(position=second + 100j)})
+    window.settle()
+    assert led.step == "pose", "no key has the pose"
+    window.act(keys.insert)
+    window.settle()
+    assert led.step == "play"
+    window.act(editing.undo)
+    window.settle()
+    assert led.step == "pose"
+    window.act(editing.redo)
+    window.settle()
+    window.act(playback.toggle_play)
+    window.frames(3)
+    assert led.step == "export"
+    window.act(playback.halt)
+    window.act(files.open_file, sample_images() / "s.png")
+    window.settle()
+    window.act(viewing.answer, session.dialog.answers[1][1])
+    window.settle()
+    assert session.project.name == "s"
+    assert led.step == "", "it was about the other drawing"
+
+
+@pytest.mark.usefixtures("led")
+def test_a_guide_can_be_left_at_any_time(window):
+    session = window.session
+
+    def press(robot):
+        robot.key_press(window.Key.escape)
+
+    for place in places_of_bar(window):
+        window.act(posing.add_handle, place)
+    window.settle()
+    guide, selected = session.guide, session.project.selected
+    assert selected
+    for step in guiding.STEPS:
+        session.guide = type(guide)(project=guide.project, handles=guide.handles, step=step)
+        # The hand is at something, so that the step stays.
+        window.run(press)
+        window.frames(2)
+        assert session.guide is None, step
+        assert session.project.selected == selected, "only the guide is left"
+    window.run(press)
+    assert not session.project.selected
+    session.guide = guide
+    window.frames(3)
+    window.run(lambda robot: robot.item_click(f"//{NAME}###guide/###leave"))
+    assert session.guide is None
+
+
+def test_a_drawing_that_is_not_chosen_is_not_waited_for(window, pupil):
+    window.frames(3)
+    pupil.click("//Welcome/**/…or with your own drawing")
+    window.run(lambda robot: robot.key_press(window.Key.escape))
+    window.frames(2)
+    assert window.session.dialog is None
+    assert pupil.step == ""
+    window.open(sample_images() / "bar.png")
+    assert pupil.step == ""
+
+
+def test_samples_have_stories_and_move_under_the_pointer(window):
+    for sample in files.samples():
+        assert sample.story, f"{sample.name} has no story"
+        assert sample.moving.exists() == (sample.what == "animated"), sample.name
+    window.frames(20)
+    known = window._window._thumbnails._moments
+    assert known == {}, "nothing moves before it is pointed at"
+
+    def point(robot):
+        robot.mouse_move("//Welcome/**/sample Ring")
+        for _ in range(3):
+            robot.yield_()
+
+    window.run(point)
+    assert [path.stem for path in known] == ["ring"]
