@@ -22,7 +22,7 @@ from app.editor.actions.body import (
     material as material,
     rebuilding as rebuilding,
 )
-from app.editor.actions.moving import (
+from app.editor.actions.posing.moving import (
     drafting as drafting,
     giving as giving,
     placing as placing,

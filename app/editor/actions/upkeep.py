@@ -7,7 +7,7 @@ from typing import TypeVar
 from app.document import Clip, clip_of, resting_pose, time_of
 from app.editor.actions import playback, posing, tracking, viewing
 from app.editor.actions.body import rebuilding
-from app.editor.actions.moving import drafting
+from app.editor.actions.posing.moving import drafting
 from app.editor.failures import report
 from app.editor.project import Project, Puppet
 from app.editor.session import Session, with_project

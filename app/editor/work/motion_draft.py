@@ -16,7 +16,7 @@ from engine.geometry.motions import (
     other_side,
 )
 
-Places = Mapping[str, complex]  # of joints by their names, at rest
+JointPlaces = Mapping[str, complex]  # of joints by their names, at rest
 MOST_UNDONE = 100
 
 
@@ -28,10 +28,10 @@ class MotionDraft:
     domain: Domain  # of the figure then: joints are places in it
     kind: str
     motion: str
-    joints: Places
-    suggested: Places  # where those of the kind were found
+    joints: JointPlaces
+    suggested: JointPlaces  # where those of the kind were found
     # Joints of other kinds as they were left.
-    others: Mapping[str, Places] = field(default_factory=dict)
+    others: Mapping[str, JointPlaces] = field(default_factory=dict)
     parameters: Parameters = field(default_factory=Parameters)
     rounds: int = 1
     facing: int | None = None  # None as it seems to look
@@ -40,7 +40,7 @@ class MotionDraft:
     given: GivenMotion | None = None  # what it takes the place of
     replaces_edits: bool = False  # also where that was edited by hand
     chosen: str | None = None  # the joint that was touched last
-    past: tuple[Places, ...] = ()  # joints as they were before each change, to be undone
+    past: tuple[JointPlaces, ...] = ()  # joints as they were before each change, to be undone
 
     @property
     def body_kind(self) -> BodyKind:
@@ -60,7 +60,7 @@ class MotionDraft:
             needed = tuple(map(other_side, needed))
         return tuple(name for name in needed if name not in self.joints)
 
-    def with_joints(self, joints: Places, chosen: str | None = None) -> Self:
+    def with_joints(self, joints: JointPlaces, chosen: str | None = None) -> Self:
         """Return it with other joints, in the kind's order; that can be undone."""
         ordered = {name: joints[name] for name in self.body_kind.parents if name in joints}
         past = (*self.past, self.joints)[-MOST_UNDONE:]

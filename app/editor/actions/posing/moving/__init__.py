@@ -5,7 +5,7 @@ Out: a draft of a motion; then the figure with its keys, in one step of undo.
 Imports: `app.solving`, `app.editor.promises`, `app.editor.actions.playback` and `editing`.
 """
 
-from app.editor.actions.moving import (
+from app.editor.actions.posing.moving import (
     drafting as drafting,
     giving as giving,
     placing as placing,

@@ -5,7 +5,7 @@ from typing import Any
 
 from app.document import Figure, GivenMotion, is_as_given
 from app.editor.actions import playback
-from app.editor.actions.moving.placing import joints_in
+from app.editor.actions.posing.moving.placing import joints_in
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work import MotionDraft

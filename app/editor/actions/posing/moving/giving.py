@@ -8,7 +8,7 @@ from app.document import Command, Document
 from app.editor import promises
 from app.editor.action import do
 from app.editor.actions import playback
-from app.editor.actions.moving import drafting
+from app.editor.actions.posing.moving import drafting
 from app.editor.failures import report
 from app.editor.project import Project
 from app.editor.session import Session, with_project
