@@ -27,6 +27,7 @@ COMMANDS = {
     "domain": "Find a picture's outline; build the cage and the triangulation.",
     "deform": "Drag handles of a shape within bounds, from file to file.",
     "pose": "Make a project from a picture and a script of handles and keys.",
+    "move": "Make a project in which a drawing walks, waves or sways, by a ready motion.",
     "certify": "Tell how far an animation distorts its drawing, and prove its keyframes.",
     "interpolate": "In-betweens of keyframes at points, from file to file.",
     "figures": "Make the figures of the paper anew, with what was measured beside them.",

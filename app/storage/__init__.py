@@ -51,6 +51,7 @@ from app.storage.layers import (
     is_layered as is_layered,
     layer_figure as layer_figure,
     open_layered as open_layered,
+    open_merged as open_merged,
     open_pictures as open_pictures,
     read_layered as read_layered,
     still_figure as still_figure,

@@ -102,10 +102,15 @@ def draft_again(figure: Figure, given: GivenMotion) -> MotionDraft:
         parameters=given.parameters,
         rounds=given.rounds,
         facing=given.facing,
-        bones=not ends.isdisjoint(given.joints.values()),
+        bones=not ends.isdisjoint(limb_joints(given)),
         first=given.first,
         given=given,
     )
+
+
+def limb_joints(given: GivenMotion) -> set[int]:
+    """Return the ids of the handles that are joints of limbs, or links of a chain."""
+    return {handle for name, handle in given.joints.items() if "." in name}
 
 
 def _first_motion(kind: str) -> str:

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
-from app.document import Command, Document
+from app.document import RUBBERY, Command, Document
 from app.editor import promises
 from app.editor.action import do
 from app.editor.actions import playback
@@ -16,7 +16,6 @@ from app.editor.work import Kind, MotionDraft, MotionErrand, Promise
 from app.solving import Giving, MotionOrder, begin_giving, give_on
 
 GIVING = Kind("Giving the motion", "The motion was not given", "hand")
-STRONG = 10.0  # bones of limbs: how many times as stiff as usual
 MOST_TOLD = 3  # joints that are out of reach
 
 
@@ -39,11 +38,12 @@ def _begin(session: Session, project: Project, draft: MotionDraft) -> None:
         return
     base = _without(project.document, draft)
     errand = MotionErrand(draft=draft, before=before, base=base)
-    _step(session, project, errand, partial(begin_giving, base, before.id, _order(draft)))
+    order = _order(draft, is_first=not before.motions)
+    _step(session, project, errand, partial(begin_giving, base, before.id, order))
 
 
-def _order(draft: MotionDraft) -> MotionOrder:
-    """Return what the solver is asked for."""
+def _order(draft: MotionDraft, *, is_first: bool) -> MotionOrder:
+    """Return what the solver is asked for; what is stiff and the limits are as after the first."""
     return MotionOrder(
         motion=draft.motion,
         kind=draft.kind,
@@ -52,7 +52,9 @@ def _order(draft: MotionDraft) -> MotionOrder:
         first=draft.first,
         rounds=draft.rounds,
         facing=draft.facing,
-        bones=STRONG if draft.bones else None,
+        stiff=is_first,
+        bones=draft.bones,
+        limits=RUBBERY.bounds if is_first else None,
     )
 
 
@@ -69,8 +71,8 @@ def _without(document: Document, draft: MotionDraft) -> Document:
         kept = [key for key in figure.keys if key in kept or key.frame == given.first]
     bones = figure.bones
     if not draft.bones:
-        limbs = set(given.joints.values())
-        bones = tuple(bone for bone in bones if not limbs.issuperset(bone.ends))
+        limbs = drafting.limb_joints(given)
+        bones = tuple(bone for bone in bones if limbs.isdisjoint(bone.ends))
     return document.with_figure(
         replace(
             figure,
