@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 from app.document import Baseline, Meshing, Variant
 from app.editor.action import Action
-from app.editor.dialogs import Dialog, FileDialog, ShortcutSheet
+from app.editor.dialogs import Dialog, FileDialog, ProblemReport, ShortcutSheet
 from app.editor.project import Project, view_around
 from app.editor.session import CurveKind, HeatMap, Session, Tint, Toast, with_project
 from app.motion import Box, box_around
@@ -215,8 +215,9 @@ def show_shortcuts(session: Session) -> None:
 
 
 def close_dialog(session: Session) -> None:
-    """Close the dialog without doing anything."""
-    session.dialog = None
+    """Close the dialog without doing anything; what a report was asked for from comes back."""
+    dialog = session.dialog
+    session.dialog = dialog.behind if isinstance(dialog, ProblemReport) else None
 
 
 def answer(session: Session, action: Action) -> None:

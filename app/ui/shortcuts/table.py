@@ -6,7 +6,7 @@ from typing import Any
 from imgui_bundle import hello_imgui, icons_fontawesome_6 as icons
 
 from app.document import LINEAR, PRESETS
-from app.editor import Project, Session, do, layering, with_project
+from app.editor import Project, Session, do, failures, layering, with_project
 from app.editor.actions import (
     OverlayName,
     cutting,
@@ -642,6 +642,7 @@ MENUS: dict[str, dict[str, Binding]] = {
             "Make a giraffe bow", do(guiding.begin), needs_project=False, parted=True
         ),
         "leave guide": Binding("Leave the guide", do(guiding.leave), "Escape", possible=_can_leave),
+        "report": Binding("Report a problem…", do(failures.ask_report), needs_project=False),
         "import": Binding("What opening it told", do(files.show_summary), possible=_has_summary),
     },
 }
