@@ -162,8 +162,9 @@ def _prepared(document: Document, identity: int, part: FigureScript) -> Document
     figure = document.figure(identity)
     if part.visible is not None:
         # What the script says holds, whatever is hidden in the drawing.
+        document = layer_commands.reveal(identity)(document)
         switches = tuple(Switch(frame, visible) for frame, visible in part.visible)
-        figure = replace(figure, switches=switches, hidden=False)
+        figure = replace(document.figure(identity), switches=switches)
     if isinstance(part.opacity, tuple):
         figure = replace(figure, opacities=part.opacity)
     elif part.opacity is not None:

@@ -16,28 +16,30 @@ WALK = Motion(
     label="Walk",
     hint="One foot after the other, arms against legs",
     seconds=1.0,
-    keys=12,
+    keys=24,
     courses={
         "biped-side": Limbs(
-            gait=Gait(stance=0.6, stride=1.0, lift=0.13, falls=LEFT_RIGHT, roll=25),
+            gait=Gait(stance=0.6, stride=0.8, lift=0.1, falls=LEFT_RIGHT, roll=25, gathered=0.1),
             rise=even(0.0, -0.02, 0.0, 0.02, 0.0, -0.02, 0.0, 0.02),
             turns={
                 "chest": even(-3, -4, -3, -2, -3, -4, -3, -2),
                 "head": even(3, 5, 3, 1, 3, 5, 3, 1),
-                "elbow": even(-22, 0, 22, 0),
-                "hand": even(6, 10, 22, 14),
+                "elbow": even(-17, 0, 17, 0),
+                "hand": even(2, 5, 14, 8),
                 "tail": even(0, 6, 0, -6),
             },
             needed=FEET,
         ),
         "biped-front": Limbs(
-            gait=Gait(stance=0.6, stride=0.3, lift=0.13, falls=LEFT_RIGHT, gathered=0.0),
+            gait=Gait(
+                stance=0.6, stride=0.3, lift=0.1, falls=LEFT_RIGHT, gathered=0.0, treads=False
+            ),
             rise=even(0.0, -0.02, 0.0, 0.025, 0.0, -0.02, 0.0, 0.025),
-            shift=even(0.0, -0.05, -0.05, 0.0, 0.05, 0.05),
+            shift=even(0.0, 0.06, 0.06, 0.0, -0.06, -0.06),
             turns={
-                "hips": even(0, 2, 2, 0, -2, -2),
-                "chest": even(0, 1.5, 2, 0, -1.5, -2),
-                "head": even(0, -2, -3, 0, 2, 3),
+                "hips": even(0, -3, -3, 0, 3, 3),
+                "chest": even(0, -1, -1, 0, 1, 1),
+                "head": even(0, 3, 3, 0, -3, -3),
                 "elbow": even(-6, 2, 10, 2),
                 "hand": even(0, 4, 12, 6),
                 "tail": even(0, 6, 0, -6),
@@ -54,7 +56,7 @@ RUN = Motion(
     label="Run",
     hint="Long steps, and a moment in the air between them",
     seconds=2 / 3,
-    keys=12,
+    keys=24,
     courses={
         "biped-side": Limbs(
             gait=Gait(stance=0.36, stride=1.7, lift=0.3, falls=LEFT_RIGHT, roll=40),
@@ -71,15 +73,17 @@ RUN = Motion(
             needed=FEET,
         ),
         "biped-front": Limbs(
-            gait=Gait(stance=0.36, stride=0.5, lift=0.24, falls=LEFT_RIGHT, gathered=0.0),
+            gait=Gait(
+                stance=0.36, stride=0.5, lift=0.2, falls=LEFT_RIGHT, gathered=0.0, treads=False
+            ),
             rise=Curve(
                 ((0.0, 0.0), (0.17, -0.05), (0.42, 0.05), (0.5, 0.0), (0.67, -0.05), (0.92, 0.05))
             ),
-            shift=even(0.0, -0.03, -0.03, 0.0, 0.03, 0.03),
+            shift=even(0.0, 0.04, 0.04, 0.0, -0.04, -0.04),
             turns={
-                "hips": even(0, 3, 3, 0, -3, -3),
-                "chest": even(0, 2, 3, 0, -2, -3),
-                "head": even(0, -3, -4, 0, 3, 4),
+                "hips": even(0, -3, -3, 0, 3, 3),
+                "chest": even(0, -1, -1, 0, 1, 1),
+                "head": even(0, 3, 3, 0, -3, -3),
                 "elbow": even(-4, 8, 22, 8),
                 "hand": even(6, 14, 28, 16),
                 "tail": even(0, 9, 0, -9),
@@ -89,8 +93,8 @@ RUN = Motion(
     },
 )
 
-_RAISED = even(0, 30, 62, 66, 62, 66, 62, 66, 62, 46, 12, 0)
-_SHAKEN = even(0, 16, 56, 12, 56, 12, 56, 12, 56, 26, 6, 0)
+_RAISED = even(0, 20, 38, 41, 38, 41, 38, 41, 38, 28, 8, 0)
+_SHAKEN = even(0, 18, 60, 30, 60, 30, 60, 30, 60, 30, 8, 0)
 _GREETING = {
     "chest": even(0, 1, 2, 3, 2, 3, 2, 3, 2, 1, 0, 0),
     "head": even(0, 2, 4, 2, 4, 2, 4, 2, 4, 2, 0, 0),
@@ -105,7 +109,8 @@ WAVE = Motion(
         kind: Limbs(
             turns=_GREETING,
             single={"elbow.R": _RAISED, "hand.R": _SHAKEN},
-            needed=("hips", "hand.R"),
+            needed=("hips",),
+            either=("hand.R", "hand.L"),
         )
         for kind in ("biped-front", "biped-side")
     },
@@ -116,7 +121,7 @@ NOD = Motion(
     label="Nod",
     hint="The head says yes, twice",
     seconds=1.5,
-    keys=12,
+    keys=24,
     courses={
         "biped-side": Limbs(
             turns={
@@ -182,4 +187,26 @@ JUMP = Motion(
     seconds=1.25,
     keys=15,
     courses={"biped-side": _LEAP, "biped-front": _LEAP},
+)
+
+# As a kangaroo: both feet land together, the body sinks and is thrown ahead, the tail against it.
+LEAPING = Limbs(
+    gait=Gait(
+        stance=0.42,
+        stride=0.9,
+        lift=0.26,
+        falls=(("foot.L", 0.0), ("foot.R", 0.0)),
+        gathered=0.0,
+        roll=32,
+    ),
+    lag=0.0,
+    rise=Curve(((0.0, 0.0), (0.2, -0.16), (0.42, 0.02), (0.7, 0.25), (0.9, 0.06))),
+    turns={
+        "chest": Curve(((0.0, 1), (0.2, -7), (0.42, -3), (0.7, 2), (0.9, 3))),
+        "head": Curve(((0.0, 2), (0.2, 6), (0.42, 3), (0.7, -2), (0.9, -2))),
+        "elbow": Curve(((0.0, -4), (0.2, -10), (0.42, 6), (0.7, 14), (0.9, 4))),
+        "hand": Curve(((0.0, 2), (0.2, 6), (0.42, 8), (0.7, 12), (0.9, 6))),
+        "tail": Curve(((0.0, 6), (0.2, -10), (0.42, -4), (0.7, 12), (0.9, 12))),
+    },
+    needed=FEET,
 )
