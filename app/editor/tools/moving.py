@@ -52,18 +52,19 @@ class Moving(Pulling):
 
 
 @with_project
-def take_up(session: Session, _: Project) -> None:
+def take_up(session: Session, project: Project) -> None:
     """Let drags and arrows move the whole figure, or pose it again."""
     if session.pointer is None:
-        is_other = session.cutting is not None or session.material is not None
+        in_hand = session.cutting, session.material, project.draft
+        is_other = any(each is not None for each in in_hand)
         session.moves = is_other or not session.moves
-        session.cutting = session.material = None
+        session.cutting = session.material = project.draft = None
 
 
 @with_project
-def pose(session: Session, _: Project) -> None:
-    """Put away whatever is in hand instead of posing."""
-    session.cutting = session.material = None
+def pose(session: Session, project: Project) -> None:
+    """Put away whatever is in hand instead of posing, a motion that is drafted among it."""
+    session.cutting = session.material = project.draft = None
     session.moves = False
 
 
