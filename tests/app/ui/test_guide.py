@@ -1,6 +1,8 @@
 """A first animation in five steps: the real gestures lead on, and anything else is allowed."""
 
+import numpy as np
 import pytest
+from imgui_bundle import ImVec2
 from newcomer import Newcomer
 from PIL import Image
 
@@ -8,7 +10,8 @@ from app.document.keyframe import Target
 from app.document.settings import ExportSettings
 from app.editor.actions import editing, exporting, files, guiding, keys, playback, posing, viewing
 from app.storage.assets import sample_images
-from app.ui.window.callout import NAME
+from app.ui.window.guide import NAME
+from app.ui.window.guide.placing import Rect, free_corner
 
 
 class Pupil(Newcomer):
@@ -74,6 +77,22 @@ def led(window, pupil):
 def places_of_bar(window):
     width, height = window.session.project.document.canvas
     return complex(0.1 * width, height / 2), complex(0.9 * width, height / 2)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_card_covers_nothing_that_it_points_at(seed):
+    random = np.random.default_rng(seed)
+    window = Rect(ImVec2(0, 25), ImVec2(*random.uniform((800, 600), (1600, 1000))))
+    viewport = Rect(ImVec2(40, 25), ImVec2(0.6 * window.high.x, 0.65 * window.high.y))
+    room = viewport if seed % 2 else window
+    low = ImVec2(*random.uniform((room.low.x, room.low.y), (room.high.x - 40, room.high.y - 40)))
+    box, size = Rect(low, low + ImVec2(40, 40)), ImVec2(*random.uniform((200, 80), (320, 140)))
+    drawing = random.uniform(40, 500, 400) + 1j * random.uniform(25, 500, 400)
+    corner = free_corner(size, [box], [viewport, window], drawing, 24.0)
+    card = Rect(corner, corner + size)
+    assert not card.meets(box)
+    assert window.low.x <= card.low.x <= card.high.x <= window.high.x
+    assert window.low.y <= card.low.y <= card.high.y <= window.high.y
 
 
 def words(window):
