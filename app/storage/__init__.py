@@ -77,6 +77,8 @@ from app.storage.pictures import (
     decode_picture as decode_picture,
     decode_pictures as decode_pictures,
     encode_mask as encode_mask,
+    let_go as let_go,
+    on_disk as on_disk,
     side_by_side as side_by_side,
 )
 from app.storage.preferences import (

@@ -41,7 +41,12 @@ def begin(session: Session, project: Project) -> None:
     project.selected = frozenset()
     frame = playback.current_frame(session, project)
     here = [each for each in project.figure.motions if each.first <= frame < each.last]
-    project.draft = draft_again(project.figure, here[-1]) if here else _new(project.figure, frame)
+    if here:
+        project.draft = draft_again(project.figure, here[-1])
+    else:
+        project.draft = _put_away(project, frame) or _new(project.figure, frame)
+    # It has hints of its own.
+    session.guide = None
 
 
 @with_project
@@ -62,6 +67,15 @@ def begin_after(session: Session, project: Project, given: GivenMotion) -> None:
     elif given in project.figure.motions:
         playback.scrub(session, given.last)
         project.draft = replace(draft, given=None, first=given.last)
+
+
+def _put_away(project: Project, frame: int) -> MotionDraft | None:
+    """Return the draft that was put away last, if it was of the same shape, and a first motion."""
+    draft, figure = project.last_draft, project.figure
+    if draft is None or figure.motions or draft.given is not None:
+        return None
+    is_same = (draft.figure, draft.domain) == (figure.id, figure.domain)
+    return replace(draft, first=frame, past=(), chosen=None) if is_same else None
 
 
 def _new(figure: Figure, frame: int) -> MotionDraft:
@@ -189,8 +203,8 @@ def hindrance(project: Project) -> str:
 
 @with_project
 def give_up(_: Session, project: Project) -> None:
-    """Put the draft away; nothing of it was done to the figure."""
-    project.draft = None
+    """Put the draft away; nothing of it was done to the figure, and its joints are remembered."""
+    project.last_draft, project.draft = project.draft, None
 
 
 @with_project
