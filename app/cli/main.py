@@ -35,6 +35,7 @@ COMMANDS = {
     "export": "Render an animation to picture files or video.",
     "thumbnail": "Write the small picture of a project, as file managers ask for it.",
     "desktop": "Enter Lissom into the menu of applications, or take it out again.",
+    "manual": "Copy the manual, pages that any browser shows, into a folder.",
     "doctor": "Tell what works on this machine, and what to install where it does not.",
 }
 

@@ -278,7 +278,8 @@ class Session:
     @property
     def poses(self) -> bool:
         """Whether drags pose, and nothing else is in hand."""
-        return self.cutting is None and self.material is None and not self.moves
+        drafts = self.project is not None and self.project.draft is not None
+        return not (drafts or self.moves) and self.cutting is None and self.material is None
 
     @property
     def usual_folder(self) -> Path:

@@ -8,6 +8,7 @@ Imports: `app.document`.
 
 from app.storage.assets import (
     app_icon as app_icon,
+    manual_page as manual_page,
     sample_images as sample_images,
     shader_source as shader_source,
 )
@@ -77,6 +78,8 @@ from app.storage.pictures import (
     decode_picture as decode_picture,
     decode_pictures as decode_pictures,
     encode_mask as encode_mask,
+    let_go as let_go,
+    on_disk as on_disk,
     side_by_side as side_by_side,
 )
 from app.storage.preferences import (

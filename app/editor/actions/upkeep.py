@@ -7,6 +7,7 @@ from typing import TypeVar
 from app.document import Clip, clip_of, resting_pose, time_of
 from app.editor.actions import playback, posing, tracking, viewing
 from app.editor.actions.body import rebuilding
+from app.editor.actions.posing.moving import drafting
 from app.editor.failures import report
 from app.editor.project import Project, Puppet
 from app.editor.session import Session, with_project
@@ -66,6 +67,7 @@ def maintain(session: Session, project: Project) -> None:
         project.puppet.corrected.lead(playback.current_frame(session, project))
     project.extent.recall(extent_source(project.document))
     rebuilding.maintain(session)
+    drafting.maintain(session)
     project.pair_up(session.split.method if session.split else None)
     _pin(session, project)
     for job in missing(session, project):

@@ -25,7 +25,7 @@ from app.render import LayerPictures, Renderer, Thumbnail, Thumbnails
 from app.render.gpu import graphics_in_words, is_software
 from app.storage import app_icon, sample_images
 from app.ui.panel import Panel
-from app.ui.panels import deform, distortion, export, handle, layers, poses
+from app.ui.panels import deform, distortion, export, handle, layers, motion, poses
 from app.ui.panels.body import cut_out, domain, material
 from app.ui.style import Look
 from app.ui.timeline import timeline
@@ -229,6 +229,7 @@ class Window:
             Panel("Handle", icons.ICON_FA_CIRCLE_DOT, handle.draw),
             Panel("Layers", icons.ICON_FA_LAYER_GROUP, draw_layers),
             Panel("Poses", icons.ICON_FA_PERSON_RUNNING, draw_poses),
+            Panel("Motion", icons.ICON_FA_PERSON_WALKING, motion.draw),
             Panel("Deform", icons.ICON_FA_SLIDERS, deform.draw),
             Panel("Material", icons.ICON_FA_CUBE, material.draw),
             Panel("Distortion", icons.ICON_FA_CHART_LINE, distortion.draw),
