@@ -49,6 +49,8 @@ class MotionOrder:
     first: int = 0  # the frame from which on it is given
     rounds: int = 1  # how often its cycle is there
     facing: int | None = None  # 1 looks to the right, -1 to the left; None guesses
+    # Handles that are joints already, by the joints' names; they go where these are now.
+    handles: Mapping[str, int] = field(default_factory=dict)
     stiff: bool = True  # whether the trunk becomes stiff, so that limbs move and not all
     bones: bool = False  # whether limbs get bones, too
     # Limits that the figure has at least; None leaves them as they are.
@@ -74,6 +76,7 @@ def order_of(figure: Figure, given: GivenMotion) -> MotionOrder:
         first=given.first,
         rounds=given.rounds,
         facing=given.facing,
+        handles=given.joints,
         stiff=False,
         limits=None,
     )
@@ -127,17 +130,8 @@ def with_handles_at_joints(
 ) -> tuple[Document, dict[str, int]]:
     """Return a document whose figure has a handle at each joint, and bones; and which those are."""
     joints = dict[str, int]()
-    near = SAME_JOINT * box_diagonal(document.figure(identity).domain.outline)
     for name, place in body.joints.items():
-        figure = document.figure(identity)
-        beside = {abs(each.position - place): each.id for each in figure.handles}
-        found = beside[min(beside)] if beside and min(beside) <= near else None
-        if found is None or found in joints.values():
-            found = figure.next_handle
-            taken = {handle.name for handle in figure.handles}
-            free = name if name not in taken else numbered(name, taken, 2)
-            document = handle_commands.add_handle(identity, place, name=free)(document)
-        joints[name] = found
+        document, joints[name] = _with_handle(document, identity, name, place, order, joints)
     for name, before in body.parents.items():
         amount = STIFF_TRUNK if name in TRUNK else STIFF_LIMB
         if not before or not (order.stiff if name in TRUNK else order.bones):
@@ -151,6 +145,30 @@ def with_handles_at_joints(
     if order.stiff and "head" in joints:
         document = _with_stiff_head(document, identity, body.joints["head"])
     return document, joints
+
+
+def _with_handle(
+    document: Document,
+    identity: int,
+    name: str,
+    place: complex,
+    order: MotionOrder,
+    others: Mapping[str, int],
+) -> tuple[Document, int]:
+    """Return a document whose figure has a handle at a joint, and which that is."""
+    figure = document.figure(identity)
+    known = order.handles.get(name)
+    if known is not None and any(each.id == known for each in figure.handles):
+        return handle_commands.move_handle(identity, known, place)(document), known
+    near = SAME_JOINT * box_diagonal(figure.domain.outline)
+    free = [each for each in figure.handles if each.id not in others.values()]
+    beside = min(free, key=lambda each: abs(each.position - place), default=None)
+    if beside is not None and abs(beside.position - place) <= near:
+        return document, beside.id
+    taken = {handle.name for handle in figure.handles}
+    new = name if name not in taken else numbered(name, taken, 2)
+    added = handle_commands.add_handle(identity, place, name=new)(document)
+    return added, figure.next_handle
 
 
 def _with_stiff_head(document: Document, identity: int, head: complex) -> Document:

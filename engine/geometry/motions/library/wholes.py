@@ -1,7 +1,7 @@
 """What needs no joints."""
 
 from engine.geometry.motions.curves import Curve, Leap, even
-from engine.geometry.motions.library.bipeds import LEAPING
+from engine.geometry.motions.library.bipeds import LEAPING, LEAPING_TO_US
 from engine.geometry.motions.motion import Motion
 from engine.geometry.motions.swells import Swell
 
@@ -13,7 +13,7 @@ BREATHE = Motion(
     keys=8,
     courses={
         "anything": Swell(
-            swell=even(0.0, 0.03, 0.06, 0.05, 0.025, 0.005),
+            swell=even(0.0, 0.04, 0.08, 0.065, 0.03, 0.005),
             stretch=even(0.0, 0.01, 0.02, 0.018, 0.008, 0.0),
         )
     },
@@ -38,7 +38,7 @@ HOP = Motion(
     keys=24,
     courses={
         "biped-side": LEAPING,
-        "biped-front": LEAPING,
+        "biped-front": LEAPING_TO_US,
         "anything": Swell(
             stretch=Curve(
                 (
