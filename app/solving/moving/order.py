@@ -113,13 +113,16 @@ def body_of(figure: Figure, order: MotionOrder) -> Body:
 
 def _on_drawing(figure: Figure, joints: Mapping[str, complex]) -> dict[str, complex]:
     """Return joints on a figure; those that are hardly beside it come to its outline."""
-    beside = BESIDE * box_diagonal(figure.domain.outline)
+    tolerance = BESIDE * box_diagonal(figure.domain.outline)
     points: Complexes = np.array(list(joints.values()), dtype=np.complex128)
-    covered = figure.covers(points, tolerance=beside)
+    covered = figure.covers(points, tolerance=tolerance)
     for (name, place), is_on_it in zip(joints.items(), covered, strict=True):
         if not is_on_it:
+            # Places are told from the upper left corner of the drawing.
+            beside = place - figure.corner
+            down = figure.picture.size[1] - beside.imag
             raise LissomError(
-                f"the joint {name!r} at ({place.real:g}, {place.imag:g}) is not on the drawing"
+                f"the joint {name!r} at ({beside.real:g}, {down:g}) is not on the drawing"
             )
     nearest = figure.domain.nearest(points).tolist()
     return dict(zip(joints, nearest, strict=True))
@@ -132,6 +135,9 @@ def with_handles_at_joints(
     joints = dict[str, int]()
     for name, place in body.joints.items():
         document, joints[name] = _with_handle(document, identity, name, place, order, joints)
+    if not body.kind.parents:
+        # What moves as a whole is not held still anywhere.
+        document = handle_commands.free_handles(identity, set(joints.values()), free=True)(document)
     for name, before in body.parents.items():
         amount = STIFF_TRUNK if name in TRUNK else STIFF_LIMB
         if not before or not (order.stiff if name in TRUNK else order.bones):

@@ -107,8 +107,8 @@ def test_what_cannot_be_done_is_refused_in_a_sentence(words, said, folder, tmp_p
     joints = told("chain")
     joints |= {"schema": 7} if "schema" in said else {}
     joints |= {"limbs": []} if "limbs" in said else {}
-    if "(2, 3)" in said or "wing" in said:
-        joints["joints"]["wing" if "wing" in said else "joint.1"] = [2, 3]
+    if "(2, 3)" in said or "'wing'" in said:
+        joints["joints"]["wing" if "'wing'" in said else "joint.1"] = [2, 3]
     text = json.dumps(joints)
     (tmp_path / "joints.json").write_text(text[:-9] if "JSON" in said else text)
     with_joints = ["--joints", str(tmp_path / "joints.json")]
