@@ -15,8 +15,8 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from app.document import Document
-from app.errors import shown_name
-from app.storage.files import is_locked, lock
+from app.errors import LissomError, shown_name
+from app.storage.files import is_locked, lock, read_file, write_atomically
 from app.storage.preferences import make_settings_folder
 from app.storage.project_file import load_member, load_project, save_project
 
@@ -24,6 +24,8 @@ SECONDS = 20.0  # between a change and its autosave, at least
 # The member of the file that tells where the work came from; projects that are saved have none.
 ORIGIN = "origin.json"
 LARGEST_ORIGIN = 100_000  # bytes
+REPORT, LARGEST_REPORT = "report.txt", 1_000_000  # bytes; of what ended the program
+FAULTS = "faults.txt"
 
 
 class Origin(NamedTuple):
@@ -110,6 +112,47 @@ def remove_leftover(path: Path) -> None:
     """Remove unsaved work of a window that is gone."""
     path.unlink(missing_ok=True)
     _lock_of(path).unlink(missing_ok=True)
+
+
+def keep_report(folder: Path, text: str) -> None:
+    """Keep the report of a problem that ended the program, in place of an earlier one."""
+    make_settings_folder(folder)
+    write_atomically(folder / REPORT, lambda file: file.write(text.encode()), is_private=True)
+
+
+def kept_report(folder: Path) -> str:
+    """Return the report that was kept; empty where there is none that can be read."""
+    try:
+        return read_file(folder / REPORT, largest=LARGEST_REPORT).decode(errors="replace")
+    except LissomError:
+        return ""
+
+
+def remove_report(folder: Path) -> None:
+    """Remove the report that was kept."""
+    (folder / REPORT).unlink(missing_ok=True)
+
+
+def open_faults(folder: Path) -> int:
+    """Return a descriptor of the file in which Python tells where it was when it crashed.
+
+    Raises
+    ------
+    OSError
+        If there cannot be one.
+    """
+    return os.open(folder / FAULTS, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
+
+
+def take_faults(folder: Path) -> str:
+    """Return what Python told when it crashed, and forget it; empty where it did not."""
+    try:
+        told = read_file(folder / FAULTS, largest=LARGEST_REPORT).decode(errors="replace")
+        # Other windows may have it open.
+        os.truncate(folder / FAULTS, 0)
+    except (LissomError, OSError):
+        return ""
+    return told
 
 
 def _origin(told: bytes) -> Origin:

@@ -130,18 +130,23 @@ def flattened(document: Document, textures: Mapping[int, Bytes]) -> Bytes:
         moved.paste(layer, (round(corner.real), round(size[1] - corner.imag - layer.height)))
         return moved
 
-    def painted(parts: Sequence[Figure | Composite[Figure]]) -> Image.Image:
-        flat = Image.new("RGBA", size)
+    def over(flat: Image.Image, parts: Sequence[Figure | Composite[Figure]]) -> Image.Image:
         for part in parts:
-            if isinstance(part, Composite):
-                flat = _blended(flat, painted(part.parts), part)
+            if isinstance(part, Composite) and part.passes:
+                faded = Image.blend(
+                    flat.convert("RGBa"), over(flat, part.parts).convert("RGBa"), part.opacity
+                )
+                flat = faded.convert("RGBA")
+            elif isinstance(part, Composite):
+                flat = _blended(flat, over(Image.new("RGBA", size), part.parts), part)
             else:
                 flat = Image.alpha_composite(flat, drawn(part))
         return flat
 
     first = document.frames.first
     seen = {each.id: each for each in document.exported if is_visible(document, each, first)}
-    return readonly(np.asarray(painted(composed(document, seen, first))))
+    painted = over(Image.new("RGBA", size), composed(document, seen, first))
+    return readonly(np.asarray(painted))
 
 
 def _blended(below: Image.Image, layer: Image.Image, how: Composite[Figure]) -> Image.Image:

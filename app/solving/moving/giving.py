@@ -29,6 +29,7 @@ MOST_STEPS, STEPS_AT_ONCE = 150, 25
 TRIES = 4  # by which the largest one is looked for
 TOLD = 3  # joints that are named
 WORST = 4  # keys that it is looked for by
+SMALLEST = 0.05  # size that parameters may have
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -242,7 +243,7 @@ def shortfalls(rig: Rig, pose: Pose) -> Mapping[int, float]:
 def _smaller(giving: Giving) -> Giving:
     """Try the size halfway between one that is within reach and one that is not."""
     reached, short = giving.sizes
-    size = (reached + short) / 2
+    size = max(SMALLEST, (reached + short) / 2)
     order = replace(giving.order, parameters=replace(giving.order.parameters, size=size))
     frames = {frame for _, frame in giving.short.values()}
     worst = [

@@ -18,6 +18,7 @@ from app.ui.viewport.hand import (
     draw_axis,
     draw_badges,
     draw_coming_strokes,
+    draw_joints,
     draw_mode,
     draw_ring,
     draw_slits,
@@ -94,6 +95,7 @@ def draw(session: Session, look: Look, project: Project, pictures: SplitTextures
         actions.append(do(viewing.tint, None))
     if _shows_handles(session, project):
         draw_bones(look, screen)
+    draw_joints(session, look, screen)
     if session.material is not None and (on_canvas or session.pointer is not None):
         draw_brush(session, look, imgui.get_mouse_pos(), screen.scale)
     if session.cutting is None:
@@ -149,9 +151,12 @@ class _Handles(NamedTuple):
 
 
 def _shows_handles(session: Session, project: Project) -> bool:
-    """Tell whether handles and bones are seen: not while it plays, nor over the picture at rest."""
-    is_playing = project.playhead.since is not None
-    return session.overlays.handles and session.cutting is None and not is_playing
+    """Tell whether handles and bones are seen: not while it plays, nor over the picture at rest.
+
+    While a motion is drafted its joints are in their place.
+    """
+    is_away = project.playhead.since is not None or project.draft is not None
+    return session.overlays.handles and session.cutting is None and not is_away
 
 
 def _lay_handles(session: Session, look: Look, screen: Screen) -> _Handles:

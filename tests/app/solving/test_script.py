@@ -444,7 +444,7 @@ def test_the_camera_and_movements_are_read():
         ({"opacity": [[0, 1], [0, 0]]}, "opacity is out of order"),
         ({"opacity": [[0]]}, "opacity[0] must be a frame and a number"),
         ({"opacity": []}, "at least one key"),
-        ({"order": [[0, None]]}, "unknown field 'order'"),
+        ({"order": [[0, None]]}, 'order needs "figures"'),
     ],
 )
 def test_a_camera_that_cannot_be_is_refused(change, words):
