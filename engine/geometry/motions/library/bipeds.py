@@ -1,7 +1,5 @@
 """What goes on two legs; and how all walk."""
 
-from dataclasses import replace
-
 from engine.geometry.motions.curves import Curve, even
 from engine.geometry.motions.library.four_legs import WALK_ON_FOUR
 from engine.geometry.motions.limbs import Limbs
@@ -165,28 +163,25 @@ _LEAP = Limbs(
             (0.94, -0.03),
         )
     ),
-    turns={
+    leans={
         "chest": Curve(
             ((0.0, 0), (0.2, -8), (0.36, 1), (0.55, 0), (0.72, -2), (0.82, -7), (0.94, -1))
         ),
         "head": Curve(((0.0, 0), (0.2, 6), (0.36, 3), (0.55, -3), (0.72, 2), (0.82, 5), (0.94, 1))),
+        "tail": Curve(
+            ((0.0, 0), (0.2, 8), (0.38, -10), (0.55, -5), (0.72, 8), (0.82, 10), (0.94, 2))
+        ),
+    },
+    turns={
         "elbow": Curve(
             ((0.0, 0), (0.2, -16), (0.38, 14), (0.55, 24), (0.72, 12), (0.82, -4), (0.94, -2))
         ),
         "hand": Curve(
             ((0.0, 0), (0.2, 4), (0.38, 10), (0.55, 14), (0.72, 9), (0.82, 6), (0.94, 1))
         ),
-        "tail": Curve(
-            ((0.0, 0), (0.2, 8), (0.38, -10), (0.55, -5), (0.72, 8), (0.82, 10), (0.94, 2))
-        ),
     },
     needed=FEET,
 )
-
-
-def _facing_us(leap: Limbs) -> Limbs:
-    """Return a leap as it is seen from the front, where nothing leans ahead."""
-    return replace(leap, turns={name: leap.turns[name] for name in ("elbow", "hand")})
 
 
 JUMP = Motion(
@@ -195,7 +190,7 @@ JUMP = Motion(
     hint="Crouch, leap, land and rise again",
     seconds=1.25,
     keys=15,
-    courses={"biped-side": _LEAP, "biped-front": _facing_us(_LEAP)},
+    courses={"biped-side": _LEAP, "biped-front": _LEAP},
 )
 
 # As a kangaroo: both feet land together, the body sinks and is thrown ahead, the tail against it.
@@ -210,13 +205,14 @@ LEAPING = Limbs(
     ),
     lag=0.0,
     rise=Curve(((0.0, 0.0), (0.2, -0.16), (0.42, 0.02), (0.7, 0.22), (0.9, 0.06))),
-    turns={
+    leans={
         "chest": Curve(((0.0, 1), (0.2, -7), (0.42, -3), (0.7, 2), (0.9, 3))),
         "head": Curve(((0.0, 2), (0.2, 6), (0.42, 3), (0.7, -2), (0.9, -2))),
+        "tail": Curve(((0.0, 6), (0.2, -10), (0.42, -4), (0.7, 12), (0.9, 12))),
+    },
+    turns={
         "elbow": Curve(((0.0, -4), (0.2, -10), (0.42, 6), (0.7, 14), (0.9, 4))),
         "hand": Curve(((0.0, 2), (0.2, 6), (0.42, 8), (0.7, 12), (0.9, 6))),
-        "tail": Curve(((0.0, 6), (0.2, -10), (0.42, -4), (0.7, 12), (0.9, 12))),
     },
     needed=FEET,
 )
-LEAPING_TO_US = _facing_us(LEAPING)

@@ -1,7 +1,7 @@
 """What needs no joints."""
 
 from engine.geometry.motions.curves import Curve, Leap, even
-from engine.geometry.motions.library.bipeds import LEAPING, LEAPING_TO_US
+from engine.geometry.motions.library.bipeds import LEAPING
 from engine.geometry.motions.motion import Motion
 from engine.geometry.motions.swells import Swell
 
@@ -38,7 +38,7 @@ HOP = Motion(
     keys=24,
     courses={
         "biped-side": LEAPING,
-        "biped-front": LEAPING_TO_US,
+        "biped-front": LEAPING,
         "anything": Swell(
             stretch=Curve(
                 (
