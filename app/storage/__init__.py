@@ -25,6 +25,7 @@ from app.storage.autosave import (
     remove_leftover as remove_leftover,
     remove_report as remove_report,
     take_faults as take_faults,
+    take_news as take_news,
 )
 from app.storage.files import (
     Cancellation as Cancellation,
@@ -77,6 +78,8 @@ from app.storage.pictures import (
     decode_picture as decode_picture,
     decode_pictures as decode_pictures,
     encode_mask as encode_mask,
+    let_go as let_go,
+    on_disk as on_disk,
     side_by_side as side_by_side,
 )
 from app.storage.preferences import (

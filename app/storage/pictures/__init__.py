@@ -27,3 +27,4 @@ from app.storage.pictures.picture import (
     stored_size as stored_size,
     upright as upright,
 )
+from app.storage.pictures.scratch import let_go as let_go, on_disk as on_disk

@@ -29,6 +29,8 @@ class Limbs(Choreography):
     """
 
     turns: Mapping[str, Periodic] = field(default_factory=dict)
+    # Those that are ahead or back, and so are not seen from the front.
+    leans: Mapping[str, Periodic] = field(default_factory=dict)
     # Instead of those above, of joints of one side alone, such as the hand that waves.
     single: Mapping[str, Periodic] = field(default_factory=dict)
     lag: float = 0.5
@@ -121,6 +123,8 @@ class _Performed(Performance):
         has_side = kept != name
         late = course.lag if name.endswith(".R") else 0.0
         curve = course.turns.get(kept)
+        if curve is None and self.body.kind.name != "biped-front":
+            curve = course.leans.get(kept)
         alone = name if self.is_first_side else other_side(name)
         if alone in course.single:
             curve, late = course.single[alone], 0.0

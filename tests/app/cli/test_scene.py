@@ -443,6 +443,16 @@ def test_a_script_shows_layers_of_hidden_groups_and_nothing_else_of_them(tmp_pat
     assert seen(choices=[turns]) == [{"body", "star"}, {"body", "moon"}]
 
 
+def test_a_script_that_names_no_layer_takes_the_front_one_that_is_seen(face, tmp_path, capsys):
+    face()
+    script = {"schema": 1, "handles": {"chin": [45, 100]}, "keys": [{"frame": 0}]}
+    (tmp_path / "one.json").write_text(json.dumps(script))
+    files = [str(tmp_path / "face.ora"), str(tmp_path / "one.json")]
+    with pytest.raises(SystemExit):
+        main(["pose", *files, "--out", str(tmp_path / "one.lissom"), "--triangles", "2000"])
+    assert "its handles are on 'closed', the one in front" in capsys.readouterr().err
+
+
 def test_a_choice_after_the_end_is_told(face, capsys):
     assert face(choices=[{**CHOICE, "keys": [[0, "closed"], [99, "ah"]]}])[0] == 0
     told = " ".join(capsys.readouterr().err.split())
