@@ -14,6 +14,7 @@ from app.editor.actions import (
     files,
     guiding,
     keys,
+    material,
     playback,
     posing,
     saving,
@@ -166,6 +167,13 @@ def test_whoever_does_something_else_first_is_led_from_there(window, led):
     first, second = places_of_bar(window)
     window.act(playback.toggle_play)
     assert led.step == "handle"
+    window.act(material.take_up, "stiff")
+    window.frames(2)
+    assert "goes back" in words(window)
+    window.run(lambda robot: robot.key_press(window.Key.escape))
+    window.frames(2)
+    assert session.material is None
+    assert "Click on a part" in words(window)
     window.act(playback.scrub, 20)
     assert led.step == "handle", "no handle is there yet"
     window.act(posing.add_handle, first)

@@ -44,17 +44,19 @@ def lead_of(session: Session, look: Look, guide: Guide, screen: Screen, places: 
 
     `places` has where things were drawn in the frame before, by their names.
     """
+    hindrance = _hindrance(session) if guide.step in {"handle", "pose"} else ""
+    return Lead(hindrance) if hindrance else _to_step(session, look, guide, screen, places)
+
+
+def _to_step(session: Session, look: Look, guide: Guide, screen: Screen, places: Places) -> Lead:
     match guide.step:
         case "handle":
             return _to_handle(look, guide, screen)
         case "time":
             ruler = _box(places, "ruler")
             to = None if ruler is None else Rect(ruler.middle, ruler.middle)
-            return Lead(
-                "Drag the playhead along the ruler, to about the middle.",
-                _box(places, "playhead"),
-                to,
-            )
+            text = "Drag the playhead along the ruler, to about the middle."
+            return Lead(text, _box(places, "playhead") or ruler, to)
         case "pose":
             return _to_pose(look, guide, screen, places)
         case "play":
@@ -69,9 +71,18 @@ def lead_of(session: Session, look: Look, guide: Guide, screen: Screen, places: 
             exported = session.exported
             name = "The GIF" if exported is None else exported.out.name
             return Lead(
-                f"{name} is there. The project is yours to go on with: add keys, drag their ends "
-                "in time, save it."
+                f"{name} is there. The project is yours to go on with: add keys, drag them in "
+                "time, save it."
             )
+
+
+def _hindrance(session: Session) -> str:
+    """Return what is to be done before handles can be added and dragged; empty where they can."""
+    if not session.poses:
+        return f"Something else than posing is in hand: {BINDINGS['pose'].keys_in_words} goes back."
+    if not session.overlays.handles:
+        return f"The handles are hidden: {BINDINGS['handles'].keys_in_words} shows them."
+    return ""
 
 
 def _to_handle(look: Look, guide: Guide, screen: Screen) -> Lead:
