@@ -26,6 +26,7 @@ from tests.manual.stage import (
     open_calm_dragon,
     place_of,
     play,
+    project_of,
     pull,
     scroll_to,
 )
@@ -187,7 +188,7 @@ def _walking(window: Film, path: Path) -> None:
     window.put(window.point(-150 + 700j))
     with window.filmed(path):
         window.stay(20)
-        window.click(window.item("//Motion/**/###Give it a motion…"))
+        window.type(imgui.Key.a)
         window.stay(60)
         window.click(window.item("//Motion/**/###give"))
         with window.cut():
