@@ -6,8 +6,9 @@ import os
 import sys
 from collections.abc import Sequence
 from importlib.metadata import version
+from pathlib import Path
 
-from app.cli.console import Parser, StatusLine, fail
+from app.cli.console import Parser, StatusLine, fail, notice
 from app.cli.process import (
     Endings,
     drop_output,
@@ -18,7 +19,7 @@ from app.cli.process import (
 )
 from app.errors import EXPECTED_ERRORS, told_to
 
-EXIT_PIPE_CLOSED = 141
+EXIT_FAILED, EXIT_PIPE_CLOSED = 1, 141
 
 # Subcommand → its summary. The module of that name in app.cli.usage declares its options, which is
 # quickly loaded; that in app.cli.commands runs it, and is loaded when all that was said is right.
@@ -27,12 +28,14 @@ COMMANDS = {
     "domain": "Find a picture's outline; build the cage and the triangulation.",
     "deform": "Drag handles of a shape within bounds, from file to file.",
     "pose": "Make a project from a picture and a script of handles and keys.",
+    "move": "Make a project in which a drawing walks, waves or sways, by a ready motion.",
     "certify": "Tell how far an animation distorts its drawing, and prove its keyframes.",
     "interpolate": "In-betweens of keyframes at points, from file to file.",
     "figures": "Make the figures of the paper anew, with what was measured beside them.",
     "export": "Render an animation to picture files or video.",
     "thumbnail": "Write the small picture of a project, as file managers ask for it.",
     "desktop": "Enter Lissom into the menu of applications, or take it out again.",
+    "manual": "Copy the manual, pages that any browser shows, into a folder.",
     "doctor": "Tell what works on this machine, and what to install where it does not.",
 }
 
@@ -61,7 +64,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         fail(f"a library cannot be loaded ({error}); give it more memory, or install Lissom again")
     except (MemoryError, RuntimeError) as error:
         if isinstance(error, RuntimeError) and "start new thread" not in str(error):
-            raise
+            return _report(error, words)
         fail(
             "not enough memory for this; ask for fewer triangles or a smaller picture, or allow "
             "Lissom more of it"
@@ -79,7 +82,19 @@ def main(argv: Sequence[str] | None = None) -> int:
     except OSError as error:
         drop_output()
         fail(f"cannot use {error.filename or 'standard output'}: {error.strerror or error}")
+    except Exception as error:  # noqa: BLE001 - the command line: what nobody thought of
+        return _report(error, words)
     return status
+
+
+def _report(error: Exception, words: Sequence[str]) -> int:
+    """Tell that the program itself has failed, as somebody else may read it."""
+    reports = importlib.import_module("app.reports")
+    files = [Path(word) for word in words if {".", os.sep}.intersection(word)]
+    trace = reports.trace_in_words(error, files)
+    print(reports.problem_report(graphics="", actions=(), trace=trace), file=sys.stderr)
+    notice("this command failed, as told above; nothing is sent, and names of files are left out")
+    return EXIT_FAILED
 
 
 def build_parser(words: Sequence[str]) -> argparse.ArgumentParser:

@@ -6,14 +6,15 @@ alive.
 """
 
 import ctypes
+import faulthandler
 import io
 import os
 import signal
 import sys
 import threading
 import time
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from types import FrameType, TracebackType
 from typing import Final, Self
 
@@ -193,6 +194,23 @@ def at_lost_display(keep: Callable[[], None], status: int) -> object:
     with suppress(OSError):  # without the library there are no such windows
         ctypes.CDLL("libX11.so.6").XSetIOErrorHandler(heard)
     return heard
+
+
+@contextmanager
+def faults_told_to(descriptor: int) -> Iterator[None]:
+    """Let Python tell in a file where it is if the process crashes while a `with` block lasts.
+
+    Where it is to tell somewhere else already, it does so.
+    """
+    tells = not faulthandler.is_enabled()
+    if tells:
+        faulthandler.enable(descriptor)
+    try:
+        yield
+    finally:
+        if tells:
+            faulthandler.disable()
+        os.close(descriptor)
 
 
 def has_threads_left() -> bool:

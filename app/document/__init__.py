@@ -111,6 +111,7 @@ from app.document.queries import (
     opacity_at as opacity_at,
     passings_of as passings_of,
     place_at as place_at,
+    placing_at as placing_at,
     repeating as repeating,
     resting_pose as resting_pose,
     sights_of as sights_of,

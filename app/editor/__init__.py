@@ -5,12 +5,13 @@ Out: a `Session`: the document, what is shown of it, and what is under way.
 Imports: every room below but the command line and the panels.
 """
 
-from app.editor import layering as layering, promises as promises
+from app.editor import failures as failures, layering as layering, promises as promises
 from app.editor.action import Action as Action, do as do
 from app.editor.dialogs import (
     Dialog as Dialog,
     FileDialog as FileDialog,
     Leftover as Leftover,
+    ProblemReport as ProblemReport,
     Question as Question,
     Recovery as Recovery,
     ShortcutSheet as ShortcutSheet,

@@ -17,6 +17,14 @@ class Action:
     arguments: tuple[Any, ...] = ()  # the others
     keywords: tuple[tuple[str, Any], ...] = ()  # those that are given by name
 
+    @property
+    def name(self) -> str:
+        """What it does, and not what with; an action that it leads to is named, too."""
+        module = getattr(self.verb, "__module__", "").rpartition(".")[2]
+        verb = getattr(self.verb, "__qualname__", type(self.verb).__name__)
+        then = [each.name for each in self.arguments if isinstance(each, Action)]
+        return " → ".join([f"{module}.{verb}", *then])
+
     def apply(self, session: object) -> None:
         """Do it."""
         self.verb(session, *self.arguments, **dict(self.keywords))

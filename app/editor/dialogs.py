@@ -72,4 +72,13 @@ class Recovery:
     candidates: tuple[Leftover, ...]
 
 
-Dialog = FileDialog | Question | ShortcutSheet | Recovery
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ProblemReport:
+    """A text about a problem, to be looked through and saved; nothing sends it."""
+
+    text: str
+    is_kept: bool  # whether it is of an earlier time, and stays until it is saved or discarded
+    behind: Recovery | None = None  # what is asked next: one question at a time
+
+
+Dialog = FileDialog | Question | ShortcutSheet | Recovery | ProblemReport

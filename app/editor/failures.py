@@ -1,15 +1,30 @@
-"""Jobs whose failure is told, and how."""
+"""What fails is told, and how; of a surprise the person can have a report."""
 
-import traceback
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
+from pathlib import Path
 from typing import TypeVar
 
+from app.editor.action import Action, do
+from app.editor.dialogs import FileDialog, ProblemReport, Recovery
 from app.editor.session import Session
 from app.editor.work import Job, Kind
 from app.errors import EXPECTED_ERRORS
+from app.reports import problem_report, trace_in_words, without_names
+from app.storage import (
+    check_writable,
+    keep_report,
+    kept_report,
+    remove_report,
+    take_faults,
+    take_news,
+    write_atomically,
+)
 
 Result = TypeVar("Result")
+MOST_NOTED = 40  # actions
+TIMES = " × "  # between an action's name and how often it came in a row
 
 
 def sentence(text: str) -> str:
@@ -48,5 +63,124 @@ def report(session: Session, what: str, error: Exception) -> None:
     if isinstance(error, EXPECTED_ERRORS):
         session.tell(sentence(f"{what}: {error}"), tone="error")
     else:
-        details = "".join(traceback.format_exception(error))
-        session.tell(f"{what}.", tone="error", details=details)
+        surprise(session, f"{what}.", error)
+
+
+def surprise(session: Session, text: str, error: Exception, *, topic: str = "") -> None:
+    """Tell that the program itself failed, with details to copy and a report to save."""
+    session.trouble = trace_in_words(error, _hidden(session))
+    session.tell(
+        text,
+        tone="error",
+        topic=topic,
+        details=session.trouble,
+        label="Report…",
+        action=do(show_report),
+    )
+
+
+def note(session: Session, action: Action) -> None:
+    """Remember an action by its name, and none of what it is done with."""
+    last, _, times = (session.noted or [""])[-1].partition(TIMES)
+    if action.name == last:
+        session.noted[-1] = f"{last}{TIMES}{int(times or 1) + 1}"
+    else:
+        session.noted.append(action.name)
+        del session.noted[:-MOST_NOTED]
+
+
+def report_of(session: Session) -> str:
+    """Return the text of a report about what went on here, and about what failed last."""
+    return problem_report(graphics=session.graphics, actions=session.noted, trace=session.trouble)
+
+
+def keep_report_of(session: Session, error: Exception) -> str:
+    """Keep a report of what ends the window beside unsaved work, and return it."""
+    session.trouble = trace_in_words(error, _hidden(session))
+    text = report_of(session)
+    keep_report(session.folder, text)
+    return text
+
+
+def keep_faults(session: Session) -> None:
+    """Keep a report of what Python told when it crashed before, as in a driver, if it did."""
+    told = take_faults(session.folder)
+    if told:
+        trace = without_names(told, _hidden(session))
+        keep_report(session.folder, problem_report(graphics="", actions=(), trace=trace))
+
+
+def show_report(session: Session) -> None:
+    """Show a report of what went on here."""
+    session.dialog = ProblemReport(text=report_of(session), is_kept=False, behind=_behind(session))
+
+
+def ask_report(session: Session) -> None:
+    """Show the report of what ended Lissom before, or else one of what went on here."""
+    text = kept_report(session.folder)
+    if text:
+        session.dialog = ProblemReport(text=text, is_kept=True, behind=_behind(session))
+    else:
+        show_report(session)
+
+
+def tell_of_kept(session: Session) -> None:
+    """Tell once of a report of what ended Lissom before, unless something is asked now."""
+    if session.dialog is None and take_news(session.folder):
+        session.tell(
+            "Lissom ended unexpectedly the last time. A report of it was kept here, and sent "
+            "nowhere.",
+            label="Show it",
+            action=do(ask_report),
+        )
+
+
+def word_report(session: Session, report: ProblemReport, text: str) -> None:
+    """Go on with a report that the person has changed."""
+    session.dialog = replace(report, text=text)
+
+
+def choose_report_file(session: Session, report: ProblemReport) -> None:
+    """Ask where to save a report."""
+    session.dialog = FileDialog(
+        title="Save the report",
+        folder=session.usual_folder,
+        name="Lissom report.txt",
+        suffixes=(".txt",),
+        writes=True,
+        chosen=lambda path: do(save_report, report, path),
+    )
+
+
+def save_report(session: Session, report: ProblemReport, path: Path) -> None:
+    """Save a report in a file; one that was kept until then is not kept any more."""
+    check_writable(path, sources=())
+    write_atomically(path, lambda file: file.write(report.text.encode()))
+    if report.is_kept:
+        remove_report(session.folder)
+    session.dialog = report.behind
+    session.tell(f"Saved {path.name}.", tone="good")
+
+
+def discard_report(session: Session, report: ProblemReport) -> None:
+    """Delete a report that was kept."""
+    remove_report(session.folder)
+    session.dialog = report.behind
+    session.tell("The report was discarded.")
+
+
+def _behind(session: Session) -> Recovery | None:
+    """Return the question that comes back once a report was looked at."""
+    dialog = session.dialog
+    if isinstance(dialog, ProblemReport):
+        return dialog.behind
+    return dialog if isinstance(dialog, Recovery) else None
+
+
+def _hidden(session: Session) -> set[Path]:
+    """Return the files that a report does not name."""
+    project, preferences = session.project, session.preferences
+    known = {*preferences.recent, *preferences.written}
+    if project is not None:
+        known |= {*project.sources, *project.exports_to.values()}
+    return known

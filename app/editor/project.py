@@ -29,7 +29,16 @@ from app.document import (
     movement_at,
 )
 from app.editor.timeline_view import KeyRow, KeysOf, Timing, TrackRow, row_of
-from app.editor.work import Afterwards, Carry, Derived, Promise, Pull, Take
+from app.editor.work import (
+    Afterwards,
+    Carry,
+    Derived,
+    MotionDraft,
+    MotionErrand,
+    Promise,
+    Pull,
+    Take,
+)
 from app.errors import NOTHING_TOLD, ImportSummary
 from app.motion import (
     Box,
@@ -198,6 +207,8 @@ class Project:
     # The chosen keys; rows without any are not in it.
     chosen_of: KeysOf = field(default_factory=dict)
     track_row: TrackRow | None = None  # that of a track which is chosen
+    draft: MotionDraft | None = None  # a motion that is about to be given
+    last_draft: MotionDraft | None = None  # that was put away, or was given
     take: Take | None = None  # a drag that is recorded, until that is kept or given up
     camera: View | None = None  # None fits the picture into the viewport
     looks_through: bool = False  # whether the viewport shows what the scene's camera does
@@ -211,6 +222,8 @@ class Project:
     solo: frozenset[int] = frozenset()
     toggled: frozenset[str] = frozenset()  # rows of the tree of layers, open or closed by hand
     declined: frozenset[str] = frozenset()  # groups of which no choice is to be made
+    # Layers that were posed, and whose rows stay until the pointer is over the drawing again.
+    lingering: frozenset[int] = frozenset()
     listed: int | None = None  # the figure that the list of layers was scrolled to
 
     @property
@@ -231,7 +244,7 @@ class Project:
     @property
     def tree(self) -> tuple[TreeRow, ...]:
         """The rows of the layers that are listed, the one in front on top."""
-        return layer_tree(self.document, self.toggled, self.active)
+        return layer_tree(self.document, self.toggled, self.lingering | {self.active})
 
     @property
     def layers(self) -> tuple[int, ...]:
@@ -357,6 +370,11 @@ class Project:
     def renewal(self) -> Renewal | None:
         """Keys that are being solved again, as far as that is."""
         return next((promise.renewal for promise in self.pending if promise.renewal), None)
+
+    @property
+    def errand(self) -> MotionErrand | None:
+        """A motion on its way to a figure."""
+        return next((promise.errand for promise in self.pending if promise.errand), None)
 
     @property
     def stale_figure(self) -> Figure | None:

@@ -265,6 +265,9 @@ class Session:
     hint: str = ""  # about what is under the pointer
     tint: Tint | None = None  # what the drawing shows by colours while that is set
     failing: set[str] = field(default_factory=set)  # what cannot be kept, as was told
+    graphics: str = ""  # what draws the window; empty before its first frame
+    noted: list[str] = field(default_factory=list)  # the names of the last actions
+    trouble: str = ""  # where the program itself failed last
     quitting: bool = False
 
     def __post_init__(self) -> None:
@@ -275,7 +278,8 @@ class Session:
     @property
     def poses(self) -> bool:
         """Whether drags pose, and nothing else is in hand."""
-        return self.cutting is None and self.material is None and not self.moves
+        drafts = self.project is not None and self.project.draft is not None
+        return not (drafts or self.moves) and self.cutting is None and self.material is None
 
     @property
     def usual_folder(self) -> Path:

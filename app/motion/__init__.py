@@ -27,6 +27,7 @@ from app.motion.inbetweens import (
 from app.motion.interval_store import IntervalPart as IntervalPart, IntervalStore as IntervalStore
 from app.motion.intervals import (
     AnyInbetweens as AnyInbetweens,
+    Build as Build,
     FoundIntervals as FoundIntervals,
     KnownInterval as KnownInterval,
 )

@@ -276,6 +276,18 @@ class IntervalStore:
             built = KnownInterval(build.poses, series=positions, distortions=distortions)
             self.take(FoundIntervals(None, {build.pair: built}))
 
+    def passing_bytes(self, clip: Clip) -> int:
+        """Return how many bytes `rest` lets go once series show a clip, all of which is there."""
+        if not self.has(clip):
+            return 0
+        unstreamed = [
+            pair
+            for pair in dict.fromkeys(self._pairs(clip))
+            if (known := self._known[pair]).inbetweens and known.sites and known.series is None
+        ]
+        own = self.sampler.passing_bytes if self.sampler is not None and unstreamed else 0
+        return own + sum(self._sizes[pair][0] for pair in unstreamed)
+
     def rest(self) -> None:
         """Let go of what is prepared where series leave nothing out; what is edited needs it again.
 

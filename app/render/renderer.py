@@ -30,6 +30,7 @@ _OVER: Final = (moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA)
 _BESIDE: Final = (moderngl.ONE_MINUS_DST_ALPHA, moderngl.ONE)
 _STAYS: Final = (moderngl.ZERO, moderngl.ONE)
 _WITHIN: Final = (moderngl.DST_COLOR, moderngl.ONE_MINUS_SRC_ALPHA, *_STAYS)
+_ADDED: Final = (moderngl.ONE, moderngl.ONE, moderngl.ONE, moderngl.ONE)
 _BLENDS: Final[Mapping[BlendMode, tuple[tuple[int, int, int, int], ...]]] = {
     "normal": ((*_OVER, *_OVER),),
     "multiply": (_WITHIN, (*_BESIDE, *_BESIDE)),
@@ -157,16 +158,37 @@ class Renderer:
         layer = self._layer_at(depth, target)
         layer.framebuffer.use()
         layer.framebuffer.clear()
-        self._draw_parts(whole.parts, layer, view, heat, depth + 1)
-        target.framebuffer.use()
-        layer.texture.use(_LAYER_UNIT)
         uniforms = {
             "frame": _LAYER_UNIT,
             "tint": tint or (0.0, 0.0, 0.0),
             "strength": 0.0 if tint is None else 1.0,
             "opacity": whole.opacity,
         }
-        for factors in (_CLIPPED if whole.clipped else _BLENDS)[whole.blend]:
+        passes = (_CLIPPED if whole.clipped else _BLENDS)[whole.blend]
+        if whole.passes:
+            # On the layer is what will be there in the end: of what is there as much is taken away
+            # as comes from it then.
+            self._context.copy_framebuffer(layer.framebuffer, target.framebuffer)
+            passes = (_ADDED,)
+            self._context.enable_only(moderngl.BLEND)
+            self._context.blend_equation = moderngl.FUNC_REVERSE_SUBTRACT  # type: ignore[assignment]
+            self._lay(layer, target, passes, uniforms)
+            self._context.blend_equation = moderngl.FUNC_ADD  # type: ignore[assignment]
+            layer.framebuffer.use()
+        self._draw_parts(whole.parts, layer, view, heat, depth + 1)
+        self._lay(layer, target, passes, uniforms)
+
+    def _lay(
+        self,
+        layer: RenderTarget,
+        target: RenderTarget,
+        passes: Sequence[tuple[int, int, int, int]],
+        uniforms: Mapping[str, object],
+    ) -> None:
+        """Draw a layer on a target as often as there are factors of a blend."""
+        target.framebuffer.use()
+        layer.texture.use(_LAYER_UNIT)
+        for factors in passes:
             self._context.blend_func = factors  # type: ignore[assignment]
             self.programs.draw_screen(_GHOST, uniforms)
 

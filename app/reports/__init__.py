@@ -1,7 +1,7 @@
-"""How far an animation distorts its drawing, as numbers and pictures.
+"""How far an animation distorts its drawing, as numbers and pictures; what to tell of a problem.
 
-In: a document, and its motion.
-Out: certificates, curves over time, and pictures of them.
+In: a document, and its motion; exceptions.
+Out: certificates, curves over time, and pictures of them; texts.
 Imports: `app.motion`, `app.storage`.
 """
 
@@ -24,3 +24,10 @@ from app.reports.curves import (
     write_curves as write_curves,
 )
 from app.reports.domain_preview import draw_preview as draw_preview
+from app.reports.problem import (
+    library_version as library_version,
+    machine_in_words as machine_in_words,
+    problem_report as problem_report,
+    trace_in_words as trace_in_words,
+    without_names as without_names,
+)

@@ -11,9 +11,11 @@ from app.solving.flipping import flip_poses as flip_poses, flipped_targets as fl
 from app.solving.moving import (
     Giving as Giving,
     MotionOrder as MotionOrder,
+    ToldJoints as ToldJoints,
     begin_giving as begin_giving,
     facing_in as facing_in,
     give_on as give_on,
+    load_joints as load_joints,
     order_of as order_of,
 )
 from app.solving.renewal import Renewal as Renewal, go_on as go_on

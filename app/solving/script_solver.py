@@ -18,6 +18,7 @@ from app.document import (
     brushed_stiffness,
     find_shortfall,
     handle_commands,
+    is_visible,
     layer_commands,
     material_commands,
 )
@@ -51,7 +52,7 @@ def pose_document(
 
     Each key is solved by a drag from the key before, the first one from the drawing as it is. A
     handle that a key does not name keeps its target of the key before. A script of one figure is
-    for the one in front; of one with several, layers that it does not name stand still.
+    for the one in front that is seen; of one with several, layers that are not named stand still.
 
     Parameters
     ----------
@@ -138,7 +139,9 @@ def _by_figure(document: Document, script: PoseScript) -> dict[int, FigureScript
     named = {}
     for part in script.figures:
         if part.layer is None:
-            figure = next((f for f in reversed(document.figures) if not f.still), None)
+            posable = [f for f in reversed(document.figures) if not f.still]
+            seen = [f for f in posable if is_visible(document, f, 0)]
+            figure = next(iter(seen or posable), None)
         else:
             figure = layer_named(document, part.layer)
         is_posed = bool(part.handles) or len(part.keys) > 1 or part.layer is None
@@ -162,8 +165,9 @@ def _prepared(document: Document, identity: int, part: FigureScript) -> Document
     figure = document.figure(identity)
     if part.visible is not None:
         # What the script says holds, whatever is hidden in the drawing.
+        document = layer_commands.reveal(identity)(document)
         switches = tuple(Switch(frame, visible) for frame, visible in part.visible)
-        figure = replace(figure, switches=switches, hidden=False)
+        figure = replace(document.figure(identity), switches=switches)
     if isinstance(part.opacity, tuple):
         figure = replace(figure, opacities=part.opacity)
     elif part.opacity is not None:

@@ -166,13 +166,16 @@ def unseen(document: Document, script: PoseScript) -> list[str]:
     first, last = document.frames.first, document.frames.last
     notices = []
     for part in script.figures:
-        if part.layer is None or document.choice_of(layer_named(document, part.layer).id):
+        if part.layer is None:
             continue
         figure = layer_named(document, part.layer)
+        choice = document.choice_of(figure.id)
         late = [frame for frame, visible in part.visible or () if visible and frame > last]
         if any(is_visible(document, figure, frame) for frame in range(first, last + 1)):
             continue
-        if part.visible is None:
+        if choice is not None:
+            notices.append(f"{part.layer} is never seen: the choice {choice.name!r} never shows it")
+        elif part.visible is None:
             notices.append(
                 f"{part.layer} is hidden in the drawing, and so never seen; with "
                 '"visible": [[0, true]] it is'
@@ -184,11 +187,16 @@ def unseen(document: Document, script: PoseScript) -> list[str]:
             )
         else:
             notices.append(f"{part.layer} is never seen: its visible shows it at no frame")
-    for choice in script.choices:
-        notices += [
-            f"choice {choice.name!r}: {layer} from frame {frame} on is never seen, as the "
-            f"animation ends at frame {last}"
-            for frame, layer in choice.turns
-            if frame > last
-        ]
-    return notices
+    late_changes = [
+        (f"choice {given.name!r}: {layer}", frame)
+        for given in script.choices
+        for frame, layer in given.turns
+    ]
+    for part in script.figures:
+        late_changes += [(f"what {part.layer} hangs on", joint.frame) for joint in part.attach]
+        late_changes += [(f"the order of {part.layer}", each.frame) for each in part.order]
+    return notices + [
+        f"{what} from frame {frame} on is never seen, as the animation ends at frame {last}"
+        for what, frame in late_changes
+        if frame > last
+    ]

@@ -8,6 +8,7 @@ Imports: `app.document`.
 
 from app.storage.assets import (
     app_icon as app_icon,
+    manual_page as manual_page,
     sample_images as sample_images,
     shader_source as shader_source,
 )
@@ -16,9 +17,15 @@ from app.storage.autosave import (
     Autosave as Autosave,
     Origin as Origin,
     find_leftovers as find_leftovers,
+    keep_report as keep_report,
+    kept_report as kept_report,
     leftover_origin as leftover_origin,
     load_leftover as load_leftover,
+    open_faults as open_faults,
     remove_leftover as remove_leftover,
+    remove_report as remove_report,
+    take_faults as take_faults,
+    take_news as take_news,
 )
 from app.storage.files import (
     Cancellation as Cancellation,
@@ -51,6 +58,7 @@ from app.storage.layers import (
     is_layered as is_layered,
     layer_figure as layer_figure,
     open_layered as open_layered,
+    open_merged as open_merged,
     open_pictures as open_pictures,
     read_layered as read_layered,
     still_figure as still_figure,
@@ -70,6 +78,8 @@ from app.storage.pictures import (
     decode_picture as decode_picture,
     decode_pictures as decode_pictures,
     encode_mask as encode_mask,
+    let_go as let_go,
+    on_disk as on_disk,
     side_by_side as side_by_side,
 )
 from app.storage.preferences import (

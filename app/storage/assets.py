@@ -22,6 +22,14 @@ def app_icon() -> bytes:
     return _read(_folder("icon") / "lissom.png")
 
 
+def manual_page(name: str = "index") -> Path:
+    """Return a page of the manual; its pictures, and all other pages, lie beside it."""
+    page = _APP / "manual" / "site" / f"{name}.html"
+    if not page.is_file():
+        raise LissomError(f"the page {page} of the manual is missing; install Lissom again")
+    return page
+
+
 def _read(path: Path) -> bytes:
     try:
         return path.read_bytes()

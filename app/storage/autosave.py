@@ -15,8 +15,8 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from app.document import Document
-from app.errors import shown_name
-from app.storage.files import is_locked, lock
+from app.errors import LissomError, shown_name
+from app.storage.files import is_locked, lock, read_file, write_atomically
 from app.storage.preferences import make_settings_folder
 from app.storage.project_file import load_member, load_project, save_project
 
@@ -24,6 +24,9 @@ SECONDS = 20.0  # between a change and its autosave, at least
 # The member of the file that tells where the work came from; projects that are saved have none.
 ORIGIN = "origin.json"
 LARGEST_ORIGIN = 100_000  # bytes
+# Of what ended the program, before and after the person was told of it; what Python tells of it.
+REPORT, TOLD_REPORT, FAULTS = "report.txt", "report-told.txt", "faults.txt"
+LARGEST_REPORT = 1_000_000  # bytes
 
 
 class Origin(NamedTuple):
@@ -110,6 +113,58 @@ def remove_leftover(path: Path) -> None:
     """Remove unsaved work of a window that is gone."""
     path.unlink(missing_ok=True)
     _lock_of(path).unlink(missing_ok=True)
+
+
+def keep_report(folder: Path, text: str) -> None:
+    """Keep the report of a problem that ended the program, in place of an earlier one."""
+    make_settings_folder(folder)
+    write_atomically(folder / REPORT, lambda file: file.write(text.encode()), is_private=True)
+
+
+def kept_report(folder: Path) -> str:
+    """Return the report that was kept last; empty where there is none that can be read."""
+    for name in (REPORT, TOLD_REPORT):
+        with suppress(LissomError):
+            content = read_file(folder / name, largest=LARGEST_REPORT)
+            return content.decode(errors="replace")
+    return ""
+
+
+def take_news(folder: Path) -> bool:
+    """Tell whether a report was kept that nobody was told of; from now on, somebody was."""
+    try:
+        (folder / REPORT).replace(folder / TOLD_REPORT)
+    except OSError:
+        return False
+    return True
+
+
+def remove_report(folder: Path) -> None:
+    """Remove the reports that were kept."""
+    for name in (REPORT, TOLD_REPORT):
+        (folder / name).unlink(missing_ok=True)
+
+
+def open_faults(folder: Path) -> int:
+    """Return a descriptor of the file in which Python tells where it was when it crashed.
+
+    Raises
+    ------
+    OSError
+        If there cannot be one.
+    """
+    return os.open(folder / FAULTS, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
+
+
+def take_faults(folder: Path) -> str:
+    """Return what Python told when it crashed, and forget it; empty where it did not."""
+    try:
+        told = read_file(folder / FAULTS, largest=LARGEST_REPORT).decode(errors="replace")
+        # Other windows may have it open.
+        os.truncate(folder / FAULTS, 0)
+    except (LissomError, OSError):
+        return ""
+    return told
 
 
 def _origin(told: bytes) -> Origin:

@@ -22,12 +22,13 @@ from app.document import (
 )
 from app.errors import LissomError, Told, shown_name
 from app.storage.files import read_file
-from app.storage.opening import OpenedScene
+from app.storage.opening import OpenedScene, cut_picture, scene_of
 from app.storage.pictures import (
     Layer,
     LayeredPicture,
     Picture,
     decode_pictures,
+    encode_png,
     read_openraster,
     read_photoshop,
     side_by_side,
@@ -64,6 +65,20 @@ def open_layered(path: Path, meshing: Meshing) -> OpenedScene:
     layers together have the triangles that one picture would have.
     """
     return _scene(read_layered(path), meshing, is_cut_out=True)
+
+
+def open_merged(path: Path, meshing: Meshing, cut_out: CutOut = CutOut()) -> OpenedScene:
+    """Read a drawing on layers, as one picture of all that is seen of them."""
+    scene = open_layered(path, Meshing(detail="coarse", triangles=FEWEST_TRIANGLES))
+    textures = {
+        figure.id: cut_picture(scene.pictures[figure.id], figure.cut_out).texture
+        for figure in scene.document.figures
+    }
+    merged = encode_png(Image.fromarray(flattened(scene.document, textures)))
+    opened = scene_of(merged, path.with_suffix(".png"), meshing, cut_out)
+    count = len(scene.document.figures)
+    told = (f"the {count} layers of {path.name} are merged into one drawing",) if count > 1 else ()
+    return opened._replace(notices=told + opened.notices, summary=scene.summary)
 
 
 def open_pictures(paths: Sequence[Path], meshing: Meshing) -> OpenedScene:
@@ -115,18 +130,23 @@ def flattened(document: Document, textures: Mapping[int, Bytes]) -> Bytes:
         moved.paste(layer, (round(corner.real), round(size[1] - corner.imag - layer.height)))
         return moved
 
-    def painted(parts: Sequence[Figure | Composite[Figure]]) -> Image.Image:
-        flat = Image.new("RGBA", size)
+    def over(flat: Image.Image, parts: Sequence[Figure | Composite[Figure]]) -> Image.Image:
         for part in parts:
-            if isinstance(part, Composite):
-                flat = _blended(flat, painted(part.parts), part)
+            if isinstance(part, Composite) and part.passes:
+                faded = Image.blend(
+                    flat.convert("RGBa"), over(flat, part.parts).convert("RGBa"), part.opacity
+                )
+                flat = faded.convert("RGBA")
+            elif isinstance(part, Composite):
+                flat = _blended(flat, over(Image.new("RGBA", size), part.parts), part)
             else:
                 flat = Image.alpha_composite(flat, drawn(part))
         return flat
 
     first = document.frames.first
     seen = {each.id: each for each in document.exported if is_visible(document, each, first)}
-    return readonly(np.asarray(painted(composed(document, seen, first))))
+    painted = over(Image.new("RGBA", size), composed(document, seen, first))
+    return readonly(np.asarray(painted))
 
 
 def _blended(below: Image.Image, layer: Image.Image, how: Composite[Figure]) -> Image.Image:

@@ -79,7 +79,11 @@ def open_picture(path: Path, meshing: Meshing, cut_out: CutOut = CutOut()) -> Op
     LissomError, EngineError
         If the file is no picture, or has no subject that can be outlined.
     """
-    data = read_file(path)
+    return scene_of(read_file(path), path, meshing, cut_out)
+
+
+def scene_of(data: bytes, path: Path, meshing: Meshing, cut_out: CutOut) -> OpenedScene:
+    """Return the scene of one picture, of the contents of a file with this name."""
     picture = decode_picture(data, str(path))
     domain, remedies = build_domain(
         picture.rgba, triangles=meshing.triangles, detail=meshing.detail, cut_out=cut_out

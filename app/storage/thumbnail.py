@@ -9,7 +9,7 @@ from PIL import Image, ImageSequence
 
 from app.errors import LissomError
 from app.storage.files import opened_file
-from app.storage.pictures import DECODER_ERRORS, FORMATS, upright
+from app.storage.pictures import DECODER_ERRORS, FORMATS, let_go, upright
 from app.storage.project_file import load_thumbnail
 from engine.arrays import Bytes, readonly
 
@@ -35,6 +35,7 @@ def shrink(rgba: Bytes, side: int) -> Bytes:
     image = Image.fromarray(rgba)
     drawn = image.crop(image.getchannel("A").getbbox())
     drawn.thumbnail((side, side))
+    let_go(rgba)
     return readonly(np.asarray(drawn))
 
 

@@ -33,30 +33,35 @@ def draw(names: Sequence[str], folder: Path) -> None:
     for name in names:
         window.reset()
         PICTURES[name](window)
-        window.settle()
-        window.frames(AT_REST)
-        told = [toast.text for toast in window.session.toasts]
-        if told:
-            raise RuntimeError(f"a message covers {name}: {told}")
+        come_to_rest(window)
         path = folder / f"{name}.png"
         window.picture().save(path, optimize=True)
         write_list(path, shown_in(window))
         print(path, flush=True)
 
 
+def come_to_rest(window: Harness) -> None:
+    """Let all be done and faded; refuse messages, which would cover what is to be shown."""
+    window.settle()
+    window.frames(AT_REST)
+    told = [toast.text for toast in window.session.toasts]
+    if told:
+        raise RuntimeError(f"a message covers the picture: {told}")
+
+
 def _posing(window: Harness) -> None:
     """A dragon that looks up, drawn by handles; where it was an in-between, there is a key now."""
-    project = _open(window, "dragon", frame=36)
-    wishes = {_handle(project, name): Target(position=at) for name, at in LOOK_UP.items()}
+    project = open_sample(window, "dragon", frame=36)
+    wishes = {handle_named(project, name): Target(position=at) for name, at in LOOK_UP.items()}
     window.act(posing.wish, wishes)
     window.settle()
-    window.act(editing.select, frozenset({_handle(project, "snout")}))
+    window.act(editing.select, frozenset({handle_named(project, "snout")}))
     window.show_tab("Handle")
 
 
 def _onion_skin(window: Harness) -> None:
     """The poses before and after, and those that are kept for later."""
-    project = _open(window, "dragon", frame=0, theme="light")
+    project = open_sample(window, "dragon", frame=0, theme="light")
     for frame, name in {0: "calm", 24: "tail up", 48: "tail back"}.items():
         window.act(playback.seek, frame)
         window.settle()
@@ -70,16 +75,16 @@ def _onion_skin(window: Harness) -> None:
 
 def _layers(window: Harness) -> None:
     """A child of many layers waves: the arms hang on the body, and mouths are seen in turns."""
-    project = _open(window, "friend", frame=14)
+    project = open_sample(window, "friend", frame=14)
     arm = next(figure.id for figure in project.document.figures if figure.name == "left arm")
     window.act(layering.choose, arm)
-    window.act(editing.select, frozenset({_handle(project, "hand")}))
+    window.act(editing.select, frozenset({handle_named(project, "hand")}))
     window.show_tab("Layers")
 
 
 def _heat_map(window: Harness) -> None:
     """How far a giraffe is squeezed where it bends to the ground."""
-    _open(window, "giraffe", frame=30)
+    open_sample(window, "giraffe", frame=30)
     window.act(viewing.fit_pose)
     window.act(viewing.show_heat_map, "sigma_b")
     window.show_tab("Distortion")
@@ -87,14 +92,14 @@ def _heat_map(window: Harness) -> None:
 
 def _export(window: Harness) -> None:
     """What will be exported of an octopus."""
-    _open(window, "octopus", frame=28, theme="light")
+    open_sample(window, "octopus", frame=28, theme="light")
     window.act(viewing.toggle, "handles")
     window.show_tab("Export")
 
 
 def _split_view(window: Harness) -> None:
     """A giraffe by two methods, side by side."""
-    _open(window, "giraffe", frame=15)
+    open_sample(window, "giraffe", frame=15)
     window.act(viewing.toggle, "handles")
     window.act(viewing.toggle_split)
     viewing.lay_beside(window.session, beside=True)
@@ -103,7 +108,7 @@ def _split_view(window: Harness) -> None:
     window.show_tab("Distortion")
 
 
-def _open(window: Harness, sample: str, *, frame: int, theme: ThemeName = "dark") -> Project:
+def open_sample(window: Harness, sample: str, *, frame: int, theme: ThemeName = "dark") -> Project:
     """Open a sample project, which begins to play, and stop at a frame."""
     project = window.again(Harness.open, sample_images() / f"{sample}.lissom")
     if window.session.preferences.theme != theme:
@@ -114,7 +119,7 @@ def _open(window: Harness, sample: str, *, frame: int, theme: ThemeName = "dark"
     return project
 
 
-def _handle(project: Project, name: str) -> int:
+def handle_named(project: Project, name: str) -> int:
     """Return the handle of a name."""
     return next(handle.id for handle in project.figure.handles if handle.name == name)
 

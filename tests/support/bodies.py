@@ -1,87 +1,99 @@
-"""Outlines of people, animals and things, painted by strokes."""
+"""Bodies of sticks, one of each kind, and drawings of them."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
-import shapely
+from PIL import Image, ImageDraw
 
-from engine.arrays import Complexes
-from engine.geometry import as_xy
+from engine.geometry.motions import Body, facing_of, kind_named
 
-Stroke = tuple[Sequence[complex] | Complexes, float]
-
-
-def drawn(*strokes: Stroke) -> list[Complexes]:
-    """Return the outline and holes of what strokes (points, width) paint."""
-    lines = [shapely.LineString(as_xy(np.asarray(points))) for points, _ in strokes]
-    widths = [width for _, width in strokes]
-    whole = shapely.union_all(shapely.buffer(lines, np.array(widths) / 2))
-    loops = [whole.exterior, *whole.interiors]
-    oriented = [np.array(loop.coords)[:-1] @ [1, 1j] for loop in loops]
-    return [
-        loop if shapely.LinearRing(as_xy(loop)).is_ccw == (number == 0) else loop[::-1]
-        for number, loop in enumerate(oriented)
-    ]
-
-
-def dot(place: complex, radius: float) -> Stroke:
-    return [place, place + 1], 2 * radius
-
-
-def mirrored(*strokes: Stroke) -> list[Stroke]:
-    """Each stroke, and what it is in a mirror at x = 0."""
-    both = [(np.asarray(points), width) for points, width in strokes]
-    return both + [(-points.conj(), width) for points, width in both]
-
-
-CHILD = [
-    dot(430j, 95),
-    ([340j, 300j], 70),
-    ([280j, 170j], 110),
-    *mirrored(([20 + 290j, 140 + 280j, 225 + 285j], 40)),
-    *mirrored(([35 + 160j, 45 + 30j], 56), ([45 + 25j, 75 + 20j], 44)),
-]
-WALKER = [
-    dot(460j, 65),
-    ([60 + 465j, 85 + 455j], 16),
-    ([400j, 360j], 46),
-    ([350j, -5 + 220j], 86),
-    ([345j, 55 + 260j, 110 + 235j], 34),
-    ([345j, -60 + 270j, -85 + 205j], 34),
-    ([210j, 50 + 120j, 70 + 20j, 115 + 14j], 44),
-    ([210j, -25 + 110j, -95 + 30j, -55 + 8j], 44),
-]
-KANGAROO = [
-    ([-95 + 130j, -40 + 230j], 140),
-    ([-50 + 220j, 30 + 350j, 55 + 420j], 76),
-    ([50 + 450j, 110 + 440j, 140 + 430j], 46),
-    ([45 + 480j, 30 + 540j], 24),
-    ([20 + 330j, 80 + 300j, 100 + 250j], 28),
-    ([-50 + 120j, -50 + 60j, -50 + 20j, 70 + 10j], 34),
-    ([-130 + 90j, -210 + 40j, -290 + 12j], 44),
-]
-HORSE = [
-    ([-140 + 280j, 80 + 285j], 130),
-    ([95 + 300j, 150 + 390j, 175 + 460j], 64),
-    ([175 + 470j, 245 + 405j], 48),
-    ([-185 + 305j, -230 + 240j, -240 + 140j], 30),
-    *[([x + 250j, x + 20j], 32) for x in (-185, -115, 55, 125)],
-]
-SNAKE = [(np.linspace(-240, 240, 40) + 40j * np.sin(np.linspace(0, 9, 40)), 44)]
-FISH = [
-    ([30, 100], 170),
-    ([-140, -30], 60),
-    *[(np.array([-150, -215 + 80j]), 26), (np.array([-150, -215 - 80j]), 26)],
-]
-GHOST = [([0, 200j], 240), *[([x, x - 120j], 70) for x in (-80, 0, 80)]]
-TREE = [([0, 200j], 60), dot(320j, 140), dot(-90 + 270j, 90), dot(90 + 270j, 90)]
-BODIES: Mapping[str, tuple[str, Sequence[Stroke]]] = {
-    "child": ("biped-front", CHILD),
-    "walker": ("biped-side", WALKER),
-    "kangaroo": ("biped-side", KANGAROO),
-    "horse": ("four-legs", HORSE),
-    "snake": ("chain", SNAKE),
-    "fish": ("chain", FISH),
-    "ghost": ("anything", GHOST),
-    "tree": ("anything", TREE),
+# Places in a picture of this size, y up.
+SIZE = 320, 320
+FRONT = {
+    "hips": 160 + 150j,
+    "chest": 160 + 205j,
+    "head": 160 + 270j,
+    "shoulder.L": 182 + 212j,
+    "elbow.L": 220 + 190j,
+    "hand.L": 255 + 165j,
+    "shoulder.R": 138 + 212j,
+    "elbow.R": 100 + 190j,
+    "hand.R": 65 + 165j,
+    "hip.L": 175 + 140j,
+    "knee.L": 180 + 90j,
+    "foot.L": 183 + 40j,
+    "hip.R": 145 + 140j,
+    "knee.R": 140 + 90j,
+    "foot.R": 137 + 40j,
 }
+SIDE = {
+    "hips": 150 + 155j,
+    "chest": 155 + 215j,
+    "head": 165 + 270j,
+    "tail": 60 + 130j,
+    "elbow.L": 200 + 190j,
+    "hand.L": 235 + 200j,
+    "knee.L": 190 + 100j,
+    "foot.L": 205 + 40j,
+    "knee.R": 135 + 100j,
+    "foot.R": 95 + 40j,
+}
+FOUR_LEGS = {
+    "hips": 90 + 190j,
+    "chest": 225 + 190j,
+    "head": 280 + 260j,
+    "tail": 35 + 160j,
+    "elbow.L": 250 + 110j,
+    "hand.L": 250 + 40j,
+    "elbow.R": 208 + 110j,
+    "hand.R": 205 + 40j,
+    "knee.L": 100 + 110j,
+    "foot.L": 110 + 40j,
+    "knee.R": 55 + 110j,
+    "foot.R": 65 + 40j,
+}
+CHAIN = {f"joint.{number + 1}": complex(30 + 52 * number, 160) for number in range(6)}
+JOINTS: Mapping[str, Mapping[str, complex]] = {
+    "biped-front": FRONT,
+    "biped-side": SIDE,
+    "four-legs": FOUR_LEGS,
+    "chain": CHAIN,
+    "anything": {"low": 160 + 45j, "middle": 150 + 160j, "high": 170 + 270j},
+}
+# How thick limbs are.
+THICK = {"hips": 62, "chest": 56, "head": 70, "tail": 26}
+
+
+def body(kind: str) -> Body:
+    """Return a body of a kind."""
+    joints = JOINTS[kind]
+    places = np.array(list(joints.values()))
+    low = complex(places.real.min(), places.imag.min())
+    high = complex(places.real.max(), places.imag.max())
+    known = kind_named(kind)
+    facing = facing_of(known, joints, places)
+    return Body(kind=known, joints=joints, box=(low, high), facing=facing)
+
+
+def drawing(kind: str) -> Image.Image:
+    """Return a drawing of a body of a kind."""
+    picture = Image.new("RGBA", SIZE)
+    draw = ImageDraw.Draw(picture)
+    if kind == "anything":
+        draw.ellipse([60, 30, 260, 290], fill="orchid")
+        return picture
+    joints, parents = JOINTS[kind], body(kind).parents
+    for name, place in joints.items():
+        thick = THICK.get(name, 26 if kind != "chain" else 34)
+        start = joints[parents[name]] if parents[name] else place
+        for share in np.linspace(0.0, 1.0, 30).tolist():
+            at = start + share * (place - start)
+            x, y, r = at.real, SIZE[1] - at.imag, thick / 2
+            draw.ellipse([x - r, y - r, x + r, y + r], fill="orchid")
+    return picture
+
+
+def told(kind: str) -> dict[str, object]:
+    """Return its joints as `lissom move` reads them, y down."""
+    joints = {name: [at.real, SIZE[1] - at.imag] for name, at in JOINTS[kind].items()}
+    return {"schema": 1, "kind": kind, "joints": joints if kind != "anything" else {}}

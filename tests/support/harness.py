@@ -94,7 +94,7 @@ class Harness:
         fresh = Session(clock=self.clock, jobs=jobs, folder=self.folder)
         saving.put_project(self.session, None)
         for field in fields(Session):
-            if field.name not in {"screen", "full_detail"}:
+            if field.name not in {"screen", "full_detail", "graphics"}:
                 setattr(self.session, field.name, getattr(fresh, field.name))
         # Small meshes, so that the tests are quick.
         self.session.meshing = Meshing(triangles=2_000, detail="coarse")

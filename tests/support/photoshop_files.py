@@ -40,6 +40,7 @@ class Drawn:
     hidden: bool = False
     mask: Mask | None = None
     blocks: tuple[tuple[bytes, bytes], ...] = ()  # keys of four letters, and what they say
+    ranges: tuple[int, int, int, int] = (0, 0, 255, 255)  # of its greys, at which it is seen
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -113,7 +114,10 @@ def _record(
         planes[-2] = layer.mask.pixels
     data = {number: struct.pack(">H", 0) + plane.tobytes() for number, plane in planes.items()}
     name = layer.name.encode("latin-1")
-    extra = _mask(layer.mask) + struct.pack(">I", 0) + bytes([len(name)]) + name
+    ranges = bytes(layer.ranges) if isinstance(layer, Drawn) else b""
+    # Then those of what lies behind.
+    ranges += bytes([0, 0, 255, 255]) if ranges else b""
+    extra = _mask(layer.mask) + struct.pack(">I", len(ranges)) + ranges + bytes([len(name)]) + name
     extra += bytes(-(1 + len(name)) % 4)
     for key, said in blocks:
         extra += b"8BIM" + key + struct.pack(">I", len(said)) + said

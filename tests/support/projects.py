@@ -7,13 +7,15 @@ from engine.arrays import Bytes
 
 
 def project_of(document: Document, pixels: Bytes, name: str) -> Project:
-    """A saved project of a document with one figure, whose picture has these pixels."""
-    (figure,) = document.figures
-    puppet = Puppet.of(clip_of(document, figure.id), Picture(rgba=pixels, notices=()))
+    """A saved project of a document, whose pictures have these pixels; the first is posed."""
+    picture = Picture(rgba=pixels, notices=())
+    puppets = {
+        figure.id: Puppet.of(clip_of(document, figure.id), picture) for figure in document.figures
+    }
     return Project(
         name=name,
         history=History(document, saved=True),
         path=None,
-        puppets={figure.id: puppet},
-        active=figure.id,
+        puppets=puppets,
+        active=document.figures[0].id,
     )

@@ -2,10 +2,8 @@
 
 import argparse
 import os
-import platform
 import sys
-from importlib.metadata import PackageNotFoundError, version
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -26,12 +24,8 @@ from app.render.gpu import (
     probe,
     singles,
 )
+from app.reports import library_version, machine_in_words
 from app.ui.dialogs import find_system_dialogs
-
-LIBRARIES: Final = (
-    *("numpy", "scipy", "pillow", "shapely", "contourpy", "zlib-ng"),
-    *("moderngl", "glcontext", "glfw", "imgui-bundle"),
-)
 
 
 class Finding(NamedTuple):
@@ -44,11 +38,7 @@ class Finding(NamedTuple):
 
 def run(_: argparse.Namespace) -> int:
     """Print what works here."""
-    print(
-        f"Lissom {version('lissom')}, Python {platform.python_version()}, "
-        f"{platform.system()} {platform.release()} {platform.machine()}"
-    )
-    print(", ".join(f"{name} {_version(name)}" for name in LIBRARIES))
+    print(machine_in_words())
     rendering = [_rendering(backend) for backend in AUTOMATIC]
     for finding in (*rendering, _display(), _dialogs(), *_formats()):
         print(f"{'ok' if finding.works else '--'}  {finding.name}: {finding.text}")
@@ -123,12 +113,5 @@ def _formats() -> list[Finding]:
             text = f"{format_.library} is not installed: {missing(name)}"
             found.append(Finding(name, text, works=False))
         elif format_.library:
-            found.append(Finding(name, f"{format_.library} {_version(format_.library)}"))
+            found.append(Finding(name, f"{format_.library} {library_version(format_.library)}"))
     return found
-
-
-def _version(library: str) -> str:
-    try:
-        return version(library)
-    except PackageNotFoundError:
-        return "missing"

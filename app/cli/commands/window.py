@@ -4,8 +4,7 @@ import argparse
 import os
 import sys
 import time
-import traceback
-from contextlib import suppress
+from contextlib import AbstractContextManager, nullcontext, suppress
 from pathlib import Path
 
 from app.cli.console import fail, notice
@@ -14,19 +13,27 @@ from app.cli.process import (
     Endings,
     at_lost_display,
     end_within,
+    faults_told_to,
     has_threads_left,
     share_interpreter,
 )
-from app.editor import Jobs, Session
+from app.editor import Jobs, Session, failures
 from app.editor.actions import files, saving
 from app.errors import EXPECTED_ERRORS
 from app.render import Renderer
 from app.render.gpu import window_context
-from app.storage import load_preferences, make_settings_folder, save_preferences, settings_folder
+from app.storage import (
+    load_preferences,
+    make_settings_folder,
+    open_faults,
+    save_preferences,
+    settings_folder,
+)
 from app.ui.dialogs import find_system_dialogs
 from app.ui.window import Window, has_display, share_heap
 
 EXIT_FAILED = 1
+HINDRANCES = (*EXPECTED_ERRORS, ImportError, MemoryError, OSError, RuntimeError)
 # Seconds that workers have to end: when the person has closed the window, when something else has.
 LEISURE, HURRY = 6.0, 2.0
 
@@ -50,12 +57,15 @@ def run(arguments: argparse.Namespace) -> int:
     )
     _make(folder, session)
     saving.clear_up(session)
+    with suppress(*EXPECTED_ERRORS):
+        failures.keep_faults(session)
     files.offer_recovery(session)
+    failures.tell_of_kept(session)
     if arguments.file is not None:
         files.open_file(session, arguments.file.resolve())
     window = Window(session, lambda: Renderer(window_context()))
     heard = at_lost_display(lambda: _keep_at_lost_display(session), EXIT_FAILED)
-    with Endings(window.wake) as endings:
+    with Endings(window.wake) as endings, _noting_faults(folder):
         status = _show(window, endings)
         del heard
         have_ended = session.jobs.close(LEISURE if session.quitting else HURRY)
@@ -88,13 +98,32 @@ def _show(window: Window, endings: Endings) -> int:
 
     try:
         window.run(is_over=lambda: endings.has_come, farewell=farewell)
-    except Exception:
-        if not was_open:
+    except Exception as error:
+        # What hinders a start has words of its own.
+        if not was_open and isinstance(error, HINDRANCES):
             raise
-        traceback.print_exc()
-        notice("the window failed, as told above")
+        _report(session, error)
         return EXIT_FAILED
     return 0 if session.quitting else endings.status
+
+
+def _report(session: Session, error: Exception) -> None:
+    """Tell what ended the window, and keep a report of it."""
+    kept = "a report was kept"
+    try:
+        text = failures.keep_report_of(session, error)
+    except EXPECTED_ERRORS as reason:
+        text, kept = failures.report_of(session), f"the report could not be kept ({reason})"
+    print(text, file=sys.stderr)
+    notice(f"the window failed, as told above; nothing is sent, and {kept}")
+
+
+def _noting_faults(folder: Path) -> AbstractContextManager[None]:
+    """Let Python note where it crashes; where there is no file for that, it does not."""
+    try:
+        return faults_told_to(open_faults(folder))
+    except OSError:
+        return nullcontext()
 
 
 def _make(folder: Path, session: Session) -> None:

@@ -23,6 +23,9 @@ keeps its target of the key before, at first its place in the picture. Each key 
 from the key before; where the bounds hold a handle back, the key is kept and a notice says by how
 much.
 
+A key with "turn": {"nose": 20} turns the shape at handles by so many degrees, counter-clockwise,
+from how it is drawn; a later key that names none leaves them turned so.
+
 A key with "pull": 10 pulls the handles that it names with no more force than that, as the hand does
 in the window: what is beyond their reach moves nothing else, and is wanted where it came to.
 
@@ -60,8 +63,9 @@ Its last frame is the same moment as its first one, as in a loop: keys are from 
 and one at 24 must be like that at 0. Every repeat is the same motion, through the seams too;
 without until it goes on to the end of the animation. Tracks of which all keys are in the stretch
 repeat with it, and so do "movement" and "opacity", unless they end otherwise than they begin; and
-so do "front", "visible" and "order". Keys before lead to its first key; keys after go on
-from what is shown at the end, which must be one of its keys. Cycles do not overlap.
+so do "front", "visible" and "order", while "attach" does not. Keys before lead to its first key;
+keys after go on from what is shown at the end, which must be one of its keys. Cycles do not
+overlap.
 
 A handle may say what is painted in front around it, from -1 (behind) to 1, and how far around, in
 pixels: {"at": [120, 880], "front": 0.5, "extent": 60}; a key with "front": {"nose": 1} says it from

@@ -9,9 +9,9 @@ from app.document.checks import NOTHING, Unknown, require
 # 1" of the W3C, Section 10).
 BlendMode = Literal["normal", "multiply", "screen"]
 BLENDS: tuple[BlendMode, ...] = get_args(BlendMode)
-# A group passes through where, as long as it is opaque, each of its figures meets all that lies
-# behind it, as if there were no group; else they meet each other only, and then as one what lies
-# behind.
+# A group passes through where each of its figures meets all that lies behind it, as if there were
+# no group, and what comes of that is faded in; else they meet each other only, and then as one what
+# lies behind.
 GroupBlend = Literal["pass-through", BlendMode]
 GROUP_BLENDS: tuple[GroupBlend, ...] = ("pass-through", *BLENDS)
 DEEPEST = 50  # groups in each other

@@ -53,6 +53,7 @@ from app.document.queries.stage import (
     layer_tree as layer_tree,
     movement_at as movement_at,
     opacity_at as opacity_at,
+    placing_at as placing_at,
     repeated as repeated,
     repeating as repeating,
     sights_of as sights_of,

@@ -22,6 +22,11 @@ from app.editor.actions.body import (
     material as material,
     rebuilding as rebuilding,
 )
+from app.editor.actions.posing.moving import (
+    drafting as drafting,
+    giving as giving,
+    placing as placing,
+)
 from app.editor.actions.timing import (
     cycles as cycles,
     keys as keys,

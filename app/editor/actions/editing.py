@@ -21,6 +21,7 @@ from app.document import (
 )
 from app.editor import promises
 from app.editor.actions import playback, posing
+from app.editor.actions.posing.moving import giving, placing
 from app.editor.project import Project, Puppet
 from app.editor.session import Session, with_project
 from app.editor.timeline_view import KeyRow, KeysOf, TrackRow, figure_of, frames_in
@@ -83,8 +84,16 @@ def use_widget(_: Session, project: Project, widget: int) -> None:
 def undo(session: Session, project: Project) -> None:
     """Take the last step back; a pull that is under way goes on in it, should it be done again.
 
-    A change that waits for it, and is the last that was asked for, is taken back before it.
+    A change that waits for it, and is the last that was asked for, is taken back before it; so is
+    a motion that is on its way. Joints of a motion that is only drafted go back by themselves.
     """
+    if project.draft is not None and project.draft.past:
+        project.draft = project.draft.undone
+        return
+    if project.errand is not None:
+        giving.cancel(session)
+        _tell_step(session, "Undone", "Give a motion")
+        return
     is_held = any(pull.is_held for pull in project.pulls)
     waiting = None if is_held else promises.take_back(project)
     if waiting is not None:
@@ -246,8 +255,13 @@ def change_keys(verb: KeyVerb, chosen_of: KeysOf, *args: object) -> Command:
 
 @with_project
 def delete(session: Session, project: Project) -> None:
-    """Delete the selected keys or, in the timeline, the chosen track, or the selected handles."""
-    if project.chosen_of:
+    """Delete the selected keys or, in the timeline, the chosen track, or the selected handles.
+
+    While a motion is drafted, leave out the joint that was touched last.
+    """
+    if project.draft is not None and project.draft.chosen is not None:
+        placing.leave_out(session, project.draft.chosen)
+    elif project.chosen_of:
         edit(session, change_keys(DELETE, project.chosen_of))
     elif session.in_timeline and project.chosen_track is not None:
         edit_figure(session, track_commands.remove_tracks, (project.chosen_track,))

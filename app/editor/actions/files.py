@@ -30,6 +30,7 @@ from app.storage import (
     leftover_origin,
     load_leftover,
     load_project,
+    on_disk,
     open_layered,
     open_picture,
     open_pictures,
@@ -290,6 +291,9 @@ def with_puppets(opened: OpenedScene) -> Opened:
 
 
 def _puppets(document: Document, pictures: Mapping[int, Picture]) -> dict[int, Puppet]:
+    if len(pictures) > 1:
+        kept = {id(each): on_disk(each) for each in pictures.values()}
+        pictures = {identity: kept[id(each)] for identity, each in pictures.items()}
     made = side_by_side(
         lambda identity: Puppet.of(
             clip_of(document, identity), pictures[identity], among=len(document.figures)

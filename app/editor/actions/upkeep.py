@@ -7,12 +7,14 @@ from typing import TypeVar
 from app.document import Clip, clip_of, resting_pose, time_of
 from app.editor.actions import playback, posing, tracking, viewing
 from app.editor.actions.body import rebuilding
+from app.editor.actions.posing.moving import drafting
 from app.editor.failures import report
 from app.editor.project import Project, Puppet
 from app.editor.session import Session, with_project
 from app.editor.timeline_view import measure_shortfalls
 from app.editor.work import Derived, Job, Kind
 from app.motion import (
+    Build,
     IntervalPart,
     IntervalStore,
     Joints,
@@ -32,6 +34,8 @@ from app.storage import cut_picture, shrink
 
 STILL = 0.15  # seconds after which the playhead is taken to stay where it is
 MOST_UNASKED = 1000  # frames whose extent is measured before anybody asks
+# Of what figures that nobody edits are prepared with, until series show them.
+MOST_PASSING = 128 * 2**20
 SMALL_SIDE = 96  # pixels of a picture in the list of layers
 UNMADE = "The in-betweens of these keys cannot be made"
 # What is awaited, or takes a few milliseconds, is not to wait until all in-betweens are there.
@@ -63,6 +67,7 @@ def maintain(session: Session, project: Project) -> None:
         project.puppet.corrected.lead(playback.current_frame(session, project))
     project.extent.recall(extent_source(project.document))
     rebuilding.maintain(session)
+    drafting.maintain(session)
     project.pair_up(session.split.method if session.split else None)
     _pin(session, project)
     for job in missing(session, project):
@@ -115,7 +120,12 @@ def missing(session: Session, project: Project) -> Iterator[Job]:
         if not puppet.store.has_failed(clip, _part(kind)):
             job = _prepare(session, project, kind, puppet, clip)
             if job is not None:
-                yield job
+                room = None
+                if puppet is not project.puppet and _is_crowded(project):
+                    if STREAMING in session.jobs.kinds:
+                        return
+                    room = next(_stream(session, project), None)
+                yield room or job
                 return
     if tracking.is_under_way(session, project):
         return
@@ -218,8 +228,29 @@ def _stream(session: Session, project: Project) -> Iterator[Job]:
                 break
             build = store.next_build(clip, frame, heat=heat)
             if build is not None:
-                work, done = build.advance, store.take_build
-                yield _interval_job(session, STREAMING, puppet, clip, work=work, done=done)
+                done = partial(_take_build, project, puppet, store)
+                yield _interval_job(session, STREAMING, puppet, clip, work=build.advance, done=done)
+
+
+def _is_crowded(project: Project) -> bool:
+    """Tell whether much is prepared of figures that nobody edits: series of it are to come first.
+
+    With these it is let go; else all of it would be there at once.
+    """
+    held = 0
+    for clip, puppet in _clips(project):
+        if puppet is not project.puppet and not puppet.store.has_failed(clip, "series"):
+            stores = filter(None, (puppet.store, puppet.fine))
+            held += sum(store.passing_bytes(clip) for store in stores)
+    return held > MOST_PASSING
+
+
+def _take_build(project: Project, puppet: Puppet, store: IntervalStore, build: Build) -> None:
+    """Take in a series; where it is crowded, let go of what it was made from."""
+    is_crowded = puppet is not project.puppet and _is_crowded(project)
+    store.take_build(build)
+    if is_crowded and build.series is not None:
+        store.rest()
 
 
 def _part(kind: Kind) -> IntervalPart:

@@ -1,5 +1,7 @@
 """How the window looks: camera, overlays, theme, dialogs."""
 
+import os
+import webbrowser
 from dataclasses import replace
 from functools import reduce
 from pathlib import Path
@@ -7,12 +9,20 @@ from typing import Any, Literal
 
 from app.document import Baseline, Meshing, Variant
 from app.editor.action import Action
-from app.editor.dialogs import Dialog, FileDialog, ShortcutSheet
+from app.editor.dialogs import Dialog, FileDialog, ProblemReport, ShortcutSheet
 from app.editor.project import Project, view_around
 from app.editor.session import CurveKind, HeatMap, Session, Tint, Toast, with_project
+from app.errors import LissomError
 from app.motion import Box, box_around
 from app.render import View
-from app.storage import LARGEST_GHOST_STEP, LARGEST_SCALE, MOST_GHOSTS, SMALLEST_SCALE, ThemeName
+from app.storage import (
+    LARGEST_GHOST_STEP,
+    LARGEST_SCALE,
+    MOST_GHOSTS,
+    SMALLEST_SCALE,
+    ThemeName,
+    manual_page,
+)
 
 SCALE_STEP = 0.25
 LEAST_PART = 0.05  # of the viewport's width, that is left to either method
@@ -214,9 +224,29 @@ def show_shortcuts(session: Session) -> None:
     session.dialog = ShortcutSheet()
 
 
+def open_manual(session: Session, page: str) -> None:
+    """Show a page of the manual in the browser, and tell where it lies.
+
+    One of the terminal would hold the window up, and has no place in it: what the system offers as
+    such is not taken, but where BROWSER names it.
+    """
+    path = manual_page(page)
+    try:
+        browser = webbrowser.get()
+        is_apart = type(browser) is not webbrowser.GenericBrowser or "BROWSER" in os.environ
+        is_open = is_apart and browser.open(path.as_uri())
+    except (webbrowser.Error, OSError):
+        is_open = False
+    if not is_open:
+        raise LissomError(f"no browser was found; the manual is {path}")
+    # What starts it may fail later, unheard.
+    session.tell(f"The manual opens in the browser. It lies in {path}.", topic="manual")
+
+
 def close_dialog(session: Session) -> None:
-    """Close the dialog without doing anything."""
-    session.dialog = None
+    """Close the dialog without doing anything; what a report was asked for from comes back."""
+    dialog = session.dialog
+    session.dialog = dialog.behind if isinstance(dialog, ProblemReport) else None
 
 
 def answer(session: Session, action: Action) -> None:

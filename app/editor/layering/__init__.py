@@ -19,6 +19,7 @@ from app.editor.layering.arranging import (
     list_active as list_active,
     lock as lock,
     move as move,
+    move_beside as move_beside,
     refer as refer,
     rename as rename,
     rename_group as rename_group,
@@ -34,6 +35,7 @@ from app.editor.layering.choosing import (
     choose_too as choose_too,
     choose_up_to as choose_up_to,
     look_at_alone as look_at_alone,
+    tidy_rows as tidy_rows,
     toggle as toggle,
 )
 from app.editor.layering.filming import (
@@ -51,6 +53,7 @@ from app.editor.layering.filming import (
 from app.editor.layering.hanging import (
     hand_over as hand_over,
     hang as hang,
+    hang_together as hang_together,
     hangs_on as hangs_on,
     let_hang as let_hang,
     remove as remove,

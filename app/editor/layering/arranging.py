@@ -73,6 +73,26 @@ def move(session: Session, identity: int, index: int) -> None:
 
 
 @with_project
+def move_beside(
+    session: Session,
+    project: Project,
+    beside: int,
+    in_front: bool,  # noqa: FBT001 - of an action
+    *identities: int,
+) -> None:
+    """Put layers in front of another one, or behind it, in the order that they have."""
+    order = [figure.id for figure in project.document.figures]
+    moved = [each for each in order if each in identities and each != beside]
+    commands = []
+    for count, each in enumerate(moved):
+        order.remove(each)
+        index = order.index(moved[count - 1] if count else beside) + (count > 0 or in_front)
+        order.insert(index, each)
+        commands.append(layer_commands.move_figure(each, index))
+    editing.edit(session, in_turn(_of("Move", moved), commands))
+
+
+@with_project
 def show(session: Session, project: Project, *identities: int) -> None:
     """Hide layers, or show them again: the other way than the first of them is."""
     hidden = not project.document.figure(identities[0]).hidden

@@ -12,6 +12,7 @@ def choose(session: Session, project: Project, identity: int) -> None:
     if identity == project.active:
         return
     posing.let_go(session)
+    project.lingering |= {project.active}
     project.active = identity
     project.selected = project.chosen = frozenset()
     project.chosen_track = None
@@ -49,6 +50,13 @@ def choose_up_to(session: Session, project: Project, identity: int) -> None:
 def toggle(_: Session, project: Project, row: str) -> None:
     """Open a row of the tree of layers, or close it again."""
     project.toggled ^= {row}
+    project.lingering = frozenset()
+
+
+@with_project
+def tidy_rows(_: Session, project: Project) -> None:
+    """List only the layers of open rows again, and the one that is posed."""
+    project.lingering = frozenset()
 
 
 @with_project

@@ -58,30 +58,55 @@ def hang(
         return
     frame = playback.current_frame(session, project)
 
-    def find(joints: Joints) -> tuple[complex, Attachment]:
-        return joint_at_rest(joints, child, parent, frame, place=place, turns=turns)
+    def find(joints: Joints) -> Command:
+        held = joint_at_rest(joints, child, parent, frame, place=place, turns=turns)
+        return layer_commands.attach(child, *held)
 
-    joining = do(_join, child, parent, find)
+    joining = do(_join, (child, parent), find)
     promises.once_settled(session, joining, "Hang the layer")
+
+
+@with_project
+def hang_together(session: Session, project: Project, parent: int, *children: int) -> None:
+    """Hang layers on another one; those that hang on one of them go along with that."""
+    frame = playback.current_frame(session, project)
+    whole = [child for child in children if child != parent]
+    carried = {
+        child
+        for child in whole
+        if any(other != child and hangs_on(project, child, other) for other in whole)
+    }
+    free = [child for child in whole if child not in carried]
+    circles = [child for child in free if hangs_on(project, parent, child)]
+    if circles or len(free) == 1:
+        hang(session, (circles or free)[0], parent)
+        return
+
+    def find(joints: Joints) -> Command:
+        held = [(child, joint_at_rest(joints, child, parent, frame, turns=True)) for child in free]
+        attached = [layer_commands.attach(child, *joint) for child, joint in held]
+        return in_turn(f"Attach {len(free)} layers", attached)
+
+    joining = do(_join, (*free, parent), find)
+    promises.once_settled(session, joining, "Hang the layers")
 
 
 @with_project
 def _join(
     session: Session,
     project: Project,
-    child: int,
-    parent: int,
-    find: Callable[[Joints], tuple[complex, Attachment]],
+    joined: Sequence[int],
+    find: Callable[[Joints], Command],
 ) -> None:
-    """Hang a layer on another one by the joint that is found."""
+    """Hang layers on another one by the joints that are found."""
     document = project.document
-    if not {child, parent} <= project.puppets.keys():
+    if not set(joined) <= project.puppets.keys():
         return
     siblings = project.samplers
 
-    def done(joint: tuple[complex, Attachment]) -> None:
+    def done(command: Command) -> None:
         if project.document is document:
-            editing.edit(session, layer_commands.attach(child, *joint))
+            editing.edit(session, command)
         else:
             session.tell("The layer was not hung: the project changed meanwhile. Try again.")
 
@@ -128,12 +153,13 @@ def hand_over(session: Session, project: Project, child: int, parent: int | None
         editing.edit(session, layer_commands.attach(child, anchor, joint))
         return
 
-    def find(joints: Joints) -> tuple[complex, Attachment]:
+    def find(joints: Joints) -> Command:
         held = figure.joint_at(frame)
         turns = held is None or held.turns
-        return anchor_of(figure), joint_that_keeps(joints, child, parent, frame, turns=turns)
+        joint = joint_that_keeps(joints, child, parent, frame, turns=turns)
+        return layer_commands.attach(child, anchor_of(figure), joint)
 
-    joining = do(_join, child, parent, find)
+    joining = do(_join, (child, parent), find)
     promises.once_settled(session, joining, "Hand the layer over")
 
 

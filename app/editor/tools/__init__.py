@@ -6,6 +6,7 @@ Imports: `app.editor.actions`.
 """
 
 from app.editor.tools import moving as moving, pointing as pointing
+from app.editor.tools.brushes import pointed as pointed
 from app.editor.tools.entry import ERASE as ERASE
 from app.editor.tools.table import TOOLS as TOOLS, tools_of as tools_of
 from app.editor.tools.tool import Spot as Spot

@@ -5,7 +5,7 @@ from typing import Self
 
 from app.document import Figure
 from app.editor import layering
-from app.editor.actions import playback, posing
+from app.editor.actions import drafting, playback, posing
 from app.editor.project import Project
 from app.editor.session import Hint, Session, with_project
 from app.editor.tools.pulling import Pulling
@@ -52,19 +52,22 @@ class Moving(Pulling):
 
 
 @with_project
-def take_up(session: Session, _: Project) -> None:
+def take_up(session: Session, project: Project) -> None:
     """Let drags and arrows move the whole figure, or pose it again."""
     if session.pointer is None:
-        is_other = session.cutting is not None or session.material is not None
+        in_hand = session.cutting, session.material, project.draft
+        is_other = any(each is not None for each in in_hand)
         session.moves = is_other or not session.moves
-        session.cutting = session.material = None
+        session.cutting = session.material = project.draft = None
 
 
 @with_project
-def pose(session: Session, _: Project) -> None:
-    """Put away whatever is in hand instead of posing."""
+def pose(session: Session, project: Project) -> None:
+    """Put away whatever is in hand instead of posing, a motion that is drafted among it."""
     session.cutting = session.material = None
     session.moves = False
+    if project.draft is not None:
+        drafting.give_up(session)
 
 
 @with_project

@@ -8,6 +8,10 @@ Imports: `app.document`, `app.solving`, `app.editor.action`.
 from app.editor.work.carry import Carry as Carry, Sample as Sample, Take as Take
 from app.editor.work.derived import Derived as Derived
 from app.editor.work.jobs import Job as Job, Jobs as Jobs, Kind as Kind
+from app.editor.work.motion_draft import (
+    MotionDraft as MotionDraft,
+    MotionErrand as MotionErrand,
+)
 from app.editor.work.promise import Afterwards as Afterwards, Promise as Promise
 from app.editor.work.pull import (
     MOST_STEPS as MOST_STEPS,

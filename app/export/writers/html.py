@@ -92,6 +92,7 @@ def _parts(parts: Sequence[int | Composite[int]]) -> list[Any]:
             "opacity": part.opacity,
             "blend": part.blend,
             "clipped": part.clipped,
+            "passes": part.passes,
         }
         for part in parts
     ]

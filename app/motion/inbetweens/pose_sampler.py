@@ -120,6 +120,12 @@ class PoseSampler:
                 self._extension = self.known.transform.at(self.sites.paths.nodes, single=True)
             return self._extension
 
+    @property
+    def passing_bytes(self) -> int:
+        """The bytes that `forget_extension` lets go."""
+        extension = self._extension
+        return 0 if extension is None else extension.nbytes
+
     def forget_extension(self) -> None:
         """Let go of the transform at the nodes, most of what a figure takes that is not edited."""
         with self._extension_lock:

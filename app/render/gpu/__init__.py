@@ -12,6 +12,7 @@ from app.render.gpu.context import (
     GlError as GlError,
     create_context as create_context,
     finish_drawing as finish_drawing,
+    graphics_in_words as graphics_in_words,
     is_software as is_software,
     largest_size as largest_size,
     probe as probe,

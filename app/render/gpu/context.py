@@ -102,6 +102,11 @@ def is_software(context: moderngl.Context) -> bool:
     return any(name in renderer for name in ("llvmpipe", "softpipe", "swiftshader", "swr"))
 
 
+def graphics_in_words(context: moderngl.Context) -> str:
+    """Return what draws, by its own name, and the version of OpenGL."""
+    return f"{context.info['GL_RENDERER']}, OpenGL {context.info['GL_VERSION']}"
+
+
 def finish_drawing(context: moderngl.Context) -> None:
     """Wait until everything is drawn in the current context, while other threads go on.
 

@@ -10,6 +10,7 @@ from app.solving.moving.giving import (
     begin_giving as begin_giving,
     give_on as give_on,
 )
+from app.solving.moving.joints_file import ToldJoints as ToldJoints, load_joints as load_joints
 from app.solving.moving.order import (
     MotionOrder as MotionOrder,
     facing_in as facing_in,

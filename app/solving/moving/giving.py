@@ -13,19 +13,23 @@ from app.document import (
     Target,
     clip_of,
     find_shortfall,
+    is_as_given,
     scene_commands,
 )
 from app.errors import LissomError
 from app.solving.drag import Drag, Rig, pose_at
 from app.solving.moving.moments import JointMoment, held_by, moments_of
-from app.solving.moving.order import MotionOrder, body_of, with_handles_at_joints
+from app.solving.moving.order import MotionOrder, body_of, with_handles_at_joints, with_limits
 from app.solving.moving.splicing import lead_before, spliced
 from engine.geometry.motions import Body
 from engine.maps import Certificate, HarmonicMap
 
-MOST_STEPS, STEPS_AT_ONCE = 1500, 25
+# A pose that is not at rest by then creeps along a limit.
+MOST_STEPS, STEPS_AT_ONCE = 150, 25
 TRIES = 4  # by which the largest one is looked for
+TOLD = 3  # joints that are named
 WORST = 4  # keys that it is looked for by
+SMALLEST = 0.05  # size that parameters may have
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -100,9 +104,12 @@ class Giving:
         """Which joints are out of reach, and at what size they are not, in words."""
         if not self.short:
             return ()
+        worst = sorted(self.short.items(), key=lambda each: -each[1][0])
         told = ", ".join(
-            f"{name!r} by {lag:.1f} px (frame {frame})" for name, (lag, frame) in self.short.items()
+            f"{name!r} by {lag:.1f} px (frame {frame})" for name, (lag, frame) in worst[:TOLD]
         )
+        if worst[TOLD:]:
+            told += f" and {len(worst) - TOLD} more"
         size = self.fitting
         instead = "" if size is None else f"; at size {size:.2f} all is within reach"
         return (f"Some joints fall short of the motion: {told}{instead}",)
@@ -119,7 +126,17 @@ class Giving:
             keys.append(replace(keys[0], frame=given.last))
         if self.lead is not None:
             keys.insert(0, Keyframe(frame=given.first, pose=self.lead))
-        return spliced(self.document, self.before.id, keys, given)
+        until = max((each.last for each in self.replaced), default=given.last)
+        return spliced(self.document, self.before.id, keys, given, until)
+
+    @property
+    def replaced(self) -> tuple[GivenMotion, ...]:
+        """The motion that it takes the place of, as it was given at the same frame."""
+        return tuple(
+            each
+            for each in self.before.motions
+            if each.first == self.given.first and is_as_given(self.before, each)
+        )
 
     @property
     def at_rest(self) -> Pose:
@@ -157,8 +174,9 @@ def begin_giving(document: Document, identity: int, order: MotionOrder) -> Givin
     if before.still:
         raise LissomError(f"{before.name!r} stands still: there is no shape on it to be moved.")
     body = body_of(before, order)
-    into, joints = with_handles_at_joints(document, identity, body, order.bones)
-    document = document.with_figure(into)
+    document, joints = with_handles_at_joints(document, identity, body, order)
+    document = with_limits(document, identity, order.limits)
+    into = document.figure(identity)
     lead_frames = lead_before(before, order.first, document.fps)
     start = order.first + lead_frames
     period = order.ready.frames(order.parameters, document.fps)
@@ -176,6 +194,7 @@ def begin_giving(document: Document, identity: int, order: MotionOrder) -> Givin
     lead = None
     if lead_frames:
         lead = pose_at(Rig.of(into), clip_of(document, identity), order.first)
+    wanted, standing = moments_of(order, body, given)
     return Giving(
         document=document,
         before=before,
@@ -183,8 +202,8 @@ def begin_giving(document: Document, identity: int, order: MotionOrder) -> Givin
         body=body,
         given=given,
         lead=lead,
-        wanted=moments_of(order, body, given),
-        rig=Rig.of(held_by(into, frozenset(joints.values()))),
+        wanted=wanted,
+        rig=Rig.of(held_by(into, frozenset(joints.values()), standing)),
         short={},
         sizes=(0.0, order.parameters.size),
     )
@@ -224,13 +243,13 @@ def shortfalls(rig: Rig, pose: Pose) -> Mapping[int, float]:
 def _smaller(giving: Giving) -> Giving:
     """Try the size halfway between one that is within reach and one that is not."""
     reached, short = giving.sizes
-    size = (reached + short) / 2
+    size = max(SMALLEST, (reached + short) / 2)
     order = replace(giving.order, parameters=replace(giving.order.parameters, size=size))
     frames = {frame for _, frame in giving.short.values()}
     worst = [
         (moment, pose)
         for moment, pose in zip(
-            moments_of(order, giving.body, giving.given), giving.poses, strict=True
+            moments_of(order, giving.body, giving.given)[0], giving.poses, strict=True
         )
         if moment.frame in frames
     ][:WORST]

@@ -7,9 +7,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from app.document import (
+    RUBBERY,
     Document,
     Figure,
     GivenMotion,
+    figure_commands,
     handle_commands,
     material_commands,
     numbered,
@@ -19,12 +21,15 @@ from app.solving.moving.wholes import points_of_whole
 from engine.arrays import Complexes
 from engine.errors import EngineError
 from engine.geometry import box_diagonal
-from engine.geometry.motions import MOTIONS, Body, Motion, Parameters, facing_of, kind_named
+from engine.geometry.motions import Body, Motion, Parameters, facing_of, kind_named, motion_named
+from engine.maps import Bounds
 
 # Of the diagonal of the drawing: a joint is the handle that is so near to it, and one that is so
 # little outside comes to the outline.
 SAME_JOINT, BESIDE = 0.004, 0.01
-STRONG = 10.0  # bones of limbs
+TRUNK = ("neck", "head", "chest")
+STIFF_TRUNK, STIFF_LIMB, STIFF_HEAD = 10.0, 3.0, 20.0
+HEAD = 1.5  # times as far as the nearest outline around its joint
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,7 +49,12 @@ class MotionOrder:
     first: int = 0  # the frame from which on it is given
     rounds: int = 1  # how often its cycle is there
     facing: int | None = None  # 1 looks to the right, -1 to the left; None guesses
-    bones: float | None = STRONG  # how stiff limbs become; None leaves them as they are
+    # Handles that are joints already, by the joints' names; they go where these are now.
+    handles: Mapping[str, int] = field(default_factory=dict)
+    stiff: bool = True  # whether the trunk becomes stiff, so that limbs move and not all
+    bones: bool = False  # whether limbs get bones, too
+    # Limits that the figure has at least; None leaves them as they are.
+    limits: Bounds | None = RUBBERY.bounds
 
     def __post_init__(self) -> None:
         self.ready.course(self.kind)
@@ -52,12 +62,8 @@ class MotionOrder:
     @property
     def ready(self) -> Motion:
         """The motion itself."""
-        if self.motion not in MOTIONS:
-            raise EngineError(
-                f"there is no motion {self.motion!r}; the motions are {', '.join(MOTIONS)}"
-            )
         kind_named(self.kind)
-        return MOTIONS[self.motion]
+        return motion_named(self.motion)
 
 
 def order_of(figure: Figure, given: GivenMotion) -> MotionOrder:
@@ -70,7 +76,9 @@ def order_of(figure: Figure, given: GivenMotion) -> MotionOrder:
         first=given.first,
         rounds=given.rounds,
         facing=given.facing,
-        bones=None,
+        handles=given.joints,
+        stiff=False,
+        limits=None,
     )
 
 
@@ -105,52 +113,85 @@ def body_of(figure: Figure, order: MotionOrder) -> Body:
 
 def _on_drawing(figure: Figure, joints: Mapping[str, complex]) -> dict[str, complex]:
     """Return joints on a figure; those that are hardly beside it come to its outline."""
-    beside = BESIDE * box_diagonal(figure.domain.outline)
+    tolerance = BESIDE * box_diagonal(figure.domain.outline)
     points: Complexes = np.array(list(joints.values()), dtype=np.complex128)
-    covered = figure.covers(points, tolerance=beside)
+    covered = figure.covers(points, tolerance=tolerance)
     for (name, place), is_on_it in zip(joints.items(), covered, strict=True):
         if not is_on_it:
+            # Places are told from the upper left corner of the drawing.
+            beside = place - figure.corner
+            down = figure.picture.size[1] - beside.imag
             raise LissomError(
-                f"the joint {name!r} at ({place.real:g}, {place.imag:g}) is not on the drawing"
+                f"the joint {name!r} at ({beside.real:g}, {down:g}) is not on the drawing"
             )
     nearest = figure.domain.nearest(points).tolist()
     return dict(zip(joints, nearest, strict=True))
 
 
 def with_handles_at_joints(
-    document: Document, identity: int, body: Body, bones: float | None
-) -> tuple[Figure, dict[str, int]]:
-    """Return a figure with a handle at each joint, bones between them, and which those are.
-
-    Parameters
-    ----------
-    document : Document
-    identity : int
-        The id of the figure.
-    body : Body
-    bones : float, optional
-        How stiff the bones between joints are; by default there are none.
-    """
+    document: Document, identity: int, body: Body, order: MotionOrder
+) -> tuple[Document, dict[str, int]]:
+    """Return a document whose figure has a handle at each joint, and bones; and which those are."""
     joints = dict[str, int]()
-    near = SAME_JOINT * box_diagonal(document.figure(identity).domain.outline)
     for name, place in body.joints.items():
-        figure = document.figure(identity)
-        beside = {abs(each.position - place): each.id for each in figure.handles}
-        found = beside[min(beside)] if beside and min(beside) <= near else None
-        if found is None or found in joints.values():
-            found = figure.next_handle
-            taken = {handle.name for handle in figure.handles}
-            free = name if name not in taken else numbered(name, taken, 2)
-            document = handle_commands.add_handle(identity, place, name=free)(document)
-        joints[name] = found
+        document, joints[name] = _with_handle(document, identity, name, place, order, joints)
+    if not body.kind.parents:
+        # What moves as a whole is not held still anywhere.
+        document = handle_commands.free_handles(identity, set(joints.values()), free=True)(document)
     for name, before in body.parents.items():
-        figure = document.figure(identity)
-        if bones is None or not before:
+        amount = STIFF_TRUNK if name in TRUNK else STIFF_LIMB
+        if not before or not (order.stiff if name in TRUNK else order.bones):
             continue
         ends = joints[before], joints[name]
-        if any(bone.is_between(ends) for bone in figure.bones):
+        if any(bone.is_between(ends) for bone in document.figure(identity).bones):
             continue
         # Where the way between two joints leaves the drawing, the limb bends as it likes.
         with suppress(EngineError):
-            document = material_commands.add_bone(identity, ends, bones)(document)
-    return document.figure(identity), joints
+            document = material_commands.add_bone(identity, ends, amount)(document)
+    if order.stiff and "head" in joints:
+        document = _with_stiff_head(document, identity, body.joints["head"])
+    return document, joints
+
+
+def _with_handle(
+    document: Document,
+    identity: int,
+    name: str,
+    place: complex,
+    order: MotionOrder,
+    others: Mapping[str, int],
+) -> tuple[Document, int]:
+    """Return a document whose figure has a handle at a joint, and which that is."""
+    figure = document.figure(identity)
+    known = order.handles.get(name)
+    if known is not None and any(each.id == known for each in figure.handles):
+        return handle_commands.move_handle(identity, known, place)(document), known
+    near = SAME_JOINT * box_diagonal(figure.domain.outline)
+    free = [each for each in figure.handles if each.id not in others.values()]
+    beside = min(free, key=lambda each: abs(each.position - place), default=None)
+    if beside is not None and abs(beside.position - place) <= near:
+        return document, beside.id
+    taken = {handle.name for handle in figure.handles}
+    new = name if name not in taken else numbered(name, taken, 2)
+    added = handle_commands.add_handle(identity, place, name=new)(document)
+    return added, figure.next_handle
+
+
+def _with_stiff_head(document: Document, identity: int, head: complex) -> Document:
+    """Return a document whose figure's head keeps its shape."""
+    outline = document.figure(identity).domain.outline
+    radius = HEAD * float(np.abs(outline - head).min())
+    return material_commands.paint(identity, [head], radius=radius, amount=STIFF_HEAD)(document)
+
+
+def with_limits(document: Document, identity: int, limits: Bounds | None) -> Document:
+    """Return a document whose figure may be distorted as far as some limits, or its own, allow."""
+    own = document.figure(identity).bounds
+    if limits is None:
+        return document
+    wider = Bounds(
+        k=max(own.k, limits.k),
+        sigma_a=max(own.sigma_a, limits.sigma_a),
+        sigma_b=min(own.sigma_b, limits.sigma_b),
+    )
+    return figure_commands.set_bounds(identity, wider)(document)

@@ -1,7 +1,7 @@
 """What keys of poses and of tracks have alike in a pose script."""
 
 import json
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from itertools import pairwise
 from typing import Any, TypeVar
 
@@ -17,11 +17,13 @@ def fields_in(content: object, where: str, fields: tuple[str, ...]) -> JsonObjec
     read = as_object(content, where)
     for name in read:
         if name not in fields:
-            raise LissomError(f"{where} has an unknown field {name!r}; it may have {fields}")
+            raise LissomError(
+                f"{where} has an unknown field {name!r}; it may have {', '.join(fields)}"
+            )
     return read
 
 
-def frame_of(key: JsonObject, where: str, name: str = "frame") -> int:
+def frame_of(key: Mapping[str, object], where: str, name: str = "frame") -> int:
     """Return the frame that a key, or another object, has under a name."""
     frame = key.get(name)
     if not isinstance(frame, int) or isinstance(frame, bool) or not 0 <= frame <= LAST_FRAME:

@@ -82,6 +82,16 @@ def _joint(content: object, where: str) -> ScriptJoint:
     )
 
 
+def parse_visible(content: object, where: str) -> tuple[tuple[int, bool], ...]:
+    """Return from which frames on a figure is seen, or is not."""
+    switches = [
+        (frame, as_flag(visible, at))
+        for at, frame, visible in _from_frames(content, where, "true or false")
+    ]
+    require_order([frame for frame, _ in switches], f"{where} is")
+    return tuple(switches)
+
+
 def parse_choices(script: JsonObject, switched: Sequence[str]) -> tuple[ScriptChoice, ...]:
     """Return the choices of a script.
 
@@ -125,9 +135,10 @@ def _choice(content: object, where: str) -> ScriptChoice:
             raise LissomError(f"{at} shows {turn[1]!r}, which is not among its layers")
         turns.append(turn)
     require_order([frame for frame, _ in turns], f"{where}.keys are")
-    return ScriptChoice(
-        name=as_text(fields["name"], f"{where}.name"), layers=layers, turns=tuple(turns)
-    )
+    name = as_text(fields["name"], f"{where}.name").strip()
+    if not name:
+        raise LissomError(f"{where}.name is empty, and a choice needs a name")
+    return ScriptChoice(name=name, layers=layers, turns=tuple(turns))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -239,5 +250,5 @@ def _from_frames(content: object, where: str, what: str) -> list[tuple[str, int,
         pair = as_list(entry, at)
         if len(pair) != 2:
             raise LissomError(f"{at} must be a frame and {what}, not {json.dumps(pair)}")
-        found.append((at, as_whole(pair[0], at), pair[1]))
+        found.append((at, frame_of({"frame": pair[0]}, at), pair[1]))
     return found

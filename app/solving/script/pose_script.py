@@ -43,6 +43,7 @@ from app.solving.script.layers import (
     parse_movement,
     parse_opacity,
     parse_order,
+    parse_visible,
 )
 from app.solving.script.material import StiffPart, parse_material
 from app.storage import (
@@ -53,7 +54,6 @@ from app.storage import (
     as_object,
     as_point,
     as_text,
-    as_whole,
     read_file,
     without_repeats,
 )
@@ -186,6 +186,9 @@ def parse_pose_script(content: object) -> PoseScript:
     """
     read = as_object(content, "the script")
     own = STAGE_FIELDS if "figures" in read else OWN_FIELDS
+    lacking = [name for name in ("choices", "attach", "visible", "order") if name in read]
+    if lacking and "figures" not in read:
+        raise LissomError(f'{lacking[0]} needs "figures", which say what each layer does')
     script = fields_in(content, "the script", (*SCENE_FIELDS, *own))
     schema = script.get("schema")
     if schema != SCHEMA or isinstance(schema, bool):
@@ -235,7 +238,7 @@ def _figure(script: JsonObject, where: str, usual: Mapping[str, Any]) -> FigureS
     if script.get("attach") is not None:
         own["attach"] = parse_joints(script["attach"], f"{where}attach")
     if "visible" in script:
-        own["visible"] = _switches(script["visible"], f"{where}visible")
+        own["visible"] = parse_visible(script["visible"], f"{where}visible")
     if script.get("movement") is not None:
         own["movement"] = parse_movement(script["movement"], f"{where}movement")
     if script.get("opacity") is not None:
@@ -263,21 +266,6 @@ def _handle(content: object, where: str) -> ScriptHandle:
         extent=None if extent is None else as_number(extent, f"{where}.extent"),
         still=as_flag(handle.get("still", True), f"{where}.still"),
     )
-
-
-def _switches(content: object, where: str) -> tuple[tuple[int, bool], ...]:
-    switches = [
-        _switch(switch, f"{where}[{index}]") for index, switch in enumerate(as_list(content, where))
-    ]
-    require_order([frame for frame, _ in switches], f"{where} is")
-    return tuple(switches)
-
-
-def _switch(content: object, where: str) -> tuple[int, bool]:
-    pair = as_list(content, where)
-    if len(pair) != 2:
-        raise LissomError(f"{where} must be a frame and true or false, not {json.dumps(pair)}")
-    return as_whole(pair[0], where), as_flag(pair[1], where)
 
 
 def _options(script: Mapping[str, Any], where: str) -> dict[str, Any]:

@@ -9,7 +9,11 @@ from app.storage.pictures.cores import (
     require_memory as require_memory,
     side_by_side as side_by_side,
 )
-from app.storage.pictures.layered import Layer as Layer, LayeredPicture as LayeredPicture
+from app.storage.pictures.layered import (
+    Layer as Layer,
+    LayeredPicture as LayeredPicture,
+    encode_png as encode_png,
+)
 from app.storage.pictures.openraster import read_openraster as read_openraster
 from app.storage.pictures.photoshop import read_photoshop as read_photoshop
 from app.storage.pictures.picture import (
@@ -23,3 +27,4 @@ from app.storage.pictures.picture import (
     stored_size as stored_size,
     upright as upright,
 )
+from app.storage.pictures.scratch import let_go as let_go, on_disk as on_disk

@@ -2,8 +2,9 @@
 
 import io
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, replace
+from itertools import groupby
 from typing import NamedTuple
 
 import numpy as np
@@ -16,6 +17,7 @@ from app.storage.pictures.picture import Picture
 from engine.arrays import readonly
 
 MOST_LAYERS = 200
+EMPTY = "left out, since it is empty"
 # Of a layer's pixels: where no more of them are within the box of what is drawn, the rest is cut
 # off. Decoded, and on the graphics card, every pixel takes memory.
 CUT_OFF = 0.8
@@ -100,6 +102,10 @@ class Groups:
         self._found[path] = replace(group, name=path)
         return path
 
+    def is_clipped(self, path: str) -> bool:
+        """Tell whether a group is seen only where what lies below it is."""
+        return self._found[path].clipped
+
     def of(self, layers: Sequence[Layer]) -> tuple[Group, ...]:
         """Return the groups that these layers are in."""
         filled = {path for layer in layers for path in paths_to(layer.group)}
@@ -121,24 +127,7 @@ def layered_picture(
     told : Told
         About the layers, and added to.
     """
-    kept: list[Layer] = []
-    empty: dict[str, str] = {}  # the names of layers that clip others in the groups, by their paths
-    for layer in found:
-        base = empty.get(layer.group) if layer.clipped else None
-        if base is not None:
-            told.note(layer.name, f"left out, since it is clipped by the empty layer {base}")
-            continue
-        is_empty = not layer.picture.rgba[..., 3].any()
-        if is_empty:
-            told.note(layer.name, "left out, since it is empty")
-        else:
-            kept.append(layer)
-        if not layer.clipped:
-            # A layer of an inner group is part of what clips in those around it.
-            for path in ("", *paths_to(layer.group)):
-                empty.pop(path, None)
-            if is_empty:
-                empty[layer.group] = layer.name
+    kept = _seen(found, groups, told)
     if not kept:
         raise LissomError("it has no layer on which anything is drawn")
     # Layers may share a picture.
@@ -158,6 +147,47 @@ def layered_picture(
     return LayeredPicture(
         size=size, layers=tuple(layers), summary=told.summary, groups=groups.of(layers)
     )
+
+
+def _seen(layers: Sequence[Layer], groups: Groups, told: Told, depth: int = 0) -> list[Layer]:
+    """Return those of some layers, that are in the same groups so deep, of which a pixel is seen.
+
+    What is clipped by an empty layer or group is nowhere.
+    """
+
+    def unit(layer: Layer) -> Hashable:
+        """Return the group that lies next among these, or the layer."""
+        return (*paths_to(layer.group)[depth : depth + 1], layer)[0]
+
+    seen: list[Layer] = []
+    empty = ""  # the last thing that clips others, where nothing is drawn on it
+    for found, each in groupby(layers, unit):
+        run = list(each)
+        path = found if isinstance(found, str) else ""
+        is_clipped = groups.is_clipped(path) if path else run[0].clipped
+        if is_clipped and empty:
+            for layer in run:
+                told.note(layer.name, f"left out, since it is clipped by the empty {empty}")
+            continue
+        drawn = _seen(run, groups, told, depth + 1) if path else _if_drawn(run[0], told)
+        if not is_clipped:
+            name = f"group {path.rpartition('/')[2]}" if path else f"layer {run[0].name}"
+            empty = "" if drawn else name
+        seen += drawn
+    return seen
+
+
+def _if_drawn(layer: Layer, told: Told) -> list[Layer]:
+    """Return a layer, or nothing where it is empty, which is told."""
+    is_empty = is_blank(layer.picture)
+    if is_empty:
+        told.note(layer.name, EMPTY)
+    return [] if is_empty else [layer]
+
+
+def is_blank(picture: Picture) -> bool:
+    """Tell whether nothing at all is drawn on a picture."""
+    return not picture.rgba[..., 3].any()
 
 
 class _Trimmed(NamedTuple):

@@ -14,10 +14,12 @@ from app.document import BlendMode, Group, paths_to
 from app.errors import LissomError, Told
 from app.storage.files import DAMAGED_ZIP, opened_zip
 from app.storage.pictures.layered import (
+    EMPTY,
     Groups,
     Layer,
     LayeredPicture,
     corner_from_top,
+    is_blank,
     layered_picture,
     require_few,
     require_room,
@@ -87,6 +89,10 @@ def _read(archive: zipfile.ZipFile) -> LayeredPicture:
     for (element, place), source in zip(elements, sources, strict=True):
         member, picture = members[source], pictures[source]
         name = element.get("name", "").strip() or "layer"
+        if is_blank(picture):
+            # It clips nothing: what else lies below does.
+            told.note(name, EMPTY)
+            continue
         layer = Layer(
             name=name,
             data=member,
@@ -158,8 +164,8 @@ def _opacity(element: ET.Element) -> float:
 
 
 def _passes(element: ET.Element) -> bool:
-    """Tell whether a group of this element is painted as if there were none, if it can be."""
-    return element.get("isolation", "auto") == "auto"
+    """Tell whether a group of this element is painted as if there were none; no faded one is."""
+    return element.get("isolation", "auto") == "auto" and _opacity(element) == 1
 
 
 def _is_clipped(element: ET.Element) -> bool:

@@ -5,12 +5,12 @@ import re
 import struct
 import warnings
 import zlib
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import numpy as np
-from PIL import Image, ImageChops, ImageFilter
+from PIL import Image
 
 from app.document import BlendMode, Group
 from app.errors import LissomError, Told
@@ -23,6 +23,7 @@ from app.storage.pictures.layered import (
     layered_picture,
     require_room,
 )
+from app.storage.pictures.photoshop_masks import Masked, is_masked, masked_pixels
 from app.storage.pictures.picture import Picture, decode_picture
 from engine.arrays import freeze
 
@@ -34,7 +35,10 @@ DRAWN: Final = {"pixel", "shape", "smartobject", "type"}
 # Channels of a layer's colours, numbered from 0, and the one before them.
 COLOURS: Final = {"GRAYSCALE": 1, "RGB": 3, "CMYK": 4, "LAB": 3}
 TRANSPARENCY: Final = -1
+KNOCKOUT: Final = b"knko"
 PADDING: Final = 3  # bytes that may follow the picture of all layers
+# Of two black levels and two white ones, between which a layer is seen: all of them, or not told.
+ALL_LEVELS: Final = {(0, 0xFFFF), (0, 0)}
 MODES: Final[dict[str, BlendMode]] = {
     "NORMAL": "normal",
     "MULTIPLY": "multiply",
@@ -63,7 +67,7 @@ class _Place:
     """Where a layer is."""
 
     group: str = ""  # its path
-    masks: tuple[Any, ...] = ()  # the groups around it that have masks
+    masks: tuple[Masked, ...] = ()  # the groups around it by whose masks it is to be cut
 
 
 def read_photoshop(data: bytes) -> LayeredPicture:
@@ -102,11 +106,10 @@ def _read(drawing: Any) -> LayeredPicture:
     layers = []
     for place, layer, is_clipped in found:
         name = layer.name.strip() or "layer"
-        _require_channels(layer, drawing)
-        image = _pixels(layer, place.masks, told)
-        if image is None:
-            # So that it clips what it does in the file.
-            image = Image.new("RGBA", (1, 1))
+        if not layer.is_group():
+            _require_channels(layer, drawing)
+        # An empty one clips what it does in the file.
+        image = masked_pixels(layer, place.masks, told) or Image.new("RGBA", (1, 1))
         picture = Picture(rgba=freeze(np.array(image)))
         read = Layer(
             name=name,
@@ -115,7 +118,7 @@ def _read(drawing: Any) -> LayeredPicture:
             corner=corner_from_top(layer.left, layer.top, picture.size, drawing.height),
             visible=layer.visible,
             opacity=layer.opacity / 255 * layer.fill_opacity / 255,
-            blend=_blend(layer, told),
+            blend="normal" if layer.is_group() else _blend(layer, told),
             clipped=is_clipped,
             group=place.group,
         )
@@ -134,41 +137,63 @@ def _read(drawing: Any) -> LayeredPicture:
 def _drawn_layers(
     around: Any, place: _Place, groups: Groups, told: Told
 ) -> Iterator[tuple[_Place, Any, bool]]:
-    """Go through what is drawn, from the back: where it is, and whether it is clipped."""
+    """Go through what is drawn, from the back: where it is, and whether it is clipped.
+
+    A group on which nothing is drawn stands in its own place.
+    """
     # What clips a layer may be left out, and then nothing does.
-    clips = True
+    clips, has_base = True, False
     for layer in around:
         name = layer.name.strip() or "layer"
+        is_clipped = _is_clipping(layer) and clips
+        # What clips a layer is cut by the masks of the groups around both.
+        masks = () if is_clipped and has_base else place.masks
         if layer.is_group():
             passes = layer.blend_mode.name == "PASS_THROUGH"
             group = Group(
                 name=name,
-                opacity=layer.opacity / 255,
+                opacity=layer.opacity / 255 * layer.fill_opacity / 255,
                 hidden=not layer.visible,
                 blend="pass-through" if passes else _blend(layer, told),
-                clipped=_is_clipping(layer) and clips,
+                clipped=is_clipped,
             )
-            masks = place.masks
-            if _is_masked(layer, told):
-                masks = (*masks, layer)
+            _tell_left_out(layer, name, told)
+            if is_masked(layer, told):
+                canvas = np.zeros((around._psd.height, around._psd.width), bool)  # noqa: SLF001
+                masks = (*masks, Masked(layer, canvas))
                 told.note(name, "its mask is cut into the layers of the group, as they are drawn")
             inner = _Place(group=groups.add(place.group, group), masks=masks)
-            yield from _drawn_layers(layer, inner, groups, told)
+            drawn = list(_drawn_layers(layer, inner, groups, told))
+            yield from drawn or [(inner, layer, False)]
         elif layer.kind in DRAWN:
-            if layer.has_effects():
-                effects = dict.fromkeys(
-                    _in_words(type(effect).__name__) for effect in layer.effects if effect.enabled
-                )
-                told.lose(name, f"drawn without effects ({', '.join(effects)})")
+            _tell_left_out(layer, name, told)
             if layer.kind == "type":
                 told.note(name, "text, drawn as a picture")
-            yield place, layer, _is_clipping(layer) and clips
+            yield replace(place, masks=masks), layer, is_clipped
         else:
             kind = "a fill" if layer.kind.endswith("fill") else "an adjustment"
             told.lose(name, f"left out, since it is {kind} layer")
             clips = clips and _is_clipping(layer)
             continue
+        has_base = has_base or not is_clipped
         clips = clips or not _is_clipping(layer)
+
+
+def _tell_left_out(layer: Any, name: str, told: Told) -> None:
+    """Tell of what changes how a layer or group looks and is not taken over."""
+    if layer.has_effects():
+        effects = dict.fromkeys(
+            _in_words(type(effect).__name__) for effect in layer.effects if effect.enabled
+        )
+        told.lose(name, f"drawn without effects ({', '.join(effects)})")
+    if layer.kind == "artboard":
+        told.lose(name, "an artboard, of which neither the background nor the edges are drawn")
+    ranges = layer._record.blending_ranges  # noqa: SLF001 - as of channels
+    pairs = [ranges.composite_ranges or [], *(ranges.channel_ranges or [])]
+    if any(each not in ALL_LEVELS for pair in pairs for each in pair):
+        told.lose(name, "drawn at all brightnesses, whatever its “Blend If” says")
+    if layer.tagged_blocks.get_data(KNOCKOUT):
+        told.lose(name, "drawn over what is behind, which it knocks out in the file")
 
 
 def _is_clipping(layer: Any) -> bool:
@@ -214,47 +239,3 @@ def _require_all_rows(channel: Any, rows: int, version: int, *, padding: int = 0
         left = len(channel.data) - size * rows - int(lengths.sum())
         if len(lengths) < rows or not 0 <= left <= padding:
             raise LissomError("the rows of one of its channels are not as long as it says")
-
-
-def _pixels(layer: Any, around: Sequence[Any], told: Told) -> Image.Image | None:
-    """Return the pixels of a layer with its masks, and those of groups around it, taken in.
-
-    None where it has none.
-    """
-    if layer.width == 0 or layer.height == 0:
-        return None
-    image = layer.topil()
-    if image is None:
-        return None
-    pixels: Image.Image = image.convert("RGBA")
-    for masked in (layer, *around):
-        if _is_masked(masked, told if masked is layer else Told()):
-            seen = _seen_through(masked.mask, (layer.left, layer.top), pixels.size)
-            pixels.putalpha(ImageChops.multiply(pixels.getchannel("A"), seen))
-    return pixels
-
-
-def _is_masked(layer: Any, told: Told) -> bool:
-    """Tell whether a layer or group has a mask of pixels; one that is not taken over is told."""
-    mask = layer.mask
-    is_masked = mask is not None and not mask.disabled
-    # Programs store what is seen through a mask of paths as one of pixels, too.
-    is_by_paths = layer.kind != "shape" and mask is None and layer.has_vector_mask()
-    if is_by_paths and not layer.vector_mask.disabled:
-        told.lose(layer.name.strip() or "layer", "drawn without its vector mask")
-    return is_masked
-
-
-def _seen_through(mask: Any, corner: tuple[int, int], size: tuple[int, int]) -> Image.Image:
-    """Return how much of each pixel of a layer is seen through a mask."""
-    seen = Image.new("L", size, mask.background_color)
-    drawn = mask.topil()
-    if drawn is not None:
-        seen.paste(drawn.convert("L"), (mask.left - corner[0], mask.top - corner[1]))
-    settings = mask.parameters
-    if settings is not None and settings.user_mask_feather:
-        seen = seen.filter(ImageFilter.GaussianBlur(settings.user_mask_feather))
-    if settings is not None and settings.user_mask_density is not None:
-        density = settings.user_mask_density / 255
-        seen = seen.point(lambda level: round(255 - density * (255 - level)))
-    return seen

@@ -5,17 +5,29 @@ from itertools import combinations_with_replacement
 
 from imgui_bundle import ImVec2, imgui
 
-from app.editor import Action, Dialog, FileDialog, Question, Recovery, Session, ShortcutSheet, do
+from app.editor import (
+    Action,
+    Dialog,
+    FileDialog,
+    ProblemReport,
+    Question,
+    Recovery,
+    Session,
+    ShortcutSheet,
+    do,
+    failures,
+)
 from app.editor.actions import answer, browse, close_dialog, use_own_dialogs
 from app.errors import shown_name
 from app.ui.dialogs.file_browser import FileBrowser, LookUp
 from app.ui.dialogs.native_dialog import NativeDialog
+from app.ui.dialogs.problem import draw_problem
 from app.ui.dialogs.recovery import draw_recovery
 from app.ui.shortcuts import GESTURES, MENUS
 from app.ui.style import Look, heading, main_button
 
 HEADING = 2  # rows that the heading of a group takes
-GOING_ON = (browse, use_own_dialogs)  # with the dialog that is open
+GOING_ON = (browse, use_own_dialogs, failures.word_report)  # with the dialog that is open
 
 
 class Dialogs:
@@ -80,6 +92,8 @@ class Dialogs:
                 return self._browser.draw(dialog, session, look, thumbnail)
             case Recovery():
                 return draw_recovery(dialog, look)
+            case ProblemReport():
+                return draw_problem(dialog, look)
             case ShortcutSheet():
                 _shortcuts(look)
                 return []
@@ -89,6 +103,8 @@ def _title(dialog: Dialog) -> str:
     match dialog:
         case Recovery():
             return "Unsaved work"
+        case ProblemReport():
+            return "Report a problem"
         case ShortcutSheet():
             return "Keys and mouse"
     return dialog.title

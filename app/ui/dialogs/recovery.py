@@ -2,7 +2,7 @@
 
 from imgui_bundle import ImVec2, imgui
 
-from app.editor import Action, Leftover, Recovery, do
+from app.editor import Action, Leftover, Recovery, do, failures
 from app.editor.actions import answer, close_dialog, files
 from app.errors import shown_name
 from app.ui.dialogs.folder_listing import Entry
@@ -34,6 +34,9 @@ def draw_recovery(recovery: Recovery, look: Look) -> list[Action]:
     imgui.dummy(ImVec2(0, 0.4 * look.em))
     if imgui.button("Later"):
         actions.append(do(close_dialog))
+    imgui.same_line()
+    if imgui.button("Report a problem…"):
+        actions.append(do(failures.ask_report))
     return actions
 
 

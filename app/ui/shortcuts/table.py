@@ -6,17 +6,20 @@ from typing import Any
 from imgui_bundle import hello_imgui, icons_fontawesome_6 as icons
 
 from app.document import LINEAR, PRESETS
-from app.editor import Project, Session, do, layering, with_project
+from app.editor import Project, Session, do, failures, layering, with_project
 from app.editor.actions import (
     OverlayName,
     cutting,
     cycles,
+    drafting,
     editing,
     exporting,
     files,
+    giving,
     guiding,
     keys,
     material,
+    placing,
     playback,
     posing,
     saving,
@@ -29,10 +32,13 @@ from app.editor.poses import copying, library, pasting, receiving
 from app.editor.tools import moving
 from app.ui.panel import bring_to_front
 from app.ui.shortcuts.binding import Binding
+from app.ui.shortcuts.manual import open_manual
 
 
 def _undo_label(_: Session, project: Project) -> str:
-    label = project.history.undo_label
+    if project.draft is not None and project.draft.past:
+        return "“Move a joint”"
+    label = "Give a motion" if project.errand is not None else project.history.undo_label
     return "" if label is None else f"“{label}”"
 
 
@@ -89,12 +95,28 @@ def _records(session: Session, project: Project) -> bool:
     return session.pointer is None and (session.records or project.take is not None)
 
 
+def _gives(session: Session, project: Project) -> bool:
+    """Tell whether a motion is on its way, and nothing is in hand that Esc ends first."""
+    return project.errand is not None and session.pointer is None and session.poses
+
+
+def _has_sides(_: Session, project: Project) -> bool:
+    """Tell whether a motion is drafted for a body that is seen from the front."""
+    return project.draft is not None and project.draft.kind == "biped-front"
+
+
 def _selected(_: Session, project: Project) -> bool:
     return bool(project.selected)
 
 
 def _frees_arrows(session: Session, project: Project) -> bool:
     return not (session.moves or project.selected)
+
+
+def _can_delete(_: Session, project: Project) -> bool:
+    """Tell whether something is selected: keys, handles, or a joint of a motion."""
+    joint = project.draft is not None and project.draft.chosen
+    return bool(joint or project.selected or project.chosen_of)
 
 
 def _can_pose(session: Session, _: Project) -> bool:
@@ -275,7 +297,7 @@ MENUS: dict[str, dict[str, Binding]] = {
             "Delete",
             do(editing.delete),
             "Delete, Backspace",
-            possible=lambda _, project: project.selected or project.chosen_of,
+            possible=_can_delete,
         ),
         "rename layer": Binding("Rename layer", do(_rename_layer), "F2", parted=True),
     },
@@ -367,6 +389,35 @@ MENUS: dict[str, dict[str, Binding]] = {
             icon=icons.ICON_FA_RIGHT_LEFT,
             hint="Select the handles on the other side that have the same names",
             possible=_selected,
+        ),
+    },
+    "Motion": {
+        "give motion": Binding(
+            "Give it a motion…",
+            do(drafting.begin),
+            "A",
+            icon=icons.ICON_FA_PERSON_WALKING,
+            hint="Let it walk, wave or breathe: say where its joints are, and which motion it is",
+            why_not=drafting.why_not,
+            active=lambda session: session.project is not None and session.project.draft,
+        ),
+        "mirror joints": Binding(
+            "Mirror the joints",
+            do(placing.mirror),
+            icon=icons.ICON_FA_LEFT_RIGHT,
+            hint="Put the joints of one side where those of the other one are, seen in a mirror",
+            possible=_has_sides,
+            parted=True,
+        ),
+        "find joints": Binding(
+            "Find the joints again",
+            do(placing.suggest_again),
+            icon=icons.ICON_FA_WAND_MAGIC_SPARKLES,
+            hint="Put all joints back where they were found",
+            possible=lambda _, project: project.draft is not None and project.draft.suggested,
+        ),
+        "no motion": Binding(
+            "Stop giving the motion", do(giving.cancel), "Escape", possible=_gives, parted=True
         ),
     },
     "View": {
@@ -585,13 +636,15 @@ MENUS: dict[str, dict[str, Binding]] = {
         "repeat no more": Binding("Stop repeating", do(cycles.stop), possible=cycles.cycle_here),
     },
     "Help": {
+        "manual": Binding("Manual", do(open_manual), "F1", needs_project=False),
         "shortcuts": Binding(
-            "Keys and mouse", do(viewing.show_shortcuts), "F1", needs_project=False
+            "Keys and mouse", do(viewing.show_shortcuts), "Shift+F1", needs_project=False
         ),
         "first animation": Binding(
             "Make a giraffe bow", do(guiding.begin), needs_project=False, parted=True
         ),
         "leave guide": Binding("Leave the guide", do(guiding.leave), "Escape", possible=_can_leave),
+        "report": Binding("Report a problem…", do(failures.ask_report), needs_project=False),
         "import": Binding("What opening it told", do(files.show_summary), possible=_has_summary),
     },
 }

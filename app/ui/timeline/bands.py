@@ -14,7 +14,7 @@ MARKS, SMALL_MARKS = 1.25, 0.7  # em: height of the band of markers, with their 
 BAR, BAR_SHARE = 3.6, 0.62  # em: height of intervals at most, and as a part of the track's
 CRAMPED, CRAMPED_SHARE = 5.5, 0.85  # em: below this height bars take more, and the overview goes
 ROUNDING = 0.4  # em
-NAMES, NAMES_SHARE = 9.0, 0.25  # em: width of the figures' names at most, and as a part of all
+NAMES, NAMES_SHARE = 11.0, 0.25  # em: width of the figures' names at most, and as a part of all
 THIN, TALL = 1.25, 2.8  # em: height of tracks' rows, and of the row of a figure that is alone
 EVEN, ROOMY = 2.0, 3.4  # em: heights of the rows of figures, at least and at most
 

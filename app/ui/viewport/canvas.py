@@ -126,6 +126,7 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
         project.playhead.since is None,
         session.hovered,
         session.cutting,
+        project.draft is None,
         project.figure.cut_out if session.cutting else None,
         session.tint,
         project.document.figures,

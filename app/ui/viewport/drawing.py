@@ -9,7 +9,7 @@ from app.editor import HeatMap, Project
 from app.motion import PosableMesh, Shown, Vertices
 from app.render import DrawnMesh, Renderer, shader_is_faster
 from app.render.gpu import GpuMesh, GpuPicture, PosedMesh
-from app.storage import Picture
+from app.storage import Picture, let_go
 from app.ui.viewport.backdrop import measure_brightness
 from app.ui.viewport.cut_view import CutView
 from app.ui.viewport.material_view import tint_of
@@ -165,6 +165,7 @@ class Drawing:
             texture = self.project.puppets[figure].cut.value.texture
             context = self._renderer.programs.context
             self._pictures[key] = GpuPicture(context, texture, is_for_screen=True)
+            let_go(texture)
         return self._pictures[key]
 
     def _key(self, figure: int) -> tuple[int | None, Picture]:

@@ -52,7 +52,7 @@ def mark_all(
     if session.export_frame is not None:
         lines.append(_frame(session.export_frame, palette, scale))
     is_playing = project.playhead.since is not None and project.take is None
-    if not session.overlays.handles or is_playing:
+    if not session.overlays.handles or is_playing or project.draft is not None:
         return tuple(lines), dots
     handle_lines, discs = mark_handles(_handles(session, project, shown), scale=scale)
     anchor = find_anchor(project, shown)

@@ -6,9 +6,9 @@ from typing import NamedTuple
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui, imgui_ctx
 
 from app.document import HOLDS, Handle, handle_commands
-from app.editor import Action, Project, Session, do
+from app.editor import Action, Project, Session, do, layering
 from app.editor.actions import editing, posing, viewing
-from app.editor.tools import pointing
+from app.editor.tools import Spot, pointing
 from app.ui.panel import is_in_front
 from app.ui.shortcuts import ALT, CTRL, bound_item, with_key
 from app.ui.style import Look, density, in_hand, is_pressed
@@ -18,6 +18,7 @@ from app.ui.viewport.hand import (
     draw_axis,
     draw_badges,
     draw_coming_strokes,
+    draw_joints,
     draw_mode,
     draw_ring,
     draw_slits,
@@ -89,13 +90,12 @@ def draw(session: Session, look: Look, project: Project, pictures: SplitTextures
     draw_axis(look, axis)
     if ring is not None:
         draw_ring(look, ring, is_pointed=on_ring and session.pointer is None)
-    hint = hint_at(session, screen, spot) if is_over else ""
-    if hint != session.hint:
-        actions.append(do(pointing.explain, hint))
+    actions += _explain(session, screen, spot, is_over=is_over)
     if session.tint == "stiffness" and not is_in_front("Material"):
         actions.append(do(viewing.tint, None))
     if _shows_handles(session, project):
         draw_bones(look, screen)
+    draw_joints(session, look, screen)
     if session.material is not None and (on_canvas or session.pointer is not None):
         draw_brush(session, look, imgui.get_mouse_pos(), screen.scale)
     if session.cutting is None:
@@ -111,6 +111,13 @@ def _fit(session: Session, room: ImVec2) -> list[Action]:
     """Let the picture have as many pixels as it has room for."""
     width, height = (max(1, round(side * density())) for side in room)
     return [] if (width, height) == session.screen else [do(viewing.resize, width, height)]
+
+
+def _explain(session: Session, screen: Screen, spot: Spot, *, is_over: bool) -> list[Action]:
+    """Say what can be done where the pointer is; none of the rows of layers is below it then."""
+    actions = [do(layering.tidy_rows)] if is_over and screen.project.lingering else []
+    hint = hint_at(session, screen, spot) if is_over else ""
+    return actions if hint == session.hint else [*actions, do(pointing.explain, hint)]
 
 
 def _is_canvas_pressed() -> bool:
@@ -144,9 +151,12 @@ class _Handles(NamedTuple):
 
 
 def _shows_handles(session: Session, project: Project) -> bool:
-    """Tell whether handles and bones are seen: not while it plays, nor over the picture at rest."""
-    is_playing = project.playhead.since is not None
-    return session.overlays.handles and session.cutting is None and not is_playing
+    """Tell whether handles and bones are seen: not while it plays, nor over the picture at rest.
+
+    While a motion is drafted its joints are in their place.
+    """
+    is_away = project.playhead.since is not None or project.draft is not None
+    return session.overlays.handles and session.cutting is None and not is_away
 
 
 def _lay_handles(session: Session, look: Look, screen: Screen) -> _Handles:

@@ -1,11 +1,10 @@
 """The frame guard: a panel that raises is reported, and the window lives on."""
 
-import traceback
 from collections.abc import Callable
 
 from imgui_bundle import imgui
 
-Tell = Callable[[str, str], None]
+Tell = Callable[[str, Exception], None]
 
 
 def allow_recovery() -> None:
@@ -26,7 +25,7 @@ def guard(what: str, draw: Callable[[], None], report: Tell) -> None:
         The part's name, for the message.
     draw : callable
     report : callable
-        Takes a sentence and its details, for the person to copy.
+        Takes a sentence, and what was raised.
     """
     state = imgui.internal.ErrorRecoveryState()
     imgui.internal.error_recovery_store_state(state)
@@ -34,4 +33,4 @@ def guard(what: str, draw: Callable[[], None], report: Tell) -> None:
         draw()
     except Exception as error:  # noqa: BLE001 - the frame guard: the window must live on
         imgui.internal.error_recovery_try_to_recover_state(state)
-        report(f"{what} could not be drawn: {error}", traceback.format_exc())
+        report(f"{what} could not be drawn: {error}", error)

@@ -1,14 +1,24 @@
 """The window's frame: layout, bars, dialogs, and the one place where actions are applied."""
 
-import traceback
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 
 from imgui_bundle import ImVec2, hello_imgui, imgui, implot
 
-from app.editor import Action, FileDialog, Project, Session, do, promises, sentence
-from app.editor.actions import editing, guiding, playback, saving, upkeep
+from app.editor import Action, FileDialog, Project, Session, do, failures, promises, sentence
+from app.editor.actions import (
+    dismiss,
+    editing,
+    exporting,
+    guiding,
+    playback,
+    saving,
+    timeline_pointing,
+    upkeep,
+    viewing,
+)
+from app.editor.tools import pointing
 from app.errors import EXPECTED_ERRORS
 from app.render import Thumbnail
 from app.ui import bars, toasts, welcome
@@ -16,9 +26,9 @@ from app.ui.dialogs import Dialogs
 from app.ui.panel import Panel, bring_to_front
 from app.ui.shortcuts import pressed
 from app.ui.style import FONT_SIZE, PALETTES, Look, apply_theme, interface_scale, load_fonts
-from app.ui.window.callout import Callout
 from app.ui.window.docking import Docking
 from app.ui.window.guard import allow_recovery, guard
+from app.ui.window.guide import Callout
 
 # Saved layouts of another number are forgotten: they name other panels.
 LAYOUT = 1
@@ -27,6 +37,17 @@ IDLE_FPS = 0.2
 AWAKE = 0.5  # seconds for which it goes on after that, for what it leads to
 REPEATS = 2  # frames after which the next ones would show nothing new
 LEFT = imgui.MouseButton_.left
+# What comes of itself, frame by frame, and tells nothing of what the person did.
+UNNOTED = {
+    dismiss,
+    editing.use_widget,
+    exporting.show_frame,
+    pointing.explain,
+    pointing.hover,
+    timeline_pointing.follow,
+    viewing.attend,
+    viewing.resize,
+}
 
 
 class Shell:
@@ -105,7 +126,7 @@ class Shell:
         except EXPECTED_ERRORS as error:
             self.session.tell(sentence(str(error)), tone="error")
         except Exception as error:  # noqa: BLE001 - part of the frame guard
-            self._report(f"That did not work: {error}", traceback.format_exc())
+            self._report(f"That did not work: {error}", error)
 
     @property
     def look(self) -> Look:
@@ -145,8 +166,8 @@ class Shell:
 
         return partial(guard, what, collect, self._report)
 
-    def _report(self, text: str, details: str) -> None:
-        self.session.tell(text, tone="error", details=details)
+    def _report(self, text: str, error: Exception) -> None:
+        failures.surprise(self.session, text, error)
 
     def _load_fonts(self) -> None:
         self._bold = load_fonts()
@@ -207,6 +228,8 @@ class Shell:
         # What panels saw of the pointer comes first: what was dropped there depends on it.
         actions, self._actions, self._asked = self._actions + self._asked, [], []
         for action in actions:
+            if action.verb not in UNNOTED:
+                failures.note(self.session, action)
             self.attempt(partial(action.apply, self.session))
         if self.session.wanted_panel:
             bring_to_front(self.session.wanted_panel)

@@ -3,7 +3,6 @@
 import io
 import os
 import sys
-import traceback
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -19,14 +18,14 @@ from PIL import Image
 import glfw  # isort: skip
 
 from app.document import Pose
-from app.editor import Action, FileDialog, Project, Session, do, layering
+from app.editor import Action, FileDialog, Project, Session, do, failures, layering
 from app.editor.actions import exporting, saving
 from app.errors import EXPECTED_ERRORS, LissomError, shown_name
 from app.render import LayerPictures, Renderer, Thumbnail, Thumbnails
-from app.render.gpu import is_software
+from app.render.gpu import graphics_in_words, is_software
 from app.storage import app_icon, sample_images
 from app.ui.panel import Panel
-from app.ui.panels import deform, distortion, export, handle, layers, poses
+from app.ui.panels import deform, distortion, export, handle, layers, motion, poses
 from app.ui.panels.body import cut_out, domain, material
 from app.ui.style import Look
 from app.ui.timeline import timeline
@@ -213,12 +212,12 @@ class Window:
                 saving.autosave_now(session)
             except EXPECTED_ERRORS as reason:
                 kept = f" Unsaved work could not be kept ({reason})."
-        session.tell(
+        failures.surprise(
+            session,
             f"The picture cannot be drawn: {error}.{kept} If the picture does not come back, save "
             "and start Lissom again.",
-            tone="error",
+            error,
             topic="drawing",
-            details="".join(traceback.format_exception(error)),
         )
 
     def _panels(self) -> list[Panel]:
@@ -230,6 +229,7 @@ class Window:
             Panel("Handle", icons.ICON_FA_CIRCLE_DOT, handle.draw),
             Panel("Layers", icons.ICON_FA_LAYER_GROUP, draw_layers),
             Panel("Poses", icons.ICON_FA_PERSON_RUNNING, draw_poses),
+            Panel("Motion", icons.ICON_FA_PERSON_WALKING, motion.draw),
             Panel("Deform", icons.ICON_FA_SLIDERS, deform.draw),
             Panel("Material", icons.ICON_FA_CUBE, material.draw),
             Panel("Distortion", icons.ICON_FA_CHART_LINE, distortion.draw),
@@ -253,6 +253,7 @@ class Window:
     def _start(self) -> None:
         renderer = self._renderer = self._connect()
         self.session.full_detail = not is_software(renderer.programs.context)
+        self.session.graphics = graphics_in_words(renderer.programs.context)
         self._canvas = Canvas(renderer)
         self._exporter = Exporter(renderer)
         self._thumbnails = Thumbnails(renderer.programs.context)

@@ -9,10 +9,11 @@ import numpy as np
 from engine.arrays import Complexes, Floats, Indices
 from engine.domain.limbs.anatomy import Anatomy, neck_along
 from engine.domain.limbs.skeleton import Branch
+from engine.geometry import contains
 
 # What is so short, in radii of where it begins, and thins out so much between a quarter and three
 # of its length is a corner, not a leg.
-SHORT, CORNER = 1.0, 0.45
+SHORT, CORNER = 1.0, 0.5
 # Times as far to the side as down: a tail that lies on the ground.
 LYING = 1.3
 # The ankle and the sole are so high above the lowest place of a leg's middle line, in its radii.
@@ -21,12 +22,16 @@ ANKLE, SOLE = 1.1, 0.6
 TOES = 0.03
 # One leg alone is that of a body where its foot reaches so far.
 FOOT = 0.06
+RISEN = 0.3  # heights by which the head is above the hips
 UPRIGHT = 2.0  # widths by which a body is tall at least whose legs are together
 # A leg that is lifted begins so near to the one that stands, in radii of where that one begins.
 SAME_HIPS = 1.2
 # The trunk lies where legs leave it so far apart, in radii of it; where nothing rises above the
 # legs, where these stand so far apart in widths of the shape.
 LONG_TRUNK, WIDE_STANCE = 1.5, 0.25
+# From the front it is so much of a shape that its mirror image covers.
+SYMMETRIC = 0.82
+SAMPLES = 48  # of the shape's box, along each side
 END = 0.35  # parts of what is between the legs: what leaves there is a head or a tail
 
 
@@ -165,6 +170,8 @@ class BodyPlan:
         if self.length(self.trunk) >= long * self.radii[self.trunk[[0, -1]]].min():
             shares = [self._leaves_at(end) for end in self.others]
             return any(not END < share < 1 - END for share in shares) or not shares
+        if len(self.legs) > 2:
+            return self.symmetry < SYMMETRIC
         feet = self.places[[self.legs[0].ankle, self.legs[-1].ankle]].real
         hips = self.places[self.trunk[0]]
         tops = [self.places[self.between(int(self.trunk[0]), end)] for end in self.others]
@@ -209,6 +216,23 @@ class BodyPlan:
         if len(self.legs) == 1:
             return int(self.legs[0].path[0])
         return self.meeting(tip, self.legs[0].ankle, self.legs[-1].ankle)
+
+    @cached_property
+    def symmetry(self) -> float:
+        """Which part of the shape is covered by its mirror image, at the hips' middle."""
+        steps = (np.arange(SAMPLES) + 0.5) / SAMPLES
+        grid = self.low + steps * self.wide + 1j * steps[:, None] * self.tall
+        inside = grid[contains(self.loops[0], grid.ravel()).reshape(grid.shape)]
+        middle = self.places[self.hips].real
+        return float(contains(self.loops[0], 2 * middle - inside.conj()).mean())
+
+    @property
+    def is_upright(self) -> bool:
+        """Whether the head is well above the hips."""
+        tip = self.head_end
+        if tip is None:
+            return False
+        return float((self.places[tip] - self.places[self.hips]).imag) >= RISEN * self.tall
 
     def longest(self) -> Indices:
         """Return the longest way from end to end, from the lower end, or from the left one."""

@@ -10,7 +10,7 @@ LONG, LONG_FISH = 3.4, 1.7
 FIN = 0.4  # parts of the way along a fish that its fin takes at most
 ALIKE = 2.0  # times by which the two tips of a fin are as long as each other
 # Parts of a shape's area that are along one path.
-ALONG = 0.8
+ALONG = 0.75
 # From joint to joint it is so many times as far as the shape is thick, if there are enough of them.
 SPACING = 0.9
 FEWEST, USUAL, MOST = 4, 7, 16

@@ -5,7 +5,8 @@ Out: where each joint is at each moment.
 Imports: `engine.arrays`, `engine.errors`.
 """
 
-from engine.geometry.motions.body import Body as Body
+from engine.geometry.motions.body import Body as Body, other_side as other_side
+from engine.geometry.motions.catalogue import motion_named as motion_named
 from engine.geometry.motions.facing import facing_of as facing_of
 from engine.geometry.motions.kinds import (
     KINDS as KINDS,

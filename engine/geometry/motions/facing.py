@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from engine.arrays import Complexes
+from engine.geometry.motions.body import other_side
 from engine.geometry.motions.kinds import BodyKind
 
 # How much each sign counts for a kind seen from the side. Heads are ahead of hips, tails behind;
@@ -27,6 +28,14 @@ def facing_of(kind: BodyKind, joints: Mapping[str, complex], outline: Complexes)
         # The first joint leads.
         places = [joints[name] for name in kind.parents if name in joints]
         return 1 if places[0].real > places[-1].real else -1
+    if kind.name == "biped-front":
+        # Which way is ahead there is a matter of names: to where the left side is.
+        sides = [
+            (at - joints[other_side(name)]).real
+            for name, at in joints.items()
+            if name.endswith(".L") and other_side(name) in joints
+        ]
+        return 1 if sum(sides) >= 0 else -1
     if kind.name not in {"biped-side", "four-legs"}:
         return 1
     ways = [

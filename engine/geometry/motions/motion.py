@@ -72,6 +72,7 @@ class Choreography(ABC):
     """What a motion does with any body of a kind."""
 
     needed: tuple[str, ...] = ()  # joints without which it cannot be
+    either: tuple[str, ...] = ()  # joints of which it needs one, the first one rather
 
     @property
     def travels(self) -> bool:
@@ -137,6 +138,8 @@ class Motion:
             raise EngineError(f"{self.name!r} has no steps to travel by")
         body = body.mirrored() if parameters.mirrored else body
         body.require(course.needed, f"{self.name!r}")
+        if course.either and not any(name in body.joints for name in course.either):
+            body.require(course.either[:1], f"{self.name!r}")
         performed = course.performed(body, parameters)
         ways = [share * performed.stride if parameters.travel else 0.0 for share in shares]
         moments = [performed.at((share + parameters.start) % 1.0) for share in shares]

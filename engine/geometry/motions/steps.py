@@ -12,8 +12,7 @@ from engine.geometry.motions.curves import bump, hermite
 # A leg that is drawn bent by so much bends that way; a straighter one as its kind does.
 BENT = 0.21  # radians
 # Of a leg's length: so near to straight it may come, so that the knee does not snap.
-STRAIGHT = 0.992
-GROUND = 0.15  # of a leg's length: feet that are drawn no higher above the lowest one stand
+STRAIGHT = 0.997
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -26,6 +25,7 @@ class Gait:
     # When each foot comes down, as shares of the cycle.
     falls: tuple[tuple[str, float], ...]
     gathered: float = 0.2  # how far feet are set below the hips, rather than where they are drawn
+    treads: bool = True  # whether, on the spot, feet go back on the ground as under who walks
     roll: float = 0.0  # degrees by which a foot points down as it leaves the ground
 
     def phase(self, foot: str, phase: float) -> float:
@@ -46,13 +46,17 @@ class Gait:
 
     def lifted(self, foot: str, phase: float) -> float:
         """Return how high a foot is, as a share of the most."""
-        own = self.phase(foot, phase)
-        return bump((own - self.stance) / (1 - self.stance))
+        return bump(self._swung(foot, phase))
 
     def rolled(self, foot: str, phase: float) -> float:
         """Return by how many degrees a foot points down; before it comes down, up."""
-        share = (self.phase(foot, phase) - self.stance) / (1 - self.stance)
+        share = self._swung(foot, phase)
         return self.roll * (bump(share / 0.7) - 0.4 * bump((share - 0.5) / 0.5))
+
+    def _swung(self, foot: str, phase: float) -> float:
+        """Return how much of its swing a foot has done, 0 while it stands."""
+        own = self.phase(foot, phase)
+        return 0.0 if own <= self.stance else (own - self.stance) / (1 - self.stance)
 
 
 class BodyLeg(NamedTuple):
@@ -85,7 +89,8 @@ def leg_of(body: Body, tip: str) -> BodyLeg:
 def _usual_bend(body: Body, tip: str) -> int:
     """Return to which side the middle of a leg goes: 1 is counter-clockwise from root to tip."""
     if body.kind.name == "biped-front":
-        return 1 if tip.endswith(".R") else -1
+        middle = body.joints[next(iter(body.joints))].real
+        return -1 if body.joints[tip].real < middle else 1
     # A hock points backwards, knees and wrists forwards.
     is_hock = body.kind.name == "four-legs" and plain(tip) == "foot"
     return -body.facing if is_hock else body.facing

@@ -101,6 +101,7 @@ except SystemExit as leaving:
         ("desktop --install --remove", 2),
         ("thumbnail no.lissom --out x.png", 2),
         ("thumbnail {here} --out x.png --size 0", 2),
+        ("manual", 2),
         ("nonsense", 2),
     ],
 )

@@ -10,14 +10,18 @@ from pathlib import Path
 import pytest
 from documents import disc_document
 
-from app.cli.commands import window
+from app.cli.commands import doctor, window
 from app.cli.main import main
 from app.document import History
 from app.document.commands import scene_commands
+from app.editor import failures
 from app.editor.actions import saving
+from app.editor.dialogs import ProblemReport
 from app.editor.project import Project
+from app.editor.session import Session
+from app.editor.work.jobs import Jobs
 from app.errors import LissomError
-from app.storage.autosave import load_leftover
+from app.storage.autosave import kept_report, load_leftover
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="Windows has no such signals")
 
@@ -41,6 +45,17 @@ try:
 except KeyboardInterrupt:
     {after}
 sys.exit(heard.status)
+"""
+
+
+# A process that crashes, with what Python tells of it in a folder.
+CRASH = """
+import os, sys
+from pathlib import Path
+from app.cli.process import faults_told_to
+from app.storage import open_faults
+with faults_told_to(open_faults(Path(sys.argv[1]))):
+    os.abort()
 """
 
 
@@ -170,3 +185,36 @@ def test_what_was_not_saved_is_kept_however_the_window_ends(
     assert error is None or f"{error}" in said
     (kept,) = tmp_path.rglob("unsaved-*.lissom")
     assert load_leftover(kept)[0].markers[0].name == "unsaved"
+    reports = list(tmp_path.rglob("report.txt"))
+    assert len(reports) == (error is not None)
+    for report in reports:
+        text = report.read_text(encoding="utf-8")
+        assert f"{type(error).__name__}: {error}" in text
+        assert str(Path(__file__).parent) not in text
+        assert report.stat().st_mode & 0o777 == 0o600
+
+
+def test_where_a_process_crashed_is_kept_for_the_next_start(tmp_path):
+    ended = subprocess.run(
+        [sys.executable, "-c", CRASH, str(tmp_path)], cwd=Path(__file__).parents[3], check=False
+    )
+    assert ended.returncode == -signal.SIGABRT
+    session = Session(clock=float, jobs=Jobs(), folder=tmp_path)
+    failures.keep_faults(session)
+    assert "Fatal Python error: Aborted" in kept_report(tmp_path)
+    failures.discard_report(session, ProblemReport(text="", is_kept=True))
+    failures.keep_faults(session)
+    assert kept_report(tmp_path) == "", "it is told once"
+
+
+def test_a_command_that_fails_itself_tells_it_without_names_of_files(monkeypatch, capfd, tmp_path):
+    def broken(_):
+        raise ZeroDivisionError(f"a bug in {tmp_path}/wave of Ann.lissom")
+
+    monkeypatch.setattr(doctor, "run", broken)
+    assert main(["doctor"]) == 1
+    said = capfd.readouterr().err
+    assert "ZeroDivisionError: a bug in …" in said
+    assert "nothing is sent" in said
+    assert str(tmp_path) not in said
+    assert str(Path(__file__).parent) not in said

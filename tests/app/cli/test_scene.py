@@ -284,7 +284,7 @@ def test_a_figure_that_is_not_there_is_told(project, folder, capsys):
     assert "the layers are wall, body, arm, patch" in capsys.readouterr().err
 
 
-def test_what_changes_hands_does_not_jump(folder):
+def test_what_changes_hands_does_not_jump(folder, capsys):
     patch = {
         **SCRIPT["figures"][2],
         "visible": [],
@@ -292,6 +292,7 @@ def test_what_changes_hands_does_not_jump(folder):
             {"to": "arm", "at": [180, 120]},
             {"frame": 3, "to": "body", "keep": True},
             {"frame": 6, "to": None, "keep": True},
+            {"frame": 30, "to": "arm", "keep": True},
         ],
     }
     script = {**SCRIPT, "figures": [*SCRIPT["figures"][:2], patch]}
@@ -299,9 +300,11 @@ def test_what_changes_hands_does_not_jump(folder):
     out = folder / "hands.lissom"
     arguments = [str(folder / "man.ora"), str(folder / "hands.json"), "--out", str(out)]
     assert main(["pose", *arguments, "--triangles", "4000"]) == 0
+    told = " ".join(capsys.readouterr().err.split())
+    assert "what patch hangs on from frame 30 on is never seen, as the animation ends" in told
     document = load_project(out)
     patch, body = (next(f for f in document.figures if f.name == n) for n in ("patch", "body"))
-    assert [joint.frame for joint in patch.joints] == [0, 3, 6]
+    assert [joint.frame for joint in patch.joints] == [0, 3, 6, 30]
     assert patch.joints[1].to == body.id
     joints = Joints(document)
     for frame in (3, 6):
@@ -403,6 +406,53 @@ def test_what_is_never_seen_is_told(face, visible, words, capsys):
     assert words in " ".join(capsys.readouterr().err.split())
 
 
+def test_a_layer_that_its_choice_never_shows_is_told(face, capsys):
+    oh = {"layer": "oh", "handles": {}, "keys": [{"frame": 0}, {"frame": 12}]}
+    never = {**CHOICE, "keys": [[0, "closed"], [4, "ah"]]}
+    assert face(figures=[oh], choices=[never])[0] == 0
+    assert "oh is never seen: the choice 'mouth' never shows it" in capsys.readouterr().err
+
+
+def test_a_script_shows_layers_of_hidden_groups_and_nothing_else_of_them(tmp_path, capsys):
+    stack = (
+        '<stack name="extras" visibility="hidden"><layer name="hat" src="data/0.png"/>'
+        '<stack name="inner"><layer name="star" src="data/0.png"/>'
+        '<layer name="moon" src="data/0.png"/></stack></stack>'
+        '<layer name="body" src="data/2.png"/>'
+    )
+    pictures = [painted("ellipse", (60, 25, 110, 180), (40, 40, 200, 255))] * 3
+    (tmp_path / "a.ora").write_bytes(openraster((WIDTH, HEIGHT), stack, pictures))
+    still = {"handles": {}, "keys": [{"frame": 0}, {"frame": 12}]}
+
+    def seen(**stage):
+        script = {"schema": 1, "figures": [{"layer": "body", **still}], **stage}
+        (tmp_path / "a.json").write_text(json.dumps(script))
+        files = [str(tmp_path / "a.ora"), str(tmp_path / "a.json")]
+        out = tmp_path / "a.lissom"
+        assert main(["pose", *files, "--out", str(out), "--triangles", "1000"]) == 0
+        assert "never seen" not in capsys.readouterr().err
+        document = load_project(out)
+        return [
+            {f.name for f in document.figures if is_visible(document, f, number)}
+            for number in (3, 9)
+        ]
+
+    star = {"layer": "star", **still, "visible": [[0, False], [6, True]]}
+    assert seen(figures=[star]) == [{"body"}, {"body", "star"}]
+    turns = {"name": "sky", "layers": ["star", "moon"], "keys": [[0, "star"], [6, "moon"]]}
+    assert seen(choices=[turns]) == [{"body", "star"}, {"body", "moon"}]
+
+
+def test_a_script_that_names_no_layer_takes_the_front_one_that_is_seen(face, tmp_path, capsys):
+    face()
+    script = {"schema": 1, "handles": {"chin": [45, 100]}, "keys": [{"frame": 0}]}
+    (tmp_path / "one.json").write_text(json.dumps(script))
+    files = [str(tmp_path / "face.ora"), str(tmp_path / "one.json")]
+    with pytest.raises(SystemExit):
+        main(["pose", *files, "--out", str(tmp_path / "one.lissom"), "--triangles", "2000"])
+    assert "its handles are on 'closed', the one in front" in capsys.readouterr().err
+
+
 def test_a_choice_after_the_end_is_told(face, capsys):
     assert face(choices=[{**CHOICE, "keys": [[0, "closed"], [99, "ah"]]}])[0] == 0
     told = " ".join(capsys.readouterr().err.split())
@@ -421,7 +471,9 @@ def test_a_choice_after_the_end_is_told(face, capsys):
         ([CHOICE, {**CHOICE, "name": "lips"}], "the layer 'closed' is in two choices"),
         ([CHOICE, {**CHOICE, "layers": ["head", "eh"], "keys": []}], "two choices are called"),
         ([{"layers": ["ah", "oh"]}], "choices[0] lacks the field 'name'"),
-        ([{**CHOICE, "shown": 1}], "choices[0] has an unknown field 'shown'"),
+        ([{**CHOICE, "shown": 1}], "unknown field 'shown'; it may have name, layers, keys"),
+        ([{**CHOICE, "name": " "}], "choices[0].name is empty, and a choice needs a name"),
+        ([{**CHOICE, "keys": [[-4, "ah"]]}], "choices[0].keys[0].frame must be a whole number"),
         ({"mouth": []}, "choices must be a list"),
     ],
 )

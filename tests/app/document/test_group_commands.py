@@ -169,7 +169,10 @@ def test_each_run_of_a_group_is_composited_by_itself():
         Composite(("two", "three"), 0.5),
     )
     inner = groups.set_group_blend("a/b", "multiply")(faded)
-    assert drawn(inner)[2] == Composite(("two", Composite(("three",), 1.0, "multiply")), 0.5)
+    # Faded as one, it still lets through what blends in it.
+    shade = Composite(("three",), 1.0, "multiply")
+    assert drawn(inner)[2] == Composite(("two", shade), 0.5, passes=True)
+    assert drawn(groups.set_group_blend("a", "normal")(inner))[2] == Composite(("two", shade), 0.5)
     # A group keeps what blends in it from what is behind only if it does not let it through.
     alone = groups.set_group_blend("a/b", "multiply")(document)
     assert drawn(alone)[3] == Composite(("three",), 1.0, "multiply")

@@ -305,11 +305,14 @@ def test_memory_is_bounded_and_the_farthest_series_makes_room(clip, prepared, mo
 
 def test_at_rest_series_alone_show_all_of_what_nobody_edits(clip, prepared):
     prepared.pin([clip], [], 0)
+    extension = prepared.sampler.extension.nbytes
+    assert prepared.passing_bytes(clip) > extension > 0
     stream(prepared, clip, 0)
     assert all(prepared.interval(clip, number).is_streamed for number in range(3))
     frames = (0.5, 4, 9.9, 13, 21.7, 30)
     before = [prepared.positions(clip, frame) for frame in frames]
     size = prepared.nbytes
+    assert prepared.passing_bytes(clip) == 0
     prepared.rest()
     assert prepared.nbytes < size / 2
     for frame, places in zip(frames, before, strict=True):
@@ -440,6 +443,25 @@ def test_a_session_streams_what_it_plays_and_stops_while_a_hand_pulls(document, 
     pull = Pull(clip=clip, frame=13, gesture=object(), start=None, before=None, is_keyed=True)
     project.pending.append(pull)
     assert not list(missing(session, project))
+
+
+def test_where_much_is_prepared_figures_that_nobody_edits_come_one_after_the_other(
+    document, tmp_path, monkeypatch
+):
+    monkeypatch.setattr("app.editor.actions.upkeep.MOST_PASSING", 0)
+    (figure,) = document.figures
+    figures = tuple(replace(figure, id=number, name=f"{number}") for number in range(3))
+    document = replace(document, figures=figures)
+    session = session_of(document, tmp_path)
+    for clip, puppet in zip(
+        [clip_of(document, number) for number in range(3)],
+        session.project.puppets.values(),
+        strict=True,
+    ):
+        assert streamed(puppet.store, clip) == [True] * 3
+        # What is edited keeps what it is made from, and all others let go of it.
+        is_edited = puppet is session.project.puppet
+        assert (puppet.store.prepared(clip) is not None) == is_edited
 
 
 def test_a_series_that_failed_once_is_built_anew_when_the_document_changes(

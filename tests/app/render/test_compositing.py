@@ -53,10 +53,21 @@ def over(
     return np.concatenate([colour / np.maximum(alpha, 1e-9), alpha], axis=-1)
 
 
+def mixed(below: Floats, above: Floats, share: float) -> Floats:
+    """Straight colours that are faded into each other."""
+    (b, alpha_b), (a, alpha_a) = ((each[..., :3], each[..., 3:]) for each in (below, above))
+    alpha = (1 - share) * alpha_b + share * alpha_a
+    colour = (1 - share) * alpha_b * b + share * alpha_a * a
+    return np.concatenate([colour / np.maximum(alpha, 1e-9), alpha], axis=-1)
+
+
 def composited(parts: tuple, pictures: dict, below: Floats | None = None) -> Floats:
     flat = np.zeros((SIDE, SIDE, 4)) if below is None else below
     for part in parts:
-        if isinstance(part, Composite):
+        if isinstance(part, Composite) and part.passes:
+            whole = composited(part.parts, pictures, flat)
+            flat = mixed(flat, whole, part.opacity)
+        elif isinstance(part, Composite):
             layer = composited(part.parts, pictures)
             flat = over(flat, layer, part.opacity, part.blend, clipped=part.clipped)
         else:
@@ -90,6 +101,15 @@ def test_groups_are_composited_as_one_and_then_faded(easel):
     inner = Composite((two, Composite((three,), 0.7, "multiply")), 0.5, "screen")
     parts = (sky, Composite((one, inner), 0.6), Composite((four,), 1.0, "multiply"))
     check(easel, parts, pictures)
+
+
+@pytest.mark.parametrize("colour", [(0.0, 0.0, 0.0, 0.0), (0.8, 0.5, 0.1, 1.0)])
+def test_what_blends_in_a_faded_group_that_passes_through_meets_all_behind(easel, colour):
+    pictures = {laid(easel, pixels): pixels for pixels in map(colours, range(5))}
+    sky, one, two, three, four = pictures
+    inner = Composite((two, Composite((three,), 0.7, "screen")), 0.5, passes=True)
+    faded = Composite((Composite((one,), 1.0, "multiply"), inner), 0.6, passes=True)
+    check(easel, (sky, faded, Composite((four,), 1.0, "multiply")), pictures, colour)
 
 
 def test_what_overlaps_in_a_faded_group_does_not_shine_through(easel):

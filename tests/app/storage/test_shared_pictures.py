@@ -50,7 +50,7 @@ def test_layers_that_share_a_picture_share_it_once_it_is_saved_too(drawing, tmp_
     again = load_project(tmp_path / "a.lissom")
     full, right, left = again.figures
     assert left.picture is right.picture is not full.picture
-    shown = files._decoded(again, "a")
+    shown = files.decoded(again, "a")
     assert shown.puppets[left.id].picture is shown.puppets[right.id].picture
 
 

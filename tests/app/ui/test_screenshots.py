@@ -160,6 +160,6 @@ def test_screenshots_of_the_main_states(window, dragon, save):
     session.project = None
     welcome = save("welcome")
     colours = welcome.max(axis=2) - welcome.min(axis=2)
-    columns = (colours[260:360] > 60).any(axis=0)
+    columns = (colours[390:470] > 60).any(axis=0)
     assert (np.diff(columns.astype(int)) == 1).sum() >= 4  # a row of pictures with gaps
     assert near(welcome[150:210], palette.accent).sum() > 3000  # the button

@@ -167,6 +167,26 @@ def test_rows_stay_where_they_are_when_another_layer_is_chosen(window, ids):
     assert all(each == tops[0] for each in tops)
 
 
+def test_what_is_listed_stays_below_the_pointer_until_that_goes_back_to_the_drawing(
+    window, scene, ids, use
+):
+    window.act(editing.edit, choice_commands.form_choice("mouth", [ids["ah"], ids["oh"]]))
+    window.act(layering.choose, ids["ah"])
+    window.frames(2)
+    tops = []
+
+    def click(robot):
+        for _ in range(2):
+            robot.item_click(row_of(ids["head"]))
+            tops.append(robot.item_info(row_of(ids["head"])).rect_full.min.y)
+
+    use(click)
+    assert tops[0] == tops[1]
+    assert ids["ah"] in {row.figures[0] for row in scene.tree if row.figure}
+    window.run(lambda robot: robot.mouse_move_to_pos(window.point(20 + 20j)))
+    assert ids["ah"] not in {row.figures[0] for row in scene.tree if row.figure}
+
+
 def test_layers_are_grouped_folded_hidden_and_locked_together(window, scene, ids, use):
     window.act(layering.choose_all, ids["hat"], ids["head"])
     use(lambda robot: robot.item_click("###group layers"))
@@ -203,6 +223,25 @@ def test_a_row_that_is_dropped_on_another_one_hangs_there(window, scene, ids, us
     # In a circle nothing can hang: the row goes beside it.
     use(lambda robot: drop(robot, ids["head"], ids["hat"]))
     assert scene.document.figure(ids["head"]).joints == ()
+
+
+def test_chosen_layers_are_dropped_together(window, scene, ids, use):
+    before, both = scene.document, (ids["hat"], ids["stick"])
+    places = [place(scene, name, window) for name in ("hat", "stick")]
+    window.act(layering.choose_all, *both)
+    use(lambda robot: drop(robot, ids["stick"], ids["head"]))
+    window.settle()
+    assert [scene.document.figure(each).joints[0].to for each in both] == [ids["head"]] * 2
+    for name, there in zip(("hat", "stick"), places, strict=True):
+        assert abs(place(scene, name, window) - there) < 0.1
+    assert scene.history.undo_label == "Attach 2 layers"
+    window.act(editing.undo)
+    assert scene.document is before
+    use(lambda robot: drop(robot, ids["stick"], ids["oh"], 0.1))
+    order = [each.name for each in reversed(scene.document.figures)]
+    assert order == ["hat", "stick", "oh", "ah", "head"]
+    window.act(editing.undo)
+    assert scene.document is before
 
 
 def test_what_hung_on_a_layer_that_is_deleted_hangs_on_what_that_hung_on(window, scene, ids):
@@ -337,6 +376,10 @@ def test_a_layer_is_moved_and_ordered_in_time_by_the_tab(window, scene, ids, use
     use(lambda robot: robot.item_input_value("**/##moved right", 25.0))
     assert abs(place(scene, "stick", window) - before - 25) < 0.5
     assert [key.frame for key in scene.document.figure(ids["stick"]).movement] == [12]
+    window.act(playback.seek, 3)
+    window.run(lambda robot: robot.item_click(f"###Timeline/**/row {ids['stick']}/change 12"))
+    assert playback.current_frame(window.session, scene) == 12
+    window.frames(3)
     use(lambda robot: robot.item_click("**/No movement key at frame 12"))
     assert scene.document.figure(ids["stick"]).movement == ()
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from bodies import BODIES, CHILD, FISH, HORSE, KANGAROO, SNAKE, WALKER, dot, drawn
+from silhouettes import BODIES, CHILD, FISH, HORSE, KANGAROO, SNAKE, WALKER, dot, drawn
 
 from engine.domain import guessed_kind, suggested_joints
 from engine.geometry import contains

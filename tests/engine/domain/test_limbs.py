@@ -4,9 +4,9 @@ import re
 
 import numpy as np
 import pytest
-from bodies import drawn
 from numpy.testing import assert_allclose
 from shapes import regular_polygon
+from silhouettes import drawn
 
 from engine.domain import suggest_handles
 from engine.domain.limbs.anatomy import Anatomy

@@ -1,28 +1,26 @@
 """Commands on what has keys of its own: the camera, and how figures fade, move and are ordered."""
 
+from collections.abc import Collection
 from dataclasses import replace
 from typing import TypeVar
 
 from app.document.commands import keys_in_time
 from app.document.commands.command import command, figure_command
+from app.document.commands.keys_in_time import Row
 from app.document.figure import Figure
 from app.document.layering import CameraKey, MoveKey, OpacityKey, Placing
 from app.document.model import Document
 from app.document.queries import keyed_frame, repeating
 from app.document.settings import FrameRange
 
+Key = TypeVar("Key", CameraKey, MoveKey, OpacityKey)
 Moving = TypeVar("Moving", MoveKey, OpacityKey)
 
 
 @command("Key the camera")
 def key_camera(document: Document, key: CameraKey) -> Document:
     """Let the camera have a key, in place of the one at its frame, whose way on it keeps."""
-    row = document.camera
-    old = next((each for each in row if each.frame == key.frame), None)
-    if old is not None:
-        put = replace(key, easing=old.easing, passing=old.passing, unknown=old.unknown)
-        return _filmed(document, keys_in_time.exchanged(row, {key.frame: put}))
-    return _filmed(document, keys_in_time.inserted(row, key) if row else (key,))
+    return _filmed(document, _with(document.camera, key, [key.frame]))
 
 
 @command("Move camera key")
@@ -42,12 +40,8 @@ def key_opacity(figure: Figure, frame: int, opacity: float) -> Figure:
     """Let a figure be so opaque at a frame, and fade evenly from key to key."""
     row = figure.opacities
     new = OpacityKey(frame=keyed_frame(figure, row, frame), opacity=float(opacity))
-    olds = _at(figure, row, new.frame)
-    if olds:
-        put = {old.frame: replace(old, opacity=new.opacity) for old in olds}
-        changed = keys_in_time.exchanged(row, put)
-        return figure if changed is row else replace(figure, opacities=changed)
-    return replace(figure, opacities=keys_in_time.inserted(row, new) if row else (new,))
+    changed = _with(row, new, _like(figure, row, new.frame))
+    return figure if changed is row else replace(figure, opacities=changed)
 
 
 @figure_command("Delete opacity key")
@@ -65,16 +59,8 @@ def key_movement(figure: Figure, frame: int, shift: complex, turn: float) -> Fig
     """Let a whole figure be moved and turned so at a frame, beside where its poses have it."""
     row = figure.movement
     new = MoveKey(frame=keyed_frame(figure, row, frame), shift=shift, turn=float(turn))
-    olds = _at(figure, row, new.frame)
-    if olds:
-        # One at the end of what repeats may have turned around some times more.
-        put = {
-            old.frame: replace(old, shift=shift, turn=new.turn + old.turn - olds[0].turn)
-            for old in olds
-        }
-        changed = keys_in_time.exchanged(row, put)
-        return figure if changed is row else replace(figure, movement=changed)
-    return replace(figure, movement=keys_in_time.inserted(row, new) if row else (new,))
+    changed = _with(row, new, _like(figure, row, new.frame))
+    return figure if changed is row else replace(figure, movement=changed)
 
 
 @figure_command("Delete movement key")
@@ -100,16 +86,31 @@ def unplace_at(figure: Figure, frame: int) -> Figure:
     return figure if placings == figure.placings else replace(figure, placings=placings)
 
 
-def _at(figure: Figure, row: keys_in_time.Row[Moving], frame: int) -> list[Moving]:
-    """Return the key of a movement or an opacity at a frame, and that which is to be like it.
-
-    Where a row fills a cycle, its last key is its first one again.
-    """
-    found = [each for each in row if each.frame == frame]
+def _like(figure: Figure, row: Row[Moving], frame: int) -> list[int]:
+    """Return a frame, and that of the key which is the one there again: where a cycle ends."""
     cycle = repeating(figure, row)
-    if cycle is not None and found[:1] == [row[0]] and row[-1].frame - frame == cycle.period:
-        found.append(row[-1])
-    return found
+    if cycle is not None and (frame, frame + cycle.period) == (row[0].frame, row[-1].frame):
+        return [frame, row[-1].frame]
+    return [frame]
+
+
+def _with(row: Row[Key], key: Key, frames: Collection[int]) -> Row[Key]:
+    """Return a row with a key, or with ones like it for those at some frames.
+
+    Their ways on are kept, and by how many whole turns the later ones have turned around.
+    """
+    olds = [each for each in row if each.frame in frames]
+    if not olds:
+        return keys_in_time.inserted(row, key) if row else (key,)
+    put: dict[int, Key] = {}
+    for old in olds:
+        new = replace(
+            key, frame=old.frame, easing=old.easing, passing=old.passing, unknown=old.unknown
+        )
+        if isinstance(new, MoveKey) and isinstance(old, MoveKey) and isinstance(olds[0], MoveKey):
+            new = replace(new, turn=new.turn + old.turn - olds[0].turn)
+        put[old.frame] = new
+    return keys_in_time.exchanged(row, put)
 
 
 def _filmed(document: Document, camera: tuple[CameraKey, ...]) -> Document:

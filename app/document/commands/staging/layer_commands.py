@@ -138,6 +138,12 @@ def set_hidden(document: Document, identity: int, *, hidden: bool) -> Document:
     return _with(document, identity, hidden=hidden)
 
 
+@command("Show layer")
+def reveal(document: Document, identity: int) -> Document:
+    """Show a figure in whatever groups, and of those that were hidden nothing else."""
+    return revealed(document, identity)
+
+
 @command("Lock or unlock layer")
 def set_locked(document: Document, identity: int, *, locked: bool) -> Document:
     """Let clicks on the drawing pass through a figure, or stop at it again."""

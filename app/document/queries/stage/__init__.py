@@ -20,6 +20,7 @@ from app.document.queries.stage.moves import (
     keyed_frame as keyed_frame,
     movement_at as movement_at,
     opacity_at as opacity_at,
+    placing_at as placing_at,
     repeating as repeating,
 )
 from app.document.queries.stage.sight import (

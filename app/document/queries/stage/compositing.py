@@ -1,7 +1,7 @@
 """Which figures are composited together before they meet what lies behind them."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Generic, NamedTuple, TypeVar
 
 from app.document.figure import Figure
@@ -22,14 +22,23 @@ class Composite(Generic[Drawn]):
     # Whether it is painted only where that is which lies behind it in the composite around it, as
     # if that were opaque there.
     clipped: bool = False
+    # Whether its parts are painted over what lies behind at once, and that is faded in then.
+    passes: bool = False
 
     @property
     def is_plain(self) -> bool:
         """Whether its parts could as well be painted one by one."""
-        meets_more = any(
-            isinstance(each, Composite) and each.blend != "normal" for each in self.parts
+        return (
+            self.opacity == 1 and self.blend == "normal" and not (self.clipped or self.meets_more)
         )
-        return self.opacity == 1 and self.blend == "normal" and not (self.clipped or meets_more)
+
+    @property
+    def meets_more(self) -> bool:
+        """Whether it matters to its parts what lies behind, other than that they cover it."""
+        return any(
+            isinstance(each, Composite) and (each.blend != "normal" or each.passes)
+            for each in self.parts
+        )
 
 
 @dataclass(slots=True)
@@ -37,7 +46,7 @@ class _Unit(Generic[Drawn]):
     """A figure or a run of a group, and what is cut by it."""
 
     whole: Composite[Drawn]
-    passes: bool = False  # whether it may be in parts, as a group that passes through
+    passes: bool = False  # whether its parts meet what lies behind it
     cut: list[Composite[Drawn]] = field(default_factory=list)
 
 
@@ -76,8 +85,8 @@ def _parts(
         if path:
             group, inner = given.document.group(path), _parts(given, run, depth + 1)
             blend: BlendMode = "normal" if group.blend == "pass-through" else group.blend
-            passes = group.blend == "pass-through" and group.opacity == 1
-            unit = _Unit(Composite(inner, group.opacity, blend, group.clipped), passes)
+            whole = Composite(inner, group.opacity, blend, group.clipped)
+            unit = _Unit(whole, passes=group.blend == "pass-through")
         else:
             (figure,) = run
             seen = (given.drawn[figure.id],) if figure.id in given.drawn else ()
@@ -110,4 +119,8 @@ def _painted(unit: _Unit[Drawn]) -> tuple[Drawn | Composite[Drawn], ...]:
         return ()
     if cut:
         return (Composite((*whole.parts, *cut), whole.opacity, whole.blend),)
-    return whole.parts if unit.passes or whole.is_plain else (whole,)
+    if unit.passes and whole.opacity == 1:
+        return whole.parts
+    if unit.passes and whole.meets_more:
+        return (replace(whole, passes=True),)
+    return whole.parts if whole.is_plain else (whole,)

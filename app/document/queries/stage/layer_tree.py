@@ -37,7 +37,7 @@ class TreeRow:
 
 
 def layer_tree(
-    document: Document, toggled: Collection[str] = (), kept: int | None = None
+    document: Document, toggled: Collection[str] = (), kept: Collection[int] = ()
 ) -> tuple[TreeRow, ...]:
     """Return the rows of a document's layers, the one in front on top.
 
@@ -49,15 +49,15 @@ def layer_tree(
     ----------
     document : Document
     toggled : collection of str
-    kept : int, optional
-        The id of a layer that is listed even where a row around it is closed.
+    kept : collection of int
+        The ids of layers that are listed even where a row around them is closed.
     """
     rows = _whole_tree(document, toggled)
     listed: list[TreeRow] = []
     closed: int | None = None  # the depth of the row around that is closed
     for row in rows:
         if closed is not None and row.depth > closed:
-            if row.figure is not None and row.figure.id == kept:
+            if row.figure is not None and row.figure.id in kept:
                 listed.append(row)
             continue
         closed = None if row.is_open else row.depth

@@ -117,6 +117,12 @@ def _alike(first: MoveKey | OpacityKey, last: MoveKey | OpacityKey) -> bool:
     return False
 
 
+def placing_at(document: Document, figure: Figure, frame: float) -> Placing | None:
+    """Return beside what a figure is painted at a frame; None before that is said."""
+    placings = repeated(figure.placings, figure.cycles, document.frames.last, AS_DRAWN)
+    return next((each for each in reversed(placings) if each.frame <= frame), None)
+
+
 def in_order(document: Document, frame: float) -> tuple[Figure, ...]:
     """Return the figures from the one behind all others at a frame to the one in front.
 
@@ -125,8 +131,7 @@ def in_order(document: Document, frame: float) -> tuple[Figure, ...]:
     """
     placed: dict[int, tuple[int, int, bool]] = {}
     for figure in document.figures:
-        placings = repeated(figure.placings, figure.cycles, document.frames.last, AS_DRAWN)
-        placing = next((each for each in reversed(placings) if each.frame <= frame), None)
+        placing = placing_at(document, figure, frame)
         if placing is not None and placing.beside is not None:
             placed[figure.id] = placing.frame, placing.beside, placing.in_front
     order = [figure.id for figure in document.figures]

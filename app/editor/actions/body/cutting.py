@@ -34,11 +34,11 @@ DROP = 2  # pixels around the one that is picked whose colour counts
 
 
 @with_project
-def take_up(session: Session, _: Project, tool: CutTool | None) -> None:
+def take_up(session: Session, project: Project, tool: CutTool | None) -> None:
     """Take a tool in hand that cuts out; None, or the same one again, goes back to posing."""
     if session.pointer is None:
         session.cutting = None if tool == session.cutting else tool
-        session.material = None
+        session.material = project.draft = None
 
 
 def begin_or_swap(session: Session) -> None:

@@ -33,7 +33,7 @@ def take_up(session: Session, project: Project, tool: MaterialTool | None) -> No
     if session.pointer is None:
         playback.halt(session)
         session.material = None if tool == session.material else tool
-        session.cutting, session.moves = None, False
+        session.cutting, session.moves, project.draft = None, False, None
         if project.brush is None:
             cutting.set_brush(session, FIRST_BRUSH * max(project.figure.picture.size))
 

@@ -19,7 +19,8 @@ def drag_row(look: Look, project: Project, row: TreeRow, low: ImVec2, high: ImVe
     actions: list[Action] = []
     if row.figure is not None and imgui.begin_drag_drop_source():
         imgui.set_drag_drop_payload_py_id(MOVED, row.figure.id)
-        imgui.text(row.figure.name)
+        dragged = _dragged(project, row.figure.id)
+        imgui.text(row.figure.name if len(dragged) == 1 else f"{len(dragged)} layers")
         imgui.end_drag_drop_source()
     if not imgui.begin_drag_drop_target():
         return actions
@@ -43,25 +44,29 @@ def drag_row(look: Look, project: Project, row: TreeRow, low: ImVec2, high: ImVe
     return actions
 
 
-def _onto(project: Project, row: TreeRow, dragged: int) -> Action | None:
-    """Return what a drop of a layer onto a row does; None where it can do nothing."""
-    if row.figures == (dragged,):
+def _dragged(project: Project, identity: int) -> tuple[int, ...]:
+    """Return the layers that are dragged by the row of one: all chosen ones if it is among them."""
+    return project.layers if identity in project.layers else (identity,)
+
+
+def _onto(project: Project, row: TreeRow, identity: int) -> Action | None:
+    """Return what a drop of layers onto a row does; None where it can do nothing."""
+    dragged = _dragged(project, identity)
+    if set(row.figures) <= set(dragged):
         return None
     if row.group is not None:
-        return do(layering.group, row.group.name, dragged)
+        return do(layering.group, row.group.name, *dragged)
     if row.choice is not None:
-        return None if dragged in row.figures else do(layering.join, row.choice.name, dragged)
+        return None if identity in row.figures else do(layering.join, row.choice.name, identity)
     parent = row.figures[0]
-    is_circle = layering.hangs_on(project, parent, dragged)
-    return None if is_circle else do(layering.hang, dragged, parent)
+    is_circle = any(layering.hangs_on(project, parent, each) for each in dragged)
+    return None if is_circle else do(layering.hang_together, parent, *dragged)
 
 
 def _beside(project: Project, identity: int, dragged: int, *, is_above: bool) -> list[Action]:
-    """Return what a drop of a layer above or below another one does."""
-    others = [each.id for each in project.document.figures if each.id != dragged]
-    if identity not in others:
-        return []
-    return [do(layering.move, dragged, others.index(identity) + is_above)]
+    """Return what a drop of layers above or below another one does."""
+    moved = _dragged(project, dragged)
+    return [] if identity in moved else [do(layering.move_beside, identity, is_above, *moved)]
 
 
 def _show(look: Look, low: ImVec2, high: ImVec2, *, is_onto: bool, is_above: bool) -> None:

@@ -4,7 +4,7 @@ import math
 
 from imgui_bundle import imgui
 
-from app.document import Document, Figure, keyed_frame, movement_at, opacity_at
+from app.document import Document, Figure, keyed_frame, movement_at, opacity_at, placing_at
 from app.editor import Action, do, layering
 from app.ui.style import FILL, Look, Scale, label, number, slider, small, text_button, tip
 
@@ -78,7 +78,7 @@ def draw_order(document: Document, look: Look, figure: Figure, frame: int) -> li
     if not others:
         return []
     actions: list[Action] = []
-    now = next((each for each in reversed(figure.placings) if each.frame <= frame), None)
+    now = placing_at(document, figure, frame)
     beside = None if now is None or now.beside is None else document.figure(now.beside)
     words = "where it lies"
     if now is not None and beside is not None:

@@ -168,11 +168,15 @@ def _hand_over(project: Project, look: Look, figure: Figure, frame: int) -> list
     if imgui.begin_popup("hand over"):
         if imgui.menu_item_simple("Let it go", enabled=now is not None):
             actions.append(do(layering.hand_over, figure.id, None))
-        for other in document.figures:
+        for other in reversed([each for each in document.figures if each is not figure]):
             is_circle = any(each is figure for each in document.carriers(other.id, frame))
             name = f"To {other.name}###to {other.id}"
             if imgui.menu_item_simple(name, enabled=not is_circle and other.id != now):
                 actions.append(do(layering.hand_over, figure.id, other.id))
+            if is_circle:
+                tip(f"At frame {frame} it hangs on {figure.name} itself")
+            elif other.id == now:
+                tip(f"It hangs there already at frame {frame}")
         imgui.end_popup()
     if joint is not None and joint.frame == frame and len(figure.joints) > 1:
         hint = "What held it before goes on holding it"

@@ -22,4 +22,8 @@ from app.ui.viewport.hand.hints import (
     first_step as first_step,
     hint_at as hint_at,
 )
+from app.ui.viewport.hand.joints import (
+    draw_joints as draw_joints,
+    joint_colour as joint_colour,
+)
 from app.ui.viewport.hand.takes import draw_take as draw_take, lay_track_keys as lay_track_keys

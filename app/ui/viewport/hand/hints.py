@@ -68,16 +68,27 @@ def draw_badges(
     top = corner + ImVec2(room.x / 2, look.em)
     if project.unkeyed is not None:
         return _pill(look, "Unkeyed pose", top, BINDINGS["insert key"])
-    if session.moves:
-        return draw_mode(look, "Moving the whole figure", corner, room)
-    if session.material is not None:
-        return draw_mode(look, MODES[session.material], corner, room)
-    if session.records:
-        return draw_mode(look, "Recording the next drag of a handle", corner, room)
+    mode = _mode(session, project)
+    if mode:
+        return draw_mode(look, mode, corner, room)
+    if project.errand is not None:
+        stop = BINDINGS["no motion"].keys_in_words
+        return _pill(look, f"{project.errand.now}: {stop} gives the motion up", top)
     step = first_step(project)
     if step is None or guiding.is_led(session):
         return []
     return _pill(look, HINTS[step], corner + ImVec2(room.x / 2, room.y - 3.2 * look.em))
+
+
+def _mode(session: Session, project: Project) -> str:
+    """Return in words what drags do instead of posing; empty where they pose."""
+    if session.moves:
+        return "Moving the whole figure"
+    if session.material is not None:
+        return MODES[session.material]
+    if project.draft is not None:
+        return "Putting joints where they belong"
+    return "Recording the next drag of a handle" if session.records else ""
 
 
 def draw_mode(look: Look, what: str, corner: ImVec2, room: ImVec2) -> list[Action]:

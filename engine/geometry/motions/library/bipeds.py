@@ -8,6 +8,7 @@ from engine.geometry.motions.steps import Gait
 
 LEFT_RIGHT = (("foot.L", 0.0), ("foot.R", 0.5))
 FEET = ("hips", "foot.L", "foot.R")
+LEAPERS = ("hips",)  # from the side both legs may be one
 
 # Contact, down, passing, up, for each foot: the body is lowest after a foot came down, and highest
 # as the other one swings past it. Arms go against legs.
@@ -16,28 +17,30 @@ WALK = Motion(
     label="Walk",
     hint="One foot after the other, arms against legs",
     seconds=1.0,
-    keys=12,
+    keys=24,
     courses={
         "biped-side": Limbs(
-            gait=Gait(stance=0.6, stride=1.0, lift=0.13, falls=LEFT_RIGHT, roll=25),
+            gait=Gait(stance=0.6, stride=0.8, lift=0.1, falls=LEFT_RIGHT, roll=25, gathered=0.1),
             rise=even(0.0, -0.02, 0.0, 0.02, 0.0, -0.02, 0.0, 0.02),
             turns={
                 "chest": even(-3, -4, -3, -2, -3, -4, -3, -2),
                 "head": even(3, 5, 3, 1, 3, 5, 3, 1),
-                "elbow": even(-22, 0, 22, 0),
-                "hand": even(6, 10, 22, 14),
+                "elbow": even(-17, 0, 17, 0),
+                "hand": even(2, 5, 14, 8),
                 "tail": even(0, 6, 0, -6),
             },
             needed=FEET,
         ),
         "biped-front": Limbs(
-            gait=Gait(stance=0.6, stride=0.3, lift=0.13, falls=LEFT_RIGHT, gathered=0.0),
+            gait=Gait(
+                stance=0.6, stride=0.3, lift=0.1, falls=LEFT_RIGHT, gathered=0.0, treads=False
+            ),
             rise=even(0.0, -0.02, 0.0, 0.025, 0.0, -0.02, 0.0, 0.025),
-            shift=even(0.0, -0.05, -0.05, 0.0, 0.05, 0.05),
+            shift=even(0.0, 0.06, 0.06, 0.0, -0.06, -0.06),
             turns={
-                "hips": even(0, 2, 2, 0, -2, -2),
-                "chest": even(0, 1.5, 2, 0, -1.5, -2),
-                "head": even(0, -2, -3, 0, 2, 3),
+                "hips": even(0, -3, -3, 0, 3, 3),
+                "chest": even(0, -1, -1, 0, 1, 1),
+                "head": even(0, 3, 3, 0, -3, -3),
                 "elbow": even(-6, 2, 10, 2),
                 "hand": even(0, 4, 12, 6),
                 "tail": even(0, 6, 0, -6),
@@ -54,32 +57,34 @@ RUN = Motion(
     label="Run",
     hint="Long steps, and a moment in the air between them",
     seconds=2 / 3,
-    keys=12,
+    keys=24,
     courses={
         "biped-side": Limbs(
-            gait=Gait(stance=0.36, stride=1.7, lift=0.3, falls=LEFT_RIGHT, roll=40),
+            gait=Gait(stance=0.38, stride=1.15, lift=0.15, falls=LEFT_RIGHT, gathered=0.1, roll=30),
             rise=Curve(
                 ((0.0, 0.0), (0.17, -0.05), (0.42, 0.05), (0.5, 0.0), (0.67, -0.05), (0.92, 0.05))
             ),
             turns={
                 "chest": even(-9, -11, -9, -8, -9, -11, -9, -8),
                 "head": even(7, 9, 7, 6, 7, 9, 7, 6),
-                "elbow": even(-34, 0, 34, 0),
-                "hand": even(28, 34, 44, 36),
+                "elbow": even(-21, 0, 21, 0),
+                "hand": even(10, 13, 20, 15),
                 "tail": even(0, 9, 0, -9),
             },
             needed=FEET,
         ),
         "biped-front": Limbs(
-            gait=Gait(stance=0.36, stride=0.5, lift=0.24, falls=LEFT_RIGHT, gathered=0.0),
+            gait=Gait(
+                stance=0.36, stride=0.5, lift=0.2, falls=LEFT_RIGHT, gathered=0.0, treads=False
+            ),
             rise=Curve(
                 ((0.0, 0.0), (0.17, -0.05), (0.42, 0.05), (0.5, 0.0), (0.67, -0.05), (0.92, 0.05))
             ),
-            shift=even(0.0, -0.03, -0.03, 0.0, 0.03, 0.03),
+            shift=even(0.0, 0.04, 0.04, 0.0, -0.04, -0.04),
             turns={
-                "hips": even(0, 3, 3, 0, -3, -3),
-                "chest": even(0, 2, 3, 0, -2, -3),
-                "head": even(0, -3, -4, 0, 3, 4),
+                "hips": even(0, -3, -3, 0, 3, 3),
+                "chest": even(0, -1, -1, 0, 1, 1),
+                "head": even(0, 3, 3, 0, -3, -3),
                 "elbow": even(-4, 8, 22, 8),
                 "hand": even(6, 14, 28, 16),
                 "tail": even(0, 9, 0, -9),
@@ -89,8 +94,8 @@ RUN = Motion(
     },
 )
 
-_RAISED = even(0, 30, 62, 66, 62, 66, 62, 66, 62, 46, 12, 0)
-_SHAKEN = even(0, 16, 56, 12, 56, 12, 56, 12, 56, 26, 6, 0)
+_RAISED = even(0, 20, 38, 41, 38, 41, 38, 41, 38, 28, 8, 0)
+_SHAKEN = even(0, 18, 60, 30, 60, 30, 60, 30, 60, 30, 8, 0)
 _GREETING = {
     "chest": even(0, 1, 2, 3, 2, 3, 2, 3, 2, 1, 0, 0),
     "head": even(0, 2, 4, 2, 4, 2, 4, 2, 4, 2, 0, 0),
@@ -105,7 +110,8 @@ WAVE = Motion(
         kind: Limbs(
             turns=_GREETING,
             single={"elbow.R": _RAISED, "hand.R": _SHAKEN},
-            needed=("hips", "hand.R"),
+            needed=("hips",),
+            either=("hand.R", "hand.L"),
         )
         for kind in ("biped-front", "biped-side")
     },
@@ -116,7 +122,7 @@ NOD = Motion(
     label="Nod",
     hint="The head says yes, twice",
     seconds=1.5,
-    keys=12,
+    keys=24,
     courses={
         "biped-side": Limbs(
             turns={
@@ -141,40 +147,44 @@ _LEAP = Limbs(
     gait=Gait(
         stance=0.62,
         stride=0.0,
-        lift=0.42,
+        lift=0.26,
         falls=(("foot.L", 0.72), ("foot.R", 0.72)),
         gathered=0.0,
-        roll=24,
+        roll=16,
     ),
     lag=0.0,
     rise=Curve(
         (
             (0.0, 0.0),
-            (0.2, -0.24),
+            (0.2, -0.15),
             (0.34, 0.0),
-            (0.53, 0.46),
+            (0.53, 0.34),
             (0.72, 0.0),
-            (0.82, -0.2),
+            (0.82, -0.12),
             (0.94, -0.03),
         )
     ),
-    turns={
+    leans={
         "chest": Curve(
-            ((0.0, 0), (0.2, -12), (0.36, 2), (0.55, 0), (0.72, -3), (0.82, -10), (0.94, -2))
+            ((0.0, 0), (0.2, -8), (0.36, 1), (0.55, 0), (0.72, -2), (0.82, -7), (0.94, -1))
         ),
-        "head": Curve(((0.0, 0), (0.2, 8), (0.36, 4), (0.55, -4), (0.72, 2), (0.82, 6), (0.94, 1))),
-        "elbow": Curve(
-            ((0.0, 0), (0.2, -26), (0.38, 30), (0.55, 44), (0.72, 20), (0.82, -6), (0.94, -3))
-        ),
-        "hand": Curve(
-            ((0.0, 0), (0.2, 8), (0.38, 20), (0.55, 26), (0.72, 16), (0.82, 10), (0.94, 2))
-        ),
+        "head": Curve(((0.0, 0), (0.2, 6), (0.36, 3), (0.55, -3), (0.72, 2), (0.82, 5), (0.94, 1))),
         "tail": Curve(
-            ((0.0, 0), (0.2, 10), (0.38, -14), (0.55, -6), (0.72, 10), (0.82, 14), (0.94, 3))
+            ((0.0, 0), (0.2, 8), (0.38, -10), (0.55, -5), (0.72, 8), (0.82, 10), (0.94, 2))
         ),
     },
-    needed=FEET,
+    turns={
+        "elbow": Curve(
+            ((0.0, 0), (0.2, -16), (0.38, 14), (0.55, 24), (0.72, 12), (0.82, -4), (0.94, -2))
+        ),
+        "hand": Curve(
+            ((0.0, 0), (0.2, 4), (0.38, 10), (0.55, 14), (0.72, 9), (0.82, 6), (0.94, 1))
+        ),
+    },
+    needed=LEAPERS,
 )
+
+
 JUMP = Motion(
     name="jump",
     label="Jump",
@@ -182,4 +192,28 @@ JUMP = Motion(
     seconds=1.25,
     keys=15,
     courses={"biped-side": _LEAP, "biped-front": _LEAP},
+)
+
+# As a kangaroo: both feet land together, the body sinks and is thrown ahead, the tail against it.
+LEAPING = Limbs(
+    gait=Gait(
+        stance=0.42,
+        stride=0.75,
+        lift=0.22,
+        falls=(("foot.L", 0.0), ("foot.R", 0.0)),
+        gathered=0.0,
+        roll=20,
+    ),
+    lag=0.0,
+    rise=Curve(((0.0, 0.0), (0.2, -0.16), (0.42, 0.02), (0.7, 0.22), (0.9, 0.06))),
+    leans={
+        "chest": Curve(((0.0, 1), (0.2, -7), (0.42, -3), (0.7, 2), (0.9, 3))),
+        "head": Curve(((0.0, 2), (0.2, 6), (0.42, 3), (0.7, -2), (0.9, -2))),
+        "tail": Curve(((0.0, 6), (0.2, -10), (0.42, -4), (0.7, 12), (0.9, 12))),
+    },
+    turns={
+        "elbow": Curve(((0.0, -4), (0.2, -10), (0.42, 6), (0.7, 14), (0.9, 4))),
+        "hand": Curve(((0.0, 2), (0.2, 6), (0.42, 8), (0.7, 12), (0.9, 6))),
+    },
+    needed=LEAPERS,
 )

@@ -16,10 +16,10 @@ _TRUNK = {
 WALK_ON_FOUR = Limbs(
     gait=Gait(
         stance=0.64,
-        stride=0.95,
-        lift=0.12,
+        stride=0.85,
+        lift=0.1,
         falls=(("foot.L", 0.0), ("hand.L", 0.25), ("foot.R", 0.5), ("hand.R", 0.75)),
-        gathered=0.35,
+        gathered=0.1,
         roll=20,
     ),
     rise=even(0.0, -0.01, 0.0, 0.01, 0.0, -0.01, 0.0, 0.01),
@@ -33,15 +33,15 @@ TROT = Motion(
     label="Trot",
     hint="Feet that are across go together, with a spring between",
     seconds=0.75,
-    keys=12,
+    keys=24,
     courses={
         "four-legs": Limbs(
             gait=Gait(
                 stance=0.42,
-                stride=1.3,
-                lift=0.2,
+                stride=1.05,
+                lift=0.14,
                 falls=(("foot.L", 0.0), ("hand.R", 0.0), ("foot.R", 0.5), ("hand.L", 0.5)),
-                gathered=0.35,
+                gathered=0.1,
                 roll=28,
             ),
             rise=even(0.0, -0.035, 0.0, 0.035, 0.0, -0.035, 0.0, 0.035),

@@ -1,6 +1,7 @@
 """What needs no joints."""
 
 from engine.geometry.motions.curves import Curve, Leap, even
+from engine.geometry.motions.library.bipeds import LEAPING
 from engine.geometry.motions.motion import Motion
 from engine.geometry.motions.swells import Swell
 
@@ -12,7 +13,7 @@ BREATHE = Motion(
     keys=8,
     courses={
         "anything": Swell(
-            swell=even(0.0, 0.03, 0.06, 0.05, 0.025, 0.005),
+            swell=even(0.0, 0.04, 0.08, 0.065, 0.03, 0.005),
             stretch=even(0.0, 0.01, 0.02, 0.018, 0.008, 0.0),
         )
     },
@@ -32,10 +33,12 @@ SWAY = Motion(
 HOP = Motion(
     name="hop",
     label="Hop",
-    hint="It squashes, stretches into the air and squashes as it lands",
+    hint="It leaves the ground and lands, with both feet at once, or squashed and stretched",
     seconds=1.0,
-    keys=16,
+    keys=24,
     courses={
+        "biped-side": LEAPING,
+        "biped-front": LEAPING,
         "anything": Swell(
             stretch=Curve(
                 (
@@ -49,6 +52,6 @@ HOP = Motion(
                 )
             ),
             rise=Leap(0.28, 0.76, 0.3),
-        )
+        ),
     },
 )

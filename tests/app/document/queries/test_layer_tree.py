@@ -28,7 +28,7 @@ def document():
     return document
 
 
-def told(document, *toggled, kept=None):
+def told(document, *toggled, kept=()):
     return [
         "  " * row.depth + row.name + ("" if row.is_open else " +")
         for row in layer_tree(document, toggled, kept)
@@ -58,7 +58,7 @@ def test_groups_hold_what_is_in_them(document):
     assert rows["legs"].figures == (2, 1)
     assert told(document, "group body") == ["layer 5", "layer 4", "body +", "figure"]
     # What is posed is listed all the same.
-    assert told(document, "group body", kept=1) == [
+    assert told(document, "group body", kept={1}) == [
         "layer 5",
         "layer 4",
         "body +",

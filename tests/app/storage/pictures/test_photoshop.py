@@ -15,7 +15,7 @@ from photoshop_files import (
 )
 
 from app.document.layering import Group
-from app.errors import LissomError
+from app.errors import ImportSummary, LissomError
 from app.storage.pictures import read_photoshop
 
 SIZE = (100, 120)
@@ -67,7 +67,7 @@ def test_groups_keep_what_they_do():
         Group(name="limbs 2", blend="screen"),
     )
     assert found.layers[-1].opacity == 0.2
-    assert not found.summary
+    assert found.summary == ImportSummary(matters=("at all: left out, since it is empty",))
 
 
 def test_clipping_layers_are_clipped_by_what_is_below_them_in_their_group():
@@ -119,6 +119,44 @@ def test_what_an_empty_layer_clips_is_nowhere_and_what_an_adjustment_does_is_eve
     )
 
 
+def test_what_an_empty_group_clips_is_nowhere_too():
+    blank = Drawn(name="blank", pixels=np.zeros((4, 4, 4), np.uint8))
+    found = read(
+        drawn("arm"),
+        Folder(name="hollow", layers=[]),
+        drawn("gone", clipped=True),
+        Folder(name="limbs", layers=[blank]),
+        Folder(name="shades", layers=[drawn("gone too")], clipped=True),
+        Folder(name="others", layers=[blank, drawn("leg")]),
+        Folder(name="lights", layers=[drawn("light")], clipped=True),
+    )
+    assert [layer.name for layer in found.layers] == ["arm", "leg", "light"]
+    assert found.summary.matters == (
+        "hollow, blank, blank: left out, since it is empty",
+        "gone: left out, since it is clipped by the empty group hollow",
+        "gone too: left out, since it is clipped by the empty group limbs",
+    )
+
+
+def test_a_group_whose_mask_lets_its_layers_shine_through_each_other_is_told():
+    def grouped(mask, *layers):
+        return read(Folder(name="limbs", layers=layers, mask=mask))
+
+    half = Mask(pixels=HALF // 2, left=10, top=20)
+    told = ("limbs: half seen through its mask, so that its layers shine through each other",)
+    assert grouped(half, drawn("arm"), drawn("hand"), drawn("hat")).summary.losses == told
+    aside = Drawn(name="aside", pixels=FULL, left=-5, top=50)
+    assert not grouped(half, drawn("arm"), aside).summary.losses
+    sharp = Mask(pixels=HALF, left=10, top=20)
+    assert not grouped(sharp, drawn("arm"), drawn("hand")).summary.losses
+    # What is clipped is cut once, by what clips it.
+    clipped = grouped(half, drawn("arm"), drawn("shade", clipped=True))
+    assert not clipped.summary.losses
+    arm, shade = clipped.layers
+    assert on_canvas(arm)[30, 20, 3] == 127
+    assert on_canvas(shade)[30, 20, 3] == 255
+
+
 @pytest.mark.parametrize(
     "mask",
     [
@@ -166,10 +204,14 @@ def test_what_is_not_taken_over_is_told_once_with_all_names():
         drawn("a", blend=OVERLAY),
         Folder(name="limbs", layers=[drawn("b", blend=OVERLAY)], blend=OVERLAY),
         Drawn(name="paint", pixels=EMPTY, blocks=((b"SoCo", bytes(4)),)),
+        drawn("hole", blocks=((b"knko", bytes([2, 0, 0, 0])),)),
+        drawn("bright", ranges=(50, 0, 255, 255)),
     )
     assert found.summary.losses == (
         "limbs, a, b: drawn normally, not in the mode 'overlay'",
         "paint: left out, since it is a fill layer",
+        "hole: drawn over what is behind, which it knocks out in the file",
+        "bright: drawn at all brightnesses, whatever its “Blend If” says",
     )
 
 

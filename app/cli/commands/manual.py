@@ -1,0 +1,25 @@
+"""`lissom manual`: the pages that F1 opens, in a folder of one's own."""
+
+import argparse
+from pathlib import Path
+
+from app.cli.console import say
+from app.storage import check_writable, manual_page, write_atomically
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Copy the manual into a folder."""
+    first = manual_page()
+    sources = sorted(path for path in first.parent.rglob("*") if path.is_file())
+    copies = [arguments.out / source.relative_to(first.parent) for source in sources]
+    for copy in copies:
+        copy.parent.mkdir(parents=True, exist_ok=True)
+    check_writable(*copies, sources=sources)
+    for source, copy in zip(sources, copies, strict=True):
+        _write(copy, source.read_bytes())
+    say(f"{arguments.out / first.name}: the first page of the manual")
+    return 0
+
+
+def _write(path: Path, content: bytes) -> None:
+    write_atomically(path, lambda file: file.write(content))

@@ -1,0 +1,140 @@
+"""`lissom move`: picture + ready motion → project."""
+
+import argparse
+from typing import NamedTuple
+
+from app.cli.console import StatusLine, notice, say
+from app.cli.cut_out import read_cut_out
+from app.document import Document, Figure, Meshing
+from app.errors import LissomError
+from app.solving import MotionOrder, ToldJoints, begin_giving, facing_in, give_on, load_joints
+from app.storage import (
+    OpenedScene,
+    check_writable,
+    cut_picture,
+    draw_thumbnail,
+    is_layered,
+    open_merged,
+    open_picture,
+    save_project,
+)
+from engine.domain import guessed_kind, suggested_joints
+from engine.geometry.motions import MOTIONS, Motion, Parameters, kind_named, motion_named
+
+WHOLE = "anything"  # what moves as a whole may be anything
+NO_JOINTS = ToldJoints(kind=None, joints={})
+
+
+class _Found(NamedTuple):
+    """The kind and the joints of a drawing."""
+
+    kind: str
+    joints: dict[str, complex]
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Give a drawing a motion and write the project, or name the motions."""
+    if arguments.list:
+        _list_motions()
+        return 0
+    for name, option in (("picture", "DRAWING"), ("motion", "--motion"), ("out", "--out")):
+        if getattr(arguments, name) is None:
+            raise LissomError(f"{option} is missing; 'lissom move --help' tells what is said")
+    read = arguments.picture, arguments.joints, arguments.mask
+    check_writable(arguments.out, sources=filter(None, read))
+    motion, parameters = motion_named(arguments.motion), _parameters(arguments)
+    told = NO_JOINTS if arguments.joints is None else load_joints(arguments.joints)
+    if arguments.kind is not None:
+        kind_named(arguments.kind)
+        if told.kind not in (None, arguments.kind):
+            raise LissomError(
+                f"--kind is {arguments.kind!r}, but {arguments.joints} is of {told.kind!r}"
+            )
+    opened = _opened(arguments)
+    figure = opened.document.figures[0]
+    found = _found(figure, motion, arguments.kind or told.kind, told)
+    order = MotionOrder(
+        motion=arguments.motion,
+        kind=found.kind,
+        joints=found.joints,
+        parameters=parameters,
+        facing={"left": -1, "right": 1, None: None}[arguments.facing],
+        bones=arguments.bones,
+    )
+    document = _moved(opened.document, order)
+    _save(arguments, opened, document)
+    return 0
+
+
+def _list_motions() -> None:
+    """Print the motions."""
+    longest = max(map(len, MOTIONS))
+    for name, motion in MOTIONS.items():
+        travels = "; it may travel" if motion.travels else ""
+        say(f"{name:<{longest}}  {', '.join(motion.kinds)}: {motion.hint}{travels}")
+
+
+def _parameters(arguments: argparse.Namespace) -> Parameters:
+    """Return how the motion is given; refuse it before anything is read."""
+    return Parameters(
+        speed=arguments.speed,
+        size=arguments.size,
+        energy=arguments.energy,
+        mirrored=arguments.mirrored,
+        start=arguments.start,
+        travel=arguments.travel,
+    )
+
+
+def _opened(arguments: argparse.Namespace) -> OpenedScene:
+    """Return the drawing as a scene of one figure."""
+    meshing = Meshing(triangles=arguments.triangles, detail=arguments.detail)
+    open_one = open_merged if is_layered(arguments.picture) else open_picture
+    opened = open_one(arguments.picture, meshing, read_cut_out(arguments))
+    for message in (*opened.notices, *opened.summary.lines):
+        notice(message)
+    return opened
+
+
+def _found(figure: Figure, motion: Motion, kind: str | None, told: ToldJoints) -> _Found:
+    """Return the kind of a drawing and its joints, guessed where they are not told."""
+    loops = figure.domain.loops
+    if kind is None:
+        if told.joints:
+            raise LissomError("the file of joints does not say of which kind; add kind, or --kind")
+        kind = guessed_kind(loops).name
+        if kind not in motion.kinds and WHOLE in motion.kinds:
+            kind = WHOLE
+        say(f"kind: {kind} (guessed)")
+    joints = told.in_picture(figure.picture.size[1])
+    if not joints and kind_named(kind).parents:
+        joints = dict(suggested_joints(loops, kind_named(kind)))
+        if not joints:
+            raise LissomError(f"no joints of {kind!r} are found in the drawing; tell --joints")
+        say(f"joints: {', '.join(joints)} (guessed)")
+    return _Found(kind, joints)
+
+
+def _moved(document: Document, order: MotionOrder) -> Document:
+    """Return the document with the motion; tell what of it is out of reach."""
+    with StatusLine() as status:
+        giving = begin_giving(document, document.figures[0].id, order)
+        if order.facing is None and order.kind in {"biped-side", "four-legs"}:
+            side = "right" if facing_in(document.figures[0], order) > 0 else "left"
+            say(f"it looks to the {side} (guessed)")
+        while not giving.is_over:
+            status.show(giving.now)
+            giving = give_on(giving)
+    for message in giving.notices:
+        notice(message)
+    return giving.command(document)
+
+
+def _save(arguments: argparse.Namespace, opened: OpenedScene, document: Document) -> None:
+    """Write the project, and tell what is in it."""
+    (figure,) = document.figures
+    texture = cut_picture(opened.pictures[figure.id], figure.cut_out).texture
+    save_project(arguments.out, document, thumbnail=draw_thumbnail(texture))
+    length = document.frames.last - document.frames.first
+    frames = f"{length} frames, looped" if document.loop else f"{length + 1} frames"
+    say(f"{arguments.out}: {arguments.motion}, {frames}, {len(figure.keys)} keys")

@@ -1,0 +1,174 @@
+"""Giving a motion: the worker solves key after key, and the figure has them in one step of undo."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+
+from app.document import RUBBERY, Command, Document
+from app.editor import promises
+from app.editor.action import do
+from app.editor.actions import playback
+from app.editor.actions.posing.moving import drafting
+from app.editor.failures import report
+from app.editor.project import Project
+from app.editor.session import Session, with_project
+from app.editor.work import Kind, MotionDraft, MotionErrand, Promise
+from app.solving import Giving, MotionOrder, begin_giving, give_on
+
+GIVING = Kind("Giving the motion", "The motion was not given", "hand")
+MOST_TOLD = 3  # joints that are out of reach
+
+
+@with_project
+def give(session: Session, project: Project) -> None:
+    """Give the figure the motion that is drafted, as soon as the document has settled."""
+    draft = project.draft
+    if draft is not None and not drafting.hindrance(project):
+        drafting.give_up(session)
+        promises.once_settled(session, do(_begin, draft), "Give a motion")
+
+
+@with_project
+def _begin(session: Session, project: Project, draft: MotionDraft) -> None:
+    if draft.figure not in project.puppets:
+        return
+    before = project.document.figure(draft.figure)
+    if before.domain is not draft.domain:
+        session.tell("The motion was not given: the drawing has another shape by now. Start again.")
+        return
+    base = _without(project.document, draft)
+    errand = MotionErrand(draft=draft, before=before, base=base)
+    order = _order(draft, is_first=not before.motions)
+    _step(session, project, errand, partial(begin_giving, base, before.id, order))
+
+
+def _order(draft: MotionDraft, *, is_first: bool) -> MotionOrder:
+    """Return what the solver is asked for; what is stiff and the limits are as after the first."""
+    return MotionOrder(
+        motion=draft.motion,
+        kind=draft.kind,
+        joints=draft.joints,
+        parameters=draft.parameters,
+        first=draft.first,
+        rounds=draft.rounds,
+        facing=draft.facing,
+        stiff=is_first,
+        bones=draft.bones,
+        limits=RUBBERY.bounds if is_first else None,
+    )
+
+
+def _without(document: Document, draft: MotionDraft) -> Document:
+    """Return a document without the motion that a draft takes the place of.
+
+    What it blended in from stays, and one key that is replaced, where there is no other.
+    """
+    given, figure = draft.given, document.figure(draft.figure)
+    if given is None:
+        return document
+    kept = [key for key in figure.keys if not given.first <= key.frame <= given.last]
+    if given.start > given.first or not kept:
+        kept = [key for key in figure.keys if key in kept or key.frame == given.first]
+    bones = figure.bones
+    if not draft.bones:
+        limbs = drafting.limb_joints(given)
+        bones = tuple(bone for bone in bones if limbs.isdisjoint(bone.ends))
+    return document.with_figure(
+        replace(
+            figure,
+            keys=tuple(kept) or figure.keys[:1],
+            cycles=tuple(each for each in figure.cycles if each.first != given.start),
+            motions=tuple(each for each in figure.motions if each is not given),
+            bones=bones,
+        )
+    )
+
+
+def _step(
+    session: Session, project: Project, errand: MotionErrand, work: Callable[[], Giving]
+) -> None:
+    """Let the worker take a step."""
+
+    def failed(error: Exception) -> None:
+        project.draft = project.draft or errand.draft
+        report(session, GIVING.complaint, error)
+
+    def arrived(giving: Giving) -> None:
+        _go_on(session, project, replace(errand, giving=giving))
+
+    promise = Promise(label=GIVING.label, errand=errand)
+    promises.begin(session, project, GIVING, work, arrived, failed, promise=promise)
+
+
+def _go_on(session: Session, project: Project, errand: MotionErrand) -> None:
+    """Take the next step, or let the figure have the motion."""
+    if errand.giving is not None and not errand.giving.is_over:
+        _step(session, project, errand, partial(give_on, errand.giving))
+    elif errand.giving is not None:
+        _accept(session, project, errand, errand.giving)
+
+
+def _accept(session: Session, project: Project, errand: MotionErrand, giving: Giving) -> None:
+    """Let the figure have the motion, and play it; where it changed meanwhile, say so."""
+    before, draft = errand.before, errand.draft
+    if before not in project.document.figures:
+        session.tell("The motion was not given: the drawing was posed or changed meanwhile.")
+        project.draft = project.draft or draft
+        return
+    gesture, command = object(), giving.command
+    change = Command(command.label, lambda document: command(_without(document, draft)))
+    project.history.do(change, gesture=gesture)
+    unkeyed = project.history.unkeyed
+    if unkeyed is not None and unkeyed.figure == before.id:
+        project.history.pose(None, gesture=gesture)
+    _tell_what_is_short(session, giving)
+    if session.pointer is None:
+        playback.scrub(session, giving.given.first)
+        playback.toggle_play(session)
+
+
+def _tell_what_is_short(session: Session, giving: Giving) -> None:
+    """Tell which joints are out of reach, and offer a size at which none is."""
+    if not giving.short:
+        return
+    parts = [f"{name} by {lag:.0f} px" for name, (lag, _) in giving.short.items()]
+    told = ", ".join(parts[:MOST_TOLD])
+    if len(parts) > MOST_TOLD:
+        told += f" and {len(parts) - MOST_TOLD} more"
+    text = f"Some joints fall short of the motion, held back by the limits: {told}."
+    size = giving.fitting
+    if size is None:
+        session.tell(text, topic="motion")
+        return
+    session.tell(
+        text,
+        topic="motion",
+        label=f"Use size {size:.2f}",
+        action=do(give_at_size, giving.before.id, giving.given.first, size),
+    )
+
+
+@with_project
+def give_at_size(session: Session, project: Project, figure: int, first: int, size: float) -> None:
+    """Give a motion that begins at a frame again, at another size."""
+    found = project.document.figure(figure) if figure in project.puppets else None
+    given = next((each for each in found.motions if each.first == first), None) if found else None
+    if found is None or given is None:
+        session.tell("That motion is not there any more.")
+        return
+    draft = drafting.draft_again(found, given)
+    parameters = replace(draft.parameters, size=size)
+    promises.once_settled(
+        session, do(_begin, replace(draft, parameters=parameters)), "Give a motion"
+    )
+
+
+@with_project
+def cancel(session: Session, project: Project) -> None:
+    """Give up the motion that is on its way; its draft is there again."""
+    errand = project.errand
+    if errand is not None:
+        session.jobs.drop(GIVING)
+        project.pending = [promise for promise in project.pending if not promise.errand]
+        if errand.before.id == project.active:
+            project.draft = project.draft or errand.draft

@@ -1,0 +1,107 @@
+"""A ready motion that a person is about to give: its joints, and how it is to be."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Self
+
+from app.document import Document, Figure, GivenMotion
+from app.solving import Giving
+from engine.domain import Domain
+from engine.geometry.motions import (
+    MOTIONS,
+    BodyKind,
+    Motion,
+    Parameters,
+    kind_named,
+    other_side,
+)
+
+JointPlaces = Mapping[str, complex]  # of joints by their names, at rest
+MOST_UNDONE = 100
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class MotionDraft:
+    """What is to be given to a figure, before it is solved."""
+
+    figure: int  # its id
+    domain: Domain  # of the figure then: joints are places in it
+    kind: str
+    motion: str
+    joints: JointPlaces
+    suggested: JointPlaces  # where those of the kind were found
+    # Joints of other kinds as they were left.
+    others: Mapping[str, JointPlaces] = field(default_factory=dict)
+    parameters: Parameters = field(default_factory=Parameters)
+    rounds: int = 1
+    facing: int | None = None  # None as it seems to look
+    bones: bool = False
+    first: int = 0  # the frame from which on it is given
+    given: GivenMotion | None = None  # what it takes the place of
+    replaces_edits: bool = False  # also where that was edited by hand
+    chosen: str | None = None  # the joint that was touched last
+    past: tuple[JointPlaces, ...] = ()  # joints as they were before each change, to be undone
+
+    @property
+    def body_kind(self) -> BodyKind:
+        """The kind itself."""
+        return kind_named(self.kind)
+
+    @property
+    def ready(self) -> Motion:
+        """The motion itself."""
+        return MOTIONS[self.motion]
+
+    @property
+    def lacking(self) -> tuple[str, ...]:
+        """The joints that the motion needs and that are not there."""
+        needed = self.ready.course(self.kind).needed
+        if self.parameters.mirrored:
+            needed = tuple(map(other_side, needed))
+        return tuple(name for name in needed if name not in self.joints)
+
+    def with_joints(self, joints: JointPlaces, chosen: str | None = None) -> Self:
+        """Return it with other joints, in the kind's order; that can be undone."""
+        ordered = {name: joints[name] for name in self.body_kind.parents if name in joints}
+        past = (*self.past, self.joints)[-MOST_UNDONE:]
+        return replace(self, joints=ordered, past=past, chosen=chosen)
+
+    def without(self, name: str) -> Self:
+        """Return it without a joint."""
+        return self.with_joints({each: at for each, at in self.joints.items() if each != name})
+
+    @property
+    def undone(self) -> Self:
+        """It with the joints as they were before the last change."""
+        return replace(self, joints=self.past[-1], past=self.past[:-1], chosen=None)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class MotionErrand:
+    """A motion on its way to a figure, and the draft by which it was asked for.
+
+    Parameters
+    ----------
+    draft : MotionDraft
+    before : Figure
+        As it has to be when the motion comes.
+    base : Document
+        What it is given to: without the motion that it takes the place of.
+    giving : Giving, optional
+        How far it is; None before the first step.
+    """
+
+    draft: MotionDraft
+    before: Figure
+    base: Document
+    giving: Giving | None = None
+
+    @property
+    def progress(self) -> float:
+        """The part of its steps that is done, 0 to 1."""
+        return 0.0 if self.giving is None else self.giving.progress
+
+    @property
+    def now(self) -> str:
+        """What the next step does, in words."""
+        return "Reading the joints" if self.giving is None else self.giving.now

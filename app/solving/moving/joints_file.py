@@ -1,0 +1,81 @@
+"""Joints of a drawing, written as a small JSON text."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from app.errors import LissomError
+from app.storage import as_object, as_point, as_text, read_file, without_repeats
+from engine.geometry.motions import kind_named
+
+SCHEMA = 1
+LARGEST = 1024 * 1024  # bytes
+FIELDS = ("schema", "kind", "joints")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ToldJoints:
+    """What is said of the joints of a drawing."""
+
+    kind: str | None  # None leaves it to be guessed
+    joints: Mapping[str, complex]  # in pixels from the upper left corner, y down
+
+    def in_picture(self, height: int) -> dict[str, complex]:
+        """Return where they are in a picture of a height, y up.
+
+        Raises
+        ------
+        LissomError
+            If what stands does so on its head.
+        """
+        joints = {name: at.conjugate() + 1j * height for name, at in self.joints.items()}
+        feet = [at.imag for name, at in joints.items() if name.startswith("foot")]
+        if feet and "head" in joints and self.kind != "chain" and min(feet) > joints["head"].imag:
+            raise LissomError(
+                "the feet are above the head; places are pixels from the upper left corner, y down"
+            )
+        return joints
+
+
+def load_joints(path: Path) -> ToldJoints:
+    """Read the joints of a drawing.
+
+    Raises
+    ------
+    LissomError
+        If the file is missing, is not JSON, or says anything that it cannot say.
+    """
+    try:
+        text = read_file(path, largest=LARGEST).decode("utf-8-sig")
+        return _parsed(json.loads(text, object_pairs_hook=without_repeats))
+    except UnicodeDecodeError as error:
+        raise LissomError(f"{path} is not a text file in UTF-8") from error
+    except json.JSONDecodeError as error:
+        raise LissomError(
+            f"{path} is not JSON: {error.msg} in line {error.lineno}, column {error.colno}"
+        ) from error
+    except RecursionError as error:
+        raise LissomError(f"{path} is nested too deeply") from error
+    except ValueError as error:
+        raise LissomError(f"{path}: {error}") from error
+
+
+def _parsed(content: object) -> ToldJoints:
+    told = as_object(content, "the file of joints")
+    for name in told:
+        if name not in FIELDS:
+            raise LissomError(
+                f"the file of joints has an unknown field {name!r}; it may have {', '.join(FIELDS)}"
+            )
+    schema = told["schema"]
+    if schema != SCHEMA or isinstance(schema, bool):
+        raise LissomError(f"schema must be {SCHEMA}, not {json.dumps(schema)}")
+    kind = None if told.get("kind") is None else as_text(told["kind"], "kind")
+    if kind is not None:
+        kind_named(kind)
+    joints = {
+        name: as_point(place, f"joints.{name}")
+        for name, place in as_object(told.get("joints", {}), "joints").items()
+    }
+    return ToldJoints(kind=kind, joints=joints)

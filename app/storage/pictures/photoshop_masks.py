@@ -1,0 +1,95 @@
+"""The pixels of a Photoshop layer, with its masks and those of groups around it taken in."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+from PIL import Image, ImageChops, ImageFilter
+
+from app.errors import Told
+from engine.arrays import Booleans
+
+# Levels of a mask at which what lies behind a layer would be seen through it.
+HALF_SEEN: Final = [2 < level < 253 for level in range(256)]
+
+
+@dataclass(slots=True, eq=False)
+class Masked:
+    """A group with a mask, by which its layers are to be cut."""
+
+    group: Any
+    # Pixels of the canvas (h, w) that are half seen through it and have a layer there already.
+    covered: Booleans
+    is_told: bool = False  # that its layers shine through each other
+
+
+def masked_pixels(layer: Any, around: Sequence[Masked], told: Told) -> Image.Image | None:
+    """Return what is seen of a layer through its own mask and those of groups around it.
+
+    None where it has no pixels.
+    """
+    if layer.width == 0 or layer.height == 0:
+        return None
+    image = layer.topil()
+    if image is None:
+        return None
+    pixels: Image.Image = image.convert("RGBA")
+    corner = layer.left, layer.top
+    if is_masked(layer, told):
+        _cut(pixels, _seen_through(layer.mask, corner, pixels.size))
+    for each in around:
+        mask = _seen_through(each.group.mask, corner, pixels.size)
+        if _shines_through(each, corner, pixels, mask) and not each.is_told:
+            each.is_told = True
+            what = "half seen through its mask, so that its layers shine through each other"
+            told.lose(each.group.name.strip() or "layer", what)
+        _cut(pixels, mask)
+    return pixels
+
+
+def is_masked(layer: Any, told: Told) -> bool:
+    """Tell whether a layer or group has a mask of pixels; one that is not taken over is told."""
+    mask = layer.mask
+    is_masked = mask is not None and not mask.disabled
+    # Programs store what is seen through a mask of paths as one of pixels, too.
+    is_by_paths = layer.kind != "shape" and mask is None and layer.has_vector_mask()
+    if is_by_paths and not layer.vector_mask.disabled:
+        told.lose(layer.name.strip() or "layer", "drawn without its vector mask")
+    return is_masked
+
+
+def _cut(pixels: Image.Image, mask: Image.Image) -> None:
+    pixels.putalpha(ImageChops.multiply(pixels.getchannel("A"), mask))
+
+
+def _shines_through(
+    around: Masked, corner: tuple[int, int], pixels: Image.Image, mask: Image.Image
+) -> bool:
+    """Tell whether a layer lies over another one where both are half seen through a group's mask.
+
+    Cut one by one, they let through what is behind them; cut as one, they would not.
+    """
+    (left, top), (height, width) = corner, around.covered.shape
+    half = np.array(HALF_SEEN)[np.asarray(mask)] & (np.asarray(pixels.getchannel("A")) > 0)
+    half = half[max(-top, 0) : max(height - top, 0), max(-left, 0) : max(width - left, 0)]
+    rows, columns = half.shape
+    covered = around.covered[max(top, 0) :, max(left, 0) :][:rows, :columns]
+    found = bool((covered & half).any())
+    covered |= half
+    return found
+
+
+def _seen_through(mask: Any, corner: tuple[int, int], size: tuple[int, int]) -> Image.Image:
+    """Return how much of each pixel of a layer is seen through a mask."""
+    seen = Image.new("L", size, mask.background_color)
+    drawn = mask.topil()
+    if drawn is not None:
+        seen.paste(drawn.convert("L"), (mask.left - corner[0], mask.top - corner[1]))
+    settings = mask.parameters
+    if settings is not None and settings.user_mask_feather:
+        seen = seen.filter(ImageFilter.GaussianBlur(settings.user_mask_feather))
+    if settings is not None and settings.user_mask_density is not None:
+        density = settings.user_mask_density / 255
+        seen = seen.point(lambda level: round(255 - density * (255 - level)))
+    return seen

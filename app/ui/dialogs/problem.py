@@ -1,0 +1,41 @@
+"""A report of a problem, to be looked through and saved."""
+
+from imgui_bundle import ImVec2, imgui
+
+from app.editor import Action, ProblemReport, do, failures
+from app.editor.actions import close_dialog
+from app.ui.style import Look, main_button
+
+WIDTH, HEIGHT, MARGIN = 46.0, 22.0, 6.0  # em: of the text, and what the window has around it
+
+
+def draw_problem(report: ProblemReport, look: Look) -> list[Action]:
+    """Draw the text, which can be changed, and what can be done with it."""
+    actions: list[Action] = []
+    room = imgui.get_main_viewport().size
+    width = min(WIDTH * look.em, 0.9 * room.x - MARGIN * look.em)
+    imgui.push_text_wrap_pos(imgui.get_cursor_pos_x() + width)
+    told = "Nothing is sent. Paths and names of files are left out. "
+    if report.is_kept:
+        told = f"Lissom ended unexpectedly, and kept this report. {told}"
+    imgui.text_unformatted(
+        f"{told}Look through it, change what you like, and save it to pass it on yourself."
+    )
+    imgui.pop_text_wrap_pos()
+    height = min(HEIGHT * look.em, 0.9 * room.y - 2.5 * MARGIN * look.em)
+    changed, text = imgui.input_text_multiline("##report", report.text, ImVec2(width, height))
+    if changed:
+        actions.append(do(failures.word_report, report, text))
+    if main_button(look, "Save as…"):
+        actions.append(do(failures.choose_report_file, report))
+    imgui.same_line()
+    if imgui.button("Copy"):
+        imgui.set_clipboard_text(report.text)
+    imgui.same_line()
+    if report.is_kept:
+        if imgui.button("Discard"):
+            actions.append(do(failures.discard_report, report))
+        imgui.same_line()
+    if imgui.button("Close"):
+        actions.append(do(close_dialog))
+    return actions

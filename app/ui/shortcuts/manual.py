@@ -1,0 +1,42 @@
+"""Which page of the manual tells of what is in front."""
+
+from app.editor import Session
+from app.editor.actions import viewing
+from app.ui.panel import is_in_front
+
+START = "index"
+# By the tab at the side.
+PAGES = {
+    "Handle": "handles",
+    "Layers": "layers",
+    "Poses": "poses",
+    "Motion": "ready-motions",
+    "Deform": "stretch",
+    "Material": "stiff",
+    "Distortion": "distortion",
+    "Mesh": "mesh",
+    "Cut-out": "cut-out",
+    "Export": "export",
+}
+
+
+def open_manual(session: Session) -> None:
+    """Open the manual at what is in hand, or else at the tab in front."""
+    viewing.open_manual(session, page_in_front(session))
+
+
+def page_in_front(session: Session) -> str:
+    """Return the page of the manual about what a person does just now."""
+    project = session.project
+    if project is None:
+        return START
+    tools = {
+        "cut-out": session.cutting is not None,
+        "stiff": session.material is not None,
+        "ready-motions": project.draft is not None,
+        "move": session.moves,
+        "record": session.records,
+        "camera": project.looks_through,
+    }
+    tabs = (page for tab, page in PAGES.items() if is_in_front(tab))
+    return next((page for page, is_so in tools.items() if is_so), next(tabs, START))

@@ -1,0 +1,12 @@
+"""Motions by their names."""
+
+from engine.errors import EngineError
+from engine.geometry.motions.library import MOTIONS
+from engine.geometry.motions.motion import Motion
+
+
+def motion_named(name: str) -> Motion:
+    """Return the motion of a name; raise an `EngineError` where there is none."""
+    if name not in MOTIONS:
+        raise EngineError(f"there is no motion {name!r}; the motions are {', '.join(MOTIONS)}")
+    return MOTIONS[name]

@@ -1,0 +1,105 @@
+"""Where the feet of one body are over a cycle, and how high that lets its hips be."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from engine.geometry.motions.body import Body, other_side
+from engine.geometry.motions.motion import Parameters
+from engine.geometry.motions.steps import STRAIGHT, BodyLeg, Gait, leg_of
+
+GROUND = 0.15  # of a leg's length: feet that are drawn no higher above the lowest one stand
+# Legs of one drawing cannot pass through each other: so near, in lengths of a leg, feet of a pair
+# come at most, and by so much they are set farther apart than they are drawn.
+CLEAR, SPREAD = 0.14, 0.22
+
+
+class Stepping:
+    """Feet of one body.
+
+    Parameters
+    ----------
+    body : Body
+    gait : Gait
+    parameters : Parameters
+    """
+
+    def __init__(self, body: Body, gait: Gait, parameters: Parameters) -> None:
+        if not (gait.treads or parameters.travel):
+            gait = replace(gait, stride=0.0)
+        self.body, self.gait, self.size = body, gait, parameters.size
+        feet = [foot for foot, _ in gait.falls if foot in body.joints]
+        self.legs: dict[str, BodyLeg] = {foot: leg_of(body, foot) for foot in feet}
+        self.reach = min(leg.length for leg in self.legs.values()) if feet else 0.0
+        lowest = min((body.joints[foot].imag for foot in feet), default=0.0)
+        # A foot that is drawn lifted, as in a stride, comes down to the others.
+        self.ground = {
+            foot: lowest if body.joints[foot].imag - lowest >= GROUND * self.reach else y
+            for foot, y in ((foot, body.joints[foot].imag) for foot in feet)
+        }
+        self.step = self._step()
+        self.middles = self._middles()
+
+    @property
+    def stride(self) -> float:
+        """How far the body gets on over a cycle, forwards, in pixels."""
+        return self.step / self.gait.stance
+
+    @property
+    def raised(self) -> float:
+        """By how much the hips are higher over a foot below them than they are drawn.
+
+        Legs that are drawn apart are longer than the hips are high; those that are drawn bent stay
+        so.
+        """
+        if not self.legs or not self.gait.stride:
+            return 0.0
+        joints, up = self.body.joints, []
+        for foot, leg in self.legs.items():
+            root = joints[leg.joints[0]]
+            away = min(abs(root - joints[foot]), STRAIGHT * leg.length)
+            up.append(away - (root.imag - self.ground[foot]))
+        return float(np.mean(up))
+
+    def foot(self, foot: str, phase: float) -> complex:
+        """Return where a foot is."""
+        gait = self.gait
+        ahead = self.body.facing * gait.ahead(foot, phase) * self.stride
+        height = gait.lifted(foot, phase) * gait.lift * self.size * self.reach
+        return complex(self.middles[foot] + ahead, self.ground[foot] + height)
+
+    def _pairs(self) -> Iterator[tuple[str, str]]:
+        """Yield the feet that pass each other, the one behind first."""
+        falls = dict(self.gait.falls)
+        for foot in self.legs:
+            other = other_side(foot)
+            if other == foot or other not in self.legs or falls[foot] == falls[other]:
+                continue
+            behind = self.body.facing * (self.body.joints[other] - self.body.joints[foot]).real
+            if behind > 0 or (behind == 0 and foot > other):
+                yield foot, other
+
+    def _apart(self, pair: tuple[str, str]) -> float:
+        """Return how far the feet of a pair are drawn apart."""
+        return abs((self.body.joints[pair[0]] - self.body.joints[pair[1]]).real)
+
+    def _step(self) -> float:
+        """Return how far a foot goes while it stands: no farther than leaves room for the other."""
+        wanted = self.gait.stride * self.gait.stance * self.size * self.reach
+        rooms = [self._apart(pair) + (SPREAD - CLEAR) * self.reach for pair in self._pairs()]
+        return min([wanted, *rooms])
+
+    def _middles(self) -> dict[str, float]:
+        """Return around where each foot goes to and fro."""
+        joints, gathered = self.body.joints, self.gait.gathered
+        middles = {}
+        for foot, leg in self.legs.items():
+            rest, root = joints[foot].real, joints[leg.joints[0]].real
+            middles[foot] = rest + gathered * (root - rest)
+        for behind, ahead in self._pairs() if self.gait.stride else ():
+            apart = max(abs(middles[ahead] - middles[behind]), self.step + CLEAR * self.reach)
+            middle = (joints[behind].real + joints[ahead].real) / 2
+            middles[behind] = middle - self.body.facing * apart / 2
+            middles[ahead] = middle + self.body.facing * apart / 2
+        return middles

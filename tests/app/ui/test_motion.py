@@ -1,0 +1,232 @@
+"""A drawing is given a motion: its joints by hand, the motion by buttons, and all of it again."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from silhouettes import paint
+
+from app.document import is_as_given
+from app.editor import promises
+from app.editor.actions import drafting, editing, giving, placing, playback, posing, saving
+from app.storage.project_file import load_project
+
+
+def draft_child(window):
+    """Open a child in a picture, and draft a motion for it."""
+    project = window.open(paint(window.folder, "child"))
+    drafting.begin(window.session)
+    window.frames(4)
+    return project
+
+
+def breathing(window):
+    """Let a ghost breathe: the simplest of motions."""
+    project = window.open(paint(window.folder, "ghost"))
+    drafting.begin(window.session)
+    drafting.set_parameters(window.session, speed=3.0)
+    giving.give(window.session)
+    arrive(window, project)
+    playback.halt(window.session)
+    window.frames(2)
+    return project
+
+
+def arrive(window, project):
+    window.until(lambda: project.errand is None and promises.is_settled(project))
+    window.settle()
+
+
+@pytest.fixture
+def child(window):
+    return window.again(draft_child)
+
+
+@pytest.fixture
+def ghost(window):
+    return window.again(breathing)
+
+
+def press(window, place, *, to=None, key=None):
+    def act(robot):
+        robot.mouse_move_to_pos(window.point(place))
+        if key is not None:
+            robot.key_down(key)
+        robot.mouse_down(0)
+        if to is not None:
+            for share in (0.3, 0.7, 1.0):
+                robot.mouse_move_to_pos(window.point(place + share * (to - place)))
+        robot.mouse_up(0)
+        if key is not None:
+            robot.key_up(key)
+
+    window.run(act)
+    window.frames(2)
+
+
+def click(window, item):
+    window.run(lambda robot: robot.item_click(item))
+    window.frames(3)
+
+
+def test_a_dropped_picture_walks_after_few_clicks_and_drags(window, tmp_path):
+    window._window._take_dropped([paint(tmp_path, "walker", size=160)])
+    window.settle()
+    project = window.session.project
+    before = project.document
+    window.run(lambda robot: robot.menu_click("//##MainMenuBar/Motion/###Give it a motion…"))
+    window.frames(4)
+    assert (project.draft.kind, project.draft.motion) == ("biped-side", "walk")
+    foot = project.draft.joints["foot.L"]
+    press(window, foot, to=foot + 3)
+    assert project.draft.joints["foot.L"].real == pytest.approx(foot.real + 3, abs=2)
+    drafting.set_parameters(window.session, size=0.2, speed=4.0)
+    assert project.document is before, "nothing is done to it yet"
+    click(window, "//Motion/**/###give")
+    arrive(window, project)
+    assert project.figure.motions, [toast.text for toast in window.session.toasts]
+    assert project.playhead.since is not None, "it plays"
+    assert project.document.loop
+    (given,) = project.figure.motions
+    assert given.motion == "walk"
+    assert project.document.frames.last == given.last == project.figure.keys[-1].frame
+    handles = {handle.name for handle in project.figure.handles}
+    assert handles == set(given.joints)
+    places = [each.pose.targets[given.joints["foot.L"]].position for each in project.figure.keys]
+    assert np.ptp(np.real(places)) > 4
+    editing.undo(window.session)
+    assert project.document is before, "one step"
+
+
+def test_joints_are_dragged_left_out_and_put_back(window, child):
+    before = child.document
+    hand = child.draft.joints["hand.L"]
+    press(window, hand, to=hand - 12)
+    assert abs(child.draft.joints["hand.L"] - (hand - 12)) < 3
+    press(window, child.draft.joints["elbow.L"], key=window.Key.mod_alt)
+    assert "elbow.L" not in child.draft.joints
+    press(window, child.draft.joints["head"])
+    window.run(lambda robot: robot.key_press(int(window.Key.delete)))
+    assert "head" not in child.draft.joints
+    click(window, "//Motion/**/joint head")
+    assert "head" in child.draft.joints
+    for _ in range(4):
+        window.run(lambda robot: robot.key_press(int(window.Key.mod_ctrl | window.Key.z)))
+    assert child.draft.joints["hand.L"] == hand
+    assert "elbow.L" in child.draft.joints
+    assert child.document is before
+    window.run(lambda robot: robot.key_press(int(window.Key.escape)))
+    assert child.draft is None
+    assert window.session.poses
+    assert child.document is before
+
+
+def test_one_side_is_mirrored_onto_the_other(window, child):
+    joints = child.draft.joints
+    placing.put(window.session, "hand.R", joints["hand.R"] + 8)
+    placing.mirror(window.session)
+    axis = np.mean([child.draft.joints[name].real for name in ("hips", "chest", "head")])
+    right, left = (child.draft.joints[f"hand.{side}"] for side in "RL")
+    assert right.real + left.real == pytest.approx(2 * axis, abs=1)
+    assert right.imag == pytest.approx(left.imag, abs=1)
+
+
+def test_what_a_motion_needs_is_told(window, child):
+    placing.leave_out(window.session, "foot.R")
+    window.frames()
+    assert "needs foot.R" in drafting.hindrance(child)
+    giving.give(window.session)
+    assert child.draft is not None
+    assert child.errand is None
+    placing.add(window.session, "foot.R")
+    assert not drafting.hindrance(child)
+    drafting.choose_kind(window.session, "anything")
+    assert child.draft.motion in {"breathe", "sway", "hop"}
+    drafting.choose_kind(window.session, "biped-front")
+    assert "foot.R" in child.draft.joints, "as they were left"
+
+
+def test_handles_that_are_there_are_joints(window):
+    project = window.open(paint(window.folder, "child"))
+    posing.suggest_handles(window.session)
+    head = next(each for each in project.figure.handles if each.name == "head")
+    drafting.begin(window.session)
+    assert project.draft.joints["head"] == head.position
+
+
+def test_a_motion_is_given_again_in_another_way_as_one_step_and_a_save_waits_for_it(
+    window, ghost, tmp_path
+):
+    before = ghost.document
+    (given,) = ghost.figure.motions
+    drafting.begin(window.session)
+    assert ghost.draft.given is given
+    drafting.set_parameters(window.session, speed=4.0)
+    giving.give(window.session)
+    ghost.path = tmp_path / "ghost.lissom"
+    saving.save(window.session)
+    arrive(window, ghost)
+    window.until(lambda: ghost.path.exists() and not ghost.pending)
+    (again,) = ghost.figure.motions
+    assert again.last < given.last
+    assert ghost.document.frames.last == again.last == ghost.figure.keys[-1].frame
+    assert is_as_given(ghost.figure, again)
+    assert load_project(ghost.path).figures[0].motions == (again,)
+    editing.undo(window.session)
+    assert ghost.document is before
+
+
+def test_what_was_edited_by_hand_is_replaced_only_on_request(window, ghost):
+    key = ghost.figure.keys[2]
+    playback.scrub(window.session, key.frame)
+    window.settle()
+    identity, target = next(iter(key.pose.targets.items()))
+    wish = replace(target, position=target.position + 4j)
+    posing.wish(window.session, {identity: wish})
+    window.settle()
+    drafting.begin(window.session)
+    window.frames(3)
+    assert "edited by hand" in drafting.hindrance(ghost)
+    giving.give(window.session)
+    assert ghost.errand is None
+    click(window, "//Motion/**/Replace what was edited by hand")
+    assert not drafting.hindrance(ghost)
+
+
+def test_another_motion_follows(window, ghost):
+    (given,) = ghost.figure.motions
+    drafting.begin_after(window.session, given)
+    drafting.set_parameters(window.session, size=0.3, speed=4.0)
+    giving.give(window.session)
+    arrive(window, ghost)
+    first, second = ghost.figure.motions
+    assert first is given
+    assert is_as_given(ghost.figure, first)
+    assert second.first == given.last < second.start
+    assert ghost.document.frames.last == second.last
+
+
+@pytest.mark.parametrize("how", ["escape", "undo"])
+def test_on_its_way_it_is_given_up_and_drafted_again(window, child, how):
+    before = child.document
+    giving.give(window.session)
+    window.frames(3)
+    assert child.errand is not None
+    if how == "escape":
+        window.run(lambda robot: robot.key_press(int(window.Key.escape)))
+    else:
+        editing.undo(window.session)
+    assert child.errand is None
+    assert child.draft is not None
+    window.settle()
+    assert child.document is before
+
+
+def test_a_change_meanwhile_refuses_it(window, ghost):
+    drafting.begin(window.session)
+    giving.give(window.session)
+    posing.remove_handles(window.session, frozenset({ghost.figure.handles[0].id}))
+    changed = ghost.document
+    arrive(window, ghost)
+    assert ghost.document is changed
+    assert "was posed or changed meanwhile" in window.session.toasts[-1].text

@@ -1,0 +1,120 @@
+"""What breaks can be reported: the report names nothing of the person's, and goes nowhere."""
+
+import getpass
+from pathlib import Path
+
+import pytest
+
+from app.editor import failures
+from app.editor.actions import files, viewing
+from app.editor.dialogs import FileDialog, ProblemReport, Recovery
+from app.reports import trace_in_words
+from app.storage.autosave import Autosave, keep_report, kept_report
+from app.ui.timeline import timeline
+
+ANN = Path("/home/ann-marie")
+SECRET = ANN / "My secret" / "cat picture.png"
+
+
+def caught(error):
+    """Return an exception as it is when it was raised."""
+    with pytest.raises(type(error)) as caught:
+        raise error
+    return caught.value
+
+
+@pytest.mark.parametrize(
+    ("error", "told"),
+    [
+        (FileNotFoundError(2, "No such file", str(SECRET)), "[Errno 2] No such file: '…'"),
+        (ValueError(f"{SECRET} is torn"), "ValueError: … is torn"),
+        (ValueError("cat picture.png: at 3/4 and and/or"), "ValueError: …: at 3/4 and and/or"),
+        (ValueError("other.LISSOM is torn"), "ValueError: ….LISSOM is torn"),
+        (ValueError(r"C:\Users\Ann\dog.txt, \\nas\dog"), "ValueError: …, …"),
+        (ValueError(f"{Path.home()}/a and ~/b"), "ValueError: … and …"),
+        (KeyError("ann-marie"), "KeyError: '…'"),
+    ],
+)
+def test_a_trace_names_nothing_of_the_persons(error, told, monkeypatch):
+    monkeypatch.setattr(getpass, "getuser", lambda: ANN.name)
+    text = trace_in_words(caught(error), [SECRET])
+    assert text.splitlines()[-1].endswith(told)
+    assert 'File "test_reports.py"' in text or 'File "tests/' in text
+    assert str(Path(__file__).parents[3]) not in text
+
+
+@pytest.fixture
+def broken(window, bar, monkeypatch):
+    """A bug in a panel that was told of once."""
+
+    def fail(*_):
+        raise ZeroDivisionError(f"a bug with {SECRET}")
+
+    window.session.preferences = type(window.session.preferences)(recent=(SECRET,))
+    with monkeypatch.context() as patch:
+        patch.setattr(timeline, "draw_bar", fail)
+        window.frames(2)
+    yield bar
+    window.session.toasts = []
+
+
+@pytest.mark.usefixtures("broken")
+def test_a_bug_offers_a_report_that_is_shown_changed_and_saved(window, tmp_path, capfd):
+    session = window.session
+    window.act(viewing.toggle, "outline")
+    window.run(lambda robot: robot.item_click("//##toast0/Report…"))
+    window.frames(2)
+    report = session.dialog
+    assert isinstance(report, ProblemReport)
+    assert "viewing.toggle" in report.text
+    assert "ZeroDivisionError: a bug with …" in report.text
+    assert session.graphics in report.text
+    for name in (str(window.folder), str(Path.home()), "cat picture", "ann-marie"):
+        assert name not in report.text
+    window.act(failures.word_report, report, f"It fell over.\n{report.text}")
+    window.run(lambda robot: robot.item_click("//###dialog/Save as…"))
+    window.frames(2)
+    assert isinstance(session.dialog, FileDialog)
+    window.act(viewing.choose, session.dialog, tmp_path / "it.txt")
+    assert session.dialog is None
+    text = (tmp_path / "it.txt").read_text(encoding="utf-8")
+    assert text == f"It fell over.\n{report.text}"
+    capfd.readouterr()
+
+
+def test_after_a_crash_the_unsaved_work_comes_first_and_the_report_is_behind_it(window, bar):
+    session = window.session
+    keep_report(window.folder, "It was this.")
+    Autosave(window.folder).write(bar.document, bar.origin)
+    for lock in window.folder.glob("unsaved-*.lock"):
+        lock.unlink()
+    session.project = None
+    files.offer_recovery(session)
+    failures.tell_of_kept(session)
+    window.frames(3)
+    recovery = session.dialog
+    assert isinstance(recovery, Recovery)
+    assert session.toasts == [], "one thing at a time"
+    window.run(lambda robot: robot.item_click("//###dialog/Report a problem…"))
+    window.frames(2)
+    assert session.dialog.text == "It was this."
+    window.run(lambda robot: robot.item_click("//###dialog/Close"))
+    window.frames(2)
+    assert session.dialog is recovery
+    window.run(lambda robot: robot.item_click("//###dialog/Later"))
+    window.frames(2)
+    assert session.dialog is None
+    failures.tell_of_kept(session)
+    assert "report of it was kept" in session.toasts[0].text
+    session.toasts = []
+    failures.tell_of_kept(session)
+    assert session.toasts == [], "it was told"
+    window.run(lambda robot: robot.menu_click("//##MainMenuBar/Help/Report a problem…"))
+    window.frames(2)
+    window.run(lambda robot: robot.item_click("//###dialog/Discard"))
+    assert kept_report(window.folder) == ""
+    window.run(lambda robot: robot.menu_click("//##MainMenuBar/Help/Report a problem…"))
+    window.frames(2)
+    assert "Nothing failed" in session.dialog.text
+    window.run(lambda robot: robot.key_press(window.Key.escape))
+    assert session.dialog is None

@@ -1,0 +1,270 @@
+"""The manual's pictures of the window: samples, opened and used as a person would."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+from harness import Robot
+
+from app.document import Target
+from app.editor import layering
+from app.editor.actions import (
+    cycles,
+    drafting,
+    editing,
+    keys,
+    playback,
+    posing,
+    viewing,
+)
+from app.editor.poses import library
+from app.storage import sample_images
+from tests.manual.film import Film
+from tests.manual.stage import (
+    SIZE,
+    project_of,
+    save,
+    scroll_to,
+)
+from tests.readme.window import come_to_rest, handle_named, open_sample
+
+NOSE = 75 + 840j  # of the giraffe
+HEAD = 530 + 790j  # of the child
+RIGHT = 1  # the other button of the mouse
+
+
+def _still(window: Film, path: Path) -> None:
+    """Take a picture of what is on the screen."""
+    come_to_rest(window)
+    save(window.picture(), path)
+
+
+def _overview(window: Film, path: Path) -> None:
+    """A dragon that is posed, its timeline, and the tabs."""
+    project = open_sample(window, "dragon", frame=36)
+    wishes = {"snout": 90 + 740j, "brow": 270 + 810j}
+    window.act(
+        posing.wish,
+        {handle_named(project, name): Target(position=at) for name, at in wishes.items()},
+    )
+    window.settle()
+    window.act(editing.select, frozenset({handle_named(project, "snout")}))
+    window.show_tab("Handle")
+    _still(window, path)
+
+
+def _timing(window: Film, path: Path) -> None:
+    """The menu of a key."""
+    open_sample(window, "dragon", frame=24)
+    window.show_tab("Handle")
+    come_to_rest(window)
+
+    def ask(robot: Robot) -> None:
+        robot.item_click("###Timeline/**/key 24", RIGHT)
+        robot.yield_(2)
+        robot.mouse_move("//$FOCUSED/Passing")
+        robot.yield_(30)
+
+    save(window.seen_by(ask).crop((0, 180, *SIZE)), path)
+
+
+def _feet(window: Film, path: Path) -> None:
+    """Hooves that stay, with the line below each that tells of it."""
+    project = open_sample(window, "giraffe", frame=15)
+    window.show_tab("Handle")
+    window.act(editing.select, frozenset({handle_named(project, "near front hoof")}))
+    window.act(viewing.fit_pose)
+    come_to_rest(window)
+    scroll_to(window, "**/Free between keys")
+    _still(window, path)
+
+
+def _walk(window: Film, path: Path) -> None:
+    """The child's waving repeats: one stretch, and its hatched repeats."""
+    open_sample(window, "character", frame=0)
+    window.act(keys.toggle_loop)
+    window.act(keys.set_last_frame, 186)
+    window.act(editing.choose_keys, frozenset({0, 14, 22, 30, 38, 46, 62}))
+    window.act(cycles.repeat)
+    window.settle()
+    window.act(playback.seek, 84)
+    window.show_tab("Handle")
+    _still(window, path)
+
+
+def _poses(window: Film, path: Path) -> None:
+    """Poses that are kept, and the poses before and after."""
+    project = open_sample(window, "dragon", frame=0)
+    for frame, name in {0: "calm", 24: "tail up", 48: "tail back"}.items():
+        window.act(playback.seek, frame)
+        window.settle()
+        window.act(library.keep)
+        window.settle()
+        window.act(library.rename, project.figure.library[-1].name, name)
+    window.act(playback.seek, 37)
+    window.act(viewing.toggle, "onion")
+    window.show_tab("Poses")
+    _still(window, path)
+
+
+def _ready_motions(window: Film, path: Path) -> None:
+    """A giraffe that is about to walk: where its joints are."""
+    window.open(sample_images() / "giraffe.png")
+    window.resize((1000, 780))
+    window.act(drafting.begin)
+    window.frames(6)
+    window.act(viewing.fit_pose)
+    _still(window, path)
+
+
+def _front(window: Film, path: Path) -> None:
+    """Two arms of an octopus cross; one of them is painted in front."""
+    project = open_sample(window, "octopus", frame=16)
+    window.act(editing.select, frozenset({handle_named(project, "left 4")}))
+    window.show_tab("Handle")
+    come_to_rest(window)
+    scroll_to(window, "**/From this key on")
+    _still(window, path)
+
+
+def _stretch(window: Film, path: Path) -> None:
+    """The limits of a giraffe, and how much of them its pose uses."""
+    open_sample(window, "giraffe", frame=30)
+    window.show_tab("Deform")
+    window.act(viewing.fit_pose)
+    come_to_rest(window)
+    window.run(lambda robot: robot.item_open("**/Details"))
+    _still(window, path)
+
+
+def _distortion(window: Film, path: Path) -> None:
+    """How far a giraffe is squeezed where it bends to the ground."""
+    open_sample(window, "giraffe", frame=30)
+    window.act(viewing.fit_pose)
+    window.act(viewing.show_heat_map, "sigma_b")
+    window.show_tab("Distortion")
+    _still(window, path)
+
+
+def _mesh(window: Film, path: Path) -> None:
+    """The triangles and the cage of a dragon."""
+    window.open(sample_images() / "dragon.png")
+    window.act(viewing.toggle, "wireframe")
+    window.show_tab("Mesh")
+    _still(window, path)
+
+
+def _layers(window: Film, path: Path) -> None:
+    """A child of many layers; the arm hangs on the body."""
+    project = open_sample(window, "friend", frame=14)
+    arm = next(figure.id for figure in project.document.figures if figure.name == "left arm")
+    window.act(layering.choose, arm)
+    window.act(editing.select, frozenset({handle_named(project, "hand")}))
+    window.show_tab("Layers")
+    window.resize((1000, 780))
+    window.show_tab("Layers")
+    _still(window, path)
+
+
+def _mouths(window: Film, path: Path) -> None:
+    """Two mouths take turns by a click on a circle."""
+    project = open_sample(window, "friend", frame=36)
+    window.resize((1000, 780))
+    window.show_tab("Layers")
+    window.act(layering.toggle, next(row.toggle for row in project.tree if row.choice is not None))
+    head = next(figure.id for figure in project.document.figures if figure.name == "head")
+    window.act(layering.choose, head)
+    _still(window, path)
+
+
+def _camera(window: Film, path: Path) -> None:
+    """The frame of a camera around a child's head, and its keys below the ruler."""
+    open_sample(window, "friend", frame=0)
+    window.show_tab("Layers")
+    window.act(viewing.look_from, None)
+    window.act(layering.key_camera)
+    window.act(playback.seek, 48)
+    window.settle()
+    whole = project_of(window).view(window.session.screen)
+    window.act(viewing.look_from, replace(whole, centre=HEAD, scale=1.9 * whole.scale))
+    window.act(layering.key_camera)
+    window.settle()
+    window.act(viewing.look_from, None)
+    window.act(playback.seek, 30)
+    _still(window, path)
+
+
+def _export(window: Film, path: Path) -> None:
+    """What will be exported of an octopus."""
+    open_sample(window, "octopus", frame=28)
+    window.act(viewing.toggle, "handles")
+    window.resize((1000, 780))
+    window.show_tab("Export")
+    _still(window, path)
+
+
+def _formats(window: Film, path: Path) -> None:
+    """The list of formats."""
+    open_sample(window, "giraffe", frame=0)
+    window.resize((1000, 780))
+    window.show_tab("Export")
+    come_to_rest(window)
+
+    def ask(robot: Robot) -> None:
+        robot.item_click("//###Export/##format")
+        robot.yield_(30)
+
+    save(window.seen_by(ask), path)
+
+
+def _limit(window: Film, path: Path) -> None:
+    """A nose that is wanted too far away, and what is said of it."""
+    project = window.open(sample_images() / "giraffe.png")
+    for place in (NOSE, 390 + 540j, 590 + 460j, 352 + 65j, 485 + 80j, 580 + 65j, 265 + 80j):
+        window.act(posing.add_handle, place)
+    nose = project.figure.handles[0].id
+    window.act(editing.edit_figure, editing.handle_commands.rename_handle, nose, "nose")
+    window.show_tab("Handle")
+    window.settle()
+    window.drag(window.point(NOSE), window.point(NOSE - 800 - 300j))
+    window.settle()
+    window.act(viewing.fit_pose)
+    window.frames(20)
+    save(window.picture(), path)
+
+
+def _sheet(window: Film, path: Path) -> None:
+    """The sheet of keys."""
+    open_sample(window, "giraffe", frame=0)
+    window.resize((1280, 1000))
+    window.act(viewing.show_shortcuts)
+    _still(window, path)
+    window.act(viewing.close_dialog)
+
+
+def _welcome(window: Film, path: Path) -> None:
+    """What is seen at first."""
+    window.frames(20)
+    _still(window, path)
+
+
+STILLS: dict[str, Callable[[Film, Path], None]] = {
+    "overview": _overview,
+    "welcome": _welcome,
+    "timing": _timing,
+    "feet": _feet,
+    "walk": _walk,
+    "poses": _poses,
+    "ready-motions": _ready_motions,
+    "front": _front,
+    "stretch": _stretch,
+    "distortion": _distortion,
+    "mesh": _mesh,
+    "layers": _layers,
+    "mouths": _mouths,
+    "camera": _camera,
+    "export": _export,
+    "formats": _formats,
+    "limit": _limit,
+    "sheet": _sheet,
+}
