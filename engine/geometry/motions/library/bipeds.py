@@ -8,6 +8,7 @@ from engine.geometry.motions.steps import Gait
 
 LEFT_RIGHT = (("foot.L", 0.0), ("foot.R", 0.5))
 FEET = ("hips", "foot.L", "foot.R")
+LEAPERS = ("hips",)  # from the side both legs may be one
 
 # Contact, down, passing, up, for each foot: the body is lowest after a foot came down, and highest
 # as the other one swings past it. Arms go against legs.
@@ -192,7 +193,7 @@ _LEAP = Limbs(
             ((0.0, 0), (0.2, 4), (0.38, 10), (0.55, 14), (0.72, 9), (0.82, 6), (0.94, 1))
         ),
     },
-    needed=FEET,
+    needed=LEAPERS,
 )
 
 
@@ -226,5 +227,5 @@ LEAPING = Limbs(
         "elbow": Curve(((0.0, -4), (0.2, -10), (0.42, 6), (0.7, 14), (0.9, 4))),
         "hand": Curve(((0.0, 2), (0.2, 6), (0.42, 8), (0.7, 12), (0.9, 6))),
     },
-    needed=FEET,
+    needed=LEAPERS,
 )
