@@ -31,6 +31,7 @@ def page_in_front(session: Session) -> str:
     if project is None:
         return START
     tools = {
+        "start": session.guide is not None,
         "cut-out": session.cutting is not None,
         "stiff": session.material is not None,
         "ready-motions": project.draft is not None,

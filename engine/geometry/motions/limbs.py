@@ -14,7 +14,7 @@ from engine.geometry.motions.stepping import Stepping
 from engine.geometry.motions.steps import Gait, bent, room_below
 
 FEET = (("foot.L", 0.0), ("foot.R", 0.0))
-STANDING = Gait(stance=1.0, stride=0.0, lift=0.0, falls=FEET, gathered=0.0)
+STANDING = Gait(stance=1.0, stride=0.0, lift=0.0, falls=FEET, gathered=0.0, straight=0.998)
 SAMPLES = 96  # of a cycle, at which the lowest place of the hips is looked for
 
 
@@ -94,7 +94,12 @@ class _Performed(Performance):
         places, _ = self._trunk_and_arms(phase)
         return max(
             (
-                room_below(leg, places[leg.joints[0]], self.steps.foot(foot, phase))
+                room_below(
+                    leg,
+                    places[leg.joints[0]],
+                    self.steps.foot(foot, phase),
+                    self.steps.gait.straight,
+                )
                 for foot, leg in self.steps.legs.items()
             ),
             default=0.0,

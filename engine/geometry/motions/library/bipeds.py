@@ -2,7 +2,7 @@
 
 from engine.geometry.motions.curves import Curve, even
 from engine.geometry.motions.library.four_legs import WALK_ON_FOUR
-from engine.geometry.motions.limbs import Limbs
+from engine.geometry.motions.limbs import STANDING, Limbs
 from engine.geometry.motions.motion import Motion
 from engine.geometry.motions.steps import Gait
 
@@ -33,7 +33,13 @@ WALK = Motion(
         ),
         "biped-front": Limbs(
             gait=Gait(
-                stance=0.6, stride=0.3, lift=0.1, falls=LEFT_RIGHT, gathered=0.0, treads=False
+                stance=0.6,
+                stride=0.3,
+                lift=0.1,
+                falls=LEFT_RIGHT,
+                gathered=0.0,
+                treads=False,
+                straight=0.997,
             ),
             rise=even(0.0, -0.02, 0.0, 0.025, 0.0, -0.02, 0.0, 0.025),
             shift=even(0.0, 0.06, 0.06, 0.0, -0.06, -0.06),
@@ -75,7 +81,13 @@ RUN = Motion(
         ),
         "biped-front": Limbs(
             gait=Gait(
-                stance=0.36, stride=0.5, lift=0.2, falls=LEFT_RIGHT, gathered=0.0, treads=False
+                stance=0.36,
+                stride=0.5,
+                lift=0.2,
+                falls=LEFT_RIGHT,
+                gathered=0.0,
+                treads=False,
+                straight=0.997,
             ),
             rise=Curve(
                 ((0.0, 0.0), (0.17, -0.05), (0.42, 0.05), (0.5, 0.0), (0.67, -0.05), (0.92, 0.05))
@@ -136,7 +148,7 @@ NOD = Motion(
         "biped-front": Limbs(
             turns={"head": even(0, 1, 2, 1, 0, -1, -2, -1)},
             rise=even(0, -0.02, -0.06, -0.02, 0.01, -0.02, -0.05, -0.02, 0.005, 0, 0, 0),
-            gait=Gait(stance=1.0, stride=0.0, lift=0.0, falls=LEFT_RIGHT, gathered=0.0),
+            gait=STANDING,
             needed=("hips", "head"),
         ),
     },
