@@ -94,6 +94,6 @@ def drawing(kind: str) -> Image.Image:
 
 
 def told(kind: str) -> dict[str, object]:
-    """Return its joints as `lissom move` reads them, y down."""
-    joints = {name: [at.real, SIZE[1] - at.imag] for name, at in JOINTS[kind].items()}
+    """Return its joints as `lissom move` reads them."""
+    joints = {name: [at.real, at.imag] for name, at in JOINTS[kind].items()}
     return {"schema": 1, "kind": kind, "joints": joints if kind != "anything" else {}}

@@ -106,7 +106,7 @@ def _found(figure: Figure, motion: Motion, kind: str | None, told: ToldJoints) -
         if kind not in motion.kinds and WHOLE in motion.kinds:
             kind = WHOLE
         say(f"kind: {kind} (guessed)")
-    joints = told.in_picture(figure.picture.size[1])
+    joints = dict(told.joints)
     if not joints and kind_named(kind).parents:
         joints = dict(suggested_joints(loops, kind_named(kind)))
         if not joints:

@@ -14,12 +14,12 @@ A ready motion moves the joints of a drawing. What kind of body the drawing is, 
 are, is guessed, and printed, unless it is told:
 
   {"schema": 1, "kind": "biped-side",
-   "joints": {"hips": [225, 350], "chest": [230, 235], "head": [235, 110],
-              "knee.L": [300, 440], "foot.L": [330, 545], "knee.R": [190, 450],
-              "foot.R": [125, 545]}}
+   "joints": {"hips": [225, 250], "chest": [230, 365], "head": [235, 490],
+              "knee.L": [300, 160], "foot.L": [330, 55], "knee.R": [190, 150],
+              "foot.R": [125, 55]}}
 
-Places are pixels of the drawing from its upper left corner, x to the right and y down. The kinds
-and their joints, of which any may be left out that is not in the drawing:
+Places are pixels of the drawing from its lower left corner, x to the right and y up, as in
+`lissom pose`. The kinds and their joints, of which any may be left out that is not in the drawing:
 
   biped-front, biped-side, four-legs
     hips, chest, neck, head, tail, and of each side, as in knee.L and knee.R,

@@ -19,23 +19,7 @@ class ToldJoints:
     """What is said of the joints of a drawing."""
 
     kind: str | None  # None leaves it to be guessed
-    joints: Mapping[str, complex]  # in pixels from the upper left corner, y down
-
-    def in_picture(self, height: int) -> dict[str, complex]:
-        """Return where they are in a picture of a height, y up.
-
-        Raises
-        ------
-        LissomError
-            If what stands does so on its head.
-        """
-        joints = {name: at.conjugate() + 1j * height for name, at in self.joints.items()}
-        feet = [at.imag for name, at in joints.items() if name.startswith("foot")]
-        if feet and "head" in joints and self.kind != "chain" and min(feet) > joints["head"].imag:
-            raise LissomError(
-                "the feet are above the head; places are pixels from the upper left corner, y down"
-            )
-        return joints
+    joints: Mapping[str, complex]  # in pixels from the lower left corner, y up
 
 
 def load_joints(path: Path) -> ToldJoints:
@@ -78,4 +62,9 @@ def _parsed(content: object) -> ToldJoints:
         name: as_point(place, f"joints.{name}")
         for name, place in as_object(told.get("joints", {}), "joints").items()
     }
+    feet = [at.imag for name, at in joints.items() if name.startswith("foot")]
+    if feet and "head" in joints and min(feet) > joints["head"].imag:
+        raise LissomError(
+            "the feet are above the head; places are pixels from the lower left corner, y up"
+        )
     return ToldJoints(kind=kind, joints=joints)

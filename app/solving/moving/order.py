@@ -118,11 +118,8 @@ def _on_drawing(figure: Figure, joints: Mapping[str, complex]) -> dict[str, comp
     covered = figure.covers(points, tolerance=tolerance)
     for (name, place), is_on_it in zip(joints.items(), covered, strict=True):
         if not is_on_it:
-            # Places are told from the upper left corner of the drawing.
-            beside = place - figure.corner
-            down = figure.picture.size[1] - beside.imag
             raise LissomError(
-                f"the joint {name!r} at ({beside.real:g}, {down:g}) is not on the drawing"
+                f"the joint {name!r} at ({place.real:g}, {place.imag:g}) is not on the drawing"
             )
     nearest = figure.domain.nearest(points).tolist()
     return dict(zip(joints, nearest, strict=True))
