@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from PIL import Image
 
 from app.document.queries.shortfall import Extremes
 from app.document.queries.stage.sight import is_visible
@@ -16,6 +17,7 @@ from app.reports.certification import Verdict, certify_clip
 from app.solving.script import load_pose_script
 from app.storage.pictures import read_openraster
 from app.storage.project_file import load_project
+from app.ui.welcome import MOMENTS
 
 SAMPLES = Path(__file__).parent.parent / "sample_images"
 LAYERED = ("friend",)
@@ -51,6 +53,17 @@ def test_a_sample_is_what_its_script_says(name):
         for lag in document.figures[0].lags(key.pose).values()
     ]
     assert max(lags) < 2.0, "handles arrive, to two pixels"
+
+
+@pytest.mark.parametrize("name", [*NAMES, *LAYERED])
+def test_the_welcome_view_shows_all_of_a_samples_motion(name):
+    document = load_project(SAMPLES / f"{name}.lissom")
+    with Image.open(SAMPLES / "moving" / f"{name}.webp") as moving:
+        assert document.loop
+        seconds = document.frames.last / document.fps
+        assert abs(moving.n_frames - seconds * MOMENTS) < 1
+        moving.load()
+        assert moving.info["duration"] == 1000 / MOMENTS
 
 
 @pytest.mark.parametrize("name", LAYERED)

@@ -18,6 +18,7 @@ from app.storage import (
     kept_report,
     remove_report,
     take_faults,
+    take_news,
     write_atomically,
 )
 
@@ -124,8 +125,8 @@ def ask_report(session: Session) -> None:
 
 
 def tell_of_kept(session: Session) -> None:
-    """Tell that there is a report of what ended Lissom before, unless something is asked now."""
-    if session.dialog is None and kept_report(session.folder):
+    """Tell once of a report of what ended Lissom before, unless something is asked now."""
+    if session.dialog is None and take_news(session.folder):
         session.tell(
             "Lissom ended unexpectedly the last time. A report of it was kept here, and sent "
             "nowhere.",

@@ -208,6 +208,7 @@ class Project:
     chosen_of: KeysOf = field(default_factory=dict)
     track_row: TrackRow | None = None  # that of a track which is chosen
     draft: MotionDraft | None = None  # a motion that is about to be given
+    last_draft: MotionDraft | None = None  # that was put away, or was given
     take: Take | None = None  # a drag that is recorded, until that is kept or given up
     camera: View | None = None  # None fits the picture into the viewport
     looks_through: bool = False  # whether the viewport shows what the scene's camera does

@@ -25,6 +25,7 @@ from app.storage.autosave import (
     remove_leftover as remove_leftover,
     remove_report as remove_report,
     take_faults as take_faults,
+    take_news as take_news,
 )
 from app.storage.files import (
     Cancellation as Cancellation,

@@ -24,8 +24,9 @@ SECONDS = 20.0  # between a change and its autosave, at least
 # The member of the file that tells where the work came from; projects that are saved have none.
 ORIGIN = "origin.json"
 LARGEST_ORIGIN = 100_000  # bytes
-REPORT, LARGEST_REPORT = "report.txt", 1_000_000  # bytes; of what ended the program
-FAULTS = "faults.txt"
+# Of what ended the program, before and after the person was told of it; what Python tells of it.
+REPORT, TOLD_REPORT, FAULTS = "report.txt", "report-told.txt", "faults.txt"
+LARGEST_REPORT = 1_000_000  # bytes
 
 
 class Origin(NamedTuple):
@@ -121,16 +122,27 @@ def keep_report(folder: Path, text: str) -> None:
 
 
 def kept_report(folder: Path) -> str:
-    """Return the report that was kept; empty where there is none that can be read."""
+    """Return the report that was kept last; empty where there is none that can be read."""
+    for name in (REPORT, TOLD_REPORT):
+        with suppress(LissomError):
+            content = read_file(folder / name, largest=LARGEST_REPORT)
+            return content.decode(errors="replace")
+    return ""
+
+
+def take_news(folder: Path) -> bool:
+    """Tell whether a report was kept that nobody was told of; from now on, somebody was."""
     try:
-        return read_file(folder / REPORT, largest=LARGEST_REPORT).decode(errors="replace")
-    except LissomError:
-        return ""
+        (folder / REPORT).replace(folder / TOLD_REPORT)
+    except OSError:
+        return False
+    return True
 
 
 def remove_report(folder: Path) -> None:
-    """Remove the report that was kept."""
-    (folder / REPORT).unlink(missing_ok=True)
+    """Remove the reports that were kept."""
+    for name in (REPORT, TOLD_REPORT):
+        (folder / name).unlink(missing_ok=True)
 
 
 def open_faults(folder: Path) -> int:

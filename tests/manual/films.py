@@ -26,6 +26,7 @@ from tests.manual.stage import (
     open_calm_dragon,
     place_of,
     play,
+    project_of,
     pull,
     scroll_to,
 )
@@ -178,6 +179,26 @@ def _ears(window: Film, path: Path) -> None:
     playback.halt(window.session)
 
 
+def _walking(window: Film, path: Path) -> None:
+    """A giraffe that has no handle yet is told to walk, and walks."""
+    window.session.meshing = Meshing(triangles=6_000)
+    window.open(sample_images() / "giraffe.png")
+    window.show_tab("Motion")
+    come_to_rest(window)
+    window.put(window.point(-150 + 700j))
+    with window.filmed(path):
+        window.stay(20)
+        window.type(imgui.Key.a)
+        window.stay(60)
+        window.click(window.item("//Motion/**/###give"))
+        with window.cut():
+            window.until(lambda: project_of(window).errand is None)
+            window.settle()
+        window.go(window.point(-150 + 700j))
+        window.stay(240)
+    playback.halt(window.session)
+
+
 def _move(window: Film, path: Path) -> None:
     """The octopus goes through the picture as it is."""
     open_sample(window, "octopus", frame=0)
@@ -220,6 +241,7 @@ FILMS: dict[str, Callable[[Film, Path], None]] = {
     "tail-wag": _tail_wag,
     "record": _record,
     "ears": _ears,
+    "walking": _walking,
     "move": _move,
     "stiff": _stiff,
 }

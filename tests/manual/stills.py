@@ -10,6 +10,7 @@ from app.document import Target
 from app.editor import layering
 from app.editor.actions import (
     cycles,
+    drafting,
     editing,
     keys,
     playback,
@@ -103,6 +104,16 @@ def _poses(window: Film, path: Path) -> None:
     window.act(playback.seek, 37)
     window.act(viewing.toggle, "onion")
     window.show_tab("Poses")
+    _still(window, path)
+
+
+def _ready_motions(window: Film, path: Path) -> None:
+    """A giraffe that is about to walk: where its joints are."""
+    window.open(sample_images() / "giraffe.png")
+    window.resize((1000, 780))
+    window.act(drafting.begin)
+    window.frames(6)
+    window.act(viewing.fit_pose)
     _still(window, path)
 
 
@@ -244,6 +255,7 @@ STILLS: dict[str, Callable[[Film, Path], None]] = {
     "feet": _feet,
     "walk": _walk,
     "poses": _poses,
+    "ready-motions": _ready_motions,
     "front": _front,
     "stretch": _stretch,
     "distortion": _distortion,

@@ -33,6 +33,7 @@ from app.ui.dialogs import find_system_dialogs
 from app.ui.window import Window, has_display, share_heap
 
 EXIT_FAILED = 1
+HINDRANCES = (*EXPECTED_ERRORS, ImportError, MemoryError, OSError, RuntimeError)
 # Seconds that workers have to end: when the person has closed the window, when something else has.
 LEISURE, HURRY = 6.0, 2.0
 
@@ -98,7 +99,8 @@ def _show(window: Window, endings: Endings) -> int:
     try:
         window.run(is_over=lambda: endings.has_come, farewell=farewell)
     except Exception as error:
-        if not was_open:
+        # What hinders a start has words of its own.
+        if not was_open and isinstance(error, HINDRANCES):
             raise
         _report(session, error)
         return EXIT_FAILED

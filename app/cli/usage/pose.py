@@ -23,6 +23,9 @@ keeps its target of the key before, at first its place in the picture. Each key 
 from the key before; where the bounds hold a handle back, the key is kept and a notice says by how
 much.
 
+A key with "turn": {"nose": 20} turns the shape at handles by so many degrees, counter-clockwise,
+from how it is drawn; a later key that names none leaves them turned so.
+
 A key with "pull": 10 pulls the handles that it names with no more force than that, as the hand does
 in the window: what is beyond their reach moves nothing else, and is wanted where it came to.
 

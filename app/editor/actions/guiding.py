@@ -155,5 +155,5 @@ def _moves(figure: Figure) -> bool:
     """Tell whether a figure has poses of its own to go between, or a track that moves a handle."""
     if any(len(track.keys) > 1 for track in figure.tracks):
         return True
-    first, *others = (figure.map_of(key.pose) for key in figure.keys)
-    return any(not other.is_same(first) for other in others)
+    first = figure.map_of(figure.keys[0].pose)
+    return any(not figure.map_of(key.pose).is_same(first) for key in figure.keys[1:])

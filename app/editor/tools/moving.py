@@ -5,7 +5,7 @@ from typing import Self
 
 from app.document import Figure
 from app.editor import layering
-from app.editor.actions import playback, posing
+from app.editor.actions import drafting, playback, posing
 from app.editor.project import Project
 from app.editor.session import Hint, Session, with_project
 from app.editor.tools.pulling import Pulling
@@ -64,8 +64,10 @@ def take_up(session: Session, project: Project) -> None:
 @with_project
 def pose(session: Session, project: Project) -> None:
     """Put away whatever is in hand instead of posing, a motion that is drafted among it."""
-    session.cutting = session.material = project.draft = None
+    session.cutting = session.material = None
     session.moves = False
+    if project.draft is not None:
+        drafting.give_up(session)
 
 
 @with_project

@@ -13,6 +13,7 @@ from app.document import (
     Target,
     clip_of,
     find_shortfall,
+    is_as_given,
     scene_commands,
 )
 from app.errors import LissomError
@@ -26,6 +27,7 @@ from engine.maps import Certificate, HarmonicMap
 # A pose that is not at rest by then creeps along a limit.
 MOST_STEPS, STEPS_AT_ONCE = 150, 25
 TRIES = 4  # by which the largest one is looked for
+TOLD = 3  # joints that are named
 WORST = 4  # keys that it is looked for by
 SMALLEST = 0.05  # size that parameters may have
 
@@ -102,9 +104,12 @@ class Giving:
         """Which joints are out of reach, and at what size they are not, in words."""
         if not self.short:
             return ()
+        worst = sorted(self.short.items(), key=lambda each: -each[1][0])
         told = ", ".join(
-            f"{name!r} by {lag:.1f} px (frame {frame})" for name, (lag, frame) in self.short.items()
+            f"{name!r} by {lag:.1f} px (frame {frame})" for name, (lag, frame) in worst[:TOLD]
         )
+        if worst[TOLD:]:
+            told += f" and {len(worst) - TOLD} more"
         size = self.fitting
         instead = "" if size is None else f"; at size {size:.2f} all is within reach"
         return (f"Some joints fall short of the motion: {told}{instead}",)
@@ -121,7 +126,17 @@ class Giving:
             keys.append(replace(keys[0], frame=given.last))
         if self.lead is not None:
             keys.insert(0, Keyframe(frame=given.first, pose=self.lead))
-        return spliced(self.document, self.before.id, keys, given)
+        until = max((each.last for each in self.replaced), default=given.last)
+        return spliced(self.document, self.before.id, keys, given, until)
+
+    @property
+    def replaced(self) -> tuple[GivenMotion, ...]:
+        """The motion that it takes the place of, as it was given at the same frame."""
+        return tuple(
+            each
+            for each in self.before.motions
+            if each.first == self.given.first and is_as_given(self.before, each)
+        )
 
     @property
     def at_rest(self) -> Pose:

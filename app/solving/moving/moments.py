@@ -6,9 +6,12 @@ from dataclasses import dataclass, replace
 from app.document import Figure, GivenMotion, Spring, Target
 from app.solving.moving.order import MotionOrder
 from engine.geometry.motions import Body
+from engine.maps import Bounds
 
 # How firmly feet are held, so that they do not slide: the solver misses less than 1 % of a step.
 FIRM = 1000.0
+# Poses spend so much of the figure's limits: what is between them may need a little more.
+SPENT = 0.97
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -28,7 +31,9 @@ def moments_of(
     """
     motion, parameters = order.ready, order.parameters
     period = (given.last - given.start) // given.rounds
-    count = min(period, motion.keys)
+    # Feet that go on the ground are keyed in every frame: in between they would slide.
+    steps = motion.course(order.kind).travels
+    count = period if steps else min(period, motion.keys)
     offsets = [round(number * period / count) for number in range(count)]
     if parameters.travel:
         offsets = [turn * period + offset for turn in range(given.rounds) for offset in offsets] + [
@@ -60,4 +65,9 @@ def held_by(figure: Figure, joints: frozenset[int], feet: frozenset[int]) -> Fig
     loose = [each for each in others if figure.spring_of(each) is None]
     springs = (replace(each, enabled=True) for each in figure.springs)
     carried = (Spring(handle=each, frequency=1.0, damping=1.0) for each in loose)
-    return replace(figure, handles=handles, tracks=(), springs=(*springs, *carried))
+    inside = Bounds(
+        k=SPENT * figure.bounds.k,
+        sigma_a=figure.bounds.sigma_a**SPENT,
+        sigma_b=figure.bounds.sigma_b**SPENT,
+    )
+    return replace(figure, handles=handles, bounds=inside, tracks=(), springs=(*springs, *carried))

@@ -49,6 +49,8 @@ class MotionOrder:
     first: int = 0  # the frame from which on it is given
     rounds: int = 1  # how often its cycle is there
     facing: int | None = None  # 1 looks to the right, -1 to the left; None guesses
+    # Handles that are joints already, by the joints' names; they go where these are now.
+    handles: Mapping[str, int] = field(default_factory=dict)
     stiff: bool = True  # whether the trunk becomes stiff, so that limbs move and not all
     bones: bool = False  # whether limbs get bones, too
     # Limits that the figure has at least; None leaves them as they are.
@@ -74,6 +76,7 @@ def order_of(figure: Figure, given: GivenMotion) -> MotionOrder:
         first=given.first,
         rounds=given.rounds,
         facing=given.facing,
+        handles=given.joints,
         stiff=False,
         limits=None,
     )
@@ -110,13 +113,16 @@ def body_of(figure: Figure, order: MotionOrder) -> Body:
 
 def _on_drawing(figure: Figure, joints: Mapping[str, complex]) -> dict[str, complex]:
     """Return joints on a figure; those that are hardly beside it come to its outline."""
-    beside = BESIDE * box_diagonal(figure.domain.outline)
+    tolerance = BESIDE * box_diagonal(figure.domain.outline)
     points: Complexes = np.array(list(joints.values()), dtype=np.complex128)
-    covered = figure.covers(points, tolerance=beside)
+    covered = figure.covers(points, tolerance=tolerance)
     for (name, place), is_on_it in zip(joints.items(), covered, strict=True):
         if not is_on_it:
+            # Places are told from the upper left corner of the drawing.
+            beside = place - figure.corner
+            down = figure.picture.size[1] - beside.imag
             raise LissomError(
-                f"the joint {name!r} at ({place.real:g}, {place.imag:g}) is not on the drawing"
+                f"the joint {name!r} at ({beside.real:g}, {down:g}) is not on the drawing"
             )
     nearest = figure.domain.nearest(points).tolist()
     return dict(zip(joints, nearest, strict=True))
@@ -127,17 +133,11 @@ def with_handles_at_joints(
 ) -> tuple[Document, dict[str, int]]:
     """Return a document whose figure has a handle at each joint, and bones; and which those are."""
     joints = dict[str, int]()
-    near = SAME_JOINT * box_diagonal(document.figure(identity).domain.outline)
     for name, place in body.joints.items():
-        figure = document.figure(identity)
-        beside = {abs(each.position - place): each.id for each in figure.handles}
-        found = beside[min(beside)] if beside and min(beside) <= near else None
-        if found is None or found in joints.values():
-            found = figure.next_handle
-            taken = {handle.name for handle in figure.handles}
-            free = name if name not in taken else numbered(name, taken, 2)
-            document = handle_commands.add_handle(identity, place, name=free)(document)
-        joints[name] = found
+        document, joints[name] = _with_handle(document, identity, name, place, order, joints)
+    if not body.kind.parents:
+        # What moves as a whole is not held still anywhere.
+        document = handle_commands.free_handles(identity, set(joints.values()), free=True)(document)
     for name, before in body.parents.items():
         amount = STIFF_TRUNK if name in TRUNK else STIFF_LIMB
         if not before or not (order.stiff if name in TRUNK else order.bones):
@@ -151,6 +151,30 @@ def with_handles_at_joints(
     if order.stiff and "head" in joints:
         document = _with_stiff_head(document, identity, body.joints["head"])
     return document, joints
+
+
+def _with_handle(
+    document: Document,
+    identity: int,
+    name: str,
+    place: complex,
+    order: MotionOrder,
+    others: Mapping[str, int],
+) -> tuple[Document, int]:
+    """Return a document whose figure has a handle at a joint, and which that is."""
+    figure = document.figure(identity)
+    known = order.handles.get(name)
+    if known is not None and any(each.id == known for each in figure.handles):
+        return handle_commands.move_handle(identity, known, place)(document), known
+    near = SAME_JOINT * box_diagonal(figure.domain.outline)
+    free = [each for each in figure.handles if each.id not in others.values()]
+    beside = min(free, key=lambda each: abs(each.position - place), default=None)
+    if beside is not None and abs(beside.position - place) <= near:
+        return document, beside.id
+    taken = {handle.name for handle in figure.handles}
+    new = name if name not in taken else numbered(name, taken, 2)
+    added = handle_commands.add_handle(identity, place, name=new)(document)
+    return added, figure.next_handle
 
 
 def _with_stiff_head(document: Document, identity: int, head: complex) -> Document:

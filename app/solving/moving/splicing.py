@@ -27,7 +27,7 @@ def lead_before(figure: Figure, first: int, fps: float) -> int:
 
 
 def spliced(
-    document: Document, identity: int, keys: Sequence[Keyframe], given: GivenMotion
+    document: Document, identity: int, keys: Sequence[Keyframe], given: GivenMotion, until: int
 ) -> Figure:
     """Return a figure with the keys of a motion in place of those that it has meanwhile.
 
@@ -41,8 +41,10 @@ def spliced(
     given : GivenMotion
         It gets the digest of its keys. Other motions that it interrupts are forgotten, and what
         repeats into it becomes keys.
+    until : int
+        The last frame whose key goes, where the motion takes the place of a longer one.
     """
-    first, last = given.first, given.last
+    first, last = given.first, max(given.last, until)
     for cycle in document.figure(identity).cycles:
         if cycle.first < last and cycle.covers(first + 1):
             make_keys = cycle_commands.make_keys(identity, cycle.first, document.frames.last)
@@ -50,8 +52,8 @@ def spliced(
     figure = document.figure(identity)
     cycles = [each for each in figure.cycles if not _is_during(each, first, last)]
     if given.rounds > 1 and not given.parameters.travel:
-        period = (last - given.start) // given.rounds
-        cycles.append(Cycle(first=given.start, last=given.start + period, until=last))
+        period = (given.last - given.start) // given.rounds
+        cycles.append(Cycle(first=given.start, last=given.start + period, until=given.last))
     kept = [key for key in figure.keys if not first <= key.frame <= last]
     motions = [each for each in figure.motions if not each.overlaps(first, last)]
     figure = replace(
@@ -59,7 +61,7 @@ def spliced(
         keys=tuple(sorted([*kept, *keys], key=lambda key: key.frame)),
         cycles=tuple(sorted(cycles, key=lambda cycle: cycle.first)),
     )
-    given = replace(given, digest=digest_of_keys(figure, first, last))
+    given = replace(given, digest=digest_of_keys(figure, first, given.last))
     motions.append(given)
     return replace(figure, motions=tuple(sorted(motions, key=lambda each: each.first)))
 

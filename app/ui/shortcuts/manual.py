@@ -10,6 +10,7 @@ PAGES = {
     "Handle": "handles",
     "Layers": "layers",
     "Poses": "poses",
+    "Motion": "ready-motions",
     "Deform": "stretch",
     "Material": "stiff",
     "Distortion": "distortion",
@@ -30,8 +31,10 @@ def page_in_front(session: Session) -> str:
     if project is None:
         return START
     tools = {
+        "start": session.guide is not None,
         "cut-out": session.cutting is not None,
         "stiff": session.material is not None,
+        "ready-motions": project.draft is not None,
         "move": session.moves,
         "record": session.records,
         "camera": project.looks_through,

@@ -77,7 +77,7 @@ def _all(session: Session, _: Project) -> str:
 
 def _is_idle(session: Session, project: Project) -> bool:
     """Tell whether nothing is under way that Esc ends first."""
-    in_hand = session.pointer or not session.poses or project.timing.gesture
+    in_hand = session.pointer or not session.poses or project.timing.gesture or project.errand
     return not (in_hand or _records(session, project))
 
 

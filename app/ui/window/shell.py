@@ -26,9 +26,9 @@ from app.ui.dialogs import Dialogs
 from app.ui.panel import Panel, bring_to_front
 from app.ui.shortcuts import pressed
 from app.ui.style import FONT_SIZE, PALETTES, Look, apply_theme, interface_scale, load_fonts
-from app.ui.window.callout import Callout
 from app.ui.window.docking import Docking
 from app.ui.window.guard import allow_recovery, guard
+from app.ui.window.guide import Callout
 
 # Saved layouts of another number are forgotten: they name other panels.
 LAYOUT = 1

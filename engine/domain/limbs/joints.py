@@ -253,6 +253,15 @@ def _with_neck_apart(found: dict[str, complex]) -> dict[str, complex]:
     return {name: place for name, place in found.items() if name != "neck"}
 
 
+def _thickest(plan: BodyPlan, fork: int, ends: list[int]) -> complex:
+    """Return where it is thickest around a fork, on the ways to what reaches out there."""
+    nodes = np.unique(
+        np.concatenate([plan.between(fork, end) for end in ends] + [np.array([fork])])
+    )
+    near = nodes[np.abs(plan.places[nodes] - plan.places[fork]) <= plan.radii[fork]]
+    return complex(plan.places[near[plan.radii[near].argmax()]])
+
+
 def _lying(plan: BodyPlan) -> dict[str, complex]:
     """Return the joints of a body that lies on legs below both of its ends."""
     if len(plan.legs) < 2:
@@ -260,7 +269,6 @@ def _lying(plan: BodyPlan) -> dict[str, complex]:
     found: dict[str, complex] = {}
     hind, front = (0, -1) if plan.facing > 0 else (-1, 0)
     hips, chest = int(plan.trunk[hind]), int(plan.trunk[front])
-    found["hips"], found["chest"] = complex(plan.places[hips]), complex(plan.places[chest])
     for start, pair, names in (
         (hips, plan.pairs[hind], ("knee", "foot")),
         (chest, plan.pairs[front], ("elbow", "hand")),
@@ -272,6 +280,7 @@ def _lying(plan: BodyPlan) -> dict[str, complex]:
             found |= {f"{names[0]}.{side}": limb[1], f"{names[1]}.{side}": limb[2]}
     ahead = [end for end in plan.others if plan.ahead(end)]
     behind = [end for end in plan.others if not plan.ahead(end)]
+    found["hips"], found["chest"] = _thickest(plan, hips, behind), _thickest(plan, chest, ahead)
     if ahead:
         tip = max(ahead, key=lambda end: plan.facing * plan.places[end].real)
         found |= _head(plan, _Way(plan, plan.between(chest, tip)), is_frontal=False)[0]

@@ -14,7 +14,7 @@ from engine.geometry.motions.stepping import Stepping
 from engine.geometry.motions.steps import Gait, bent, room_below
 
 FEET = (("foot.L", 0.0), ("foot.R", 0.0))
-STANDING = Gait(stance=1.0, stride=0.0, lift=0.0, falls=FEET, gathered=0.0)
+STANDING = Gait(stance=1.0, stride=0.0, lift=0.0, falls=FEET, gathered=0.0, straight=0.998)
 SAMPLES = 96  # of a cycle, at which the lowest place of the hips is looked for
 
 
@@ -29,6 +29,8 @@ class Limbs(Choreography):
     """
 
     turns: Mapping[str, Periodic] = field(default_factory=dict)
+    # Those that are ahead or back, and so are not seen from the front.
+    leans: Mapping[str, Periodic] = field(default_factory=dict)
     # Instead of those above, of joints of one side alone, such as the hand that waves.
     single: Mapping[str, Periodic] = field(default_factory=dict)
     lag: float = 0.5
@@ -92,7 +94,12 @@ class _Performed(Performance):
         places, _ = self._trunk_and_arms(phase)
         return max(
             (
-                room_below(leg, places[leg.joints[0]], self.steps.foot(foot, phase))
+                room_below(
+                    leg,
+                    places[leg.joints[0]],
+                    self.steps.foot(foot, phase),
+                    self.steps.gait.straight,
+                )
                 for foot, leg in self.steps.legs.items()
             ),
             default=0.0,
@@ -121,6 +128,8 @@ class _Performed(Performance):
         has_side = kept != name
         late = course.lag if name.endswith(".R") else 0.0
         curve = course.turns.get(kept)
+        if curve is None and self.body.kind.name != "biped-front":
+            curve = course.leans.get(kept)
         alone = name if self.is_first_side else other_side(name)
         if alone in course.single:
             curve, late = course.single[alone], 0.0

@@ -7,7 +7,7 @@ import numpy as np
 
 from engine.geometry.motions.body import Body, other_side
 from engine.geometry.motions.motion import Parameters
-from engine.geometry.motions.steps import STRAIGHT, BodyLeg, Gait, leg_of
+from engine.geometry.motions.steps import BodyLeg, Gait, leg_of
 
 GROUND = 0.15  # of a leg's length: feet that are drawn no higher above the lowest one stand
 # Legs of one drawing cannot pass through each other: so near, in lengths of a leg, feet of a pair
@@ -58,7 +58,7 @@ class Stepping:
         joints, up = self.body.joints, []
         for foot, leg in self.legs.items():
             root = joints[leg.joints[0]]
-            away = min(abs(root - joints[foot]), STRAIGHT * leg.length)
+            away = min(abs(root - joints[foot]), self.gait.straight * leg.length)
             up.append(away - (root.imag - self.ground[foot]))
         return float(np.mean(up))
 

@@ -11,8 +11,6 @@ from engine.geometry.motions.curves import bump, hermite
 
 # A leg that is drawn bent by so much bends that way; a straighter one as its kind does.
 BENT = 0.21  # radians
-# Of a leg's length: so near to straight it may come, so that the knee does not snap.
-STRAIGHT = 0.997
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -25,6 +23,8 @@ class Gait:
     # When each foot comes down, as shares of the cycle.
     falls: tuple[tuple[str, float], ...]
     gathered: float = 0.2  # how far feet are set below the hips, rather than where they are drawn
+    # Of a leg's length: so near to straight it comes, so that the knee does not snap.
+    straight: float = 0.985
     treads: bool = True  # whether, on the spot, feet go back on the ground as under who walks
     roll: float = 0.0  # degrees by which a foot points down as it leaves the ground
 
@@ -111,8 +111,8 @@ def bent(leg: BodyLeg, root: complex, tip: complex) -> dict[str, complex]:
     return {leg.joints[1]: root + upper * direction * cmath.exp(1j * turn)}
 
 
-def room_below(leg: BodyLeg, root: complex, tip: complex) -> float:
+def room_below(leg: BodyLeg, root: complex, tip: complex, straight: float) -> float:
     """Return by how much a root must come down, so that its leg reaches the tip."""
-    reach = STRAIGHT * leg.length if len(leg.lengths) > 1 else leg.length
+    reach = straight * leg.length if len(leg.lengths) > 1 else leg.length
     beside = min(abs((root - tip).real), reach)
     return max(0.0, (root - tip).imag - math.sqrt(reach**2 - beside**2))

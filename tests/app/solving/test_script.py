@@ -23,7 +23,7 @@ WHOLE = {
     "keys": [
         {"frame": 0},
         {"frame": 24, "targets": {"nose": [5, 6]}, "ease": "in-out"},
-        {"frame": 30, "targets": {}, "ease": [0.1, 0.2, 0.3, 0.4]},
+        {"frame": 30, "targets": {}, "turn": {"nose": 90}, "ease": [0.1, 0.2, 0.3, 0.4]},
     ],
 }
 
@@ -55,6 +55,7 @@ def test_a_whole_script_is_read(tmp_path):
     assert [key.frame for key in script.keys] == [0, 24, 30]
     assert script.keys[1].targets == {"nose": 5 + 6j}
     assert script.keys[1].ease == PRESETS["in-out"]
+    assert script.keys[2].turns == {"nose": np.pi / 2}
     assert script.keys[2].ease.curve == (0.1, 0.2, 0.3, 0.4)
 
 
@@ -93,6 +94,8 @@ def test_what_is_left_out_has_its_documented_default():
         (["keys", 0, "frame"], -1, "whole number"),
         (["keys", 1, "frame"], 0, "out of order: frame 0 after 0"),
         (["keys", 1, "frame"], 31, "out of order: frame 30 after 31"),
+        (["keys", 2, "turn", "hoof"], "far", r"keys\[2\].turn.hoof must be a number"),
+        (["keys", 2, "turn", "ear"], 5, "ear"),
         (["keys", 1, "targets", "tail"], [1, 2], "names the handle 'tail'"),
         (["keys", 1, "target"], {}, "unknown field 'target'"),
         (["keys", 1, "pull"], "hard", r"keys\[1\].pull"),

@@ -80,7 +80,7 @@ def test_a_dropped_picture_walks_after_few_clicks_and_drags(window, tmp_path):
     foot = project.draft.joints["foot.L"]
     press(window, foot, to=foot + 3)
     assert project.draft.joints["foot.L"].real == pytest.approx(foot.real + 3, abs=2)
-    drafting.set_parameters(window.session, size=0.2)
+    drafting.set_parameters(window.session, size=0.2, speed=4.0)
     assert project.document is before, "nothing is done to it yet"
     click(window, "//Motion/**/###give")
     arrive(window, project)
@@ -154,18 +154,24 @@ def test_handles_that_are_there_are_joints(window):
     assert project.draft.joints["head"] == head.position
 
 
-def test_a_motion_is_given_again_in_another_way_as_one_step(window, ghost):
+def test_a_motion_is_given_again_in_another_way_as_one_step_and_a_save_waits_for_it(
+    window, ghost, tmp_path
+):
     before = ghost.document
     (given,) = ghost.figure.motions
     drafting.begin(window.session)
     assert ghost.draft.given is given
     drafting.set_parameters(window.session, speed=4.0)
     giving.give(window.session)
+    ghost.path = tmp_path / "ghost.lissom"
+    saving.save(window.session)
     arrive(window, ghost)
+    window.until(lambda: ghost.path.exists() and not ghost.pending)
     (again,) = ghost.figure.motions
     assert again.last < given.last
     assert ghost.document.frames.last == again.last == ghost.figure.keys[-1].frame
     assert is_as_given(ghost.figure, again)
+    assert load_project(ghost.path).figures[0].motions == (again,)
     editing.undo(window.session)
     assert ghost.document is before
 
@@ -190,8 +196,7 @@ def test_what_was_edited_by_hand_is_replaced_only_on_request(window, ghost):
 def test_another_motion_follows(window, ghost):
     (given,) = ghost.figure.motions
     drafting.begin_after(window.session, given)
-    drafting.choose_motion(window.session, "hop")
-    drafting.set_parameters(window.session, size=0.3)
+    drafting.set_parameters(window.session, size=0.3, speed=4.0)
     giving.give(window.session)
     arrive(window, ghost)
     first, second = ghost.figure.motions
@@ -217,18 +222,7 @@ def test_on_its_way_it_is_given_up_and_drafted_again(window, child, how):
     assert child.document is before
 
 
-def test_a_save_waits_for_it_and_a_change_meanwhile_refuses_it(window, ghost, tmp_path):
-    drafting.begin(window.session)
-    drafting.choose_motion(window.session, "sway")
-    drafting.set_parameters(window.session, size=0.2)
-    giving.give(window.session)
-    ghost.path = tmp_path / "ghost.lissom"
-    saving.save(window.session)
-    arrive(window, ghost)
-    window.until(lambda: ghost.path.exists() and not ghost.pending)
-    saved = load_project(ghost.path)
-    assert [each.motion for each in saved.figures[0].motions] == ["sway"]
-    playback.halt(window.session)
+def test_a_change_meanwhile_refuses_it(window, ghost):
     drafting.begin(window.session)
     giving.give(window.session)
     posing.remove_handles(window.session, frozenset({ghost.figure.handles[0].id}))

@@ -106,6 +106,9 @@ def test_after_a_crash_the_unsaved_work_comes_first_and_the_report_is_behind_it(
     assert session.dialog is None
     failures.tell_of_kept(session)
     assert "report of it was kept" in session.toasts[0].text
+    session.toasts = []
+    failures.tell_of_kept(session)
+    assert session.toasts == [], "it was told"
     window.run(lambda robot: robot.menu_click("//##MainMenuBar/Help/Report a problem…"))
     window.frames(2)
     window.run(lambda robot: robot.item_click("//###dialog/Discard"))

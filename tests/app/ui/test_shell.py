@@ -44,8 +44,9 @@ def test_changing_the_theme_changes_no_size(window):
     assert window.status_height() == height
 
 
-def test_f1_opens_the_sheet_of_keys(window):
-    window.run(lambda robot: robot.key_press(int(window.Key.f1)))
+def test_shift_and_f1_open_the_sheet_of_keys(window):
+    keys = int(window.Key.mod_shift | window.Key.f1)
+    window.run(lambda robot: robot.key_press(keys))
     assert window.session.dialog is not None
     window.run(lambda robot: robot.key_press(int(window.Key.escape)))
     assert window.session.dialog is None
@@ -83,7 +84,7 @@ def test_docked_panels_leave_room_in_a_small_window(window):
     window.open(sample_images() / "ring.png")
     window.resize((900, 640), 2.0)
     assert _docked("Timeline").size.y <= 320
-    assert _docked("Handle").size.x <= 432
+    assert _docked("Handle").size.x <= 459
     window.resize((1280, 800))
 
 
@@ -112,7 +113,7 @@ def test_tabs_have_their_names_as_far_as_there_is_room(window):
     window.open(sample_images() / "ring.png")
     window.show_tab("Export")
     named = []
-    for width in (380, 450, 520, 640, 800):
+    for width in (430, 480, 520, 640, 800, 900):
         node = _docked("Handle")
         imgui.internal.dock_builder_set_node_size(node.id_, ImVec2(width, node.size.y))
         window.frames(4)

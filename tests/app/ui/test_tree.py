@@ -376,6 +376,10 @@ def test_a_layer_is_moved_and_ordered_in_time_by_the_tab(window, scene, ids, use
     use(lambda robot: robot.item_input_value("**/##moved right", 25.0))
     assert abs(place(scene, "stick", window) - before - 25) < 0.5
     assert [key.frame for key in scene.document.figure(ids["stick"]).movement] == [12]
+    window.act(playback.seek, 3)
+    window.run(lambda robot: robot.item_click(f"###Timeline/**/row {ids['stick']}/change 12"))
+    assert playback.current_frame(window.session, scene) == 12
+    window.frames(3)
     use(lambda robot: robot.item_click("**/No movement key at frame 12"))
     assert scene.document.figure(ids["stick"]).movement == ()
 

@@ -32,7 +32,7 @@ ENERGIES = Scale(left=0.0, right=2.0)
 SHARES = Scale(left=0.0, right=0.99)
 ROUNDS = Scale(left=1.0, right=20.0)
 KIND_HEIGHT, DIAGRAM_HEIGHT = 3.2, 9.5  # em
-IN_A_ROW = 5  # motions
+IN_A_ROW = 5  # motions at most
 LOOKS = {None: "As it seems", -1: "Left", 1: "Right"}
 
 
@@ -144,8 +144,10 @@ def _motions(look: Look, draft: MotionDraft) -> list[Action]:
     heading(look, "What it does")
     actions: list[Action] = []
     fitting = [motion for motion in MOTIONS.values() if draft.kind in motion.courses]
-    for row in range(0, len(fitting), IN_A_ROW):
-        options = [(motion.name, motion.label) for motion in fitting[row : row + IN_A_ROW]]
+    rows = -(-len(fitting) // IN_A_ROW)
+    width = -(-len(fitting) // rows)
+    for row in range(0, len(fitting), width):
+        options = [(motion.name, motion.label) for motion in fitting[row : row + width]]
         chosen = segments(look, f"motions {row}", options, draft.motion)
         if chosen is not None:
             actions.append(do(drafting.choose_motion, chosen))

@@ -6,7 +6,7 @@ from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.document import Document, Figure, Switch, carried_by, is_visible, layer_commands, sights_of
 from app.editor import Action, SwitchDrag, do
-from app.editor.actions import editing, timeline_pointing
+from app.editor.actions import editing, playback, timeline_pointing
 from app.ui.style import CHOSEN, SMALL, begin_tip, in_hand, ink, is_pressed, shortened, sized
 from app.ui.timeline.bands import THIN, Bands, FigureRow, tag
 from app.ui.timeline.keys import choose_row
@@ -15,6 +15,7 @@ from app.ui.timeline.tracks import FOLD, draw_fold, draw_names, draw_ways
 
 HATCH = 0.55  # em between the lines over a time in which a figure is hidden
 EYE = 0.62  # em: half the width of the mark where a figure is shown or hidden
+CHANGE = 0.24  # em: half of the mark where a figure is moved, fades or is ordered as a whole
 BESIDE = 0.35  # em that it makes way for a key at the same frame
 DEEPEST_INDENT = 5  # rows that are deeper are not shifted any more
 LEAST_TOLD = 1.8  # em: with less room behind a name its carrier is told by the tooltip alone
@@ -35,6 +36,7 @@ def draw_rows(bands: Bands, frame: int) -> list[Action]:
     draw_ways(bands)
     for row in bands.rows:
         imgui.push_id(f"row {row.figure.id}")
+        actions += _draw_changes(bands, row)
         for switch in row.figure.switches:
             actions += _draw_switch(bands, row, switch)
         imgui.pop_id()
@@ -141,6 +143,36 @@ def _hatch(bands: Bands, row: FigureRow, begin: int | None, end: int | None) -> 
         draw_list.add_line(ImVec2(x, high.y), ImVec2(x + height, low.y), ink(palette.dim, 0.35))
         x += gap
     imgui.pop_clip_rect()
+
+
+def _draw_changes(bands: Bands, row: FigureRow) -> list[Action]:
+    """Draw where a figure is keyed as a whole: its movement, its opacity and its order."""
+    actions: list[Action] = []
+    figure, em, palette = row.figure, bands.look.em, bands.look.palette
+    changes: dict[int, list[str]] = {}
+    rows = {
+        "Moved": [key.frame for key in figure.movement],
+        "Opacity": [key.frame for key in figure.opacities],
+        "Order": [placing.frame for placing in figure.placings],
+    }
+    for what, frames in rows.items():
+        for frame in frames:
+            changes.setdefault(frame, []).append(what)
+    for frame, told in changes.items():
+        x, y, half = bands.x(frame), row.bottom - 1.2 * CHANGE * em, CHANGE * em
+        if not bands.shows(x - half, x + half):
+            continue
+        box = ImVec2(x - half, y - half), ImVec2(x + half, y + half)
+        if bands.button(f"change {frame}", *box):
+            actions.append(do(playback.scrub, frame))
+        imgui.get_window_draw_list().add_ngon_filled(
+            ImVec2(x, y), half, ink(palette.text if in_hand() else palette.anchor), 4
+        )
+        if begin_tip():
+            imgui.text_unformatted(f"{' and '.join(told).capitalize()} at frame {frame}")
+            imgui.text_disabled("Click to go there; it is changed in the Layers tab")
+            imgui.end_tooltip()
+    return actions
 
 
 def _draw_switch(bands: Bands, row: FigureRow, switch: Switch) -> list[Action]:

@@ -71,6 +71,9 @@ def draw_badges(
     mode = _mode(session, project)
     if mode:
         return draw_mode(look, mode, corner, room)
+    if project.errand is not None:
+        stop = BINDINGS["no motion"].keys_in_words
+        return _pill(look, f"{project.errand.now}: {stop} gives the motion up", top)
     step = first_step(project)
     if step is None or guiding.is_led(session):
         return []

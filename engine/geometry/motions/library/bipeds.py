@@ -2,12 +2,13 @@
 
 from engine.geometry.motions.curves import Curve, even
 from engine.geometry.motions.library.four_legs import WALK_ON_FOUR
-from engine.geometry.motions.limbs import Limbs
+from engine.geometry.motions.limbs import STANDING, Limbs
 from engine.geometry.motions.motion import Motion
 from engine.geometry.motions.steps import Gait
 
 LEFT_RIGHT = (("foot.L", 0.0), ("foot.R", 0.5))
 FEET = ("hips", "foot.L", "foot.R")
+LEAPERS = ("hips",)  # from the side both legs may be one
 
 # Contact, down, passing, up, for each foot: the body is lowest after a foot came down, and highest
 # as the other one swings past it. Arms go against legs.
@@ -32,7 +33,13 @@ WALK = Motion(
         ),
         "biped-front": Limbs(
             gait=Gait(
-                stance=0.6, stride=0.3, lift=0.1, falls=LEFT_RIGHT, gathered=0.0, treads=False
+                stance=0.6,
+                stride=0.3,
+                lift=0.1,
+                falls=LEFT_RIGHT,
+                gathered=0.0,
+                treads=False,
+                straight=0.997,
             ),
             rise=even(0.0, -0.02, 0.0, 0.025, 0.0, -0.02, 0.0, 0.025),
             shift=even(0.0, 0.06, 0.06, 0.0, -0.06, -0.06),
@@ -59,22 +66,28 @@ RUN = Motion(
     keys=24,
     courses={
         "biped-side": Limbs(
-            gait=Gait(stance=0.36, stride=1.7, lift=0.3, falls=LEFT_RIGHT, roll=40),
+            gait=Gait(stance=0.38, stride=1.15, lift=0.15, falls=LEFT_RIGHT, gathered=0.1, roll=30),
             rise=Curve(
                 ((0.0, 0.0), (0.17, -0.05), (0.42, 0.05), (0.5, 0.0), (0.67, -0.05), (0.92, 0.05))
             ),
             turns={
                 "chest": even(-9, -11, -9, -8, -9, -11, -9, -8),
                 "head": even(7, 9, 7, 6, 7, 9, 7, 6),
-                "elbow": even(-34, 0, 34, 0),
-                "hand": even(28, 34, 44, 36),
+                "elbow": even(-21, 0, 21, 0),
+                "hand": even(10, 13, 20, 15),
                 "tail": even(0, 9, 0, -9),
             },
             needed=FEET,
         ),
         "biped-front": Limbs(
             gait=Gait(
-                stance=0.36, stride=0.5, lift=0.2, falls=LEFT_RIGHT, gathered=0.0, treads=False
+                stance=0.36,
+                stride=0.5,
+                lift=0.2,
+                falls=LEFT_RIGHT,
+                gathered=0.0,
+                treads=False,
+                straight=0.997,
             ),
             rise=Curve(
                 ((0.0, 0.0), (0.17, -0.05), (0.42, 0.05), (0.5, 0.0), (0.67, -0.05), (0.92, 0.05))
@@ -135,7 +148,7 @@ NOD = Motion(
         "biped-front": Limbs(
             turns={"head": even(0, 1, 2, 1, 0, -1, -2, -1)},
             rise=even(0, -0.02, -0.06, -0.02, 0.01, -0.02, -0.05, -0.02, 0.005, 0, 0, 0),
-            gait=Gait(stance=1.0, stride=0.0, lift=0.0, falls=LEFT_RIGHT, gathered=0.0),
+            gait=STANDING,
             needed=("hips", "head"),
         ),
     },
@@ -146,40 +159,44 @@ _LEAP = Limbs(
     gait=Gait(
         stance=0.62,
         stride=0.0,
-        lift=0.42,
+        lift=0.26,
         falls=(("foot.L", 0.72), ("foot.R", 0.72)),
         gathered=0.0,
-        roll=24,
+        roll=16,
     ),
     lag=0.0,
     rise=Curve(
         (
             (0.0, 0.0),
-            (0.2, -0.24),
+            (0.2, -0.15),
             (0.34, 0.0),
-            (0.53, 0.46),
+            (0.53, 0.34),
             (0.72, 0.0),
-            (0.82, -0.2),
+            (0.82, -0.12),
             (0.94, -0.03),
         )
     ),
-    turns={
+    leans={
         "chest": Curve(
-            ((0.0, 0), (0.2, -12), (0.36, 2), (0.55, 0), (0.72, -3), (0.82, -10), (0.94, -2))
+            ((0.0, 0), (0.2, -8), (0.36, 1), (0.55, 0), (0.72, -2), (0.82, -7), (0.94, -1))
         ),
-        "head": Curve(((0.0, 0), (0.2, 8), (0.36, 4), (0.55, -4), (0.72, 2), (0.82, 6), (0.94, 1))),
-        "elbow": Curve(
-            ((0.0, 0), (0.2, -26), (0.38, 30), (0.55, 44), (0.72, 20), (0.82, -6), (0.94, -3))
-        ),
-        "hand": Curve(
-            ((0.0, 0), (0.2, 8), (0.38, 20), (0.55, 26), (0.72, 16), (0.82, 10), (0.94, 2))
-        ),
+        "head": Curve(((0.0, 0), (0.2, 6), (0.36, 3), (0.55, -3), (0.72, 2), (0.82, 5), (0.94, 1))),
         "tail": Curve(
-            ((0.0, 0), (0.2, 10), (0.38, -14), (0.55, -6), (0.72, 10), (0.82, 14), (0.94, 3))
+            ((0.0, 0), (0.2, 8), (0.38, -10), (0.55, -5), (0.72, 8), (0.82, 10), (0.94, 2))
         ),
     },
-    needed=FEET,
+    turns={
+        "elbow": Curve(
+            ((0.0, 0), (0.2, -16), (0.38, 14), (0.55, 24), (0.72, 12), (0.82, -4), (0.94, -2))
+        ),
+        "hand": Curve(
+            ((0.0, 0), (0.2, 4), (0.38, 10), (0.55, 14), (0.72, 9), (0.82, 6), (0.94, 1))
+        ),
+    },
+    needed=LEAPERS,
 )
+
+
 JUMP = Motion(
     name="jump",
     label="Jump",
@@ -193,20 +210,22 @@ JUMP = Motion(
 LEAPING = Limbs(
     gait=Gait(
         stance=0.42,
-        stride=0.9,
-        lift=0.26,
+        stride=0.75,
+        lift=0.22,
         falls=(("foot.L", 0.0), ("foot.R", 0.0)),
         gathered=0.0,
-        roll=32,
+        roll=20,
     ),
     lag=0.0,
-    rise=Curve(((0.0, 0.0), (0.2, -0.16), (0.42, 0.02), (0.7, 0.25), (0.9, 0.06))),
-    turns={
+    rise=Curve(((0.0, 0.0), (0.2, -0.16), (0.42, 0.02), (0.7, 0.22), (0.9, 0.06))),
+    leans={
         "chest": Curve(((0.0, 1), (0.2, -7), (0.42, -3), (0.7, 2), (0.9, 3))),
         "head": Curve(((0.0, 2), (0.2, 6), (0.42, 3), (0.7, -2), (0.9, -2))),
-        "elbow": Curve(((0.0, -4), (0.2, -10), (0.42, 6), (0.7, 14), (0.9, 4))),
-        "hand": Curve(((0.0, 2), (0.2, 6), (0.42, 8), (0.7, 12), (0.9, 6))),
         "tail": Curve(((0.0, 6), (0.2, -10), (0.42, -4), (0.7, 12), (0.9, 12))),
     },
-    needed=FEET,
+    turns={
+        "elbow": Curve(((0.0, -4), (0.2, -10), (0.42, 6), (0.7, 14), (0.9, 4))),
+        "hand": Curve(((0.0, 2), (0.2, 6), (0.42, 8), (0.7, 12), (0.9, 6))),
+    },
+    needed=LEAPERS,
 )

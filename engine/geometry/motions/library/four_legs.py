@@ -38,8 +38,8 @@ TROT = Motion(
         "four-legs": Limbs(
             gait=Gait(
                 stance=0.42,
-                stride=1.3,
-                lift=0.2,
+                stride=1.05,
+                lift=0.14,
                 falls=(("foot.L", 0.0), ("hand.R", 0.0), ("foot.R", 0.5), ("hand.L", 0.5)),
                 gathered=0.1,
                 roll=28,

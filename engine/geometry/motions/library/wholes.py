@@ -13,7 +13,7 @@ BREATHE = Motion(
     keys=8,
     courses={
         "anything": Swell(
-            swell=even(0.0, 0.03, 0.06, 0.05, 0.025, 0.005),
+            swell=even(0.0, 0.04, 0.08, 0.065, 0.03, 0.005),
             stretch=even(0.0, 0.01, 0.02, 0.018, 0.008, 0.0),
         )
     },

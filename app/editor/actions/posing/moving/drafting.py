@@ -1,5 +1,6 @@
 """A motion that is about to be given: which one, to what kind of body, and how."""
 
+from collections.abc import Collection
 from dataclasses import replace
 from typing import Any
 
@@ -14,6 +15,7 @@ from engine.geometry.motions import MOTIONS, Parameters
 
 MOST_ROUNDS = 50
 PANEL = "Motion"
+LINKS = 6
 
 
 def why_not(_: Session, project: Project) -> str:
@@ -41,7 +43,12 @@ def begin(session: Session, project: Project) -> None:
     project.selected = frozenset()
     frame = playback.current_frame(session, project)
     here = [each for each in project.figure.motions if each.first <= frame < each.last]
-    project.draft = draft_again(project.figure, here[-1]) if here else _new(project.figure, frame)
+    if here:
+        project.draft = draft_again(project.figure, here[-1])
+    else:
+        project.draft = _put_away(project, frame) or _new(project.figure, frame)
+    # It has hints of its own.
+    session.guide = None
 
 
 @with_project
@@ -64,6 +71,15 @@ def begin_after(session: Session, project: Project, given: GivenMotion) -> None:
         project.draft = replace(draft, given=None, first=given.last)
 
 
+def _put_away(project: Project, frame: int) -> MotionDraft | None:
+    """Return the draft that was put away last, if it was of the same shape, and a first motion."""
+    draft, figure = project.last_draft, project.figure
+    if draft is None or figure.motions or draft.given is not None:
+        return None
+    is_same = (draft.figure, draft.domain) == (figure.id, figure.domain)
+    return replace(draft, first=frame, past=(), chosen=None) if is_same else None
+
+
 def _new(figure: Figure, frame: int) -> MotionDraft:
     """Return what a figure is given that has nothing at a frame: as the last one, or as it seems.
 
@@ -79,7 +95,7 @@ def _new(figure: Figure, frame: int) -> MotionDraft:
         figure=figure.id,
         domain=figure.domain,
         kind=kind.name,
-        motion=_first_motion(kind.name),
+        motion=_first_motion(kind.name, joints),
         joints=joints,
         suggested=joints,
         first=frame,
@@ -113,8 +129,17 @@ def limb_joints(given: GivenMotion) -> set[int]:
     return {handle for name, handle in given.joints.items() if "." in name}
 
 
-def _first_motion(kind: str) -> str:
-    return next(name for name, motion in MOTIONS.items() if kind in motion.courses)
+def _first_motion(kind: str, joints: Collection[str]) -> str:
+    """Return the first motion that fits a kind and its joints, one that gets on before others.
+
+    Along few links, as of a fish, no wave runs: it wags its tail.
+    """
+    if kind == "chain" and len(joints) < LINKS:
+        return "wag"
+    fitting = [name for name, motion in MOTIONS.items() if kind in motion.courses]
+    possible = [name for name in fitting if {*MOTIONS[name].course(kind).needed} <= {*joints}]
+    getting_on = [name for name in possible if MOTIONS[name].course(kind).travels]
+    return (getting_on or possible or fitting)[0]
 
 
 @with_project
@@ -125,14 +150,15 @@ def choose_kind(_: Session, project: Project, kind: str) -> None:
         return
     others = {**draft.others, draft.kind: draft.joints}
     suggested = joints_in(project.figure, kind)
+    joints = others.get(kind, suggested)
     fits = kind in MOTIONS[draft.motion].courses
     project.draft = replace(
         draft,
         kind=kind,
-        joints=others.get(kind, suggested),
+        joints=joints,
         suggested=suggested,
         others=others,
-        motion=draft.motion if fits else _first_motion(kind),
+        motion=draft.motion if fits else _first_motion(kind, joints),
         facing=None,
         chosen=None,
         past=(),
@@ -143,7 +169,7 @@ def choose_kind(_: Session, project: Project, kind: str) -> None:
 def choose_motion(_: Session, project: Project, motion: str) -> None:
     """Choose what it is to do; only what has steps travels."""
     draft = project.draft
-    if draft is not None:
+    if draft is not None and draft.kind in MOTIONS[motion].courses:
         travels = draft.parameters.travel and MOTIONS[motion].course(draft.kind).travels
         parameters = replace(draft.parameters, travel=travels)
         project.draft = replace(draft, motion=motion, parameters=parameters)
@@ -189,8 +215,8 @@ def hindrance(project: Project) -> str:
 
 @with_project
 def give_up(_: Session, project: Project) -> None:
-    """Put the draft away; nothing of it was done to the figure."""
-    project.draft = None
+    """Put the draft away; nothing of it was done to the figure, and its joints are remembered."""
+    project.last_draft, project.draft = project.draft, None
 
 
 @with_project

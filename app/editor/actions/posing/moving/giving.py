@@ -24,7 +24,7 @@ def give(session: Session, project: Project) -> None:
     """Give the figure the motion that is drafted, as soon as the document has settled."""
     draft = project.draft
     if draft is not None and not drafting.hindrance(project):
-        project.draft = None
+        drafting.give_up(session)
         promises.once_settled(session, do(_begin, draft), "Give a motion")
 
 

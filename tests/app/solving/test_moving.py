@@ -1,0 +1,146 @@
+"""Ready motions on figures: given, blended in, repeated, given again, and saved."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from bodies import JOINTS, drawing
+from numpy.testing import assert_allclose
+
+from app.document import Document, FrameRange, Meshing, clip_of, is_as_given, key_commands
+from app.errors import LissomError
+from app.motion import trace_paths
+from app.solving import MotionOrder, begin_giving, give_on, order_of
+from app.storage import load_project, open_picture, save_project
+from engine.errors import EngineError
+from engine.geometry.motions import Parameters
+
+CHAIN = MotionOrder(motion="wag", kind="chain", joints=JOINTS["chain"])
+FEW = Meshing(triangles=1000, detail="coarse")
+
+
+def given(document: Document, order: MotionOrder) -> Document:
+    giving = begin_giving(document, document.figures[0].id, order)
+    while not giving.is_over:
+        assert giving.progress < 1
+        assert giving.now
+        giving = give_on(giving)
+    return giving.command(document)
+
+
+@pytest.fixture(scope="module")
+def scenes(tmp_path_factory) -> dict[str, Document]:
+    folder = tmp_path_factory.mktemp("bodies")
+    scenes = {}
+    for kind in JOINTS:
+        drawing(kind).save(folder / f"{kind}.png")
+        scenes[kind] = open_picture(folder / f"{kind}.png", FEW).document
+    return scenes
+
+
+@pytest.fixture(scope="module")
+def wagging(scenes) -> Document:
+    return given(scenes["chain"], CHAIN)
+
+
+def test_a_new_drawing_loops_its_motion_to_the_digit(wagging):
+    (figure,) = wagging.figures
+    assert (wagging.frames, wagging.loop) == (FrameRange(0, 24), True)
+    assert figure.keys[0].pose is figure.keys[-1].pose
+    (motion,) = figure.motions
+    assert is_as_given(figure, motion)
+    assert [figure.handle(each).name for each in motion.joints.values()] == list(motion.joints)
+    assert all(figure.is_proven(key.pose) for key in figure.keys)
+
+
+def test_planted_feet_keep_one_ground_speed_and_lengths_stay(scenes):
+    order = MotionOrder(
+        motion="walk",
+        kind="biped-side",
+        joints=JOINTS["biped-side"],
+        parameters=Parameters(speed=2.0, size=0.8),
+    )
+    scene = given(scenes["biped-side"], order)
+    figure = scene.figures[0]
+    paths = trace_paths(clip_of(scene, figure.id))
+    columns = {handle.name: number for number, handle in enumerate(figure.handles)}
+    assert figure.motions[0].facing == 1
+    ahead = paths.places[:, columns["foot.L"]]
+    # It stands from the first frame on, for more than half of the cycle.
+    steps = np.diff(ahead[:7])
+    assert_allclose(steps, steps.mean(), atol=0.01 * abs(steps.mean()))
+    assert steps.mean().real < 0
+    knee, foot = (paths.places[:, columns[name]] for name in ("knee.L", "foot.L"))
+    length = abs(JOINTS["biped-side"]["knee.L"] - JOINTS["biped-side"]["foot.L"])
+    assert_allclose(np.abs(knee - foot), length, rtol=0.03)
+
+
+def test_it_is_given_again_in_another_way_until_it_is_edited(wagging):
+    figure = wagging.figures[0]
+    again = order_of(figure, figure.motions[0])
+    slower = replace(again, parameters=Parameters(speed=0.5, size=0.5))
+    twice = given(given(wagging, slower), again)
+    assert twice.figures[0].handles == figure.handles
+    assert [key.frame for key in twice.figures[0].keys] == [key.frame for key in figure.keys]
+    for one, other in zip(twice.figures[0].keys, figure.keys, strict=True):
+        assert one.pose.targets == other.pose.targets
+    moved = key_commands.pose_key(figure.id, 4, figure.keys[0].pose)(wagging)
+    assert not is_as_given(moved.figures[0], figure.motions[0])
+
+
+def test_motions_follow_each_other_and_blend_where_they_meet(wagging):
+    figure = wagging.figures[0]
+    second = replace(order_of(figure, figure.motions[0]), motion="slither", first=18, rounds=2)
+    scene = given(wagging, second)
+    moved = scene.figures[0]
+    first, slither = moved.motions[0], moved.motions[-1]
+    assert (slither.first, slither.start, slither.last) == (18, 24, 96)
+    # The former lost its end, and is forgotten.
+    assert first is slither
+    assert moved.keys[-1].frame < slither.start + 36
+    assert [(each.first, each.last, each.until) for each in moved.cycles] == [(24, 60, 96)]
+    paths = trace_paths(clip_of(scene, moved.id))
+    speeds = np.abs(np.diff(paths.places, axis=0)).max(axis=1)
+    assert speeds[18:24].max() < 2 * max(speeds[:18].max(), speeds[24:].max())
+    assert_allclose(paths.places[24], paths.places[60], atol=1e-6 * 320)
+
+
+def test_it_survives_saving(wagging, tmp_path):
+    save_project(tmp_path / "wag.lissom", wagging, thumbnail=None)
+    read = load_project(tmp_path / "wag.lissom").figures[0]
+    assert read.motions == wagging.figures[0].motions
+    assert is_as_given(read, read.motions[0])
+
+
+def test_what_is_out_of_reach_is_told_with_a_size_that_is_not(scenes):
+    order = MotionOrder(
+        motion="breathe", kind="anything", joints={}, parameters=Parameters(size=2.0), limits=None
+    )
+    tight = scenes["anything"].figures[0]
+    bounds = replace(tight.bounds, k=0.05, sigma_a=1.05, sigma_b=0.95)
+    scene = scenes["anything"].with_figure(replace(tight, bounds=bounds))
+    giving = begin_giving(scene, tight.id, order)
+    while not giving.is_over:
+        giving = give_on(giving)
+    (notice,) = giving.notices
+    assert "fall short" in notice
+    assert giving.fitting is not None
+    assert 0 < giving.fitting < 2
+    fits = replace(order, parameters=Parameters(size=giving.fitting))
+    smaller = begin_giving(scene, tight.id, fits)
+    while not smaller.is_solved:
+        smaller = give_on(smaller)
+    assert not smaller.short
+
+
+def test_what_cannot_be_given_is_refused(scenes):
+    chain, identity = scenes["chain"], scenes["chain"].figures[0].id
+    with pytest.raises(EngineError, match="there is no motion 'dance'"):
+        MotionOrder(motion="dance", kind="chain", joints={})
+    with pytest.raises(
+        LissomError, match=r"the joint 'joint.2' at \(5, 315\) is not on the drawing"
+    ):
+        begin_giving(chain, identity, replace(CHAIN, joints={**JOINTS["chain"], "joint.2": 5 + 5j}))
+    few = {name: JOINTS["chain"][name] for name in ("joint.1", "joint.2")}
+    with pytest.raises(EngineError, match=r"'wag' needs joint\.3"):
+        begin_giving(chain, identity, replace(CHAIN, joints=few))
