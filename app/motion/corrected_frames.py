@@ -101,6 +101,14 @@ class CorrectedFrames:
         """Whether what takes longest is done: a frame comes in moments from now on."""
         return self._corrections is not None
 
+    def rest(self) -> None:
+        """Let go of what frames are found with, where all are there; the next edit needs it again.
+
+        It is most of what is held of a figure whose handles stay.
+        """
+        if self.is_whole:
+            self._corrections = None
+
     @property
     def count_grounds(self) -> int:
         """Of how many frames that is known."""

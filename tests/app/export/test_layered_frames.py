@@ -1,5 +1,7 @@
 """A drawing with groups, modes and clipped layers, from its file to a frame and a thumbnail."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from layered import blob, openraster
@@ -88,11 +90,30 @@ def test_a_frame_looks_as_the_file_says(opened, tmp_path):
     assert_allclose(frame[..., :3] / 255, expected(), rtol=0, atol=2.5 / 255)
 
 
-def test_the_small_picture_of_a_project_does_too(opened):
-    document = opened.document
+def small(opened, document):
     textures = {
         figure.id: cut_picture(opened.pictures[figure.id], figure.cut_out).texture
         for figure in document.figures
     }
-    flat = flattened(document, textures)
+    return flattened(document, textures)
+
+
+def test_the_small_picture_of_a_project_does_too(opened):
+    flat = small(opened, opened.document)
     assert_allclose(flat[..., :3] / 255, expected(), rtol=0, atol=4 / 255)
+
+
+def test_what_blends_in_a_faded_group_meets_what_lies_behind_it_where_it_passes_through(opened):
+    def flat(**changes):
+        groups = [
+            replace(group, **changes) if group.name == "trunk" else group
+            for group in opened.document.groups
+        ]
+        return small(opened, replace(opened.document, groups=tuple(groups))).astype(float)
+
+    whole, gone = flat(blend="pass-through"), flat(hidden=True)
+    # The sky is multiplied by the shade.
+    assert (whole < gone - 20).any()
+    half = flat(blend="pass-through", opacity=0.5)
+    assert_allclose(half, (whole + gone) / 2, rtol=0, atol=3)
+    assert (abs(flat(opacity=0.5) - half) > 10).any()

@@ -276,8 +276,13 @@ def test_the_frames_of_a_window_are_those_of_an_export():
     assert rough.phi is None
     assert not frames.is_exact(clip, 12)
     while (work := frames.missing(document, 12, siblings)) is not None:
+        frames.rest()
+        assert frames.is_begun
         frames.take(work())
     assert frames.is_whole
+    # What is found is kept without what it was found with.
+    frames.rest()
+    assert not frames.is_begun
     exact = animation.corrections.at(12.0)
     assert_array_equal(frames.at(clip, 12).phi, exact.phi)
     # Until the frames of a changed clip are there, those of before stand in.

@@ -16,6 +16,9 @@ FOLLOWING = Kind("FrameCorrection", COMPLAINT, "hand")
 # What the tracks of handles that a hand may carry are relative to.
 GROUNDING = Kind("Places on tracks", COMPLAINT, "hand")
 
+# Figures that may keep what their frames are found with, once all of these are there.
+MOST_BEGUN = 4
+
 Work = Callable[[], FoundCorrections]
 
 
@@ -32,7 +35,7 @@ def missing(session: Session, project: Project) -> Iterator[Job]:
         for clip, puppet, corrected in _corrected(project):
             work = corrected.missing(project.document, frame, project.samplers)
             if work is not None:
-                yield _job(session, CORRECTING, puppet, clip, work)
+                yield _job(session, project, CORRECTING, puppet, clip, work)
                 return
 
 
@@ -54,7 +57,7 @@ def _follow(session: Session, project: Project) -> Iterator[Job]:
         work = corrected.missing_here(project.document, frame, project.samplers)
         # The next drag of a pose is not to wait until all is prepared.
         if work is not None and (corrected.is_begun or is_urgent):
-            yield _job(session, FOLLOWING, puppet, clip, work)
+            yield _job(session, project, FOLLOWING, puppet, clip, work)
             return
 
 
@@ -68,7 +71,7 @@ def _ground(session: Session, project: Project) -> Iterator[Job]:
         if clip.figure.id == project.active:
             work = corrected.missing_ground(project.document, frame, project.samplers)
             if work is not None:
-                yield _job(session, GROUNDING, puppet, clip, work)
+                yield _job(session, project, GROUNDING, puppet, clip, work)
 
 
 def _corrected(project: Project) -> Iterator[tuple[Clip, Puppet, CorrectedFrames]]:
@@ -78,13 +81,23 @@ def _corrected(project: Project) -> Iterator[tuple[Clip, Puppet, CorrectedFrames
             yield clip, puppet, puppet.corrected
 
 
-def _job(session: Session, kind: Kind, puppet: Puppet, clip: Clip, work: Work) -> Job:
+def _make_room(project: Project, latest: CorrectedFrames) -> None:
+    """Let figures that nobody edits go on with the frames that they have, where there are many."""
+    begun = [each for _, _, each in _corrected(project) if each.is_begun]
+    if len(begun) > MOST_BEGUN and latest is not project.puppet.corrected:
+        latest.rest()
+
+
+def _job(
+    session: Session, project: Project, kind: Kind, puppet: Puppet, clip: Clip, work: Work
+) -> Job:
     """Return a job for some corrections; what fails is not tried again for the same keys."""
 
     def done(found: FoundCorrections) -> None:
         # The hand may have gone on since.
         if puppet.corrected is not None:
             puppet.corrected.take(found, is_newest=kind == FOLLOWING)
+            _make_room(project, puppet.corrected)
 
     def failed(error: Exception) -> None:
         puppet.store.fail("correction", clip)
