@@ -31,6 +31,8 @@ SAME_HIPS = 1.2
 LONG_TRUNK, WIDE_STANCE = 1.5, 0.25
 # From the front it is so much of a shape that its mirror image covers.
 SYMMETRIC = 0.82
+# Below that, feet that point away from each other are a foot and a tail.
+LOPSIDED = 0.6
 SAMPLES = 48  # of the shape's box, along each side
 END = 0.35  # parts of what is between the legs: what leaves there is a head or a tail
 
@@ -104,7 +106,18 @@ class BodyPlan:
                 and lowest < middle
                 and abs(self.places[leg.path[0]] - self.places[hips]) <= reach
             ][:1]
-        return sorted(legs, key=lambda leg: float(self.places[leg.ankle].real))
+        return self._without_tail(sorted(legs, key=lambda leg: float(self.places[leg.ankle].real)))
+
+    def _without_tail(self, legs: list[PlannedLeg]) -> list[PlannedLeg]:
+        """Return legs without a tail that lies on the ground as if it were the other foot."""
+        if len(legs) != 2:
+            return legs
+        left, right = (self._toes(leg, -np.inf, np.inf) for leg in legs)
+        root = complex(self.places[legs[0].path[0]])
+        if not -left > FOOT < right or self._symmetry_about(root.real) >= LOPSIDED:
+            return legs
+        top = complex(self.places[int(self.places.imag.argmax())])
+        return legs[1:] if top.real > root.real else legs[:1]
 
     def _legs_together(self) -> list[PlannedLeg]:
         """Return the leg of an upright body that has no limbs, but a head, and toes."""
@@ -220,10 +233,13 @@ class BodyPlan:
     @cached_property
     def symmetry(self) -> float:
         """Which part of the shape is covered by its mirror image, at the hips' middle."""
+        return self._symmetry_about(float(self.places[self.hips].real))
+
+    def _symmetry_about(self, middle: float) -> float:
+        """Return which part of the shape is covered by its mirror image at an upright line."""
         steps = (np.arange(SAMPLES) + 0.5) / SAMPLES
         grid = self.low + steps * self.wide + 1j * steps[:, None] * self.tall
         inside = grid[contains(self.loops[0], grid.ravel()).reshape(grid.shape)]
-        middle = self.places[self.hips].real
         return float(contains(self.loops[0], 2 * middle - inside.conj()).mean())
 
     @property

@@ -7,12 +7,15 @@ import numpy as np
 
 from engine.geometry.motions.body import Body, other_side
 from engine.geometry.motions.motion import Parameters
-from engine.geometry.motions.steps import BodyLeg, Gait, leg_of
+from engine.geometry.motions.steps import BodyLeg, Gait, leg_of, room_below
 
 GROUND = 0.15  # of a leg's length: feet that are drawn no higher above the lowest one stand
 # Legs of one drawing cannot pass through each other: so near, in lengths of a leg, feet of a pair
 # come at most, and by so much they are set farther apart than they are drawn.
 CLEAR, SPREAD = 0.14, 0.22
+# Of a leg's length: so much the hips come down at most for a long step, or it becomes shorter; they
+# would crouch, with all legs bent below them.
+LOWERED, SHORTER = 0.05, 0.9
 
 
 class Stepping:
@@ -40,6 +43,9 @@ class Stepping:
         }
         self.step = self._step()
         self.middles = self._middles()
+        while self.step > SHORTER * CLEAR * self.reach and self._most_lowered() > LOWERED:
+            self.step *= SHORTER
+            self.middles = self._middles()
 
     @property
     def stride(self) -> float:
@@ -90,6 +96,16 @@ class Stepping:
         rooms = [self._apart(pair) + (SPREAD - CLEAR) * self.reach for pair in self._pairs()]
         return min([wanted, *rooms])
 
+    def _most_lowered(self) -> float:
+        """Return by how much hips come down to reach the ends of a step, in lengths of a leg."""
+        lowered = [0.0]
+        for foot, leg in self.legs.items():
+            root = self.body.joints[leg.joints[0]]
+            for way in (-1, 1):
+                tip = complex(self.middles[foot] + way * self.step / 2, self.ground[foot])
+                lowered.append(room_below(leg, root, tip, self.gait.straight))
+        return max(lowered) / self.reach
+
     def _middles(self) -> dict[str, float]:
         """Return around where each foot goes to and fro."""
         joints, gathered = self.body.joints, self.gait.gathered
@@ -99,7 +115,7 @@ class Stepping:
             middles[foot] = rest + gathered * (root - rest)
         for behind, ahead in self._pairs() if self.gait.stride else ():
             apart = max(abs(middles[ahead] - middles[behind]), self.step + CLEAR * self.reach)
-            middle = (joints[behind].real + joints[ahead].real) / 2
+            middle = (middles[behind] + middles[ahead]) / 2
             middles[behind] = middle - self.body.facing * apart / 2
             middles[ahead] = middle + self.body.facing * apart / 2
         return middles

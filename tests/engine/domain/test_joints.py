@@ -58,6 +58,14 @@ def test_a_kangaroo_on_its_tail_has_one_leg_and_a_heel():
     assert joints["head"].imag > 420
 
 
+def test_a_steep_tail_is_no_second_foot():
+    loops = drawn(*KANGAROO[:-1], ([-110 + 110j, -190 + 60j, -240 + 12j, -290 + 8j], 40))
+    assert guessed_kind(loops).name == "biped-side"
+    joints = suggested(loops, "biped-side")
+    assert "foot.R" not in joints
+    assert joints["foot.L"].real > -80
+
+
 def test_a_horse_has_two_pairs_of_legs_with_the_outer_ones_on_one_side():
     joints = suggested(drawn(*HORSE), "four-legs")
     feet = {"foot.L": -185, "foot.R": -115, "hand.R": 55, "hand.L": 125}
