@@ -82,6 +82,7 @@ def test_a_dropped_picture_walks_after_few_clicks_and_drags(window, tmp_path):
     assert project.draft.joints["foot.L"].real == pytest.approx(foot.real + 3, abs=2)
     drafting.set_parameters(window.session, size=0.2, speed=4.0)
     assert project.document is before, "nothing is done to it yet"
+    window.show_tab("Motion")  # as a person would, were another tab in front
     click(window, "//Motion/**/###give")
     arrive(window, project)
     assert project.figure.motions, [toast.text for toast in window.session.toasts]
