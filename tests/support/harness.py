@@ -76,6 +76,8 @@ class Harness:
         settings = imgui.test_engine.get_io(self._engine)
         settings.config_run_speed = imgui.test_engine.TestRunSpeed.fast
         settings.config_log_to_tty = False
+        # What the window brings to the front stays there when the robot is done.
+        settings.config_restore_focus_after_tests = False
         self.frames(3)
 
     def resize(self, size: tuple[int, int], scale: float = 1.0, *, density: float = 1.0) -> None:

@@ -10,6 +10,7 @@ from app.document import is_as_given
 from app.editor import promises
 from app.editor.actions import drafting, editing, giving, placing, playback, posing, saving
 from app.storage.project_file import load_project
+from app.ui.panel import is_in_front
 
 
 def draft_child(window):
@@ -74,15 +75,17 @@ def test_a_dropped_picture_walks_after_few_clicks_and_drags(window, tmp_path):
     window.settle()
     project = window.session.project
     before = project.document
+    # Whatever tab was in front, the motion's own comes there.
+    window.show_tab("Handle")
     window.run(lambda robot: robot.menu_click("//##MainMenuBar/Motion/###Give it a motion…"))
     window.frames(4)
+    assert is_in_front("Motion")
     assert (project.draft.kind, project.draft.motion) == ("biped-side", "walk")
     foot = project.draft.joints["foot.L"]
     press(window, foot, to=foot + 3)
     assert project.draft.joints["foot.L"].real == pytest.approx(foot.real + 3, abs=2)
     drafting.set_parameters(window.session, size=0.2, speed=4.0)
     assert project.document is before, "nothing is done to it yet"
-    window.show_tab("Motion")  # as a person would, were another tab in front
     click(window, "//Motion/**/###give")
     arrive(window, project)
     assert project.figure.motions, [toast.text for toast in window.session.toasts]
