@@ -40,6 +40,7 @@ from app.document.figure import (
     Figure as Figure,
     PictureFile as PictureFile,
     new_figure as new_figure,
+    pose_as_drawn as pose_as_drawn,
 )
 from app.document.history import History as History, UnkeyedPose as UnkeyedPose
 from app.document.keyframe import (

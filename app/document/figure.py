@@ -18,7 +18,7 @@ from app.document.checks import (
     require_place,
     require_size,
 )
-from app.document.keyframe import Handle, KeptPose, Keyframe, Pose
+from app.document.keyframe import Handle, KeptPose, Keyframe, Pose, Target
 from app.document.layering import (
     BLENDS,
     Attachment,
@@ -422,13 +422,19 @@ def _with_pose(each: Posed, pose: Pose) -> Posed:
     return each if each.pose is pose else replace(each, pose=pose)
 
 
+def pose_as_drawn(domain: Domain, handles: Iterable[Handle]) -> Pose:
+    """Return the pose of a drawing as it was drawn, with its handles where they grip."""
+    rest = HarmonicMap.identity(domain.cage, domain.holes)
+    targets = {each.id: Target(position=each.position) for each in handles}
+    undistorted = Certificate(k=0.0, sigma_a=1.0, sigma_b=1.0, winding=0, certified=True)
+    return Pose.of(rest, targets, undistorted)
+
+
 def new_figure(
     picture: PictureFile, domain: Domain, meshing: Meshing, cut_out: CutOut = CutOut()
 ) -> Figure:
     """Return the figure of a picture just opened: one key at frame 0, as it was drawn."""
-    rest = HarmonicMap.identity(domain.cage, domain.holes)
-    undistorted = Certificate(k=0.0, sigma_a=1.0, sigma_b=1.0, winding=0, certified=True)
-    pose = Pose.of(rest, {}, undistorted)
+    pose = pose_as_drawn(domain, ())
     return Figure(
         picture=picture,
         domain=domain,

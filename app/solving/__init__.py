@@ -16,7 +16,6 @@ from app.solving.moving import (
     facing_in as facing_in,
     give_on as give_on,
     load_joints as load_joints,
-    order_of as order_of,
 )
 from app.solving.renewal import Renewal as Renewal, go_on as go_on
 from app.solving.replacing import begin_replacing as begin_replacing

@@ -1,7 +1,7 @@
 """From a new document and a pose script to an animation, solved as the window would solve it."""
 
 import json
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 
@@ -42,7 +42,6 @@ from engine.errors import EngineError
 # A drag that is not at rest by then creeps along a bound.
 MOST_STEPS = 1500
 SAME_PLACE = 1e-6  # pixels: a handle at rest is where the identity takes it, up to rounding
-STEPS_AT_ONCE = 25
 
 
 def pose_document(
@@ -296,10 +295,10 @@ def _solve(rig: Rig, start: Pose, key: PoseKey) -> tuple[Pose, list[str]]:
     ):
         return start, notices
     hands = tuple(Hand((identity,), key.pull) for identity in named)
-    drag = _at_rest(Drag.begin(rig, start), targets, hands)
+    drag = Drag.begin(rig, start).towards(targets, MOST_STEPS, hands)
     shortfall = find_shortfall(figure, drag.pose(targets))
     left = {**targets, **drag.let_go(targets, hands)}
-    pose = (drag if left == targets else _at_rest(drag, left)).pose(left)
+    pose = (drag if left == targets else drag.towards(left, MOST_STEPS)).pose(left)
     # Joints of bones give way: nobody asked them to stay.
     joints = {identity for hand in rig.yielding(hands) for identity in hand.handles}
     notices += [
@@ -309,12 +308,3 @@ def _solve(rig: Rig, start: Pose, key: PoseKey) -> tuple[Pose, list[str]]:
         if identity not in joints
     ]
     return pose, notices
-
-
-def _at_rest(drag: Drag, targets: Mapping[int, Target], hands: Sequence[Hand] = ()) -> Drag:
-    """Return the drag at rest."""
-    for _ in range(MOST_STEPS // STEPS_AT_ONCE):
-        drag = drag.towards(targets, STEPS_AT_ONCE, hands)
-        if drag.is_over:
-            break
-    return drag

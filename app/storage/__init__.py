@@ -51,7 +51,7 @@ from app.storage.json_values import (
     as_point as as_point,
     as_text as as_text,
     as_whole as as_whole,
-    without_repeats as without_repeats,
+    load_json as load_json,
 )
 from app.storage.layers import (
     flattened as flattened,

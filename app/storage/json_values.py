@@ -6,10 +6,14 @@ from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from operator import attrgetter
+from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Any, TypeVar
 
 from app.errors import LissomError, shown_name
+from app.storage.files import read_file
+
+Parsed = TypeVar("Parsed")
 
 MISSING: Any = object()  # in place of a value that there is not
 
@@ -84,6 +88,39 @@ def shown(content: object) -> str:
     """Return JSON for an error message, shortened where it is long."""
     text = json.dumps(content)
     return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def load_json(path: Path, parse: Callable[[object], Parsed], *, largest: int) -> Parsed:
+    """Read a JSON text that a person wrote, and turn what it says into a value.
+
+    Parameters
+    ----------
+    path : Path
+    parse : callable
+        Gets the decoded JSON.
+    largest : int
+        How many bytes there may be.
+
+    Raises
+    ------
+    LissomError
+        If the file is missing, too large, no text or not JSON, or cannot be parsed; it names the
+        file.
+    """
+    try:
+        text = read_file(path, largest=largest).decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise LissomError(f"{path} is not a text file in UTF-8") from error
+    try:
+        return parse(json.loads(text, object_pairs_hook=without_repeats))
+    except json.JSONDecodeError as error:
+        raise LissomError(
+            f"{path} is not JSON: {error.msg} in line {error.lineno}, column {error.colno}"
+        ) from error
+    except RecursionError as error:
+        raise LissomError(f"{path} is nested too deeply") from error
+    except (LissomError, ValueError) as error:
+        raise LissomError(f"{path}: {error}") from error
 
 
 def without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

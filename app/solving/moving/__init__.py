@@ -14,5 +14,4 @@ from app.solving.moving.joints_file import ToldJoints as ToldJoints, load_joints
 from app.solving.moving.order import (
     MotionOrder as MotionOrder,
     facing_in as facing_in,
-    order_of as order_of,
 )

@@ -10,10 +10,10 @@ from app.document import (
     GivenMotion,
     Keyframe,
     Pose,
-    Target,
     clip_of,
     find_shortfall,
     is_as_given,
+    pose_as_drawn,
     scene_commands,
 )
 from app.errors import LissomError
@@ -22,10 +22,9 @@ from app.solving.moving.moments import JointMoment, held_by, moments_of
 from app.solving.moving.order import MotionOrder, body_of, with_handles_at_joints, with_limits
 from app.solving.moving.splicing import lead_before, spliced
 from engine.geometry.motions import Body
-from engine.maps import Certificate, HarmonicMap
 
 # A pose that is not at rest by then creeps along a limit.
-MOST_STEPS, STEPS_AT_ONCE = 150, 25
+MOST_STEPS = 150
 TRIES = 4  # by which the largest one is looked for
 TOLD = 3  # joints that are named
 WORST = 4  # keys that it is looked for by
@@ -139,16 +138,6 @@ class Giving:
         )
 
     @property
-    def at_rest(self) -> Pose:
-        """The drawing as it was drawn."""
-        figure = self.rig.figure
-        domain = figure.domain
-        rest = HarmonicMap.identity(domain.cage, domain.holes)
-        targets = {each.id: Target(position=each.position) for each in figure.handles}
-        undistorted = Certificate(k=0.0, sigma_a=1.0, sigma_b=1.0, winding=0, certified=True)
-        return Pose.of(rest, targets, undistorted)
-
-    @property
     def command(self) -> Command:
         """What makes one step of undo of all of it."""
         return scene_commands.give_motion(self.moved, self.given)
@@ -214,7 +203,8 @@ def give_on(giving: Giving) -> Giving:
     if giving.is_solved:
         return _smaller(giving)
     moment = giving.wanted[len(giving.poses)]
-    begin = giving.poses[-1] if giving.poses else giving.at_rest
+    figure = giving.rig.figure
+    begin = giving.poses[-1] if giving.poses else pose_as_drawn(figure.domain, figure.handles)
     pose = solved(giving.rig, begin, moment)
     names = {identity: name for name, identity in giving.given.joints.items()}
     short = dict(giving.short)
@@ -227,12 +217,7 @@ def give_on(giving: Giving) -> Giving:
 def solved(rig: Rig, begin: Pose, moment: JointMoment) -> Pose:
     """Return the pose that has the joints where a moment wants them, found from another pose."""
     targets = {**begin.targets, **moment.targets}
-    drag = Drag.begin(rig, begin)
-    for _ in range(MOST_STEPS // STEPS_AT_ONCE):
-        drag = drag.towards(targets, STEPS_AT_ONCE)
-        if drag.is_over:
-            break
-    return drag.pose(targets)
+    return Drag.begin(rig, begin).towards(targets, MOST_STEPS).pose(targets)
 
 
 def shortfalls(rig: Rig, pose: Pose) -> Mapping[int, float]:

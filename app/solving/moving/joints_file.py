@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from app.errors import LissomError
-from app.storage import as_object, as_point, as_text, read_file, without_repeats
+from app.storage import as_object, as_point, as_text, load_json
 from engine.geometry.motions import kind_named
 
 SCHEMA = 1
@@ -30,19 +30,7 @@ def load_joints(path: Path) -> ToldJoints:
     LissomError
         If the file is missing, is not JSON, or says anything that it cannot say.
     """
-    try:
-        text = read_file(path, largest=LARGEST).decode("utf-8-sig")
-        return _parsed(json.loads(text, object_pairs_hook=without_repeats))
-    except UnicodeDecodeError as error:
-        raise LissomError(f"{path} is not a text file in UTF-8") from error
-    except json.JSONDecodeError as error:
-        raise LissomError(
-            f"{path} is not JSON: {error.msg} in line {error.lineno}, column {error.colno}"
-        ) from error
-    except RecursionError as error:
-        raise LissomError(f"{path} is nested too deeply") from error
-    except ValueError as error:
-        raise LissomError(f"{path}: {error}") from error
+    return load_json(path, _parsed, largest=LARGEST)
 
 
 def _parsed(content: object) -> ToldJoints:

@@ -10,7 +10,6 @@ from app.document import (
     RUBBERY,
     Document,
     Figure,
-    GivenMotion,
     figure_commands,
     handle_commands,
     material_commands,
@@ -64,22 +63,6 @@ class MotionOrder:
         """The motion itself."""
         kind_named(self.kind)
         return motion_named(self.motion)
-
-
-def order_of(figure: Figure, given: GivenMotion) -> MotionOrder:
-    """Return the order by which a figure was given a motion, to be given in another way."""
-    return MotionOrder(
-        motion=given.motion,
-        kind=given.kind,
-        joints={name: figure.handle(each).position for name, each in given.joints.items()},
-        parameters=given.parameters,
-        first=given.first,
-        rounds=given.rounds,
-        facing=given.facing,
-        handles=given.joints,
-        stiff=False,
-        limits=None,
-    )
 
 
 def facing_in(figure: Figure, order: MotionOrder) -> int:

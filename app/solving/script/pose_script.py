@@ -54,8 +54,7 @@ from app.storage import (
     as_object,
     as_point,
     as_text,
-    read_file,
-    without_repeats,
+    load_json,
 )
 from engine.maps import Bounds
 
@@ -159,20 +158,7 @@ def load_pose_script(path: Path) -> PoseScript:
     LissomError
         If the file is missing, is not JSON, or says anything that a pose script cannot say.
     """
-    try:
-        text = read_file(path, largest=LARGEST).decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise LissomError(f"{path} is not a text file in UTF-8") from error
-    try:
-        return parse_pose_script(json.loads(text, object_pairs_hook=without_repeats))
-    except json.JSONDecodeError as error:
-        raise LissomError(
-            f"{path} is not JSON: {error.msg} in line {error.lineno}, column {error.colno}"
-        ) from error
-    except RecursionError as error:
-        raise LissomError(f"{path} is nested too deeply") from error
-    except (LissomError, ValueError) as error:
-        raise LissomError(f"{path}: {error}") from error
+    return load_json(path, parse_pose_script, largest=LARGEST)
 
 
 def parse_pose_script(content: object) -> PoseScript:

@@ -238,7 +238,7 @@ class BodyPlan:
     def _symmetry_about(self, middle: float) -> float:
         """Return which part of the shape is covered by its mirror image at an upright line."""
         steps = (np.arange(SAMPLES) + 0.5) / SAMPLES
-        grid = self.low + steps * self.wide + 1j * steps[:, None] * self.tall
+        grid: Complexes = self.low + steps * self.wide + 1j * steps[:, None] * self.tall
         inside = grid[contains(self.loops[0], grid.ravel()).reshape(grid.shape)]
         return float(contains(self.loops[0], 2 * middle - inside.conj()).mean())
 

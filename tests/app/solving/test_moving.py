@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 from app.document import Document, FrameRange, Meshing, clip_of, is_as_given, key_commands
 from app.errors import LissomError
 from app.motion import trace_paths
-from app.solving import MotionOrder, begin_giving, give_on, order_of
+from app.solving import MotionOrder, begin_giving, give_on
 from app.storage import load_project, open_picture, save_project
 from engine.errors import EngineError
 from engine.geometry.motions import Parameters
@@ -77,7 +77,7 @@ def test_planted_feet_keep_one_ground_speed_and_lengths_stay(scenes):
 
 def test_it_is_given_again_in_another_way_until_it_is_edited(wagging):
     figure = wagging.figures[0]
-    again = order_of(figure, figure.motions[0])
+    again = replace(CHAIN, handles=figure.motions[0].joints, stiff=False, limits=None)
     slower = replace(again, parameters=Parameters(speed=0.5, size=0.5))
     twice = given(given(wagging, slower), again)
     assert twice.figures[0].handles == figure.handles
@@ -89,8 +89,7 @@ def test_it_is_given_again_in_another_way_until_it_is_edited(wagging):
 
 
 def test_motions_follow_each_other_and_blend_where_they_meet(wagging):
-    figure = wagging.figures[0]
-    second = replace(order_of(figure, figure.motions[0]), motion="slither", first=18, rounds=2)
+    second = replace(CHAIN, motion="slither", first=18, rounds=2, stiff=False, limits=None)
     scene = given(wagging, second)
     moved = scene.figures[0]
     first, slither = moved.motions[0], moved.motions[-1]

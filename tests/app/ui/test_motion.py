@@ -180,6 +180,24 @@ def test_a_motion_is_given_again_in_another_way_as_one_step_and_a_save_waits_for
     assert ghost.document is before
 
 
+def test_given_again_its_handles_go_where_joints_were_dragged(window):
+    project = window.open(paint(window.folder, "snake"))
+    drafting.begin(window.session)
+    drafting.set_parameters(window.session, size=0.2, speed=4.0)
+    giving.give(window.session)
+    arrive(window, project)
+    playback.halt(window.session)
+    handles = {handle.name: handle.id for handle in project.figure.handles}
+    playback.scrub(window.session, 0)
+    drafting.begin(window.session)
+    place = project.draft.joints["joint.2"] + 6
+    placing.put(window.session, "joint.2", place)
+    giving.give(window.session)
+    arrive(window, project)
+    assert {handle.name: handle.id for handle in project.figure.handles} == handles
+    assert abs(project.figure.handle(handles["joint.2"]).position - place) < 2
+
+
 def test_what_was_edited_by_hand_is_replaced_only_on_request(window, ghost):
     key = ghost.figure.keys[2]
     playback.scrub(window.session, key.frame)

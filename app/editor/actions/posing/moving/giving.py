@@ -52,6 +52,8 @@ def _order(draft: MotionDraft, *, is_first: bool) -> MotionOrder:
         first=draft.first,
         rounds=draft.rounds,
         facing=draft.facing,
+        # Its own handles go where its joints were dragged.
+        handles={} if draft.given is None else draft.given.joints,
         stiff=is_first,
         bones=draft.bones,
         limits=RUBBERY.bounds if is_first else None,
