@@ -67,7 +67,9 @@ def test_the_format_is_seen_before_a_place_is_asked_for(window, bent, tmp_path):
     # To choose a place begins nothing.
     window.show_tab("Export")
     window.run(lambda robot: robot.item_click("//Export/**/###choose output"))
-    session.dialog = replace(session.dialog, folder=tmp_path, name="other.gif")
+    session.dialog = replace(session.dialog, folder=tmp_path)
+    # The field of the name takes what is typed, and nothing else meanwhile.
+    window.run(lambda robot: robot.key_chars("other.gif"))
     window.run(lambda robot: robot.item_click("//###dialog/Choose"))
     window.settle()
     assert bent.exports_to == {"gif": tmp_path / "other.gif"}
