@@ -4,6 +4,7 @@ Errors are messages and no tracebacks. Between what computes for long and whoeve
 many rooms that have nothing to add: so who listens is said once, for a block on the same thread.
 """
 
+import platform
 import re
 import shlex
 import shutil
@@ -126,7 +127,7 @@ def _needed(extra: Extra) -> str:
 
 def _quoted(word: str) -> str:
     """Return a word as the system's usual shells take it."""
-    if sys.platform != "win32":
+    if platform.system() != "Windows":
         return shlex.quote(word)
     return word if re.fullmatch(r"[\w:.\\-]+", word) else f'"{word}"'
 

@@ -1,6 +1,7 @@
 """What is missing is told with the command that brings it here, wherever Lissom was installed."""
 
 import importlib.metadata
+import platform
 import re
 import shutil
 import sys
@@ -16,7 +17,7 @@ def home(tmp_path, monkeypatch):
     """An environment without any of the libraries, which has its pip and is in use."""
     programs = tmp_path / "lissom" / "bin"
     programs.mkdir(parents=True)
-    monkeypatch.setattr(sys, "platform", "linux")
+    monkeypatch.setattr(platform, "system", lambda: "Linux")
     monkeypatch.setattr(sys, "prefix", str(programs.parent))
     monkeypatch.setattr(sys, "executable", str(programs / "python"))
     monkeypatch.setattr(shutil, "which", lambda name: str(programs / name))
@@ -67,7 +68,7 @@ def test_a_bundle_has_all_of_them_or_is_broken(monkeypatch):
 
 
 def test_windows_takes_other_quotes(home, monkeypatch):
-    monkeypatch.setattr(sys, "platform", "win32")
+    monkeypatch.setattr(platform, "system", lambda: "Windows")
     assert errors.missing("video") == 'pip install "lissom[video]"'
     (home / "pipx_metadata.json").touch()
     assert errors.missing("video") == f'pipx inject lissom "{errors._needed("video")}"'
