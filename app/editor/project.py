@@ -39,7 +39,6 @@ from app.editor.work import (
     Pull,
     Take,
 )
-from app.errors import NOTHING_TOLD, ImportSummary
 from app.motion import (
     Box,
     CorrectedFrames,
@@ -149,9 +148,7 @@ class Project:
     path: Path | None  # of the project file; None for a new one
     # The files that its pictures were read from, which nothing is written over.
     drawings: set[Path] = field(default_factory=set)
-    # What opening a drawing told, and whether the panel of layers shows it.
-    summary: ImportSummary = NOTHING_TOLD
-    shows_summary: bool = False
+    shows_summary: bool = False  # whether the panel of layers shows what was told of them
     hold: Hold | None = None  # by which other windows see that the file is open here
     # What the file held when it was opened or saved here last; None for a new one.
     read_as: str | None = None

@@ -168,6 +168,7 @@ def add(session: Session, project: Project, paths: Sequence[Path]) -> None:
         made, summary, groups = read
         project.drawings.update(paths)
         gesture = object()
+        project.history.do(layer_commands.keep_told(summary), gesture=gesture)
         project.history.do(group_commands.add_groups(groups), gesture=gesture)
         for figure, picture, _, puppet in made:
             identity = layer_commands.free_identity(project.document)
