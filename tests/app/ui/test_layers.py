@@ -1033,8 +1033,8 @@ def test_what_prepares_layers_that_nobody_edits_is_let_go_and_comes_again(
     # Of few layers all is kept.
     assert body.store.sampler._extension is not None
     monkeypatch.setattr("app.editor.project.MOST_PASSING", 0)
-    window.act(playback.seek, 4)
-    window.settle()
+    window.act(playback.toggle_play)
+    window.act(playback.halt)
     window.clock.now += 2 * memory.REST
     window.frames(3)
     assert body.store.sampler._extension is None
