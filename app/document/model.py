@@ -16,7 +16,7 @@ from app.document.checks import NOTHING, Unknown, require, require_distinct, req
 from app.document.figure import Figure
 from app.document.layering import CameraKey, Choice, Group, paths_to, require_rising
 from app.document.settings import FASTEST, ExportSettings, FrameRange, Marker
-from app.errors import LissomError
+from app.errors import NOTHING_TOLD, ImportSummary, LissomError
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -48,6 +48,8 @@ class Document:
     groups: tuple[Group, ...] = ()
     # Keys of what frames show of the plane; without any, it is the canvas.
     camera: tuple[CameraKey, ...] = ()
+    # What was told when drawings on layers were brought in.
+    told: ImportSummary = NOTHING_TOLD
 
     def __post_init__(self) -> None:
         self._check_figures()

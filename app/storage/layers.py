@@ -78,7 +78,8 @@ def open_merged(path: Path, meshing: Meshing, cut_out: CutOut = CutOut()) -> Ope
     opened = scene_of(merged, path.with_suffix(".png"), meshing, cut_out)
     count = len(scene.document.figures)
     told = (f"the {count} layers of {path.name} are merged into one drawing",) if count > 1 else ()
-    return opened._replace(notices=told + opened.notices, summary=scene.summary)
+    document = replace(opened.document, told=scene.document.told)
+    return opened._replace(document=document, notices=told + opened.notices)
 
 
 def open_pictures(paths: Sequence[Path], meshing: Meshing) -> OpenedScene:
@@ -276,5 +277,6 @@ def _scene(drawing: LayeredPicture, meshing: Meshing, *, is_cut_out: bool) -> Op
         size=drawing.size,
         export=ExportSettings(framing=framing),
         groups=drawing.groups,
+        told=drawing.summary + told.summary,
     )
-    return OpenedScene(document, pictures, summary=drawing.summary + told.summary)
+    return OpenedScene(document, pictures)

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import NamedTuple, Self
 
 from app.document import Document, Meshing, PictureFile, new_figure
-from app.errors import NOTHING_TOLD, ImportSummary, shown_name
+from app.errors import shown_name
 from app.storage.files import read_file
 from app.storage.pictures import Picture, decode_picture
 from engine.arrays import Booleans, Bytes, freeze
@@ -16,12 +16,14 @@ from engine.errors import EngineError
 
 
 class OpenedScene(NamedTuple):
-    """A new document, its decoded pictures by the ids of figures, and what was done, in words."""
+    """A new document, its decoded pictures by the ids of figures, and what was done, in words.
+
+    What was told of several layers is in the document.
+    """
 
     document: Document
     pictures: Mapping[int, Picture]
     notices: tuple[str, ...] = ()  # of a single picture
-    summary: ImportSummary = NOTHING_TOLD  # of several layers
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -38,6 +38,7 @@ from app.document.layering import (
 from app.document.model import Document
 from app.document.settings import FRAMINGS, VARIANTS, ExportSettings, FrameRange, Marker, Meshing
 from app.document.timing import HOLD, LINEAR, PRESETS, Easing, Spring, Track, TrackKey
+from app.errors import ImportSummary
 from app.export_formats import EXPORT_FORMATS, ShapeDetail, SheetLayout
 from engine.domain.build import Domain
 from engine.domain.meshing.mesh import Mesh
@@ -562,7 +563,10 @@ def clocked_document() -> Document:
     )
     pairs = (("L", "R"), ("Fuß", "Tatze\n"))
     figures = (child, parent)
-    return dataclasses.replace(full, figures=figures, groups=groups, camera=camera, pairs=pairs)
+    told = ImportSummary(losses=("glow: drawn normally",), matters=("Körper: left out", "ü"))
+    return dataclasses.replace(
+        full, figures=figures, groups=groups, camera=camera, pairs=pairs, told=told
+    )
 
 
 def differences(first: object, second: object, where: str = "document") -> list[str]:

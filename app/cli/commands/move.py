@@ -91,7 +91,7 @@ def _opened(arguments: argparse.Namespace) -> OpenedScene:
     meshing = Meshing(triangles=arguments.triangles, detail=arguments.detail)
     open_one = open_merged if is_layered(arguments.picture) else open_picture
     opened = open_one(arguments.picture, meshing, read_cut_out(arguments))
-    for message in (*opened.notices, *opened.summary.lines):
+    for message in (*opened.notices, *opened.document.told.lines):
         notice(message)
     return opened
 

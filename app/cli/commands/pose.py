@@ -29,7 +29,7 @@ def run(arguments: argparse.Namespace) -> int:
         opened = open_layered(arguments.picture, meshing)
     else:
         opened = open_picture(arguments.picture, meshing, cut_out)
-    for message in (*opened.notices, *opened.summary.lines):
+    for message in (*opened.notices, *opened.document.told.lines):
         notice(message)
     with StatusLine() as status:
         document, lags = pose_document(opened.document, script, status.show)

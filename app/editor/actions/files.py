@@ -14,10 +14,11 @@ from app.editor.actions.body import cutting
 from app.editor.actions.saving import PROJECT
 from app.editor.dialogs import Leftover, Question, Recovery
 from app.editor.failures import ask_worker, sentence
-from app.editor.project import Project, Puppet
+from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work import Kind
-from app.errors import NOTHING_TOLD, ImportSummary, shown_name
+from app.editor.work.puppet import Puppet
+from app.errors import ImportSummary, shown_name
 from app.storage import (
     Hold,
     HoldError,
@@ -133,7 +134,6 @@ class Opened(NamedTuple):
     document: Document
     puppets: dict[int, Puppet]
     notices: tuple[str, ...] = ()
-    summary: ImportSummary = NOTHING_TOLD
     offer: Offer | None = None
     read_as: str | None = None
     drawings: tuple[Path, ...] = ()
@@ -242,14 +242,14 @@ def _show(
         playback.toggle_play(session)
     for notice in opened.notices:
         session.tell(sentence(notice))
-    tell_of_import(session, project, opened.summary)
+    if opened.drawings:
+        tell_of_import(session, project, opened.document.told)
     if opened.offer:
         session.tell(tone="good", **opened.offer._asdict())
 
 
 def tell_of_import(session: Session, project: Project, summary: ImportSummary) -> None:
-    """Keep what opening a drawing told with the project, and tell of what is lost."""
-    project.summary += summary
+    """Tell of what is lost of a drawing that was brought in."""
     if not summary.losses:
         return
     project.shows_summary = True
@@ -287,7 +287,7 @@ def _foremost(document: Document) -> int:
 def with_puppets(opened: OpenedScene) -> Opened:
     """Return a scene with its figures as a window has them."""
     puppets = _puppets(opened.document, opened.pictures)
-    return Opened(opened.document, puppets, opened.notices, opened.summary)
+    return Opened(opened.document, puppets, opened.notices)
 
 
 def _puppets(document: Document, pictures: Mapping[int, Picture]) -> dict[int, Puppet]:

@@ -20,9 +20,10 @@ from app.editor.actions import editing, files, rebuilding
 from app.editor.dialogs import Question
 from app.editor.failures import sentence
 from app.editor.layering.choosing import choose
-from app.editor.project import Project, Puppet
+from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work import Kind
+from app.editor.work.puppet import Puppet
 from app.errors import NOTHING_TOLD, ImportSummary, LissomError, Told, shown_name
 from app.solving import Renewal, begin_replacing
 from app.storage import (
@@ -168,6 +169,7 @@ def add(session: Session, project: Project, paths: Sequence[Path]) -> None:
         made, summary, groups = read
         project.drawings.update(paths)
         gesture = object()
+        project.history.do(layer_commands.keep_told(summary), gesture=gesture)
         project.history.do(group_commands.add_groups(groups), gesture=gesture)
         for figure, picture, _, puppet in made:
             identity = layer_commands.free_identity(project.document)

@@ -42,7 +42,7 @@ from app.document import (
     TrackKey,
     Turn,
 )
-from app.errors import LissomError
+from app.errors import NOTHING_TOLD, ImportSummary, LissomError
 from app.export_formats import FormatOptions, FormatSettings
 from app.storage.json_values import (
     ANYTHING,
@@ -328,6 +328,7 @@ FIGURE = record(
     Field("attachment", optional(ATTACHMENT), lambda each: (*each.joints, None)[0], usual=None),
     Field("handovers", several(ATTACHMENT), lambda each: each.joints[1:], usual=()),
 )
+TOLD = part(ImportSummary, Field("losses", several(TEXT)), Field("matters", several(TEXT)))
 CHOICE = record(
     Choice,
     Field("name", TEXT),
@@ -350,6 +351,7 @@ DOCUMENT = record(
     Field("choices", several(CHOICE), usual=()),
     Field("groups", several(GROUP), usual=()),
     Field("camera", CAMERA, usual=()),
+    Field("told", TOLD, usual=NOTHING_TOLD),
 )
 
 

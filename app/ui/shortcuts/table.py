@@ -134,7 +134,7 @@ def _all_locked(session: Session) -> bool:
 
 
 def _has_summary(_: Session, project: Project) -> bool:
-    return bool(project.summary)
+    return bool(project.document.told)
 
 
 def _loops(session: Session) -> bool:

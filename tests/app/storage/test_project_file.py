@@ -518,6 +518,21 @@ def test_fields_that_make_no_sense_are_named(tmp_path, members, way, value, mess
     assert str(raised.value).startswith(f"cannot open {tmp_path / 'a.lissom'}: ")
 
 
+@pytest.mark.parametrize(
+    ("way", "value", "message"),
+    [
+        ([], [], "told must be an object"),
+        (["losses"], "glow", "told.losses must be a list"),
+        (["matters", 0], 7, r"told.matters\[0\] must be a text"),
+    ],
+)
+def test_what_was_told_of_an_import_must_be_lines(tmp_path, way, value, message):
+    save_project(tmp_path / "a", clocked_document())
+    broken = with_json(read_members(tmp_path / "a"), "told", *way, value=value)
+    with pytest.raises(LissomError, match=message):
+        load_project(pack(tmp_path / "a.lissom", broken))
+
+
 def test_every_field_is_needed(tmp_path, members):
     def ways(content, way=()):
         for name, value in content.items() if isinstance(content, dict) else enumerate(content):

@@ -30,7 +30,8 @@ from app.editor.actions import (
 )
 from app.editor.poses import pasting
 from app.editor.timeline_view import Strip
-from app.storage import load_project
+from app.errors import NOTHING_TOLD
+from app.storage import load_project, save_project
 from app.ui.panel import is_in_front
 from app.ui.shortcuts import BINDINGS
 from app.ui.window import memory
@@ -917,8 +918,9 @@ def test_what_an_import_told_stays_in_the_panel(window, stranger):
     project = window.again(Harness.open, stranger)
     (toast,) = window.session.toasts
     assert "One thing looks different here" in toast.text
-    assert project.summary.losses == ("shine, glow: drawn normally, not in the mode 'overlay'",)
-    assert "wall: opaque all over, so that it stands still" in project.summary.matters
+    told = project.document.told
+    assert told.losses == ("shine, glow: drawn normally, not in the mode 'overlay'",)
+    assert "wall: opaque all over, so that it stands still" in told.matters
     window.show_tab("Handle")
     window.act(toast.action.apply)
     window.frames(3)
@@ -935,6 +937,33 @@ def test_what_an_import_told_stays_in_the_panel(window, stranger):
     assert BINDINGS["import"].is_possible(window.session)
     BINDINGS["import"].action.apply(window.session)
     assert project.shows_summary
+
+
+def test_what_an_import_told_is_saved_and_not_told_again(window, stranger, tmp_path):
+    document = window.again(Harness.open, stranger).document
+    path = tmp_path / "told.lissom"
+    save_project(path, document)
+    window.session.toasts = []
+    project = window.open(path)
+    assert project.document.told == document.told != NOTHING_TOLD
+    assert not window.session.toasts
+    assert not project.shows_summary
+    window.show_tab("Handle")
+    BINDINGS["import"].action.apply(window.session)
+    window.frames(3)
+    assert is_in_front("Layers")
+    assert project.shows_summary
+
+
+def test_what_adding_layers_told_is_undone_with_them(window, scene, stranger):
+    before = scene.document.told
+    window.act(layering.add, [stranger])
+    window.settle()
+    losses = scene.document.told.losses
+    assert losses == ("shine, glow: drawn normally, not in the mode 'overlay'",)
+    window.act(editing.undo)
+    assert scene.document.told == before
+    window.session.toasts = []
 
 
 def test_blends_clipping_and_groups_are_set_in_the_panel(window, stranger):
@@ -987,7 +1016,9 @@ def brush_at(project, figure):
     return Stroke(points=np.array([middle, middle + 5]), radius=8, keeps=False)
 
 
-def test_what_prepares_layers_that_nobody_edits_is_let_go_and_comes_again(window, keyed):
+def test_what_prepares_layers_that_nobody_edits_is_let_go_and_comes_again(
+    window, keyed, monkeypatch
+):
     window.act(layering.choose, identity(keyed, "arm"))
     window.settle()
     arm, body = (keyed.puppets[identity(keyed, name)] for name in ("arm", "body"))
@@ -999,6 +1030,11 @@ def test_what_prepares_layers_that_nobody_edits_is_let_go_and_comes_again(window
     window.settle()
     window.clock.now += 2 * memory.REST
     window.frames(3)
+    # Of few layers all is kept.
+    assert body.store.sampler._extension is not None
+    monkeypatch.setattr("app.editor.project.MOST_PASSING", 0)
+    window.act(playback.toggle_play)
+    window.act(playback.halt)
     window.clock.now += 2 * memory.REST
     window.frames(3)
     assert body.store.sampler._extension is None

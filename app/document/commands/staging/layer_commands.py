@@ -14,7 +14,7 @@ from app.document.figure import Figure
 from app.document.keyframe import Pose, Target
 from app.document.layering import Attachment, BlendMode, Switch, paths_to, shared_path
 from app.document.model import Document
-from app.errors import LissomError
+from app.errors import ImportSummary, LissomError
 
 
 @command("Add layer")
@@ -29,6 +29,12 @@ def add_figure(document: Document, figure: Figure, index: int | None = None) -> 
     figures.insert(place, replace(figure, name=name, group=group))
     # A canvas that was one picture's stays what it was.
     return replace(document, figures=tuple(figures), size=document.canvas)
+
+
+@command("Add layers")
+def keep_told(document: Document, summary: ImportSummary) -> Document:
+    """Keep what was told when layers were brought in, after what was told before."""
+    return replace(document, told=document.told + summary) if summary else document
 
 
 @command("Replace layer")

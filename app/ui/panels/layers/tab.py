@@ -28,7 +28,7 @@ def draw(session: Session, look: Look, project: Project, pictures: SmallPictures
 
 def _summary(look: Look, project: Project) -> list[Action]:
     """Draw what opening the drawing told: what is lost first, and small matters folded."""
-    summary = project.summary
+    summary = project.document.told
     if not summary:
         return []
     count = len(summary.losses)
