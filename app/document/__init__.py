@@ -67,6 +67,7 @@ from app.document.layering import (
     Placing as Placing,
     Switch as Switch,
     Turn as Turn,
+    joints_repeat as joints_repeat,
     paths_to as paths_to,
     shared_path as shared_path,
 )
@@ -122,7 +123,9 @@ from app.document.queries import (
     time_of as time_of,
     track_at as track_at,
     transits as transits,
+    turn_frame as turn_frame,
     velocity_at as velocity_at,
+    with_repeats as with_repeats,
 )
 from app.document.settings import (
     FRAME_NAMES as FRAME_NAMES,

@@ -14,6 +14,7 @@ from app.document import (
     Turn,
     choice_commands,
     is_visible,
+    joints_repeat,
     layer_commands,
     repeating,
 )
@@ -147,7 +148,9 @@ def unrepeated(figure: Figure, part: FigureScript) -> list[str]:
         f"nothing is keyed in {cycle.told}: there is nothing to repeat"
         for cycle in part.cycles
         if not (
-            any(map(cycle.has, keyed)) or any(cycle.takes(track.keys) for track in figure.tracks)
+            any(map(cycle.has, keyed))
+            or any(cycle.takes(track.keys) for track in figure.tracks)
+            or joints_repeat(figure.joints, cycle)
         )
     ]
     rows: dict[str, tuple[MoveKey, ...] | tuple[OpacityKey, ...]]
@@ -157,6 +160,13 @@ def unrepeated(figure: Figure, part: FigureScript) -> list[str]:
         if cycle is not None and repeating(figure, row) is None:
             notices.append(
                 f"its {name} ends otherwise than it begins in {cycle.told}, and does not repeat"
+            )
+    for cycle in part.cycles:
+        changes = any(cycle.first < joint.frame < cycle.last for joint in figure.joints)
+        if changes and not joints_repeat(figure.joints, cycle):
+            notices.append(
+                f"what it hangs on changes in the repeats of {cycle.told}, too, or is another one "
+                "at their end than at their beginning, and does not repeat"
             )
     return notices
 

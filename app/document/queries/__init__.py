@@ -57,6 +57,9 @@ from app.document.queries.stage import (
     repeated as repeated,
     repeating as repeating,
     sights_of as sights_of,
+    turn_frame as turn_frame,
+    turning as turning,
+    with_repeats as with_repeats,
 )
 from app.document.queries.timeline import (
     Moment as Moment,

@@ -27,4 +27,7 @@ from app.document.queries.stage.sight import (
     is_visible as is_visible,
     repeated as repeated,
     sights_of as sights_of,
+    turn_frame as turn_frame,
+    turning as turning,
+    with_repeats as with_repeats,
 )
