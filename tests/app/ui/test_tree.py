@@ -227,9 +227,22 @@ def test_a_row_that_is_dropped_on_another_one_hangs_there(window, scene, ids, us
     (joint,) = scene.document.figure(ids["stick"]).joints
     assert abs(joint.offset) > 10
     assert abs(place(scene, "stick", window) - before) < 0.1
-    # In a circle nothing can hang: the row goes beside it.
+    # In a circle nothing can hang, which is told, and nothing moves.
+    before, window.session.toasts = scene.document, []
     use(lambda robot: drop(robot, ids["head"], ids["hat"]))
-    assert scene.document.figure(ids["head"]).joints == ()
+    assert scene.document is before
+    (toast,) = window.session.toasts
+    assert "hat hangs on head, so that head cannot hang on it" in toast.text
+    # So it is where it hangs there by others, and where one of several would.
+    window.act(layering.hang, ids["ah"], ids["hat"])
+    window.settle()
+    before, window.session.toasts = scene.document, []
+    window.act(layering.choose_all, ids["head"], ids["oh"])
+    use(lambda robot: drop(robot, ids["oh"], ids["ah"]))
+    assert scene.document is before
+    (toast,) = window.session.toasts
+    assert "ah hangs on head, so that head cannot hang on it" in toast.text
+    window.session.toasts = []
 
 
 def test_chosen_layers_are_dropped_together(window, scene, ids, use):
