@@ -191,6 +191,32 @@ def test_groups_that_are_named_like_mouths_are_offered_as_choices(mouths, group,
     assert alternates(chosen) == ()
 
 
+@pytest.mark.parametrize(
+    ("names", "hidden", "group", "offered"),
+    [
+        (("mouth/ah", "mouth/oh"), (), "", ["mouth"]),
+        (("Mouth left / ah", "Mouth left/ oh"), (), "", ["Mouth left"]),
+        (("mouth/ah", "mouth/oh"), (), "head", ["head/mouth"]),
+        (("face/lips/ah", "face/lips/oh"), (), "", ["face/lips"]),
+        (("ah", "mouth/oh"), (), "", []),
+        (("mouth/ah", "nose/oh"), (), "", []),
+        (("eyes/open", "eyes/shut"), (), "", []),
+        (("eyes/open", "eyes/shut"), (2,), "", ["eyes"]),
+        # Of a group in which one's name was taken elsewhere.
+        (("mouth/ah", "oh"), (), "mouth", ["mouth"]),
+        (("mouth/", "/oh"), (), "", []),
+    ],
+)
+def test_layers_named_as_in_a_group_are_offered_as_a_choice(mouths, names, hidden, group, offered):
+    document = layer_commands.set_hidden(1, hidden=False)(mouths)
+    for identity, name in zip((1, 2), names, strict=True):
+        document = layer_commands.rename_figure(identity, name)(document)
+    for identity in hidden:
+        document = layer_commands.set_hidden(identity, hidden=True)(document)
+    document = groups.put_in_group((1, 2), group)(document)
+    assert alternates(document) == tuple((path, (1, 2)) for path in offered)
+
+
 def turning(document, *, cycle, turns, of=(0, 1, 2)):
     """Three layers that take turns, of which some have a cycle."""
     document = choices.form_choice("mouth", (0, 1, 2))(document)
