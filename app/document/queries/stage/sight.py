@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from functools import lru_cache
+from itertools import pairwise
 from typing import TypeVar
 
 from app.document.figure import Figure
@@ -75,7 +76,10 @@ def with_repeats(document: Document, choice: Choice, end: int | None = None) -> 
 @lru_cache(maxsize=64)
 def _repeated_choice(choice: Choice, cycle: Cycle, end: int) -> Choice:
     rest = (Turn(cycle.first, choice.at(cycle.first)),)
-    return replace(choice, turns=repeated(choice.turns, (cycle,), end, rest))
+    turns = repeated(choice.turns, (cycle,), end, rest)
+    # A repeat may begin with what was seen at the end of the one before.
+    changes = (turn for before, turn in pairwise(turns) if turn.figure != before.figure)
+    return replace(choice, turns=(turns[0], *changes))
 
 
 def turn_frame(document: Document, choice: Choice, frame: int) -> int:
