@@ -17,7 +17,7 @@ from app.editor.dialogs import (
     ShortcutSheet as ShortcutSheet,
 )
 from app.editor.failures import sentence as sentence
-from app.editor.project import Project as Project, Puppet as Puppet, Twin as Twin
+from app.editor.project import Project as Project
 from app.editor.session import (
     BoneMark as BoneMark,
     BoxMark as BoxMark,
@@ -64,3 +64,4 @@ from app.editor.timeline_view import (
     seen_at as seen_at,
 )
 from app.editor.work import Jobs as Jobs, Kind as Kind
+from app.editor.work.puppet import Puppet as Puppet, Twin as Twin

@@ -4,7 +4,6 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from math import inf
 from pathlib import Path
-from typing import Self
 
 import numpy as np
 
@@ -39,27 +38,24 @@ from app.editor.work import (
     Pull,
     Take,
 )
+from app.editor.work.puppet import Puppet, Twin
 from app.motion import (
     Box,
-    CorrectedFrames,
-    IntervalStore,
     Joints,
     MotionPaths,
-    PosableMesh,
     PoseSampler,
-    Shown,
     joints_source,
 )
 from app.render import View, fit_view
 from app.reports import Curves
-from app.solving import Renewal, Rig
-from app.storage import Cut, Hold, Origin, Picture, cut_picture
-from engine.arrays import Bytes
-from engine.domain import CutOut
+from app.solving import Renewal
+from app.storage import Hold, Origin, Picture
 from engine.geometry import RigidMotion
 from engine.maps import Bounds
 
 EXTENTS = 32  # of the motion, which are remembered for undo and redo
+# Bytes of what figures that nobody edits may be prepared with, once series show them.
+MOST_PASSING = 128 * 2**20
 FIT_MARGIN = 0.08  # of the viewport, left free around what is fitted into it
 
 
@@ -87,56 +83,6 @@ class PoseBlend:
     owner: int
     gesture: object
     share: float = 0.0
-
-
-@dataclass(slots=True, kw_only=True, eq=False)
-class Twin:
-    """A figure by another method, which its own is compared with."""
-
-    original: Figure  # the figure as it is
-    figure: Figure  # the same by the other variant, where the method is one
-    method: Variant | Baseline
-    shown: Shown | None = None
-
-    def clip(self, document: Document) -> Clip:
-        """Return it in the time of its scene."""
-        baseline = self.method if isinstance(self.method, Baseline) else None
-        return replace(clip_of(document, self.figure.id), figure=self.figure, baseline=baseline)
-
-
-@dataclass(slots=True, kw_only=True, eq=False)
-class Puppet:
-    """A figure as a window has it."""
-
-    file: PictureFile
-    picture: Picture  # decoded from that
-    is_opaque: bool  # whether it has no transparency: its background was found by its colour
-    # Its in-betweens on a coarse mesh, and on its own one if that is another and is there.
-    store: IntervalStore
-    fine: IntervalStore | None = None
-    shown: Shown | None = None  # None before the first frame of the window
-    corrected: CorrectedFrames | None = None  # the corrections of its frames
-    rig: Rig | None = None  # for the poses to come; None before the first of them
-    cut: Derived[CutOut, Cut]  # what is left of the picture, as the newest cut-out has it
-    # That made small, for the list of layers.
-    small: Derived[Cut, Bytes | None] = field(default_factory=lambda: Derived(None))
-    twin: Twin | None = None  # beside it, while the viewport is split
-
-    @classmethod
-    def of(cls, clip: Clip, picture: Picture, *, among: int = 1) -> Self:
-        """Return a figure as the window has it at first: its keys are shown; in-betweens follow.
-
-        `among` tells how many figures there are.
-        """
-        return cls(
-            picture=picture,
-            is_opaque=picture.is_opaque,
-            file=clip.figure.picture,
-            store=IntervalStore(mesh=PosableMesh.coarse(clip.figure.domain, among=among)),
-            cut=Derived(
-                cut_picture(picture, clip.figure.cut_out, is_alone=among == 1), clip.figure.cut_out
-            ),
-        )
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
@@ -329,6 +275,25 @@ class Project:
         """What is known of the figures' outlines, by their ids."""
         samplers = {figure: puppet.store.sampler for figure, puppet in self.puppets.items()}
         return {figure: sampler for figure, sampler in samplers.items() if sampler is not None}
+
+    @property
+    def is_crowded(self) -> bool:
+        """Whether figures that nobody edits hold much that `Puppet.rest` lets go, or will."""
+        return sum(puppet.held(clip) for clip, puppet in self._unedited()) > MOST_PASSING
+
+    def make_room(self) -> None:
+        """Let go of what figures that nobody edits were made with, as long as that is much."""
+        for clip, puppet in self._unedited():
+            if not self.is_crowded:
+                return
+            puppet.rest(clip)
+
+    def _unedited(self) -> list[tuple[Clip, Puppet]]:
+        return [
+            (clip_of(self.document, figure), puppet)
+            for figure, puppet in self.puppets.items()
+            if figure != self.active
+        ]
 
     @property
     def unkeyed(self) -> Pose | None:

@@ -101,6 +101,11 @@ class CorrectedFrames:
         """Whether what takes longest is done: a frame comes in moments from now on."""
         return self._corrections is not None
 
+    @property
+    def nbytes(self) -> int:
+        """Bytes of what frames are found with."""
+        return 0 if self._corrections is None else self._corrections.nbytes
+
     def rest(self) -> None:
         """Let go of what frames are found with, where all are there; the next edit needs it again.
 

@@ -280,19 +280,18 @@ class IntervalStore:
         """Return how many bytes `rest` lets go once series show a clip, all of which is there."""
         if not self.has(clip):
             return 0
-        unstreamed = [
+        passing = [
             pair
             for pair in dict.fromkeys(self._pairs(clip))
-            if (known := self._known[pair]).inbetweens and known.sites and known.series is None
+            if (known := self._known[pair]).inbetweens
+            and known.sites
+            and (known.series is None or known.is_streamed)
         ]
-        own = self.sampler.passing_bytes if self.sampler is not None and unstreamed else 0
-        return own + sum(self._sizes[pair][0] for pair in unstreamed)
+        own = self.sampler.extension_bytes if self.sampler is not None else 0
+        return own + sum(self._sizes[pair][0] for pair in passing)
 
     def rest(self) -> None:
-        """Let go of what is prepared where series leave nothing out; what is edited needs it again.
-
-        It is most of what a figure with keys takes.
-        """
+        """Let go of what is prepared where series leave nothing out."""
         for pair, known in list(self._known.items()):
             if known.inbetweens is not None and known.is_streamed:
                 self._set(pair, known._replace(inbetweens=None, one=None))

@@ -16,6 +16,9 @@ from engine.maps import Span
 # slow; and of each, however many share them.
 COARSE_TRIANGLES = 12_000
 FEWEST_TRIANGLES = 4_000
+# How many times finer a figure's own mesh is at least where it has a coarse one beside it: all that
+# is prepared of a figure is prepared of both.
+FINER = 2
 EDGE = 1e-6  # barycentric weights that rounding may lack of 0
 
 
@@ -83,12 +86,12 @@ class PosableMesh:
 
     @classmethod
     def coarse(cls, source: Domain, *, among: int = 1) -> "PosableMesh":
-        """Return a coarse mesh of the same domain, or the figure's own if that is as coarse.
+        """Return a coarse mesh of the same domain, or the figure's own if that is hardly finer.
 
         The more figures are drawn (it is `among` them), the fewer triangles it has.
         """
         wanted = max(FEWEST_TRIANGLES, COARSE_TRIANGLES // among)
-        if len(source.mesh.triangles) <= wanted:
+        if len(source.mesh.triangles) <= FINER * wanted:
             return cls.fine(source)
         mesh = triangulate(source.outline, wanted, holes=source.loops[1:])
         coarse = replace(source, mesh=in_order_of(mesh, source.mesh))

@@ -22,9 +22,10 @@ from app.document import (
 from app.editor import promises
 from app.editor.actions import playback, posing
 from app.editor.actions.posing.moving import giving, placing
-from app.editor.project import Project, Puppet
+from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.timeline_view import KeyRow, KeysOf, TrackRow, figure_of, frames_in
+from app.editor.work.puppet import Puppet
 from app.storage import decode_picture
 
 Arguments = ParamSpec("Arguments")

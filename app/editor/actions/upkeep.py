@@ -9,10 +9,11 @@ from app.editor.actions import playback, posing, tracking, viewing
 from app.editor.actions.body import rebuilding
 from app.editor.actions.posing.moving import drafting
 from app.editor.failures import report
-from app.editor.project import Project, Puppet
+from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.timeline_view import measure_shortfalls
 from app.editor.work import Derived, Job, Kind
+from app.editor.work.puppet import Puppet
 from app.motion import (
     Build,
     IntervalPart,
@@ -34,8 +35,6 @@ from app.storage import cut_picture, shrink
 
 STILL = 0.15  # seconds after which the playhead is taken to stay where it is
 MOST_UNASKED = 1000  # frames whose extent is measured before anybody asks
-# Of what figures that nobody edits are prepared with, until series show them.
-MOST_PASSING = 128 * 2**20
 SMALL_SIDE = 96  # pixels of a picture in the list of layers
 UNMADE = "The in-betweens of these keys cannot be made"
 # What is awaited, or takes a few milliseconds, is not to wait until all in-betweens are there.
@@ -121,7 +120,7 @@ def missing(session: Session, project: Project) -> Iterator[Job]:
             job = _prepare(session, project, kind, puppet, clip)
             if job is not None:
                 room = None
-                if puppet is not project.puppet and _is_crowded(project):
+                if puppet is not project.puppet and project.is_crowded:
                     if STREAMING in session.jobs.kinds:
                         return
                     room = next(_stream(session, project), None)
@@ -228,29 +227,14 @@ def _stream(session: Session, project: Project) -> Iterator[Job]:
                 break
             build = store.next_build(clip, frame, heat=heat)
             if build is not None:
-                done = partial(_take_build, project, puppet, store)
+                done = partial(_take_build, project, store)
                 yield _interval_job(session, STREAMING, puppet, clip, work=build.advance, done=done)
 
 
-def _is_crowded(project: Project) -> bool:
-    """Tell whether much is prepared of figures that nobody edits: series of it are to come first.
-
-    With these it is let go; else all of it would be there at once.
-    """
-    held = 0
-    for clip, puppet in _clips(project):
-        if puppet is not project.puppet and not puppet.store.has_failed(clip, "series"):
-            stores = filter(None, (puppet.store, puppet.fine))
-            held += sum(store.passing_bytes(clip) for store in stores)
-    return held > MOST_PASSING
-
-
-def _take_build(project: Project, puppet: Puppet, store: IntervalStore, build: Build) -> None:
+def _take_build(project: Project, store: IntervalStore, build: Build) -> None:
     """Take in a series; where it is crowded, let go of what it was made from."""
-    is_crowded = puppet is not project.puppet and _is_crowded(project)
     store.take_build(build)
-    if is_crowded and build.series is not None:
-        store.rest()
+    project.make_room()
 
 
 def _part(kind: Kind) -> IntervalPart:

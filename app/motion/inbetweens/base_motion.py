@@ -21,6 +21,11 @@ class BaseMotion:
     variant : Variant
     sampler : PoseSampler
         Of the figure's domain and anchor.
+
+    Attributes
+    ----------
+    nbytes : int
+        Bytes of what is prepared.
     """
 
     def __init__(self, clip: Clip, variant: Variant, sampler: PoseSampler) -> None:
@@ -29,6 +34,7 @@ class BaseMotion:
         self.sampler = sampler
         sampler.keep_only({key.pose for key in clip.keys})
         self._prepared: dict[int, Inbetweens] = {}
+        self.nbytes = 0
 
     def frame(self, frame: float) -> Frame:
         """Return positions and derivatives of the points at a frame."""
@@ -44,7 +50,9 @@ class BaseMotion:
         """Return the in-betweens of one of the clip's intervals."""
         if interval not in self._prepared:
             transit, bounds = transits(self.clip)[interval], self.clip.figure.bounds
-            self._prepared[interval] = self.sampler.inbetweens_of(transit, bounds, self.variant)
+            prepared = self.sampler.inbetweens_of(transit, bounds, self.variant)
+            self._prepared[interval] = prepared
+            self.nbytes += prepared.nbytes
         return self._prepared[interval]
 
     def velocity(self, interval: int, *, at_end: bool) -> Complexes:

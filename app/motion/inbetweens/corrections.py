@@ -110,7 +110,7 @@ class Corrections:
         )
         self._motion = BaseMotion(clip, variant, own)
         self._stillness = Stillness(self._motion, self._handles)
-        self._own = OwnClocks(clip, self._still_places, carried)
+        self._own = OwnClocks(clip, carried)
 
     def at(self, frame: float) -> FrameCorrection | None:
         """Return what is added to the base motion at a frame; None where that is nothing."""
@@ -121,12 +121,18 @@ class Corrections:
             if not self._own.acts(frame):
                 return still
             moved = self._with(base, still)
-            wanted = self._own.wanted(
-                frame, moved.positions[self._handles], moved.fz[self._handles]
-            )
+            places, fz = moved.positions[self._handles], moved.fz[self._handles]
+            # Told only now: if it were kept, nothing of this would go away with the last one who
+            # has it.
+            wanted = self._own.wanted(frame, places, fz, self._still_places)
             if wanted is None:
                 return still
             return self._gone(frame, moved, lack, still or FrameCorrection(), wanted)
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of what frames are found with."""
+        return self._motion.nbytes + self._motion.sampler.extension_bytes
 
     def with_tracks(self, clip: Clip) -> "Corrections":
         """Return the corrections of a clip that differs in its tracks alone."""

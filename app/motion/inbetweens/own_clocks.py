@@ -14,6 +14,8 @@ FARTHEST_SWING = 0.3  # of the figure's diagonal
 TURNED = 50.0  # pixels that count as much as a turn by one radian
 # Where a figure is that hangs on others, at a frame.
 Carried = Callable[[float], RigidMotion]
+# Where the handles (h,) of a figure are, at a frame.
+Places = Callable[[float], Complexes]
 
 
 class Wanted(NamedTuple):
@@ -35,18 +37,13 @@ class OwnClocks:
     Parameters
     ----------
     clip : Clip
-    places : callable
-        Returns where the handles (h,) are at a frame without them.
     carried : callable, optional
         Where the figure hangs, at a frame; by itself without.
     """
 
-    def __init__(
-        self, clip: Clip, places: Callable[[float], Complexes], carried: Carried | None = None
-    ) -> None:
+    def __init__(self, clip: Clip, carried: Carried | None = None) -> None:
         figure = clip.figure
         self._clip, self._carried = clip, carried
-        self._places = places
         self._springs = [spring for spring in figure.springs if spring.enabled]
         self._swings: dict[int, Swing] | None = None
         self._index = {handle.id: number for number, handle in enumerate(figure.handles)}
@@ -59,7 +56,7 @@ class OwnClocks:
 
     def with_tracks(self, clip: Clip) -> "OwnClocks":
         """Return those of a clip that differs in its tracks alone: the springs swing alike."""
-        changed = OwnClocks(clip, self._places, self._carried)
+        changed = OwnClocks(clip, self._carried)
         changed._swings = self._swings
         return changed
 
@@ -69,7 +66,7 @@ class OwnClocks:
             track_at(track, self._clip, frame) is not None for track in self._tracks
         )
 
-    def wanted(self, frame: float, places: Complexes, fz: Complexes) -> Wanted | None:
+    def wanted(self, frame: float, places: Complexes, fz: Complexes, at: Places) -> Wanted | None:
         """Return where handles are wanted at a frame; None where they are there.
 
         Parameters
@@ -77,26 +74,28 @@ class OwnClocks:
         frame : float
         places, fz : complex128, shape (h,)
             Where they are, and f_z there.
+        at : callable
+            Returns where they are at any frame before springs and tracks, (h,).
         """
         wanted, turns = places.copy(), np.full(len(places), np.nan)
         reaches, sizes, tracked = [], [], set()
-        for identity, swung in self.swings.items():
+        for identity, swung in self._swings_of(at).items():
             offset = complex(swung.at(frame - self._clip.frames.first))
             offset *= self._hung(frame).factor.conjugate()
             wanted[self._index[identity]] += offset
             reaches.append(1.0)
             sizes.append(abs(offset))
         for track in self._tracks:
-            at = track_at(track, self._clip, frame)
-            if at is None:
+            own = track_at(track, self._clip, frame)
+            if own is None:
                 continue
             numbers = [self._index[identity] for identity in track.handles]
-            offset = self._offset(track, at, frame, complex(places[numbers[0]]), fz[numbers[0]])
+            offset = self._offset(track, own, frame, complex(places[numbers[0]]), fz[numbers[0]])
             wanted[numbers] = places[numbers] + offset
             if track.turns:
-                turns[numbers] = np.angle(fz[numbers]) + at.turn
+                turns[numbers] = np.angle(fz[numbers]) + own.turn
             reaches.append(track.reach)
-            sizes.append(abs(offset) + TURNED * abs(at.turn))
+            sizes.append(abs(offset) + TURNED * abs(own.turn))
             tracked |= set(track.handles)
         if np.array_equal(wanted, places) and np.isnan(turns).all():
             return None
@@ -104,19 +103,16 @@ class OwnClocks:
         reach = float(np.average(reaches, weights=sizes)) if np.any(sizes) else 1.0
         return Wanted(wanted, self._firmness, turns, reach, frozenset(tracked))
 
-    @property
-    def swings(self) -> dict[int, Swing]:
-        """The swings of handles, by their ids; in the axes of the scene."""
+    def _swings_of(self, at: Places) -> dict[int, Swing]:
+        """Return the swings of handles, by their ids; in the axes of the scene."""
         if self._swings is None:
-            self._swings = self._swung()
+            self._swings = self._swung(at) if self._springs else {}
         return self._swings
 
-    def _swung(self) -> dict[int, Swing]:
-        if not self._springs:
-            return {}
+    def _swung(self, at: Places) -> dict[int, Swing]:
         clip = self._clip
         frames = range(clip.frames.first, clip.frames.last + 1)
-        places = np.array([self._hung(frame).on(self._places(frame)) for frame in frames])
+        places = np.array([self._hung(frame).on(at(frame)) for frame in frames])
         return {
             spring.handle: swing(
                 places[:, self._index[spring.handle]],

@@ -40,6 +40,8 @@ class OutlineKnowledge:
     corrections : dict
         Of frames, by all that they follow from; those that were wanted longest ago first. It is
         read and changed under `guard`: several threads may.
+    nbytes : int
+        The bytes that `forget_transform` lets go.
     """
 
     def __init__(self, domain: Domain) -> None:
@@ -47,6 +49,7 @@ class OutlineKnowledge:
         # Of its own, so that others wait for the transform alone.
         self._lock = threading.RLock()
         self._transform: HilbertTransform | None = None
+        self.nbytes = 0
         self.corrections: dict[object, FrameCorrection] = {}
         self.guard = threading.Lock()
 
@@ -59,7 +62,13 @@ class OutlineKnowledge:
                 self._transform = HilbertTransform.on(
                     domain.outline, domain.cage, domain.holes, progress=tell
                 )
+                self.nbytes = self._transform.nbytes
             return self._transform
+
+    def forget_transform(self) -> None:
+        """Let go of the transform, which is soon made again."""
+        with self._lock:
+            self._transform, self.nbytes = None, 0
 
 
 class PoseSampler:
@@ -81,6 +90,13 @@ class PoseSampler:
     ------
     EngineError
         If a point or the anchor is outside the domain.
+
+    Attributes
+    ----------
+    sites : Sites
+    known : OutlineKnowledge
+    extension_bytes : int
+        The bytes that `forget_extension` lets go.
     """
 
     def __init__(
@@ -106,6 +122,7 @@ class PoseSampler:
         self._samples: dict[Pose, KeyframeSamples] = {}
         self._tangents: dict[tuple[tuple[Pose, ...], Joint, Bounds, Variant], Tangent] = {}
         self._extension: Extension | None = None
+        self.extension_bytes = 0
         # Of its own, so that nothing else waits for it.
         self._extension_lock = threading.RLock()
         self.known: OutlineKnowledge = (
@@ -118,18 +135,13 @@ class PoseSampler:
         with self._extension_lock:
             if self._extension is None:
                 self._extension = self.known.transform.at(self.sites.paths.nodes, single=True)
+                self.extension_bytes = self._extension.nbytes
             return self._extension
-
-    @property
-    def passing_bytes(self) -> int:
-        """The bytes that `forget_extension` lets go."""
-        extension = self._extension
-        return 0 if extension is None else extension.nbytes
 
     def forget_extension(self) -> None:
         """Let go of the transform at the nodes, most of what a figure takes that is not edited."""
         with self._extension_lock:
-            self._extension = None
+            self._extension, self.extension_bytes = None, 0
 
     def keep_only(self, poses: AbstractSet[Pose]) -> None:
         """Forget what was kept for other poses."""

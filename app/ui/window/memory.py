@@ -7,9 +7,10 @@ each large drawing that is opened after another, and each export, takes more mem
 import ctypes
 import sys
 
-from app.editor import Project, Session
+from app.editor import Session
 
 REST = 1.0  # seconds
+WORK = 4.0  # seconds from one time to the next, while workers go on unwatched
 ARENA_MAX = -8  # the C library's number for it
 
 
@@ -19,32 +20,32 @@ class FreeMemory:
     def __init__(self, session: Session) -> None:
         self._session = session
         self._due: float | None = None  # none before there is work
+        self._given = 0.0
 
     def maintain(self, *, has_closed: bool) -> None:
         """Give it back when a project `has_closed` or nothing went on for a while; once a frame.
 
-        It takes some 10 ms after an export or a drag, which nobody sees in a picture that rests.
+        It takes some 10 ms after an export or a drag, which nobody sees in a picture that rests;
+        now and then, too, while much is prepared.
         """
-        session = self._session
-        project = session.project
+        session, project, now = self._session, self._session.project, self._session.clock()
         is_playing = project is not None and project.playhead.since is not None
         if has_closed:
-            give_back()
+            self._give(now)
         if session.jobs.kinds or session.export is not None or is_playing:
-            self._due = session.clock() + REST
-        elif self._due is not None and session.clock() >= self._due:
+            self._due = now + REST
+            is_watched = is_playing or (project is not None and project.is_posing)
+            if now >= self._given + WORK and not is_watched:
+                self._give(now)
+        elif self._due is not None and now >= self._due:
             self._due = None
             if project is not None:
-                _rest(project)
-            give_back()
+                project.make_room()
+            self._give(now)
 
-
-def _rest(project: Project) -> None:
-    """Let go of what in-betweens are made with, of figures that nobody edits: it is soon there."""
-    for identity, puppet in project.puppets.items():
-        for store in (puppet.store, puppet.fine) if identity != project.active else ():
-            if store is not None:
-                store.rest()
+    def _give(self, now: float) -> None:
+        self._given = now
+        give_back()
 
 
 def share_heap() -> None:

@@ -312,8 +312,9 @@ def test_at_rest_series_alone_show_all_of_what_nobody_edits(clip, prepared):
     frames = (0.5, 4, 9.9, 13, 21.7, 30)
     before = [prepared.positions(clip, frame) for frame in frames]
     size = prepared.nbytes
-    assert prepared.passing_bytes(clip) == 0
+    assert prepared.passing_bytes(clip) > extension
     prepared.rest()
+    assert prepared.passing_bytes(clip) == 0
     assert prepared.nbytes < size / 2
     for frame, places in zip(frames, before, strict=True):
         assert np.array_equal(prepared.positions(clip, frame), places)
@@ -448,7 +449,7 @@ def test_a_session_streams_what_it_plays_and_stops_while_a_hand_pulls(document, 
 def test_where_much_is_prepared_figures_that_nobody_edits_come_one_after_the_other(
     document, tmp_path, monkeypatch
 ):
-    monkeypatch.setattr("app.editor.actions.upkeep.MOST_PASSING", 0)
+    monkeypatch.setattr("app.editor.project.MOST_PASSING", 0)
     (figure,) = document.figures
     figures = tuple(replace(figure, id=number, name=f"{number}") for number in range(3))
     document = replace(document, figures=figures)

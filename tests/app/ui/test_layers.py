@@ -1053,7 +1053,9 @@ def brush_at(project, figure):
     return Stroke(points=np.array([middle, middle + 5]), radius=8, keeps=False)
 
 
-def test_what_prepares_layers_that_nobody_edits_is_let_go_and_comes_again(window, keyed):
+def test_what_prepares_layers_that_nobody_edits_is_let_go_and_comes_again(
+    window, keyed, monkeypatch
+):
     window.act(layering.choose, identity(keyed, "arm"))
     window.settle()
     arm, body = (keyed.puppets[identity(keyed, name)] for name in ("arm", "body"))
@@ -1065,6 +1067,11 @@ def test_what_prepares_layers_that_nobody_edits_is_let_go_and_comes_again(window
     window.settle()
     window.clock.now += 2 * memory.REST
     window.frames(3)
+    # Of few layers all is kept.
+    assert body.store.sampler._extension is not None
+    monkeypatch.setattr("app.editor.project.MOST_PASSING", 0)
+    window.act(playback.toggle_play)
+    window.act(playback.halt)
     window.clock.now += 2 * memory.REST
     window.frames(3)
     assert body.store.sampler._extension is None

@@ -5,9 +5,10 @@ from collections.abc import Callable, Iterator
 from app.document import Clip, clip_of
 from app.editor.actions import playback
 from app.editor.failures import report
-from app.editor.project import Project, Puppet
+from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.work import Job, Kind
+from app.editor.work.puppet import Puppet
 from app.motion import CorrectedFrames, FoundCorrections
 
 COMPLAINT = "The handles cannot be held still, or on their tracks"
@@ -15,9 +16,6 @@ CORRECTING = Kind("Corrections", COMPLAINT)
 FOLLOWING = Kind("FrameCorrection", COMPLAINT, "hand")
 # What the tracks of handles that a hand may carry are relative to.
 GROUNDING = Kind("Places on tracks", COMPLAINT, "hand")
-
-# Figures that may keep what their frames are found with, once all of these are there.
-MOST_BEGUN = 4
 
 Work = Callable[[], FoundCorrections]
 
@@ -81,13 +79,6 @@ def _corrected(project: Project) -> Iterator[tuple[Clip, Puppet, CorrectedFrames
             yield clip, puppet, puppet.corrected
 
 
-def _make_room(project: Project, latest: CorrectedFrames) -> None:
-    """Let figures that nobody edits go on with the frames that they have, where there are many."""
-    begun = [each for _, _, each in _corrected(project) if each.is_begun]
-    if len(begun) > MOST_BEGUN and latest is not project.puppet.corrected:
-        latest.rest()
-
-
 def _job(
     session: Session, project: Project, kind: Kind, puppet: Puppet, clip: Clip, work: Work
 ) -> Job:
@@ -97,7 +88,7 @@ def _job(
         # The hand may have gone on since.
         if puppet.corrected is not None:
             puppet.corrected.take(found, is_newest=kind == FOLLOWING)
-            _make_room(project, puppet.corrected)
+            project.make_room()
 
     def failed(error: Exception) -> None:
         puppet.store.fail("correction", clip)

@@ -1,0 +1,85 @@
+"""A figure as a window has it, and its twin by another method."""
+
+from dataclasses import dataclass, field, replace
+from typing import Self
+
+from app.document import Baseline, Clip, Document, Figure, PictureFile, Variant, clip_of
+from app.editor.work import Derived
+from app.motion import CorrectedFrames, IntervalStore, PosableMesh, Shown
+from app.solving import Rig
+from app.storage import Cut, Picture, cut_picture
+from engine.arrays import Bytes
+from engine.domain import CutOut
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class Twin:
+    """A figure by another method, which its own is compared with."""
+
+    original: Figure  # the figure as it is
+    figure: Figure  # the same by the other variant, where the method is one
+    method: Variant | Baseline
+    shown: Shown | None = None
+
+    def clip(self, document: Document) -> Clip:
+        """Return it in the time of its scene."""
+        baseline = self.method if isinstance(self.method, Baseline) else None
+        return replace(clip_of(document, self.figure.id), figure=self.figure, baseline=baseline)
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class Puppet:
+    """A figure as a window has it."""
+
+    file: PictureFile
+    picture: Picture  # decoded from that
+    is_opaque: bool  # whether it has no transparency: its background was found by its colour
+    # Its in-betweens on a coarse mesh, and on its own one if that is another and is there.
+    store: IntervalStore
+    fine: IntervalStore | None = None
+    shown: Shown | None = None  # None before the first frame of the window
+    corrected: CorrectedFrames | None = None  # the corrections of its frames
+    rig: Rig | None = None  # for the poses to come; None before the first of them
+    cut: Derived[CutOut, Cut]  # what is left of the picture, as the newest cut-out has it
+    # That made small, for the list of layers.
+    small: Derived[Cut, Bytes | None] = field(default_factory=lambda: Derived(None))
+    twin: Twin | None = None  # beside it, while the viewport is split
+
+    @classmethod
+    def of(cls, clip: Clip, picture: Picture, *, among: int = 1) -> Self:
+        """Return a figure as the window has it at first: its keys are shown; in-betweens follow.
+
+        `among` tells how many figures there are.
+        """
+        return cls(
+            picture=picture,
+            is_opaque=picture.is_opaque,
+            file=clip.figure.picture,
+            store=IntervalStore(mesh=PosableMesh.coarse(clip.figure.domain, among=among)),
+            cut=Derived(
+                cut_picture(picture, clip.figure.cut_out, is_alone=among == 1), clip.figure.cut_out
+            ),
+        )
+
+    def held(self, clip: Clip) -> int:
+        """Return how many bytes `rest` lets go, or will once series show all of a clip."""
+        stores = filter(None, (self.store, self.fine))
+        shown = sum(store.passing_bytes(clip) for store in stores)
+        sampler = self.store.sampler
+        outline = 0 if sampler is None else sampler.known.nbytes
+        return shown + outline + (0 if self.corrected is None else self.corrected.nbytes)
+
+    def rest(self, clip: Clip) -> None:
+        """Let go of what all that is shown of a clip was made with; an edit needs it again.
+
+        It is most of what a figure with keys takes.
+        """
+        stores = [store for store in (self.store, self.fine) if store is not None]
+        if not all(store.has(clip) for store in stores):
+            return
+        for store in stores:
+            store.rest()
+        if self.corrected is not None:
+            self.corrected.rest()
+        if self.store.sampler is not None:
+            self.store.sampler.known.forget_transform()
