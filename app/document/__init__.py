@@ -116,6 +116,7 @@ from app.document.queries import (
     placing_at as placing_at,
     repeating as repeating,
     resting_pose as resting_pose,
+    seen_alone as seen_alone,
     sights_of as sights_of,
     spans as spans,
     stiff_outline as stiff_outline,

@@ -56,6 +56,7 @@ from app.document.queries.stage import (
     placing_at as placing_at,
     repeated as repeated,
     repeating as repeating,
+    seen_alone as seen_alone,
     sights_of as sights_of,
     turn_frame as turn_frame,
     turning as turning,

@@ -215,6 +215,9 @@ def test_layers_named_as_in_a_group_are_offered_as_a_choice(mouths, names, hidde
         document = layer_commands.set_hidden(identity, hidden=True)(document)
     document = groups.put_in_group((1, 2), group)(document)
     assert alternates(document) == tuple((path, (1, 2)) for path in offered)
+    # What is painted onto one of them takes no turns with it.
+    painted = layer_commands.set_clipped(2, clipped=True)(document)
+    assert alternates(painted) == ()
 
 
 def turning(document, *, cycle, turns, of=(0, 1, 2)):

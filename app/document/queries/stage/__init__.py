@@ -6,6 +6,7 @@ Imports: the values of `app.document`.
 """
 
 from app.document.queries.stage.alternates import alternates as alternates
+from app.document.queries.stage.clipping import seen_alone as seen_alone
 from app.document.queries.stage.compositing import Composite as Composite, composed as composed
 from app.document.queries.stage.layer_tree import (
     TreeRow as TreeRow,

@@ -19,7 +19,9 @@ def alternates(document: Document) -> tuple[tuple[str, tuple[int, ...]], ...]:
     """
     together: dict[str, list[Figure]] = {group.name: [] for group in document.groups}
     for figure in document.figures:
-        together.setdefault(_place(figure), []).append(figure)
+        # What is painted onto another one, as a tongue onto a mouth, takes no turns with it.
+        if not figure.clipped:
+            together.setdefault(_place(figure), []).append(figure)
     found = []
     for path, members in together.items():
         words = re.split(r"[^a-zA-Z]+", path.rpartition("/")[2])
