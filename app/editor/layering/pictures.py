@@ -22,8 +22,7 @@ from app.editor.failures import sentence
 from app.editor.layering.choosing import choose
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.work import Kind
-from app.editor.work.puppet import Puppet
+from app.editor.work import Kind, Puppet
 from app.errors import NOTHING_TOLD, ImportSummary, LissomError, Told, shown_name
 from app.solving import Renewal, begin_replacing
 from app.storage import (
