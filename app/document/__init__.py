@@ -125,6 +125,7 @@ from app.document.queries import (
     track_at as track_at,
     transits as transits,
     turn_frame as turn_frame,
+    turns_in as turns_in,
     velocity_at as velocity_at,
     with_repeats as with_repeats,
 )

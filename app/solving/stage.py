@@ -17,6 +17,7 @@ from app.document import (
     joints_repeat,
     layer_commands,
     repeating,
+    turns_in,
 )
 from app.errors import LissomError
 from app.motion import Joints, anchor_of, hand_over
@@ -167,6 +168,22 @@ def unrepeated(figure: Figure, part: FigureScript) -> list[str]:
             notices.append(
                 f"what it hangs on changes in the repeats of {cycle.told}, too, or is another one "
                 "at their end than at their beginning, and does not repeat"
+            )
+    return notices
+
+
+def unturned(document: Document) -> list[str]:
+    """Tell of choices whose turns are in a stretch that repeats for some of their layers only."""
+    notices = []
+    for choice in document.choices:
+        figures = [document.figure(each) for each in choice.figures]
+        cycles = dict.fromkeys(cycle for each in figures for cycle in each.cycles)
+        cycle = next((each for each in cycles if turns_in(choice, each)), None)
+        others = [each.name for each in figures if cycle not in each.cycles]
+        if cycle is not None and others:
+            notices.append(
+                f"choice {choice.name!r}: its keys do not repeat, as {cycle.told} do not of "
+                f"{', '.join(others)}; give all its layers that cycle, or leave it out"
             )
     return notices
 

@@ -60,6 +60,7 @@ from app.document.queries.stage import (
     sights_of as sights_of,
     turn_frame as turn_frame,
     turning as turning,
+    turns_in as turns_in,
     with_repeats as with_repeats,
 )
 from app.document.queries.timeline import (

@@ -421,6 +421,24 @@ def test_a_choice_shows_one_layer_at_a_time_whatever_is_hidden_in_the_drawing(fa
     assert not frame(out, "no ah", *options, "--frames", "9:9")[..., 3].any()
 
 
+def test_a_choice_repeats_with_a_cycle_of_all_its_layers(face, capsys):
+    cycles, still = [{"from": 0, "to": 12}], {"handles": {}, "keys": [{"frame": 0}]}
+    head = {"layer": "head", "handles": {}, "keys": [{"frame": 0}, {"frame": 30}]}
+    mouths = [{"layer": name, **still, "cycles": cycles} for name in CHOICE["layers"]]
+    code, out = face(figures=[head, *mouths], choices=[CHOICE])
+    assert code == 0
+    assert "repeat" not in capsys.readouterr().err
+    document = load_project(out)
+    names = [
+        next(each.name for each in document.figures[1:] if is_visible(document, each, frame))
+        for frame in (1, 5, 9, 11, 13, 17, 21, 23, 25, 29)
+    ]
+    assert names == [*["closed", "ah", "oh", "closed"] * 2, "closed", "ah"]
+    face(figures=[head, *mouths[1:]], choices=[CHOICE])
+    told = " ".join(capsys.readouterr().err.split())
+    assert "its keys do not repeat, as frames 0 to 12 do not of closed; give all its layers" in told
+
+
 def test_a_script_shows_what_the_drawing_hides(face, capsys):
     oh = {"layer": "oh", "handles": {}, "keys": [{"frame": 0}, {"frame": 12}]}
     assert face(figures=[{**oh, "visible": [[0, False], [6, True]]}])[0] == 0

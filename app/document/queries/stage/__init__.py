@@ -30,5 +30,6 @@ from app.document.queries.stage.sight import (
     sights_of as sights_of,
     turn_frame as turn_frame,
     turning as turning,
+    turns_in as turns_in,
     with_repeats as with_repeats,
 )

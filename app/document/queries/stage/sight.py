@@ -55,7 +55,7 @@ def turning(document: Document, choice: Choice) -> Cycle | None:
     """
     shared, *others = (document.figure(each).cycles for each in choice.figures)
     for cycle in shared:
-        if all(cycle in each for each in others) and _turns_in(choice, cycle):
+        if all(cycle in each for each in others) and turns_in(choice, cycle):
             return cycle
     return None
 
@@ -89,7 +89,7 @@ def turn_frame(document: Document, choice: Choice, frame: int) -> int:
     return int(cycle.source(frame)) if cycle is not None and is_repeat else frame
 
 
-def _turns_in(choice: Choice, cycle: Cycle) -> bool:
+def turns_in(choice: Choice, cycle: Cycle) -> bool:
     """Tell whether all changes of a choice, but for those before and after, are in a cycle."""
     begun = choice.at(cycle.first)
     later = [turn for turn in choice.turns if turn.frame > cycle.first]
