@@ -152,6 +152,8 @@ class Document:
 
     def joints_of(self, figure: Figure) -> tuple[Attachment, ...]:
         """Return the joints of a figure, with those in the repeats of its cycles."""
+        if not (figure.cycles and figure.joints):
+            return figure.joints  # asked for often
         return repeated_joints(figure.joints, figure.cycles, self.frames.last)
 
     def joint_at(self, figure: Figure, frame: float, *, before: bool = False) -> Attachment | None:
