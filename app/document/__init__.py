@@ -67,6 +67,7 @@ from app.document.layering import (
     Placing as Placing,
     Switch as Switch,
     Turn as Turn,
+    joints_repeat as joints_repeat,
     paths_to as paths_to,
     shared_path as shared_path,
 )
@@ -115,6 +116,7 @@ from app.document.queries import (
     placing_at as placing_at,
     repeating as repeating,
     resting_pose as resting_pose,
+    seen_alone as seen_alone,
     sights_of as sights_of,
     spans as spans,
     stiff_outline as stiff_outline,
@@ -122,7 +124,10 @@ from app.document.queries import (
     time_of as time_of,
     track_at as track_at,
     transits as transits,
+    turn_frame as turn_frame,
+    turns_in as turns_in,
     velocity_at as velocity_at,
+    with_repeats as with_repeats,
 )
 from app.document.settings import (
     FRAME_NAMES as FRAME_NAMES,

@@ -265,13 +265,20 @@ class Figure:
         """Whether it hangs on another figure at some time."""
         return any(joint.to is not None for joint in self.joints)
 
-    def joint_at(self, frame: float, *, before: bool = False) -> Attachment | None:
-        """Return the joint that holds at a frame, or until just before; None before the first."""
-        held = None
-        for joint in self.joints:
-            if joint.frame < frame or (joint.frame == frame and not before):
-                held = joint
-        return held
+    def keyed_joint(self, frame: int) -> Attachment | None:
+        """Return the joint that says what holds at a frame; None before the first."""
+        at = self.joint_frame(frame)
+        return next((joint for joint in reversed(self.joints) if joint.frame <= at), None)
+
+    def joint_frame(self, frame: int) -> int:
+        """Return the frame at which it is said what holds at a frame: another one in repeats."""
+        for cycle in self.cycles:
+            in_repeats = cycle.last <= frame and cycle.covers(frame) and frame != cycle.until
+            if in_repeats and all(
+                not cycle.covers(joint.frame) or joint.frame <= cycle.last for joint in self.joints
+            ):
+                return int(cycle.source(frame))
+        return frame
 
     @property
     def followers(self) -> frozenset[int]:

@@ -6,6 +6,7 @@ where it comes in: a domain is built by the engine or tested by it, a picture is
 and a certificate is proven of its map, never read.
 """
 
+from bisect import bisect_left, bisect_right
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
@@ -14,7 +15,15 @@ from typing import NoReturn
 from app.document.body import PAIRS, SidePairs, require_pairs
 from app.document.checks import NOTHING, Unknown, require, require_distinct, require_size
 from app.document.figure import Figure
-from app.document.layering import CameraKey, Choice, Group, paths_to, require_rising
+from app.document.layering import (
+    Attachment,
+    CameraKey,
+    Choice,
+    Group,
+    paths_to,
+    repeated_joints,
+    require_rising,
+)
 from app.document.settings import FASTEST, ExportSettings, FrameRange, Marker
 from app.errors import NOTHING_TOLD, ImportSummary, LissomError
 
@@ -141,6 +150,20 @@ class Document:
         figures = tuple(changed if figure.id == changed.id else figure for figure in self.figures)
         return replace(self, figures=figures, frames=frames)
 
+    def joints_of(self, figure: Figure) -> tuple[Attachment, ...]:
+        """Return the joints of a figure, with those in the repeats of its cycles."""
+        if not (figure.cycles and figure.joints):
+            return figure.joints  # asked for often
+        return repeated_joints(figure.joints, figure.cycles, self.frames.last)
+
+    def joint_at(self, figure: Figure, frame: float, *, before: bool = False) -> Attachment | None:
+        """Return the joint that holds at a frame, or until just before; None before the first."""
+        joints = self.joints_of(figure)
+        count = (bisect_left if before else bisect_right)(
+            joints, frame, key=lambda each: each.frame
+        )
+        return joints[count - 1] if count else None
+
     def carriers(self, identity: int, frame: float, *, before: bool = False) -> tuple[Figure, ...]:
         """Return the figure with this id, the one that it hangs on at a frame, and so on.
 
@@ -153,7 +176,7 @@ class Document:
         """
         frame = self.in_time(frame)
         chain = [self.figure(identity)]
-        while (joint := chain[-1].joint_at(frame, before=before)) and joint.to is not None:
+        while (joint := self.joint_at(chain[-1], frame, before=before)) and joint.to is not None:
             parent = self.figure(joint.to)
             if parent in chain:
                 self._refuse_circle((*chain[chain.index(parent) :], parent), frame)
@@ -187,13 +210,23 @@ class Document:
             for placing in figure.placings:
                 if placing.beside is not None:
                     self.figure(placing.beside)
-        changes = {joint.frame for figure in self.figures for joint in figure.joints}
+        self._check_joints()
         for figure in self.figures:
-            if figure.joints:
-                for frame in sorted(changes):
-                    self.carriers(figure.id, frame)
             self._check_clocks(figure)
         self._check_choices()
+
+    def _check_joints(self) -> None:
+        """Refuse figures that hang on each other in a circle at any frame."""
+        carried = {each.id: self.all_carriers(each.id) for each in self.figures if each.joints}
+        circling = [
+            self.figure(identity)
+            for identity, carriers in carried.items()
+            if any(joint.to == identity for each in carriers for joint in each.joints)
+            or any(joint.to == identity for joint in self.figure(identity).joints)
+        ]
+        for frame in sorted({joint.frame for each in circling for joint in self.joints_of(each)}):
+            for figure in circling:
+                self.carriers(figure.id, frame)
 
     def _require_inside(self, frame: int) -> None:
         require(

@@ -63,5 +63,4 @@ from app.editor.timeline_view import (
     row_of as row_of,
     seen_at as seen_at,
 )
-from app.editor.work import Jobs as Jobs, Kind as Kind
-from app.editor.work.puppet import Puppet as Puppet, Twin as Twin
+from app.editor.work import Jobs as Jobs, Kind as Kind, Puppet as Puppet, Twin as Twin

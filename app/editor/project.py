@@ -36,9 +36,10 @@ from app.editor.work import (
     MotionErrand,
     Promise,
     Pull,
+    Puppet,
     Take,
+    Twin,
 )
-from app.editor.work.puppet import Puppet, Twin
 from app.motion import (
     Box,
     Joints,

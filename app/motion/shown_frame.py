@@ -181,7 +181,7 @@ def hang_shown(
             placement = movement_at(document, figure, each.frame)
         elif joints is None:
             chain = chain_of(document, identity, each.frame)
-            kept = partial(_as_it_was, earlier)
+            kept = partial(_as_it_was, earlier, each.frame)
             placement = along(chain, lambda figure, place: shown[figure.id].hinge(place), kept)
         else:
             placement = joints.placement(identity, each.frame, poses)
@@ -190,12 +190,15 @@ def hang_shown(
     return hung
 
 
-def _as_it_was(earlier: Joints | None, figure: Figure, joint: Attachment) -> RigidMotion:
+def _as_it_was(
+    earlier: Joints | None, frame: float, figure: Figure, joint: Attachment
+) -> RigidMotion:
     """Return how a figure was held by a joint in an earlier document, if it was."""
     known = {each.id: each for each in earlier.document.figures} if earlier else {}
-    if earlier is None or figure.id not in known or joint not in known[figure.id].joints:
+    was = known.get(figure.id)
+    if earlier is None or was is None or joint not in earlier.document.joints_of(was):
         return HERE
-    return earlier.kept(known[figure.id], joint)
+    return earlier.kept(was, joint, frame)
 
 
 def _locate(clip: Clip, mesh: PosableMesh, earlier: Shown | None) -> AttachedPoints:

@@ -30,6 +30,7 @@ from app.solving.stage import (
     unmoved,
     unrepeated,
     unseen,
+    unturned,
     with_choices,
     with_joints,
     with_kept_places,
@@ -98,7 +99,12 @@ def pose_document(
         document = document.with_figure(figure)
         notices += told
     document = with_choices(with_kept_places(with_order(document, script), script), script)
-    return document, (*notices, *unmoved(document, script), *unseen(document, script))
+    return document, (
+        *notices,
+        *unmoved(document, script),
+        *unturned(document),
+        *unseen(document, script),
+    )
 
 
 @contextmanager

@@ -14,8 +14,10 @@ from app.document import (
     Turn,
     choice_commands,
     is_visible,
+    joints_repeat,
     layer_commands,
     repeating,
+    turns_in,
 )
 from app.errors import LissomError
 from app.motion import Joints, anchor_of, hand_over
@@ -147,7 +149,9 @@ def unrepeated(figure: Figure, part: FigureScript) -> list[str]:
         f"nothing is keyed in {cycle.told}: there is nothing to repeat"
         for cycle in part.cycles
         if not (
-            any(map(cycle.has, keyed)) or any(cycle.takes(track.keys) for track in figure.tracks)
+            any(map(cycle.has, keyed))
+            or any(cycle.takes(track.keys) for track in figure.tracks)
+            or joints_repeat(figure.joints, cycle)
         )
     ]
     rows: dict[str, tuple[MoveKey, ...] | tuple[OpacityKey, ...]]
@@ -157,6 +161,29 @@ def unrepeated(figure: Figure, part: FigureScript) -> list[str]:
         if cycle is not None and repeating(figure, row) is None:
             notices.append(
                 f"its {name} ends otherwise than it begins in {cycle.told}, and does not repeat"
+            )
+    for cycle in part.cycles:
+        changes = any(cycle.first < joint.frame < cycle.last for joint in figure.joints)
+        if changes and not joints_repeat(figure.joints, cycle):
+            notices.append(
+                f"what it hangs on changes in the repeats of {cycle.told}, too, or is another one "
+                "at their end than at their beginning, and does not repeat"
+            )
+    return notices
+
+
+def unturned(document: Document) -> list[str]:
+    """Tell of choices whose turns are in a stretch that repeats for some of their layers only."""
+    notices = []
+    for choice in document.choices:
+        figures = [document.figure(each) for each in choice.figures]
+        cycles = dict.fromkeys(cycle for each in figures for cycle in each.cycles)
+        cycle = next((each for each in cycles if turns_in(choice, each)), None)
+        others = [each.name for each in figures if cycle not in each.cycles]
+        if cycle is not None and others:
+            notices.append(
+                f"choice {choice.name!r}: its keys do not repeat, as {cycle.told} do not of "
+                f"{', '.join(others)}; give all its layers that cycle, or leave it out"
             )
     return notices
 

@@ -54,6 +54,7 @@ from app.storage.json_values import (
     load_json as load_json,
 )
 from app.storage.layers import (
+    as_layer as as_layer,
     flattened as flattened,
     is_layered as is_layered,
     layer_figure as layer_figure,

@@ -227,25 +227,41 @@ def still_picture(data: bytes, picture: Picture) -> Figure:
 
 
 def still_figure(figure: Figure) -> Figure:
-    """Return the figure as a picture that stands still where it was drawn, cut out as it is."""
+    """Return the figure as a picture that stands still where it was drawn, cut out as it is.
+
+    What it is as a layer it stays, in time, too: it hangs, moves, fades and repeats as before.
+    """
     domain = rectangle_domain(*figure.picture.size).moved(figure.corner)
+    rest = new_figure(figure.picture, domain, figure.meshing, figure.cut_out)
+    return as_layer(replace(rest, still=True), figure)
+
+
+def as_layer(figure: Figure, layer: Figure) -> Figure:
+    """Return a figure as it is drawn in the place of a layer, be that a still picture or not."""
+    anchor = layer.anchor
+    if anchor is not None:
+        anchor = complex(figure.domain.nearest(np.array([anchor]))[0])
     return replace(
-        new_figure(figure.picture, domain, figure.meshing, figure.cut_out),
-        id=figure.id,
-        name=figure.name,
-        corner=figure.corner,
-        still=True,
-        reference=figure.reference,
-        locked=figure.locked,
-        hidden=figure.hidden,
-        switches=figure.switches,
-        opacity=figure.opacity,
-        opacities=figure.opacities,
-        movement=figure.movement,
-        placings=figure.placings,
-        blend=figure.blend,
-        clipped=figure.clipped,
-        group=figure.group,
+        figure,
+        id=layer.id,
+        name=layer.name,
+        corner=layer.corner,
+        anchor=anchor,
+        keys=(replace(figure.keys[0], frame=layer.keys[0].frame),),
+        cycles=layer.cycles,
+        reference=layer.reference,
+        locked=layer.locked,
+        hidden=layer.hidden,
+        switches=layer.switches,
+        opacity=layer.opacity,
+        opacities=layer.opacities,
+        blend=layer.blend,
+        clipped=layer.clipped,
+        group=layer.group,
+        joints=layer.joints,
+        movement=layer.movement,
+        placings=layer.placings,
+        unknown=layer.unknown,
     )
 
 

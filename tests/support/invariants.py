@@ -48,7 +48,7 @@ def check_invariants(session: Session) -> None:
 def check_joints(project: Project) -> None:
     """Fail where a layer is not drawn at the point that it hangs by."""
     for figure in project.document.figures:
-        child, joint = project.puppets[figure.id].shown, figure.joint_at(0)
+        child, joint = project.puppets[figure.id].shown, project.document.joint_at(figure, 0)
         if joint is None or joint.to is None or joint.keeps or len(figure.joints) > 1:
             continue
         parent = project.puppets[joint.to].shown

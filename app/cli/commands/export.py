@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from app.cli.console import StatusLine, notice, say
-from app.document import Document, ExportSettings, FrameRange, clip_of
+from app.document import Document, ExportSettings, FrameRange, clip_of, seen_alone
 from app.errors import LissomError
 from app.export import (
     PROJECT,
@@ -68,7 +68,8 @@ def _alone(document: Document, name: str) -> Document:
         replace(figure, hidden=False, reference=figure.name != name) for figure in document.figures
     )
     groups = tuple(replace(group, hidden=False) for group in document.groups)
-    return replace(document, figures=figures, groups=groups, size=document.canvas)
+    alone = replace(document, figures=figures, groups=groups, size=document.canvas)
+    return seen_alone(alone, [figure.id for figure in figures if figure.name == name])
 
 
 def _make(

@@ -63,8 +63,10 @@ Its last frame is the same moment as its first one, as in a loop: keys are from 
 and one at 24 must be like that at 0. Every repeat is the same motion, through the seams too;
 without until it goes on to the end of the animation. Tracks of which all keys are in the stretch
 repeat with it, and so do "movement" and "opacity", unless they end otherwise than they begin; and
-so do "front", "visible" and "order", while "attach" does not. Keys before lead to its first key;
-keys after go on from what is shown at the end, which must be one of its keys. Cycles do not
+so do "front", "visible" and "order". "attach" does where all of its changes are in the stretch:
+each repeat begins as the stretch does, the last entry with "keep" leads there, and nothing jumps.
+So do the keys of a choice with a cycle that all of its layers have. Keys before lead to its first
+key; keys after go on from what is shown at the end, which must be one of its keys. Cycles do not
 overlap.
 
 A handle may say what is painted in front around it, from -1 (behind) to 1, and how far around, in

@@ -4,12 +4,20 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import TypeVar
 
-from app.document.commands.command import figure_command
+from app.document.commands.command import command, figure_command
 from app.document.commands.keys_in_time import Row, in_order
 from app.document.figure import Figure
 from app.document.keyframe import Keyframe
-from app.document.layering import MoveKey, OpacityKey
-from app.document.queries import AS_DRAWN, are_alike, repeated, repeating
+from app.document.layering import MoveKey, OpacityKey, repeated_joints
+from app.document.model import Document
+from app.document.queries import (
+    AS_DRAWN,
+    are_alike,
+    repeated,
+    repeating,
+    turning,
+    with_repeats,
+)
 from app.document.timing import Cycle, Track, TrackKey
 from app.errors import LissomError
 
@@ -44,9 +52,18 @@ def repeat(figure: Figure, first: int, last: int, until: int | None = None) -> F
     return replace(figure, keys=keys, cycles=_ordered((*others, cycle)))
 
 
-@figure_command("Stop repeating")
-def stop(figure: Figure, first: int) -> Figure:
-    """Let the stretch that begins at a frame be there once; it still ends as it began."""
+@command("Stop repeating")
+def stop(document: Document, identity: int, first: int) -> Document:
+    """Let the stretch that begins at a frame be there once; it still ends as it began.
+
+    So do turns of a choice that repeated with it.
+    """
+    cycle = cycle_from(document.figure(identity), first)
+    document = _with_turns(document, identity, cycle, cycle.last)
+    return document.with_figure(_stopped(document.figure(identity), first))
+
+
+def _stopped(figure: Figure, first: int) -> Figure:
     cycle = cycle_from(figure, first)
     cycles = tuple(each for each in figure.cycles if each is not cycle)
     own = [key for key in figure.keys if cycle.has(key.frame)]
@@ -59,19 +76,23 @@ def stop(figure: Figure, first: int) -> Figure:
         cycles=cycles,
         movement=_copied(figure, figure.movement, cycle, cycle.last),
         opacities=_copied(figure, figure.opacities, cycle, cycle.last),
+        joints=repeated_joints(figure.joints, (replace(cycle, until=cycle.last),), cycle.last),
     )
 
 
-@figure_command("Make repeats into keys")
-def make_keys(figure: Figure, first: int, end: int) -> Figure:
+@command("Make repeats into keys")
+def make_keys(document: Document, identity: int, first: int, end: int) -> Document:
     """Make the repeats of the stretch that begins at a frame into keys of their own.
 
     Only what leads to the stretch and on from it may pass its ends otherwise then. Less than a
-    whole repeat at the end goes on repeating the one before.
+    whole repeat at the end goes on repeating the one before. Turns of a choice that repeated with
+    it are at frames of their own then.
 
     Parameters
     ----------
-    figure : Figure
+    document : Document
+    identity : int
+        Of the figure.
     first : int
     end : int
         The last frame of the scene, where the repeats end there.
@@ -81,6 +102,23 @@ def make_keys(figure: Figure, first: int, end: int) -> Figure:
     LissomError
         If a track acts in a part of the stretch only, and neither comes from nor leads to nothing.
     """
+    cycle = cycle_from(document.figure(identity), first)
+    document = _with_turns(document, identity, cycle, end if cycle.until is None else cycle.until)
+    return document.with_figure(_keyed(document.figure(identity), first, end))
+
+
+def _with_turns(document: Document, identity: int, cycle: Cycle, end: int) -> Document:
+    """Return a document in which what repeats of a figure's choice with a cycle is said in full."""
+    choice = document.choice_of(identity)
+    if choice is None or turning(document, choice) != cycle:
+        return document
+    said = with_repeats(document, choice, max(end, cycle.last))
+    choices = tuple(said if each is choice else each for each in document.choices)
+    return replace(document, choices=choices)
+
+
+def _keyed(figure: Figure, first: int, end: int) -> Figure:
+    """Return a figure with the repeats of a stretch as keys."""
     cycle = cycle_from(figure, first)
     until = max(cycle.last, end if cycle.until is None else cycle.until)
     own = [key for key in figure.keys if cycle.has(key.frame)]
@@ -109,6 +147,7 @@ def make_keys(figure: Figure, first: int, end: int) -> Figure:
         opacities=_copied(figure, figure.opacities, cycle, until),
         switches=repeated(figure.switches, (cycle,), until, figure.switches[:1]),
         placings=repeated(figure.placings, (cycle,), until, AS_DRAWN),
+        joints=repeated_joints(figure.joints, (cycle,), until),
     )
 
 

@@ -186,11 +186,11 @@ def stretched(figure: Figure, first: int, factor: float) -> Figure:
         return keys_in_time.in_order(key.at_pace(to(key.frame), 1 / factor) for key in keys)
 
     switches = {to(switch.frame): switch for switch in figure.switches}
-    joints = {max(to(joint.frame), 0): joint for joint in figure.joints}
+    joints = {max(to(joint.frame), 0): joint.moved(to) for joint in figure.joints}
     return replace(
         figure,
         switches=tuple(replace(switch, frame=at) for at, switch in switches.items()),
-        joints=tuple(replace(joint, frame=at) for at, joint in joints.items()),
+        joints=tuple(joints.values()),
         keys=all_to(figure.keys),
         cycles=tuple(cycle.moved(to) for cycle in figure.cycles),
         tracks=tuple(

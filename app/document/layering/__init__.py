@@ -7,6 +7,8 @@ Imports: the values of `app.document`.
 
 from app.document.layering.attachment import (
     Attachment as Attachment,
+    joints_repeat as joints_repeat,
+    repeated_joints as repeated_joints,
     require_joints as require_joints,
 )
 from app.document.layering.groups import (

@@ -1,11 +1,15 @@
 """What a figure hangs on."""
 
 import math
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from itertools import pairwise
+from typing import Self
 
 from app.document.checks import NOTHING, Unknown, require, require_place
 from app.document.settings import LAST_FRAME
+from app.document.timing import Cycle
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -27,6 +31,11 @@ class Attachment:
     # Whether nothing jumps at that frame: in place of `rest` and `offset`, the figure goes on as it
     # is beside the point and turned then; one that is let go stays there.
     keeps: bool = False
+    # The frame at which it was as it is kept, where that is an earlier one; one that keeps only.
+    since: int | None = None
+    # Whether it goes over, from there, to where the next joint has the figure when that begins, so
+    # that nothing jumps then either; one that keeps only.
+    leads: bool = False
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
@@ -40,6 +49,21 @@ class Attachment:
             0 <= self.frame <= LAST_FRAME,
             f"A joint holds from a frame from 0 to {LAST_FRAME:,} on, not from {self.frame}.",
         )
+        require(
+            self.since is None or 0 <= self.since <= self.frame,
+            f"What a joint keeps from frame {self.frame} on was so at that frame or before, not at "
+            f"frame {self.since}.",
+        )
+
+    @property
+    def kept_from(self) -> int:
+        """The frame at which a figure is as a joint keeps it."""
+        return self.frame if self.since is None else self.since
+
+    def moved(self, to: Callable[[int], int]) -> Self:
+        """Return the joint with its frames where a function has them, from frame 0 on."""
+        since = None if self.since is None else max(to(self.since), 0)
+        return replace(self, frame=max(to(self.frame), 0), since=since)
 
 
 def require_joints(joints: tuple[Attachment, ...]) -> None:
@@ -49,3 +73,71 @@ def require_joints(joints: tuple[Attachment, ...]) -> None:
             before.frame < after.frame,
             f"The figure is attached anew at frame {after.frame} after frame {before.frame}.",
         )
+
+
+def joints_repeat(joints: Sequence[Attachment], cycle: Cycle) -> bool:
+    """Tell whether what a figure hangs on changes within a cycle of it, and repeats with that.
+
+    It does where nothing of it is said in the repeats, and at the end of the stretch at most that
+    the figure hangs on what it hung on at the beginning. Else it has its own time.
+    """
+    begun = _begun(joints, cycle)
+    later = [joint for joint in joints if joint.frame > cycle.first]
+    if cycle.until is not None:
+        later = [joint for joint in later if joint.frame < cycle.until]
+    return any(joint.frame < cycle.last for joint in later) and all(
+        joint.frame < cycle.last or (joint.frame == cycle.last and _is_again(joint, begun))
+        for joint in later
+    )
+
+
+@lru_cache(maxsize=64)
+def repeated_joints(
+    joints: tuple[Attachment, ...], cycles: tuple[Cycle, ...], end: int
+) -> tuple[Attachment, ...]:
+    """Return joints with those of cycles in each repeat, up to the scene's last frame.
+
+    Each repeat, and what follows the last one, begins as the stretch does; the last joint before
+    leads there. One that keeps does so from its frame in each repeat, so that nothing jumps even
+    where what carries the figure goes on meanwhile.
+    """
+    for cycle in cycles:
+        if not joints_repeat(joints, cycle):
+            continue
+        begun, until = _begun(joints, cycle), end if cycle.until is None else cycle.until
+        own = [joint for joint in joints if cycle.first < joint.frame < cycle.last]
+        own[-1] = replace(own[-1], leads=own[-1].keeps)
+        since = begun.kept_from if begun.keeps else None
+        again = {joint.frame: joint for joint in own}
+        others = [
+            joint
+            for joint in joints
+            if joint.frame not in again
+            and not (joint.frame == cycle.last and _is_again(joint, begun))
+        ]
+        start = cycle.last
+        while start <= min(until, LAST_FRAME):
+            again[start] = replace(begun, frame=start, since=since)
+            for joint in own:
+                at = joint.frame + start - cycle.first
+                if at <= min(until, LAST_FRAME):
+                    again[at] = replace(joint, frame=at)
+            start += cycle.period
+        if cycle.until is None and start <= LAST_FRAME:
+            # To which a repeat leads that the scene's end cuts off.
+            again[start] = replace(begun, frame=start, since=since)
+        again |= {joint.frame: joint for joint in others}
+        joints = tuple(again[frame] for frame in sorted(again))
+    return joints
+
+
+def _is_again(joint: Attachment, begun: Attachment) -> bool:
+    """Tell whether a joint at a cycle's end is that with which the cycle begins."""
+    same = replace(joint, frame=begun.frame, since=None, leads=begun.leads)
+    return joint.to == begun.to and (joint.keeps or same == begun)
+
+
+def _begun(joints: Sequence[Attachment], cycle: Cycle) -> Attachment:
+    """Return the joint with which a cycle begins; before the first one a figure is by itself."""
+    before = [joint for joint in joints if joint.frame <= cycle.first]
+    return before[-1] if before else Attachment(to=None, frame=cycle.first)

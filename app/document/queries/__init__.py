@@ -56,7 +56,12 @@ from app.document.queries.stage import (
     placing_at as placing_at,
     repeated as repeated,
     repeating as repeating,
+    seen_alone as seen_alone,
     sights_of as sights_of,
+    turn_frame as turn_frame,
+    turning as turning,
+    turns_in as turns_in,
+    with_repeats as with_repeats,
 )
 from app.document.queries.timeline import (
     Moment as Moment,

@@ -25,7 +25,7 @@ from app.editor.actions.posing.moving import giving, placing
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.timeline_view import KeyRow, KeysOf, TrackRow, figure_of, frames_in
-from app.editor.work.puppet import Puppet
+from app.editor.work import Puppet
 from app.storage import decode_picture
 
 Arguments = ParamSpec("Arguments")

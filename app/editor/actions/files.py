@@ -16,8 +16,7 @@ from app.editor.dialogs import Leftover, Question, Recovery
 from app.editor.failures import ask_worker, sentence
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.work import Kind
-from app.editor.work.puppet import Puppet
+from app.editor.work import Kind, Puppet
 from app.errors import ImportSummary, shown_name
 from app.storage import (
     Hold,

@@ -12,8 +12,7 @@ from app.editor.failures import report
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.timeline_view import measure_shortfalls
-from app.editor.work import Derived, Job, Kind
-from app.editor.work.puppet import Puppet
+from app.editor.work import Derived, Job, Kind, Puppet
 from app.motion import (
     Build,
     IntervalPart,

@@ -126,7 +126,7 @@ def let_hang(session: Session, project: Project, child: int) -> None:
     One that hangs on others at other times is let go as long as the present joint holds.
     """
     shown, figure = project.puppets[child].shown, project.document.figure(child)
-    joint = figure.joint_at(playback.current_frame(session, project))
+    joint = figure.keyed_joint(playback.current_frame(session, project))
     if joint is not None and len(figure.joints) > 1:
         free = Attachment(to=None, frame=joint.frame, keeps=True)
         editing.edit(session, layer_commands.attach(child, anchor_of(figure), free))
@@ -138,7 +138,7 @@ def let_hang(session: Session, project: Project, child: int) -> None:
 def turn_with(session: Session, project: Project, child: int, turns: bool) -> None:  # noqa: FBT001 - of an action
     """Let a layer turn with the one that it hangs on, or keep its own turn; nothing moves now."""
     frame = playback.current_frame(session, project)
-    joint = project.document.figure(child).joint_at(frame)
+    joint = project.document.figure(child).keyed_joint(frame)
     if joint is not None and joint.to is not None and turns != joint.turns:
         hang(session, child, joint.to, turns)
 
@@ -146,15 +146,15 @@ def turn_with(session: Session, project: Project, child: int, turns: bool) -> No
 @with_project
 def hand_over(session: Session, project: Project, child: int, parent: int | None) -> None:
     """Let a layer hang on another one, or on none, from the present frame on; nothing jumps."""
-    frame = playback.current_frame(session, project)
     figure = project.document.figure(child)
+    frame = figure.joint_frame(playback.current_frame(session, project))
     if parent is None:
         anchor, joint = anchor_of(figure), Attachment(to=None, frame=frame, keeps=True)
         editing.edit(session, layer_commands.attach(child, anchor, joint))
         return
 
     def find(joints: Joints) -> Command:
-        held = figure.joint_at(frame)
+        held = figure.keyed_joint(frame)
         turns = held is None or held.turns
         joint = joint_that_keeps(joints, child, parent, frame, turns=turns)
         return layer_commands.attach(child, anchor_of(figure), joint)
@@ -207,7 +207,7 @@ def _inherit(joints: Joints, child: int, gone: Collection[int], frame: int) -> C
     At the frame nothing moves; where it is handed over to one of them it does not jump.
     """
     document = joints.document
-    figure, here = document.figure(child), document.figure(child).joint_at(frame)
+    figure, here = document.figure(child), document.figure(child).keyed_joint(frame)
     lost = [joint for joint in figure.joints if joint.to in gone]
     found: list[Command] = []
     hangs = len(lost) < len(figure.joints)

@@ -22,14 +22,14 @@ from app.editor.failures import sentence
 from app.editor.layering.choosing import choose
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.work import Kind
-from app.editor.work.puppet import Puppet
+from app.editor.work import Kind, Puppet
 from app.errors import NOTHING_TOLD, ImportSummary, LissomError, Told, shown_name
 from app.solving import Renewal, begin_replacing
 from app.storage import (
     Layer,
     LayeredPicture,
     Picture,
+    as_layer,
     decode_picture,
     is_layered,
     layer_figure,
@@ -64,24 +64,11 @@ def stand_still(session: Session, project: Project, identity: int) -> None:
 def stand_up(session: Session, project: Project, identity: int) -> None:
     """Let a still picture be posed: the shape that is drawn on it, as it was drawn."""
     figure, picture = project.document.figure(identity), project.puppets[identity].picture
-    layer = Layer(
-        name=figure.name,
-        data=figure.picture.data,
-        picture=picture,
-        corner=figure.corner,
-        visible=not figure.hidden,
-        opacity=figure.opacity,
-        blend=figure.blend,
-        clipped=figure.clipped,
-        group=figure.group,
-    )
+    layer = Layer(name=figure.name, data=figure.picture.data, picture=picture, corner=figure.corner)
     meshing = session.meshing
 
     def work() -> Figure:
-        made = _shape(layer, identity, meshing).figure
-        return replace(
-            made, reference=figure.reference, locked=figure.locked, switches=figure.switches
-        )
+        return as_layer(_shape(layer, identity, meshing).figure, figure)
 
     def done(made: Figure) -> None:
         command = layer_commands.replace_figure(identity, made)

@@ -66,7 +66,7 @@ class Joining(Tool):
                 gesture.end(session, place)
         elif self.parent is not None:
             frame = playback.current_frame(session, project)
-            joint = project.document.figure(self.child).joint_at(frame)
+            joint = project.document.figure(self.child).keyed_joint(frame)
             turns = joint is None or joint.turns
             # On both of them the joint is just there; else by the anchor.
             there = on_scene(project, place)

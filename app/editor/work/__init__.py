@@ -22,3 +22,4 @@ from app.editor.work.pull import (
     targets_of as targets_of,
     wherever as wherever,
 )
+from app.editor.work.puppet import Puppet as Puppet, Twin as Twin

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field, replace
 from typing import Self
 
 from app.document import Baseline, Clip, Document, Figure, PictureFile, Variant, clip_of
-from app.editor.work import Derived
+from app.editor.work.derived import Derived
 from app.motion import CorrectedFrames, IntervalStore, PosableMesh, Shown
 from app.solving import Rig
 from app.storage import Cut, Picture, cut_picture

@@ -15,7 +15,7 @@ TURNED = 50.0  # pixels that count as much as a turn by one radian
 # Where a figure is that hangs on others, at a frame.
 Carried = Callable[[float], RigidMotion]
 # Where the handles (h,) of a figure are, at a frame.
-Places = Callable[[float], Complexes]
+PlacesAt = Callable[[float], Complexes]
 
 
 class Wanted(NamedTuple):
@@ -66,7 +66,7 @@ class OwnClocks:
             track_at(track, self._clip, frame) is not None for track in self._tracks
         )
 
-    def wanted(self, frame: float, places: Complexes, fz: Complexes, at: Places) -> Wanted | None:
+    def wanted(self, frame: float, places: Complexes, fz: Complexes, at: PlacesAt) -> Wanted | None:
         """Return where handles are wanted at a frame; None where they are there.
 
         Parameters
@@ -103,13 +103,13 @@ class OwnClocks:
         reach = float(np.average(reaches, weights=sizes)) if np.any(sizes) else 1.0
         return Wanted(wanted, self._firmness, turns, reach, frozenset(tracked))
 
-    def _swings_of(self, at: Places) -> dict[int, Swing]:
+    def _swings_of(self, at: PlacesAt) -> dict[int, Swing]:
         """Return the swings of handles, by their ids; in the axes of the scene."""
         if self._swings is None:
             self._swings = self._swung(at) if self._springs else {}
         return self._swings
 
-    def _swung(self, at: Places) -> dict[int, Swing]:
+    def _swung(self, at: PlacesAt) -> dict[int, Swing]:
         clip = self._clip
         frames = range(clip.frames.first, clip.frames.last + 1)
         places = np.array([self._hung(frame).on(at(frame)) for frame in frames])

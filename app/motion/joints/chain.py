@@ -36,11 +36,11 @@ def chain_of(
     at = document.in_time(frame)
     links = []
     for each in chain:
-        joint, movement = each.joint_at(at, before=before), HERE
+        joint, movement = document.joint_at(each, at, before=before), HERE
         if joint is None or joint.to is None:
             movement = movement_at(document, each, at)
         if joint is not None and joint.to is None and joint.keeps:
-            movement = movement.after(movement_at(document, each, joint.frame).inverse)
+            movement = movement.after(movement_at(document, each, joint.kept_from).inverse)
         links.append(Hanging(each, joint, movement))
     return tuple(links)
 
@@ -80,6 +80,18 @@ def along(
 def _held(joint: Attachment) -> RigidMotion:
     """Return how a figure is held by a joint: turned and moved beside the point of the parent."""
     return RigidMotion(complex(np.exp(-1j * joint.rest)) if joint.turns else 1.0, joint.offset)
+
+
+def between(
+    figure: Figure, joint: Attachment, first: RigidMotion, last: RigidMotion, share: float
+) -> RigidMotion:
+    """Return how a joint holds a figure on the way from one way of holding it to another."""
+    factor = first.factor * np.exp(1j * share * np.angle(last.factor / first.factor))
+    # What is let go is held by its anchor, too, as what hangs on something is.
+    anchor = require_anchor(figure) if joint.to is None else 0j
+    place, end = (held.factor * anchor + held.shift for held in (first, last))
+    place += share * (end - place)
+    return RigidMotion(complex(factor), complex(place - factor * anchor))
 
 
 def hinge_at(position: complex, fz: complex) -> Hinge:

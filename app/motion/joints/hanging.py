@@ -55,7 +55,7 @@ def hang(
         If the child is not at that place.
     """
     own, other = joints.document.figure(child), joints.document.figure(parent)
-    held = own.joint_at(frame)
+    held = own.keyed_joint(int(frame))
     here, there = joints.placement(child, frame), joints.placement(parent, frame)
     if place is None:
         others = [joint for joint in own.joints if joint is not held]

@@ -8,7 +8,14 @@ import numpy as np
 
 from app.document import Attachment, Document, Figure, Pose, clip_of
 from app.motion.inbetweens import Animation, Carried, PoseSampler
-from app.motion.joints.chain import Hinge, along, chain_of, hinge_at, require_anchor
+from app.motion.joints.chain import (
+    Hinge,
+    along,
+    between,
+    chain_of,
+    hinge_at,
+    require_anchor,
+)
 from app.motion.tracing import TrackedPoints
 from engine.arrays import Complexes
 from engine.geometry import RigidMotion
@@ -71,7 +78,7 @@ class Joints:
         }
         self._siblings = siblings
         self._placements: dict[tuple[int, float, bool], RigidMotion] = {}
-        self._kept: dict[tuple[int, Attachment], RigidMotion] = {}
+        self._kept: dict[tuple[int, Attachment, int], RigidMotion] = {}
         frames = range(document.frames.first, document.frames.last + 1)
         self._ahead = product(frames, self.tracked.values())
 
@@ -110,22 +117,63 @@ class Joints:
         self, figure: int, frame: float, poses: Mapping[int, Pose], *, before: bool
     ) -> RigidMotion:
         chain = chain_of(self.document, figure, frame, before=before)
-        return along(chain, partial(self._joint, frame=frame, poses=poses), self.kept)
+        kept = partial(self.kept, frame=frame)
+        return along(chain, partial(self._joint, frame=frame, poses=poses), kept)
 
-    def kept(self, figure: Figure, joint: Attachment) -> RigidMotion:
-        """Return how a figure is held by a joint of the document that keeps its place."""
-        known = figure.id, joint
+    def kept(self, figure: Figure, joint: Attachment, frame: float) -> RigidMotion:
+        """Return how a figure is held at a frame by a joint of the document that keeps its place.
+
+        One that leads goes over to what the next joint wants, from rest and to rest.
+        """
+        begun = self._keep(figure, joint, joint.kept_from, before=True)
+        at = self.document.in_time(frame)
+        until = self._leads_until(figure, joint) if joint.leads and at > joint.frame else None
+        if until is None:
+            return begun
+        share = min((at - joint.frame) / (until - joint.frame), 1.0)
+        wanted = self._keep(figure, joint, self._in_scene(figure, until), before=False)
+        return between(figure, joint, begun, wanted, share * share * (3 - 2 * share))
+
+    def _leads_until(self, figure: Figure, joint: Attachment) -> int | None:
+        """Return the frame at which the next joint begins; None where that follows from this one.
+
+        So it is where it keeps what is there then, or hangs on what hangs on the figure at times.
+        """
+        joints = self.document.joints_of(figure)
+        after = next((each for each in joints if each.frame > joint.frame), None)
+        if after is None or (after.keeps and after.kept_from > joint.kept_from):
+            return None
+        if after.to is not None:
+            parent = self.document.figure(after.to)
+            if figure in (parent, *self.document.all_carriers(parent.id)):
+                return None
+        return after.frame
+
+    def _in_scene(self, figure: Figure, until: int) -> int:
+        """Return the frame at which a repeat begins, or another such where the scene ends before.
+
+        There all is as it would be then.
+        """
+        cycle, last = figure.cycle_at(until), self.document.frames.last
+        if cycle is None or until <= last:
+            return until
+        return until - cycle.period * -(-(until - last) // cycle.period)
+
+    def _keep(self, figure: Figure, joint: Attachment, frame: int, *, before: bool) -> RigidMotion:
+        """Return how a joint holds a figure that is where it is just before a frame, or at it."""
+        known = figure.id, joint, frame
         if known not in self._kept:
-            self._kept[known] = self._keep(figure, joint)
+            self._kept[known] = self._found(figure, joint, frame, before=before)
         return self._kept[known]
 
-    def _keep(self, figure: Figure, joint: Attachment) -> RigidMotion:
-        frame = joint.frame
+    def _found(self, figure: Figure, joint: Attachment, frame: int, *, before: bool) -> RigidMotion:
         hinge = partial(self._seen_from, figure.id, frame=frame)
-        here = along(chain_of(self.document, figure.id, frame, before=True), hinge, self.kept)
+        kept = partial(self.kept, frame=frame)
+        here = along(chain_of(self.document, figure.id, frame, before=before), hinge, kept)
         if joint.to is None:
-            return here
-        there = along(chain_of(self.document, joint.to, frame), hinge, self.kept)
+            by = chain_of(self.document, figure.id, frame, before=True)[-1].movement
+            return here if before else by.inverse.after(here)
+        there = along(chain_of(self.document, joint.to, frame, before=not before), hinge, kept)
         at = hinge(self.document.figure(joint.to), joint.at)
         own = hinge(figure, require_anchor(figure))
         turn = there.factor * at.turn if joint.turns else 1.0
@@ -138,7 +186,8 @@ class Joints:
         That leaves its anchor in place and does not turn it.
         """
         hinge = partial(self._seen_from, figure, frame=frame)
-        return along(chain_of(self.document, figure, frame), hinge, self.kept)
+        kept = partial(self.kept, frame=frame)
+        return along(chain_of(self.document, figure, frame), hinge, kept)
 
     def _seen_from(self, figure: int, each: Figure, place: complex, frame: float) -> Hinge:
         """Return where a point of a figure is for another one that follows from it.

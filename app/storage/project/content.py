@@ -265,6 +265,8 @@ ATTACHMENT = record(
     Field("frame", WHOLE, usual=0),
     Field("offset", POINT, usual=0j),
     Field("keeps", FLAG, usual=False),
+    Field("since", optional(WHOLE), usual=None),
+    Field("leads", FLAG, usual=False),
 )
 WAY = (Field("frame", WHOLE), Field("easing", EASING), Field("passing", TEXT))
 CAMERA = several(

@@ -7,7 +7,7 @@ from itertools import takewhile
 
 import numpy as np
 
-from app.document import Composite, Figure, composed, is_visible, time_of
+from app.document import Composite, Figure, composed, is_visible, seen_alone, time_of
 from app.editor import HeatMap, Project, Puppet, Session
 from app.motion import PosableMesh, Shown
 from app.render import Ghost, Heat, Painted, Renderer, Scene, Wireframe
@@ -226,7 +226,8 @@ def _posed(
         elif heat_map != "none":
             drawing.heat(pose, shown, heat_map)
     frame = max((shown.frame for shown in shows.values() if shown), default=0)
-    return composed(document, poses, frame)
+    alone = seen_alone(document, project.solo) if project.solo else document
+    return composed(alone, poses, frame)
 
 
 def _tinted(

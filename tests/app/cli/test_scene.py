@@ -316,6 +316,47 @@ def test_what_changes_hands_does_not_jump(folder, capsys):
     assert patch.joints[1].at.real > 105
 
 
+def test_what_changes_hands_in_a_cycle_does_so_in_every_repeat(folder, capsys):
+    cycles = [{"from": 0, "to": 12}]
+    body, arm, patch = SCRIPT["figures"]
+    joints = [
+        {"to": "arm", "at": [180, 120]},
+        {"frame": 3, "to": "body", "keep": True},
+        {"frame": 9, "to": "arm", "keep": True},
+    ]
+    patch = {**patch, "visible": [], "attach": joints, "cycles": cycles}
+    figures = [{**body, "cycles": cycles}, {**arm, "cycles": cycles}, patch]
+    frames = {
+        "fps": 24,
+        "camera": {"keys": [{"frame": frame, "centre": [120, 100]} for frame in (0, 40)]},
+    }
+    out = folder / "cycles.lissom"
+
+    def pose(patch):
+        script = {"schema": 1, "figures": [*figures[:2], patch], **frames}
+        (folder / "cycles.json").write_text(json.dumps(script))
+        files = [str(folder / "man.ora"), str(folder / "cycles.json"), "--out", str(out)]
+        assert main(["pose", *files, "--triangles", "4000"]) == 0
+        return " ".join(capsys.readouterr().err.split())
+
+    assert "repeat" not in pose(patch)
+    document = load_project(out)
+    identity = next(each.id for each in document.figures if each.name == "patch")
+    names = [
+        [each.name for each in document.carriers(identity, frame)[1:2]] for frame in (1, 4, 16, 22)
+    ]
+    assert names == [["arm"], ["body"], ["body"], ["arm"]]
+    placed = Joints(document).placement
+    for frame in (2, 5, 10.5):
+        one, other = placed(identity, frame), placed(identity, frame + 24)
+        assert abs(one.shift - other.shift) < 1e-6
+    for frame in (12, 15, 21, 24, 27, 36):
+        assert abs(placed(identity, frame - 1e-6).shift - placed(identity, frame).shift) < 1e-3
+    # Given away at the end, it does not come round, which is told.
+    told = pose({**patch, "attach": [*joints[:2], {"frame": 12, "to": "body", "keep": True}]})
+    assert "what it hangs on changes in the repeats of frames 0 to 12, too, or is another" in told
+
+
 MOUTHS = "".join(
     f'<layer name="{name}" src="data/{index}.png" visibility="{visibility}"/>'
     for index, (name, visibility) in enumerate(
@@ -378,6 +419,24 @@ def test_a_choice_shows_one_layer_at_a_time_whatever_is_hidden_in_the_drawing(fa
     options = ("--framing", "canvas", "--figure", "ah")
     assert frame(out, "ah", *options, "--frames", "5:5")[..., 3].any()
     assert not frame(out, "no ah", *options, "--frames", "9:9")[..., 3].any()
+
+
+def test_a_choice_repeats_with_a_cycle_of_all_its_layers(face, capsys):
+    cycles, still = [{"from": 0, "to": 12}], {"handles": {}, "keys": [{"frame": 0}]}
+    head = {"layer": "head", "handles": {}, "keys": [{"frame": 0}, {"frame": 30}]}
+    mouths = [{"layer": name, **still, "cycles": cycles} for name in CHOICE["layers"]]
+    code, out = face(figures=[head, *mouths], choices=[CHOICE])
+    assert code == 0
+    assert "repeat" not in capsys.readouterr().err
+    document = load_project(out)
+    names = [
+        next(each.name for each in document.figures[1:] if is_visible(document, each, frame))
+        for frame in (1, 5, 9, 11, 13, 17, 21, 23, 25, 29)
+    ]
+    assert names == [*["closed", "ah", "oh", "closed"] * 2, "closed", "ah"]
+    face(figures=[head, *mouths[1:]], choices=[CHOICE])
+    told = " ".join(capsys.readouterr().err.split())
+    assert "its keys do not repeat, as frames 0 to 12 do not of closed; give all its layers" in told
 
 
 def test_a_script_shows_what_the_drawing_hides(face, capsys):

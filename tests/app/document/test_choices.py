@@ -8,12 +8,15 @@ from documents import disc_document, disc_domain, random_command
 
 from app.document.commands import (
     choice_commands as choices,
+    cycle_commands,
     group_commands as groups,
     layer_commands,
     scene_commands,
 )
 from app.document.layering import Choice, Switch, Turn
 from app.document.queries import alternates, is_visible
+from app.document.settings import FrameRange
+from app.document.timing import Cycle
 from app.errors import LissomError
 
 FRAMES = range(49)
@@ -186,3 +189,90 @@ def test_groups_that_are_named_like_mouths_are_offered_as_choices(mouths, group,
     assert [figures for _, figures in alternates(document)] == [(1, 2)] * offered
     chosen = choices.form_choice("mouth", (1, 2))(document)
     assert alternates(chosen) == ()
+
+
+@pytest.mark.parametrize(
+    ("names", "hidden", "group", "offered"),
+    [
+        (("mouth/ah", "mouth/oh"), (), "", ["mouth"]),
+        (("Mouth left / ah", "Mouth left/ oh"), (), "", ["Mouth left"]),
+        (("mouth/ah", "mouth/oh"), (), "head", ["head/mouth"]),
+        (("face/lips/ah", "face/lips/oh"), (), "", ["face/lips"]),
+        (("ah", "mouth/oh"), (), "", []),
+        (("mouth/ah", "nose/oh"), (), "", []),
+        (("eyes/open", "eyes/shut"), (), "", []),
+        (("eyes/open", "eyes/shut"), (2,), "", ["eyes"]),
+        # Of a group in which one's name was taken elsewhere.
+        (("mouth/ah", "oh"), (), "mouth", ["mouth"]),
+        (("mouth/", "/oh"), (), "", []),
+    ],
+)
+def test_layers_named_as_in_a_group_are_offered_as_a_choice(mouths, names, hidden, group, offered):
+    document = layer_commands.set_hidden(1, hidden=False)(mouths)
+    for identity, name in zip((1, 2), names, strict=True):
+        document = layer_commands.rename_figure(identity, name)(document)
+    for identity in hidden:
+        document = layer_commands.set_hidden(identity, hidden=True)(document)
+    document = groups.put_in_group((1, 2), group)(document)
+    assert alternates(document) == tuple((path, (1, 2)) for path in offered)
+    # What is painted onto one of them takes no turns with it.
+    painted = layer_commands.set_clipped(2, clipped=True)(document)
+    assert alternates(painted) == ()
+
+
+def turning(document, *, cycle, turns, of=(0, 1, 2)):
+    """Three layers that take turns, of which some have a cycle."""
+    document = choices.form_choice("mouth", (0, 1, 2))(document)
+    for identity in of:
+        document = document.with_figure(replace(document.figure(identity), cycles=(cycle,)))
+    choice = replace(document.choices[0], turns=tuple(Turn(*turn) for turn in turns))
+    return replace(document, choices=(choice,), frames=FrameRange(0, 100))
+
+
+TURNS = ((0, 0), (4, 1), (9, 2))
+
+
+def one_of(document, frame):
+    """The figure of three that is seen at a frame."""
+    (found,) = (each.id for each in document.figures if is_visible(document, each, frame))
+    return found
+
+
+def test_turns_repeat_with_the_cycle_of_all_layers(mouths):
+    document = turning(mouths, cycle=Cycle(first=0, last=12, until=36), turns=TURNS)
+    once = [0] * 4 + [1] * 5 + [2] * 3
+    # After the last repeat the first one of the stretch is seen.
+    assert [one_of(document, frame) for frame in range(41)] == [*once * 3, *[0] * 5]
+    assert one_of(document, 28.5) == 1
+    # The one at its beginning may be said at its end, too.
+    again = turning(mouths, cycle=Cycle(first=0, last=12), turns=(*TURNS, (12, 0)))
+    assert [one_of(again, frame) for frame in range(100)] == (once * 9)[:100]
+    # With another end, with turns in the repeats, or where a layer goes on otherwise, they do not.
+    for turns, of, expected in (
+        ((*TURNS, (12, 1)), (0, 1, 2), 1),
+        ((*TURNS, (30, 1)), (0, 1, 2), 2),
+        (TURNS, (0, 2), 2),
+    ):
+        own = turning(mouths, cycle=Cycle(first=0, last=12), turns=turns, of=of)
+        assert one_of(own, 14) == expected
+
+
+def test_what_is_chosen_in_a_repeat_is_chosen_in_all(mouths):
+    document = turning(mouths, cycle=Cycle(first=0, last=12), turns=TURNS)
+    changed = choices.choose_at(1, 30)(document)
+    assert changed is document
+    changed = choices.choose_at(0, 30)(document)
+    assert [one_of(changed, frame) for frame in (5, 6, 17, 18, 29, 30, 33)] == [1, 0, 1, 0, 1, 0, 2]
+
+
+@pytest.mark.parametrize("until", [None, 36])
+def test_turns_made_into_keys_are_seen_as_before(mouths, until):
+    document = turning(mouths, cycle=Cycle(first=0, last=12, until=until), turns=TURNS)
+    keyed = document
+    for identity in (0, 1, 2):
+        keyed = cycle_commands.make_keys(identity, 0, 100)(keyed)
+        assert seen(keyed, range(101)) == seen(document, range(101))
+    stopped = document
+    for identity in (0, 1, 2):
+        stopped = cycle_commands.stop(identity, 0)(stopped)
+        assert [one_of(stopped, frame) for frame in (0, 4, 9, 11, 12, 50)] == [0, 1, 2, 2, 0, 0]

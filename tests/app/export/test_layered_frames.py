@@ -41,7 +41,7 @@ def opened(tmp_path_factory):
     path = tmp_path_factory.mktemp("layered") / "walk.ora"
     path.write_bytes(openraster(SIZE, stack, [picture for picture, _, _ in LAYERS.values()]))
     scene = open_layered(path, Meshing(triangles=4_000))
-    assert not scene.summary.losses
+    assert not scene.document.told.losses
     return scene
 
 

@@ -8,7 +8,16 @@ from chains import bent, chain, exactly, seen
 from documents import CENTRE
 from numpy.testing import assert_allclose
 
-from app.document import Spring, carried_by, clip_of, layer_commands as layers, scene_commands
+from app.document import (
+    Cycle,
+    FrameRange,
+    Spring,
+    carried_by,
+    clip_of,
+    cycle_commands,
+    layer_commands as layers,
+    scene_commands,
+)
 from app.document.keyframe import Handle, Target
 from app.document.layering import Attachment
 from app.errors import LissomError
@@ -165,3 +174,114 @@ def test_a_loop_comes_round_with_its_joints(hands):
     assert [each.id for each in document.carriers(2, 48 + 3)] == [2, 0]
     assert abs(joints.placement(2, 53).shift - joints.placement(2, 5).shift) < TOL
     assert_allclose(seen(document, 2, 53), seen(document, 2, 5), atol=1e-6)
+
+
+def cycling(document, *, until=None, last=200):
+    """The same with all figures coming round every 48 frames."""
+    document = replace(document, frames=FrameRange(0, last))
+    for figure in document.figures:
+        keys = tuple(key for key in figure.keys if key.frame < 48)
+        cycles = (Cycle(first=0, last=48, until=until),)
+        document = document.with_figure(replace(figure, keys=keys, cycles=cycles))
+    return document
+
+
+@pytest.fixture
+def juggled(hands):
+    """A thing that goes from hand to hand and back, and comes round with them."""
+    document = cycling(hands)
+    for frame, parent in ((14, 1), (32, 0)):
+        joint = hand_over(Joints(document), 2, parent, frame, turns=True)
+        document = layers.attach(2, hands.figure(2).anchor, joint)(document)
+    return document
+
+
+def test_what_is_handed_over_in_a_cycle_is_handed_over_in_every_repeat(juggled):
+    joints = Joints(juggled)
+    for frame in (0, 7.5, 14, 20, 31.9, 32, 40.25, 47.9):
+        placed = [seen(juggled, 2, frame + repeat * 48) for repeat in range(4)]
+        for other in placed[1:]:
+            assert_allclose(other, placed[0], rtol=0, atol=1e-5)
+        carriers = [juggled.carriers(2, frame + repeat * 48)[1].id for repeat in range(4)]
+        assert carriers == [1 if 14 <= frame < 32 else 0] * 4
+    for frame in (14, 32, 48, 62, 80, 96, 110, 144, 192):
+        before, after = around(joints, 2, frame)
+        assert abs(before.factor - after.factor) < 1e-6
+        assert abs(before.shift - after.shift) < 1e-4
+    # Without the end of the stretch in the scene it is not another one.
+    whole = seen(juggled, 2, 190)
+    assert_allclose(seen(replace(juggled, frames=FrameRange(0, 190)), 2, 190), whole, atol=1e-6)
+
+
+def test_a_joint_at_the_end_of_a_cycle_is_the_one_at_its_beginning(juggled):
+    anchor = juggled.figure(2).anchor
+    again = Attachment(to=0, at=CENTRE, frame=48, keeps=True)
+    for frame in (40, 48, 60, 70, 100):
+        one, other = (
+            Joints(each).placement(2, frame)
+            for each in (juggled, layers.attach(2, anchor, again)(juggled))
+        )
+        assert abs(one.shift - other.shift) < TOL
+    # With another end, or what is said in the repeats, it has its own time.
+    for joint in (replace(again, to=1), replace(again, frame=70)):
+        document = layers.attach(2, anchor, joint)(juggled)
+        assert document.joints_of(document.figure(2)) == document.figure(2).joints
+
+
+def test_what_is_free_at_first_is_free_in_every_repeat(juggled):
+    caught = replace(juggled.figure(2), joints=juggled.figure(2).joints[1:])
+    document = juggled.with_figure(caught)
+    assert [len(document.carriers(2, frame)) for frame in (5, 20, 50, 68)] == [1, 2, 1, 2]
+    free = Joints(document)
+    for frame in (5, 50, 97):
+        assert free.placement(2, frame) == HERE
+    # Led back from where it was caught last, so that nothing jumps.
+    before, after = around(free, 2, 48)
+    assert abs(before.shift - after.shift) < 1e-4
+
+
+def test_repeats_of_joints_made_into_keys_move_as_before(juggled):
+    document = juggled
+    for keeps in (False, True):
+        first = replace(document.figure(2).joints[0], frame=5, keeps=keeps)
+        later = [joint for joint in document.figure(2).joints if joint.frame > 5]
+        document = document.with_figure(
+            replace(
+                document.figure(2),
+                joints=(first, *later),
+                cycles=(Cycle(first=5, last=53),),
+                keys=document.figure(2).keys[:1],
+            )
+        )
+        keyed = cycle_commands.make_keys(2, 5, 200)(document)
+        assert not keyed.figure(2).cycles or keyed.figure(2).cycles[0].first > 5
+        for frame in (8, 20, 35, 52.5, 53, 60, 70, 90, 130, 199):
+            one, other = (Joints(each).placement(2, frame) for each in (document, keyed))
+            assert abs(one.factor - other.factor) < 1e-9
+            assert abs(one.shift - other.shift) < 1e-6
+        stopped = cycle_commands.stop(2, 5)(document)
+        for frame in (20, 35, 52.5, 53):
+            one, other = (Joints(each).placement(2, frame) for each in (document, stopped))
+            assert abs(one.shift - other.shift) < 1e-6
+
+
+def test_repeats_end_at_their_frame_and_what_comes_later_follows(juggled):
+    figure = juggled.figure(2)
+    later = Attachment(to=None, frame=150, keeps=True)
+    joints = (*figure.joints, later)
+    document = juggled.with_figure(
+        replace(figure, joints=joints, cycles=(Cycle(first=0, last=48, until=96),))
+    )
+    carriers = [[each.id for each in document.carriers(2, f)[1:]] for f in (62, 96, 130, 150)]
+    assert carriers == [[1], [0], [0], []]
+
+
+def test_circles_in_repeats_are_refused(hands):
+    anchor = hands.figure(2).anchor
+    document = cycling(layers.attach(2, anchor, Attachment(to=None, frame=20, keeps=True))(hands))
+    joint = Attachment(to=2, at=CENTRE, frame=30)
+    with pytest.raises(LissomError, match="'0' would hang on itself at frame 48"):
+        layers.attach(0, CENTRE, joint)(
+            document.with_figure(replace(document.figure(0), cycles=(), keys=hands.figure(0).keys))
+        )
+    layers.attach(0, CENTRE, joint)(document)

@@ -21,7 +21,7 @@ def check_closed(document, frames):
     """Hold each joint of a document against the points that it joins."""
     joints = Joints(document)
     for figure in document.figures:
-        joint = figure.joint_at(0)
+        joint = document.joint_at(figure, 0)
         if joint is None:
             continue
         for frame in frames:

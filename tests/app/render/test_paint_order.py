@@ -19,7 +19,7 @@ from engine.arrays import Booleans, Bytes, Complexes
 SIZE = 240  # pixels
 MIDDLE = 0.5 * SIZE * (1 + 1j)
 BODY = 0.13 * SIZE  # radius; from there on arms bend
-FULL = 14_000  # triangles: the coarse mesh has fewer
+FULL = 14_000  # triangles: the coarse mesh has fewer, as long as it need not have half as many
 RED, BLUE = (230, 40, 30), (20, 60, 220)
 # Near where the colours meet, and where the depth comes to nothing, a pixel may show both.
 ELBOW = 0.6  # of an arm
@@ -139,6 +139,11 @@ def star_and_clip(seed):
     first = figure.keys[0]
     keys = (first, Keyframe(frame=CHANGE, pose=first.pose, fronts={0: 1.0}))
     return star, clip_of(document.with_figure(replace(figure, keys=keys)), 0)
+
+
+@pytest.fixture(autouse=True)
+def _always_coarse(monkeypatch):
+    monkeypatch.setattr("app.motion.posable_mesh.FINER", 1)
 
 
 @pytest.mark.parametrize("seed", [15, 18, 55])

@@ -184,7 +184,7 @@ def test_a_pose_that_is_held_is_of_the_frame_that_the_playhead_is_on(window, bar
 
 def test_the_coarse_mesh_is_shown_while_the_playhead_moves(window):
     session = window.session
-    session.meshing = Meshing(triangles=20_000)
+    session.meshing = Meshing(triangles=30_000)
     project = window.open(BAR)
     session.full_detail = False
     window.frames(30)

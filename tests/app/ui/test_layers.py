@@ -11,8 +11,11 @@ from app.document import (
     PRESETS,
     Attachment,
     Passing,
+    Placing,
     clip_of,
+    cycle_commands,
     figure_commands,
+    filming_commands,
     key_commands,
     layer_commands,
 )
@@ -31,6 +34,7 @@ from app.editor.actions import (
 from app.editor.poses import pasting
 from app.editor.timeline_view import Strip
 from app.errors import NOTHING_TOLD
+from app.motion import Joints
 from app.storage import load_project, save_project
 from app.ui.panel import is_in_front
 from app.ui.shortcuts import BINDINGS
@@ -408,6 +412,39 @@ def test_a_layer_stands_still_and_is_posed_again(window, scene):
         window.act(editing.undo)
     window.settle()
     assert not scene.document.figure(arm).still
+
+
+def test_what_stands_still_hangs_moves_and_fades_as_before(window, scene):
+    arm, body = identity(scene, "arm"), identity(scene, "body")
+    window.act(layering.hang, arm, body)
+    window.settle()
+    commands = (
+        filming_commands.key_opacity(arm, 12, 0.5),
+        filming_commands.key_movement(body, 0, 0j, 0.0),
+        filming_commands.key_movement(body, 12, 8 + 5j, 0.0),
+        filming_commands.place_at(arm, Placing(6, body, in_front=False)),
+        cycle_commands.repeat(arm, 0, 24),
+    )
+    for command in commands:
+        window.act(editing.edit, command)
+    window.settle()
+    before = scene.document.figure(arm)
+    there = Joints(scene.document).placement(arm, 12)
+
+    def as_layer():
+        now = scene.document.figure(arm)
+        assert abs(Joints(scene.document).placement(arm, 12).shift - there.shift) < 1e-6
+        names = ("joints", "opacities", "placings", "cycles", "group", "blend", "hidden", "corner")
+        for name in names:
+            assert getattr(now, name) == getattr(before, name)
+        return now
+
+    window.act(layering.stand_still, arm)
+    window.settle()
+    assert as_layer().still
+    window.act(layering.stand_up, arm)
+    window.settle()
+    assert not as_layer().still
 
 
 def test_layers_take_turns(window, scene):

@@ -7,7 +7,14 @@ from imgui_bundle import ImVec2
 from layered import openraster
 from PIL import Image, ImageDraw
 
-from app.document import choice_commands, group_commands, in_order, is_visible, key_commands
+from app.document import (
+    choice_commands,
+    cycle_commands,
+    group_commands,
+    in_order,
+    is_visible,
+    key_commands,
+)
 from app.editor import layering
 from app.editor.actions import editing, playback, posing
 
@@ -220,9 +227,22 @@ def test_a_row_that_is_dropped_on_another_one_hangs_there(window, scene, ids, us
     (joint,) = scene.document.figure(ids["stick"]).joints
     assert abs(joint.offset) > 10
     assert abs(place(scene, "stick", window) - before) < 0.1
-    # In a circle nothing can hang: the row goes beside it.
+    # In a circle nothing can hang, which is told, and nothing moves.
+    before, window.session.toasts = scene.document, []
     use(lambda robot: drop(robot, ids["head"], ids["hat"]))
-    assert scene.document.figure(ids["head"]).joints == ()
+    assert scene.document is before
+    (toast,) = window.session.toasts
+    assert "hat hangs on head, so that head cannot hang on it" in toast.text
+    # So it is where it hangs there by others, and where one of several would.
+    window.act(layering.hang, ids["ah"], ids["hat"])
+    window.settle()
+    before, window.session.toasts = scene.document, []
+    window.act(layering.choose_all, ids["head"], ids["oh"])
+    use(lambda robot: drop(robot, ids["oh"], ids["ah"]))
+    assert scene.document is before
+    (toast,) = window.session.toasts
+    assert "ah hangs on head, so that head cannot hang on it" in toast.text
+    window.session.toasts = []
 
 
 def test_chosen_layers_are_dropped_together(window, scene, ids, use):
@@ -300,6 +320,24 @@ def test_a_layer_is_handed_over_and_let_go_without_a_jump(window, scene, ids, us
     ]
     window.act(layering.take_back_joint, ids["stick"], 20)
     assert len(scene.document.figure(ids["stick"]).joints) == 2
+
+
+def test_what_is_handed_over_in_a_repeat_is_handed_over_in_all(window, scene, ids, use):
+    window.act(layering.hang, ids["stick"], ids["head"])
+    window.settle()
+    window.act(editing.edit, cycle_commands.repeat(ids["stick"], 0, 12))
+    window.act(layering.choose, ids["stick"])
+    window.act(playback.seek, 18)
+    window.settle()
+    before, document = place(scene, "stick", window), scene.document
+    window.act(layering.hand_over, ids["stick"], ids["hat"])
+    window.settle()
+    assert [joint.frame for joint in scene.document.figure(ids["stick"]).joints] == [0, 6]
+    assert abs(place(scene, "stick", window) - before) < 0.5
+    parents = [scene.document.carriers(ids["stick"], frame)[1].id for frame in (5, 7, 14, 19, 30)]
+    assert parents == [ids[name] for name in ("head", "hat", "head", "hat", "hat")]
+    use(lambda robot: robot.item_click("**/No change at frame 6###joint"))
+    assert scene.document.figure(ids["stick"]).joints == document.figure(ids["stick"]).joints
 
 
 def test_a_layer_is_looked_at_alone_while_exports_have_all(window, scene, ids):

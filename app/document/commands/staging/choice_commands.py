@@ -7,7 +7,7 @@ from app.document.commands.command import command
 from app.document.commands.staging.showing import revealed
 from app.document.layering import Choice, Turn
 from app.document.model import Document
-from app.document.queries import is_visible, sights_of
+from app.document.queries import is_visible, sights_of, turn_frame, with_repeats
 from app.errors import LissomError
 
 
@@ -36,10 +36,11 @@ def form_choice(document: Document, name: str, figures: Sequence[int]) -> Docume
 
 @command("Choose from here on")
 def choose_at(document: Document, identity: int, frame: int) -> Document:
-    """Let a figure be the one of its choice that is seen from a frame on."""
+    """Let a figure be the one of its choice that is seen from a frame on; in repeats, from all."""
     choice = _choice_of(document, identity)
-    if choice.at(frame) == identity:
+    if with_repeats(document, choice).at(frame) == identity:
         return document
+    frame = turn_frame(document, choice, frame)
     turns = choice.turns or (Turn(min(frame, document.frames.first), choice.figures[0]),)
     changed = replace(choice, turns=_put(turns, Turn(frame, identity)))
     return _exchange(document, choice, changed)

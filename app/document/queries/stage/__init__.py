@@ -6,6 +6,7 @@ Imports: the values of `app.document`.
 """
 
 from app.document.queries.stage.alternates import alternates as alternates
+from app.document.queries.stage.clipping import seen_alone as seen_alone
 from app.document.queries.stage.compositing import Composite as Composite, composed as composed
 from app.document.queries.stage.layer_tree import (
     TreeRow as TreeRow,
@@ -27,4 +28,8 @@ from app.document.queries.stage.sight import (
     is_visible as is_visible,
     repeated as repeated,
     sights_of as sights_of,
+    turn_frame as turn_frame,
+    turning as turning,
+    turns_in as turns_in,
+    with_repeats as with_repeats,
 )

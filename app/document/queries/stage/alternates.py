@@ -1,9 +1,8 @@
-"""Groups whose layers look as if they take turns."""
+"""Layers that look as if they take turns."""
 
 import re
 
 from app.document.figure import Figure
-from app.document.layering import Group
 from app.document.model import Document
 
 # Of these there is one at a time.
@@ -12,22 +11,35 @@ MOUTHS = re.compile(r"mouths?|lips?|visemes?|phonemes?", re.IGNORECASE)
 SIDES = re.compile(r"eyes?|(eye)?lids?|brows?|blinks?|hands?|fists?|poses?", re.IGNORECASE)
 
 
-def alternates(document: Document) -> tuple[tuple[Group, tuple[int, ...]], ...]:
-    """Return the groups that are named like mouths, eyes or hands, with the ids of their layers.
+def alternates(document: Document) -> tuple[tuple[str, tuple[int, ...]], ...]:
+    """Return paths of groups that are named like mouths, eyes or hands, with the ids of layers.
 
-    Those of which a layer is seen at frames of its own, or takes turns already, are left out.
+    Layers whose names are as "mouth/ah" count as if they were in such a group. Those of which a
+    layer is seen at frames of its own, or takes turns already, are left out.
     """
+    together: dict[str, list[Figure]] = {group.name: [] for group in document.groups}
+    for figure in document.figures:
+        # What is painted onto another one, as a tongue onto a mouth, takes no turns with it.
+        if not figure.clipped:
+            together.setdefault(_place(figure), []).append(figure)
     found = []
-    for group in document.groups:
-        members = [figure for figure in document.figures if figure.group == group.name]
-        words = re.split(r"[^a-zA-Z]+", group.name.rpartition("/")[2])
+    for path, members in together.items():
+        words = re.split(r"[^a-zA-Z]+", path.rpartition("/")[2])
         shown = sum(not figure.hidden for figure in members)
         is_mouth = any(MOUTHS.fullmatch(word) for word in words)
         is_one = any(SIDES.fullmatch(word) for word in words) and shown <= 1
         is_free = all(_is_free(document, figure) for figure in members)
         if len(members) > 1 and is_free and (is_mouth or is_one):
-            found.append((group, tuple(figure.id for figure in members)))
+            found.append((path, tuple(figure.id for figure in members)))
     return tuple(found)
+
+
+def _place(figure: Figure) -> str:
+    """Return the path of the group that a layer is in, by its name, too."""
+    # Where a name was taken, its group's path stands before it.
+    name = figure.name.removeprefix(f"{figure.group}/") if figure.group else figure.name
+    around = [part.strip() for part in name.split("/")[:-1]]
+    return "/".join(filter(None, [figure.group, *around]))
 
 
 def _is_free(document: Document, figure: Figure) -> bool:

@@ -5,8 +5,9 @@ from dataclasses import dataclass, field, replace
 from typing import Generic, NamedTuple, TypeVar
 
 from app.document.figure import Figure
-from app.document.layering import BlendMode, paths_to
+from app.document.layering import BlendMode
 from app.document.model import Document
+from app.document.queries.stage.clipping import runs
 from app.document.queries.stage.moves import in_order, opacity_at
 
 Drawn = TypeVar("Drawn")
@@ -80,7 +81,7 @@ def _parts(
 ) -> tuple[Drawn | Composite[Drawn], ...]:
     """Return the parts of figures that are in the same groups down to this depth."""
     units: list[_Unit[Drawn]] = []
-    for path, run in _runs(figures, depth):
+    for path, run in runs(figures, depth):
         unit: _Unit[Drawn]
         if path:
             group, inner = given.document.group(path), _parts(given, run, depth + 1)
@@ -97,17 +98,6 @@ def _parts(
         else:
             units.append(unit)
     return tuple(part for unit in units for part in _painted(unit))
-
-
-def _runs(figures: Sequence[Figure], depth: int) -> list[tuple[str, list[Figure]]]:
-    """Return figures that follow each other in one group, with its path; "" of others, each."""
-    runs: list[tuple[str, list[Figure]]] = []
-    for figure in figures:
-        path = "".join(paths_to(figure.group)[depth : depth + 1])
-        if not (path and runs and runs[-1][0] == path):
-            runs.append((path, []))
-        runs[-1][1].append(figure)
-    return runs
 
 
 def _painted(unit: _Unit[Drawn]) -> tuple[Drawn | Composite[Drawn], ...]:

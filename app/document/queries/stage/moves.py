@@ -11,6 +11,7 @@ from app.document.figure import Figure
 from app.document.layering import CameraKey, MoveKey, OpacityKey, Placing
 from app.document.model import Document
 from app.document.queries.passages import Leg, Moved, Passages, Value, value_on
+from app.document.queries.stage.clipping import stacks
 from app.document.queries.stage.sight import repeated
 from app.document.timing import Cycle
 from engine.arrays import Complexes
@@ -127,20 +128,34 @@ def in_order(document: Document, frame: float) -> tuple[Figure, ...]:
     """Return the figures from the one behind all others at a frame to the one in front.
 
     Those that are placed beside another one then come there one after the other, each after that
-    other one; in a circle, the one whose place is oldest comes first.
+    other one; in a circle, the one whose place is oldest comes first. What is clipped goes with
+    what clips it, unless it is placed itself, and nothing comes between these.
     """
     placed: dict[int, tuple[int, int, bool]] = {}
     for figure in document.figures:
         placing = placing_at(document, figure, frame)
         if placing is not None and placing.beside is not None:
             placed[figure.id] = placing.frame, placing.beside, placing.in_front
+    if not placed:
+        return document.figures
     order = [figure.id for figure in document.figures]
+    own, clipping = frozenset(placed), stacks(document)
     while placed:
         oldest = sorted(placed, key=lambda identity: placed[identity][0])
         moved = next((each for each in oldest if placed[each][1] not in placed), oldest[0])
         _, beside, in_front = placed.pop(moved)
-        order.remove(moved)
-        order.insert(order.index(beside) + in_front, moved)
+        cut = [each for stack in clipping if stack.base == (moved,) for each in stack.cut]
+        along = [moved, *(each for each in cut if each not in own)]
+        order = [each for each in order if each not in along]
+        # What is clipped by a group's figure is so inside of the group.
+        around = {beside}
+        for stack in clipping:
+            whole = {*stack.base, *stack.cut}
+            if moved not in whole and (stack.base == (beside,) or beside in stack.cut):
+                around |= whole - own
+        places = [order.index(each) for each in around]
+        at = max(places) + 1 if in_front else min(places)
+        order[at:at] = along
     return tuple(map(document.figure, order))
 
 

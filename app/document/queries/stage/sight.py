@@ -1,14 +1,16 @@
 """What is seen at a frame."""
 
 from dataclasses import replace
+from functools import lru_cache
+from itertools import pairwise
 from typing import TypeVar
 
 from app.document.figure import Figure
-from app.document.layering import Placing, Switch
+from app.document.layering import Choice, Placing, Switch, Turn
 from app.document.model import Document
 from app.document.timing import Cycle
 
-Change = TypeVar("Change", Switch, Placing)
+Change = TypeVar("Change", Switch, Placing, Turn)
 
 
 def is_visible(document: Document, figure: Figure, frame: float) -> bool:
@@ -29,14 +31,15 @@ def sights_of(document: Document, figure: Figure) -> tuple[Switch, ...]:
     """
     if document.is_in_hidden(figure):
         return (Switch(0, visible=False),)
-    choice = document.choice_of(figure.id)
-    if choice is None:
+    given = document.choice_of(figure.id)
+    if given is None:
         if figure.hidden:
             return (Switch(0, visible=False),)
         rest = figure.switches[:1]
         return repeated(figure.switches, figure.cycles, document.frames.last, rest)
     switches: list[Switch] = []
     first = document.frames.first
+    choice = with_repeats(document, given)
     for frame in (first, *(turn.frame for turn in choice.turns if turn.frame > first)):
         visible = choice.at(frame) == figure.id
         if not switches or switches[-1].visible != visible:
@@ -44,10 +47,63 @@ def sights_of(document: Document, figure: Figure) -> tuple[Switch, ...]:
     return () if switches == [Switch(first, visible=True)] else tuple(switches)
 
 
+def turning(document: Document, choice: Choice) -> Cycle | None:
+    """Return the cycle with which the turns of a choice repeat, if they do.
+
+    That is one that all of its figures have, in which all of its turns are; at the end the one
+    that is seen at the beginning may be again.
+    """
+    shared, *others = (document.figure(each).cycles for each in choice.figures)
+    for cycle in shared:
+        if all(cycle in each for each in others) and turns_in(choice, cycle):
+            return cycle
+    return None
+
+
+def with_repeats(document: Document, choice: Choice, end: int | None = None) -> Choice:
+    """Return a choice with its turns in the repeats of the cycle of its figures, if it has one.
+
+    Up to a frame, or the scene's last one.
+    """
+    cycle = turning(document, choice)
+    if cycle is None:
+        return choice
+    if end is not None:
+        cycle = replace(cycle, until=end)
+    return _repeated_choice(choice, cycle, document.frames.last)
+
+
+@lru_cache(maxsize=64)
+def _repeated_choice(choice: Choice, cycle: Cycle, end: int) -> Choice:
+    rest = (Turn(cycle.first, choice.at(cycle.first)),)
+    turns = repeated(choice.turns, (cycle,), end, rest)
+    # A repeat may begin with what was seen at the end of the one before.
+    changes = (turn for before, turn in pairwise(turns) if turn.figure != before.figure)
+    return replace(choice, turns=(turns[0], *changes))
+
+
+def turn_frame(document: Document, choice: Choice, frame: int) -> int:
+    """Return the frame at which it is said what of a choice a frame shows: another in repeats."""
+    cycle = turning(document, choice)
+    is_repeat = cycle is not None and cycle.covers(frame) and frame != cycle.until
+    return int(cycle.source(frame)) if cycle is not None and is_repeat else frame
+
+
+def turns_in(choice: Choice, cycle: Cycle) -> bool:
+    """Tell whether all changes of a choice, but for those before and after, are in a cycle."""
+    begun = choice.at(cycle.first)
+    later = [turn for turn in choice.turns if turn.frame > cycle.first]
+    if cycle.until is not None:
+        later = [turn for turn in later if turn.frame < cycle.until]
+    return any(turn.frame < cycle.last for turn in later) and all(
+        turn.frame < cycle.last or turn == (cycle.last, begun) for turn in later
+    )
+
+
 def repeated(
     changes: tuple[Change, ...], cycles: tuple[Cycle, ...], end: int, rest: tuple[Change, ...]
 ) -> tuple[Change, ...]:
-    """Return switches, or placings, with those of cycles in each repeat, up to the scene's end.
+    """Return switches, placings or turns with those of cycles in each repeat, up to the end.
 
     Each repeat, and what follows the last one, begins as the stretch does: before the first change
     as `rest` has it.
@@ -61,11 +117,17 @@ def repeated(
         begun = before[-1] if before else rest[0]
         again: dict[int, Change] = {}
         for start in range(cycle.last, until + 1, cycle.period):
-            again[start] = replace(begun, frame=start)
+            again[start] = _moved(begun, start)
             for each in own:
                 at = each.frame + start - cycle.first
                 if at <= until:
-                    again[at] = replace(each, frame=at)
+                    again[at] = _moved(each, at)
         again |= {each.frame: each for each in changes}
         changes = tuple(again[frame] for frame in sorted(again))
     return changes
+
+
+def _moved(change: Change, frame: int) -> Change:
+    if isinstance(change, Turn):
+        return change._replace(frame=frame)
+    return replace(change, frame=frame)

@@ -80,7 +80,15 @@ def _figures(project: Project) -> list[int]:
     """Return the layers of chosen keys, with those that are chosen together, or the one posed."""
     together = project.layers if len(project.layers) > 1 else ()
     figures = {*together, *map(figure_of, project.chosen_of)} or {project.active}
-    return sorted(each for each in figures if not project.document.figure(each).still)
+    return sorted(each for each in figures if _may_repeat(project.document, each))
+
+
+def _may_repeat(document: Document, identity: int) -> bool:
+    """Tell whether a layer can have something to repeat: a still picture only beside its pose."""
+    figure = document.figure(identity)
+    beside = (*figure.joints[1:], *figure.movement, *figure.opacities, *figure.placings)
+    in_time = beside or figure.switches or document.choice_of(identity) is not None
+    return not figure.still or bool(in_time)
 
 
 def _all_of(commands: list[Command], figures: list[int], document: Document) -> Document:

@@ -7,8 +7,7 @@ from app.editor.actions import playback
 from app.editor.failures import report
 from app.editor.project import Project
 from app.editor.session import Session
-from app.editor.work import Job, Kind
-from app.editor.work.puppet import Puppet
+from app.editor.work import Job, Kind, Puppet
 from app.motion import CorrectedFrames, FoundCorrections
 
 COMPLAINT = "The handles cannot be held still, or on their tracks"

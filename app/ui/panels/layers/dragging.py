@@ -35,6 +35,8 @@ def drag_row(look: Look, project: Project, row: TreeRow, low: ImVec2, high: ImVe
         onto = _onto(project, row, payload.data_id)
         is_onto = onto is not None and (ONTO < share < 1 - ONTO or row.figure is None)
         _show(look, low, high, is_onto=is_onto, is_above=share < 0.5)
+        if is_onto and _is_circle(project, row, payload.data_id):
+            imgui.set_mouse_cursor(imgui.MouseCursor_.not_allowed)
         if imgui.is_mouse_released(imgui.MouseButton_.left):
             if is_onto and onto is not None:
                 actions.append(onto)
@@ -58,9 +60,15 @@ def _onto(project: Project, row: TreeRow, identity: int) -> Action | None:
         return do(layering.group, row.group.name, *dragged)
     if row.choice is not None:
         return None if identity in row.figures else do(layering.join, row.choice.name, identity)
-    parent = row.figures[0]
-    is_circle = any(layering.hangs_on(project, parent, each) for each in dragged)
-    return None if is_circle else do(layering.hang_together, parent, *dragged)
+    # Where that would be a circle, it says so, and nothing moves.
+    return do(layering.hang_together, row.figures[0], *dragged)
+
+
+def _is_circle(project: Project, row: TreeRow, identity: int) -> bool:
+    """Tell whether layers would hang on a row that hangs on one of them."""
+    return row.figure is not None and any(
+        layering.hangs_on(project, row.figure.id, each) for each in _dragged(project, identity)
+    )
 
 
 def _beside(project: Project, identity: int, dragged: int, *, is_above: bool) -> list[Action]:

@@ -2,7 +2,7 @@
 
 from imgui_bundle import ImVec2, imgui
 
-from app.document import BLENDS, Choice, Document, Figure, Group, is_visible
+from app.document import BLENDS, Choice, Document, Figure, Group, is_visible, with_repeats
 from app.editor import Action, Project, do, layering
 from app.ui.panels.layers.in_time import draw_movement, draw_opacity, draw_order
 from app.ui.style import (
@@ -113,7 +113,7 @@ def _turns(
     """Draw which layer of a choice is seen from the present frame on."""
     actions = []
     label(look, shortened(choice.name, (LABEL_WIDTH - 0.5) * look.em))
-    seen = choice.at(frame)
+    seen = with_repeats(document, choice).at(frame)
     if imgui.begin_combo("##turn", document.figure(seen).name):
         actions += [
             do(layering.show_here, each)
@@ -136,7 +136,7 @@ def _joint(project: Project, look: Look, figure: Figure, frame: int) -> list[Act
     if not others and not figure.joints:
         return []
     actions = []
-    joint = figure.joint_at(frame)
+    joint = document.joint_at(figure, frame)
     parent = None if joint is None or joint.to is None else document.figure(joint.to)
     label(look, "Attached to")
     if imgui.begin_combo("##attached to", NOTHING if parent is None else parent.name):
@@ -161,7 +161,7 @@ def _joint(project: Project, look: Look, figure: Figure, frame: int) -> list[Act
 def _hand_over(project: Project, look: Look, figure: Figure, frame: int) -> list[Action]:
     """Draw what lets a layer hang on something else from the present frame on."""
     actions: list[Action] = []
-    document, joint = project.document, figure.joint_at(frame)
+    document, joint = project.document, figure.keyed_joint(frame)
     now = None if joint is None else joint.to
     if text_button(f"Hand over from frame {frame} on…", FILL, "Nothing jumps at that frame"):
         imgui.open_popup("hand over")
@@ -178,10 +178,11 @@ def _hand_over(project: Project, look: Look, figure: Figure, frame: int) -> list
             elif other.id == now:
                 tip(f"It hangs there already at frame {frame}")
         imgui.end_popup()
-    if joint is not None and joint.frame == frame and len(figure.joints) > 1:
+    keyed = figure.joint_frame(frame)
+    if joint is not None and joint.frame == keyed and len(figure.joints) > 1:
         hint = "What held it before goes on holding it"
-        if text_button(f"No change at frame {frame}###joint", FILL, hint):
-            actions.append(do(layering.take_back_joint, figure.id, frame))
+        if text_button(f"No change at frame {keyed}###joint", FILL, hint):
+            actions.append(do(layering.take_back_joint, figure.id, keyed))
     if len(figure.joints) > 1:
         told = (
             f"{'nothing' if each.to is None else document.figure(each.to).name} from {each.frame}"

@@ -50,16 +50,16 @@ def _summary(look: Look, project: Project) -> list[Action]:
 def _offers(look: Look, project: Project) -> list[Action]:
     """Draw the offers to let layers of a group take turns, where it is named like mouths."""
     actions: list[Action] = []
-    for group, figures in alternates(project.document):
-        if group.name in project.declined:
+    for path, figures in alternates(project.document):
+        if path in project.declined:
             continue
-        name = group.name.rpartition("/")[2]
-        imgui.push_id(group.name)
+        name = path.rpartition("/")[2]
+        imgui.push_id(path)
         small(look, f"The {len(figures)} layers of {name} look as if they took turns.")
         if imgui.button("Let them take turns"):
             actions.append(do(layering.form, *figures, name=name))
         imgui.same_line()
         if imgui.button("No"):
-            actions.append(do(layering.decline, group.name))
+            actions.append(do(layering.decline, path))
         imgui.pop_id()
     return actions

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
-from app.document import Document, Figure, TreeRow, carried_by, is_visible
+from app.document import Document, Figure, TreeRow, carried_by, is_visible, with_repeats
 from app.editor import Action, Project, Session, do, layering
 from app.editor.actions import playback
 from app.render import Thumbnail
@@ -154,8 +154,9 @@ def _chosen(row: TreeRow) -> Action:
 
 def _shown(document: Document, row: TreeRow, frame: int) -> Figure:
     """Return the layer whose picture a row has: of a choice, the one that is seen."""
-    seen = row.figures[0] if row.choice is None else row.choice.at(frame)
-    return document.figure(seen)
+    if row.choice is None:
+        return document.figure(row.figures[0])
+    return document.figure(with_repeats(document, row.choice).at(frame))
 
 
 def _is_seen(project: Project, row: TreeRow, frame: int) -> bool:
@@ -240,7 +241,7 @@ def _switches(look: Look, project: Project, row: TreeRow, frame: int) -> list[Ac
     figures = [document.figure(each) for each in row.figures]
     choice = None if row.figure is None else document.choice_of(row.figure.id)
     if choice is not None:
-        is_on = choice.at(frame) == row.figures[0]
+        is_on = with_repeats(document, choice).at(frame) == row.figures[0]
         icon = icons.ICON_FA_CIRCLE_DOT if is_on else icons.ICON_FA_CIRCLE
         hint = f"Seen from frame {frame} on, in place of the others of {choice.name}"
         if icon_button(look, icon, f"turn {row.key}", hint, active=is_on):

@@ -2,7 +2,7 @@
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
-from app.document import Choice, choice_commands
+from app.document import Choice, choice_commands, turn_frame, with_repeats
 from app.editor import Action, KeysOf, TurnDrag, do, layering
 from app.editor.actions import editing, playback, timeline_pointing
 from app.ui.style import SMALL, begin_tip, in_hand, ink, is_pressed, shortened, sized
@@ -38,7 +38,8 @@ def draw_stage_names(bands: Bands, frame: int) -> list[Action]:
         icon = icons.ICON_FA_FOLDER if row.choice is None else icons.ICON_FA_MASKS_THEATER
         text = row.name
         if row.choice is not None:
-            text = f"{text}: {document.figure(row.choice.at(frame)).name}"
+            seen = with_repeats(document, row.choice).at(frame)
+            text = f"{text}: {document.figure(seen).name}"
         with sized(SMALL):
             top = lane.middle - imgui.get_text_line_height() / 2
             text = shortened(text, high.x - left - 3.0 * em)
@@ -98,6 +99,7 @@ def _turns(bands: Bands, lane: StageLane, choice: Choice) -> list[Action]:
     document, em = bands.project.document, bands.look.em
     palette, draw_list = bands.look.palette, imgui.get_window_draw_list()
     first, last = document.frames.first, document.frames.last
+    own, choice = {turn.frame for turn in choice.turns}, with_repeats(document, choice)
     starts = sorted({first, *(turn.frame for turn in choice.turns if turn.frame > first)})
     for number, (start, end) in enumerate(zip(starts, [*starts[1:], last], strict=True)):
         left, right = max(bands.x(start), bands.left), min(bands.x(max(end, start)), bands.right)
@@ -122,6 +124,8 @@ def _turns(bands: Bands, lane: StageLane, choice: Choice) -> list[Action]:
             imgui.end_tooltip()
         actions += _menu(bands, choice, start)
     for start in starts[1:]:
+        if start not in own:
+            continue  # of a repeat, which goes with its stretch
         actions += _edge(bands, lane, choice, start)
     return actions
 
@@ -137,9 +141,10 @@ def _menu(bands: Bands, choice: Choice, start: int) -> list[Action]:
         if imgui.menu_item(f"{name}###show {identity}", "", is_seen)[0] and not is_seen:
             actions.append(do(editing.edit, choice_commands.choose_at(identity, start)))
     imgui.separator()
-    is_change = any(turn.frame == start for turn in choice.turns[1:])
+    keyed = turn_frame(bands.project.document, bands.project.document.choice(choice.name), start)
+    is_change = any(turn.frame == keyed for turn in choice.turns[1:])
     if imgui.menu_item_simple("Delete", enabled=is_change):
-        actions.append(do(editing.edit, choice_commands.unchoose_at(choice.name, start)))
+        actions.append(do(editing.edit, choice_commands.unchoose_at(choice.name, keyed)))
     imgui.end_popup()
     return actions
 

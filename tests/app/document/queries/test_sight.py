@@ -23,7 +23,9 @@ from app.document import (
     movement_at,
     opacity_at,
     scene_commands,
+    seen_alone,
 )
+from app.document.layering import Group
 from app.errors import LissomError
 
 EMPTY = replace(disc_document(), frames=FrameRange(0, 48))
@@ -225,3 +227,71 @@ def test_a_layer_that_is_removed_leaves_none_that_lies_beside_it():
     gone = next(each.id for each in document.figures if each.name == "c")
     left = layer_commands.remove_figure(gone)(document)
     assert order(left, 9) == "fab"
+
+
+def stacked(places=None, **groups):
+    """Layers from back to front, of which "stripe" and "dots" are clipped by the body."""
+    layers = {
+        "wall": ("", False),
+        "ball": ("", False),
+        "body": ("trunk", False),
+        "stripe": ("trunk", True),
+        "dots": ("trunk", True),
+        "arm": ("", False),
+        "glove": ("", True),
+    }
+    document = replace(EMPTY, groups=tuple(Group(name=n, **g) for n, g in groups.items()))
+    ids = {name: number for number, name in enumerate(layers)}
+    figures = []
+    for name, (group, clipped) in layers.items():
+        placed = (places or {}).get(name)
+        placings = (Placing(6, ids[placed[0]], placed[1]),) if placed else ()
+        figures.append(
+            replace(
+                EMPTY.figures[0],
+                id=ids[name],
+                name=name,
+                group=group if groups else "",
+                clipped=clipped,
+                placings=placings,
+            )
+        )
+    return replace(document, figures=tuple(figures))
+
+
+@pytest.mark.parametrize(
+    ("places", "expected"),
+    [
+        ({"ball": ("body", True)}, "wall body stripe dots ball arm glove"),
+        ({"ball": ("stripe", True)}, "wall body stripe dots ball arm glove"),
+        ({"ball": ("dots", False)}, "wall ball body stripe dots arm glove"),
+        ({"body": ("arm", True)}, "wall ball arm glove body stripe dots"),
+        ({"body": ("wall", False)}, "body stripe dots wall ball arm glove"),
+        # What is placed itself goes by itself, and so it does within what it is clipped by.
+        ({"body": ("arm", True), "dots": ("wall", True)}, "wall dots ball arm glove body stripe"),
+        ({"dots": ("stripe", False)}, "wall ball body dots stripe arm glove"),
+        ({"arm": ("ball", False), "ball": ("body", True)}, "wall body stripe dots arm glove ball"),
+    ],
+)
+@pytest.mark.parametrize("groups", [{}, {"trunk": {}}])
+def test_nothing_comes_between_what_is_clipped_and_what_clips_it(places, expected, groups):
+    document = stacked(places, **groups)
+    assert in_order(document, 5) == document.figures
+    assert " ".join(each.name for each in in_order(document, 6)) == expected
+
+
+def test_what_is_clipped_by_a_group_goes_beyond_all_of_it():
+    document = stacked({"ball": ("arm", False)}, trunk={})
+    clipped = document.with_figure(replace(document.figure(5), clipped=True))
+    assert [each.name for each in in_order(clipped, 6)][:2] == ["wall", "ball"]
+
+
+def test_layers_looked_at_alone_are_clipped_by_nothing_else():
+    document = stacked(trunk={"clipped": True})
+    alone = seen_alone(document, [3])
+    assert not alone.figure(3).clipped
+    assert not alone.groups[0].clipped
+    assert alone.figure(4).clipped == alone.figure(3).clipped
+    assert seen_alone(document, [2, 3]).figure(3).clipped
+    assert not seen_alone(document, [2, 3]).groups[0].clipped
+    assert seen_alone(document, [each.id for each in document.figures]) is document
