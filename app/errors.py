@@ -1,17 +1,28 @@
-"""What is told to the person: errors, names of files, and how far long work is.
+"""What is told to the person: errors, what to install, names of files, and how far long work is.
 
 Errors are messages and no tracebacks. Between what computes for long and whoever waits for it are
 many rooms that have nothing to add: so who listens is said once, for a block on the same thread.
 """
 
+import platform
 import re
+import shlex
+import shutil
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
+from importlib.metadata import requires
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Final, Literal
 
 from engine.errors import EngineError
 
+# What Lissom can do with a library that it does not always have: extras of the package.
+Extra = Literal["video", "psd", "figures"]
+LIBRARIES: Final[dict[Extra, str]] = {"video": "av", "psd": "psd-tools", "figures": "matplotlib"}
 Listener = Callable[[float], None]
 _listener: ContextVar[Listener | None] = ContextVar("listener", default=None)
 # What Python makes of the bytes of a file's name that are no UTF-8, on Linux.
@@ -81,6 +92,44 @@ def shown_name(name: object) -> str:
     Neither a window nor a file of text takes such a name as it is.
     """
     return _UNREADABLE.sub("\N{REPLACEMENT CHARACTER}", str(name))
+
+
+def missing(extra: Extra) -> str:
+    """Return how to install the library of an extra here; empty where it is there."""
+    is_there = find_spec(LIBRARIES[extra].replace("-", "_")) is not None
+    return "" if is_there else _how_to_install(extra)
+
+
+def _how_to_install(extra: Extra) -> str:
+    """Return the command that brings an extra to this Lissom, or what else to do.
+
+    It does not ask for Lissom anew, which may have come from a folder.
+    """
+    if getattr(sys, "frozen", False):
+        # What is built without Python has all of them inside.
+        return "a part of Lissom is gone, install it again"
+    home = Path(sys.prefix)
+    if (home / "pipx_metadata.json").is_file():
+        return f"pipx inject {_quoted(home.name)} {_quoted(_needed(extra))}"
+    if (home / "uv-receipt.toml").is_file() or find_spec("pip") is None:
+        return f"uv pip install --python {_quoted(str(home))} {_quoted(_needed(extra))}"
+    found = shutil.which("pip")
+    is_ours = found is not None and Path(found).parent == Path(sys.executable).parent
+    pip = "pip" if is_ours else f"{_quoted(sys.executable)} -m pip"
+    return f"{pip} install {_quoted(f'lissom[{extra}]')}"
+
+
+def _needed(extra: Extra) -> str:
+    """Return an extra's library, with the versions that will do."""
+    lines = (line.partition(";") for line in requires("lissom") or ())
+    return next(name.strip() for name, _, case in lines if re.search(rf"\b{extra}\b", case))
+
+
+def _quoted(word: str) -> str:
+    """Return a word as the system's usual shells take it."""
+    if platform.system() != "Windows":
+        return shlex.quote(word)
+    return word if re.fullmatch(r"[\w:.\\-]+", word) else f'"{word}"'
 
 
 @contextmanager

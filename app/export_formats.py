@@ -11,16 +11,13 @@ from dataclasses import dataclass, field, fields
 from types import MappingProxyType
 from typing import Any, Final
 
-from app.errors import LissomError
+from app.errors import Extra, LissomError
 
 
 def full_colour(text: str) -> str:
     """Return a colour as it is kept, "#rrggbb", where "#rgb" is told; else the text as it is."""
     is_short = re.fullmatch("#[0-9a-fA-F]{3}", text) is not None
     return "#" + "".join(2 * digit for digit in text[1:]) if is_short else text
-
-
-VIDEO: Final = "pip install 'lissom[video]'"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -179,9 +176,8 @@ class ExportFormat:
         Pixels of which the sides of its pictures are multiples.
     fastest : float, optional
         Pictures a second, at most.
-    library, remedy : str
-        The module of Python that it needs beyond what Lissom always has, and how to install it;
-        both empty where there is none.
+    extra : Extra, optional
+        What it needs beyond what Lissom always has.
     options : str
         The field of `FormatSettings` with what it asks; empty where it asks nothing of its own.
     """
@@ -201,8 +197,7 @@ class ExportFormat:
     is_still: bool = False
     block: int = 1
     fastest: float | None = None
-    library: str = ""
-    remedy: str = ""
+    extra: Extra | None = None
     options: str = ""
 
     def whole_blocks(self, size: tuple[int, int]) -> tuple[int, int]:
@@ -259,13 +254,12 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
             label="MP4 video",
             group="Video",
             use="Plays everywhere, small; no transparency, even sides only.",
-            about="H.264 video; needs a background colour and pip install 'lissom[video]'",
+            about="H.264 video; needs a background colour",
             suffixes=(".mp4",),
             is_transparent=False,
             largest=16_384,
             block=2,
-            library="av",
-            remedy=VIDEO,
+            extra="video",
         ),
         "webm": ExportFormat(
             label="WebM video",
@@ -274,8 +268,7 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
             about="VP9 video, with its transparency unless there is a background colour",
             suffixes=(".webm",),
             largest=16_384,
-            library="av",
-            remedy=VIDEO,
+            extra="video",
         ),
         "mov": ExportFormat(
             label="ProRes video",
@@ -285,8 +278,7 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
             "background colour",
             suffixes=(".mov",),
             largest=16_384,
-            library="av",
-            remedy=VIDEO,
+            extra="video",
         ),
         "spritesheet": ExportFormat(
             label="Sprite sheet",

@@ -24,7 +24,6 @@ from app.export.plan import (
     ExportPlan as ExportPlan,
     ExportRequest as ExportRequest,
     check_request as check_request,
-    missing as missing,
     plan_export as plan_export,
     replaced_files as replaced_files,
 )

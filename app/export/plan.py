@@ -1,6 +1,5 @@
 """What an export will make, settled and checked before the first frame is drawn."""
 
-import importlib.util
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -17,7 +16,7 @@ from app.document import (
     frame_times,
     framed_frames,
 )
-from app.errors import LissomError
+from app.errors import LIBRARIES, LissomError, missing
 from app.export.destination import FrameNames, check_destination, check_room, left_frames, replaced
 from app.export.framing import frame_view
 from app.export.poses import KeptPoses
@@ -165,22 +164,15 @@ def check_request(document: Document, request: ExportRequest) -> None:
             f"{name} has no transparency: choose a background colour such as #ffffff, or the "
             "format apng or webp"
         )
-    if missing(name):
+    if format_.extra and (remedy := missing(format_.extra)):
         raise LissomError(
-            f"{name} needs the library {format_.library}, which is not installed: {missing(name)}"
+            f"{name} needs the library {LIBRARIES[format_.extra]}, which is not installed: {remedy}"
         )
 
 
 def replaced_files(document: Document, request: ExportRequest) -> list[str]:
     """Return the names of the files that an export would take the place of."""
     return replaced(request.out, request.settings.format, _names(document, request))
-
-
-def missing(name: str) -> str:
-    """Return how to install what a format needs and this machine lacks; empty if it has all."""
-    format_ = EXPORT_FORMATS[name]
-    is_there = not format_.library or importlib.util.find_spec(format_.library) is not None
-    return "" if is_there else format_.remedy
 
 
 def plan_export(

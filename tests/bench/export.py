@@ -24,7 +24,8 @@ from app.document import (
     clip_of,
     new_figure,
 )
-from app.export import ExportRequest, KeptPoses, Painter, missing, plan_export
+from app.errors import missing
+from app.export import ExportRequest, KeptPoses, Painter, plan_export
 from app.export.writers.png import encode_png
 from app.export_formats import EXPORT_FORMATS
 from app.motion import Animation, box_around
@@ -139,7 +140,7 @@ def _formats(folder: Path, names: tuple[str, ...]) -> Table:
     rows = []
     for name in names:
         format_ = EXPORT_FORMATS[name]
-        if not format_.suffixes or missing(name):
+        if not format_.suffixes or (format_.extra and missing(format_.extra)):
             continue
         out = folder / f"{name}{format_.suffixes[0]}"
         words = ["--format", name] if name == "glb" else ["--format", name, "--size", "480x464"]

@@ -223,13 +223,13 @@ def _stiff(window: Film, path: Path) -> None:
     ends = (handle_named(project, "right elbow"), handle_named(project, "right hand"))
     window.act(material.add_bone, ends)
     window.act(material.take_up, "stiff")
-    window.act(cutting.set_brush, 90.0)
+    window.act(cutting.set_brush, 130.0)
     window.settle()
     come_to_rest(window)
     window.put(window.point(-60 + 300j))
     with window.filmed(path):
         window.stay(20)
-        window.drag(*map(window.point, (400 + 800j, 530 + 920j, 660 + 800j, 560 + 690j)), frames=26)
+        window.drag(*map(window.point, (370 + 800j, 450 + 960j, 620 + 960j, 690 + 800j)), frames=26)
         window.settle()
         window.stay(40)
 

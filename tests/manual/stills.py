@@ -17,7 +17,7 @@ from app.editor.actions import (
     posing,
     viewing,
 )
-from app.editor.poses import library
+from app.editor.poses import copying, library, pasting
 from app.storage import sample_images
 from tests.manual.film import Film
 from tests.manual.stage import (
@@ -30,6 +30,14 @@ from tests.readme.window import come_to_rest, handle_named, open_sample
 
 NOSE = 75 + 840j  # of the giraffe
 HEAD = 530 + 790j  # of the child
+# How far a giraffe's hooves are from where they stand, at the four keys of a walk.
+FORE, LIFT = 55 + 0j, 35j
+WALK = {
+    "near front hoof": (-FORE, LIFT, FORE, 0j),
+    "far front hoof": (FORE, 0j, -FORE, LIFT),
+    "near hind hoof": (FORE, 0j, -FORE, LIFT),
+    "far hind hoof": (-FORE, LIFT, FORE, 0j),
+}
 RIGHT = 1  # the other button of the mouse
 
 
@@ -80,15 +88,34 @@ def _feet(window: Film, path: Path) -> None:
 
 
 def _walk(window: Film, path: Path) -> None:
-    """The child's waving repeats: one stretch, and its hatched repeats."""
-    open_sample(window, "character", frame=0)
+    """A giraffe's walk repeats: one stretch of five keys, and its hatched repeats."""
+    project = open_sample(window, "giraffe", frame=0)
+    window.act(editing.choose_keys, frozenset({30, 38, 72}))
+    window.act(editing.delete)
+    rests = {handle.name: handle.position for handle in project.figure.handles}
+    for number, frame in enumerate((0, 6, 12, 18)):
+        window.act(playback.seek, frame)
+        window.settle()
+        wishes = {
+            handle_named(project, name): Target(position=rests[name] + ways[number])
+            for name, ways in WALK.items()
+        }
+        window.act(posing.wish, wishes)
+        window.settle()
+    window.act(playback.seek, 0)
+    window.act(copying.copy)
+    window.act(playback.seek, 24)
+    window.act(pasting.paste)
+    window.settle()
+    window.session.toasts.clear()  # what copying told
     window.act(keys.toggle_loop)
-    window.act(keys.set_last_frame, 186)
-    window.act(editing.choose_keys, frozenset({0, 14, 22, 30, 38, 46, 62}))
+    window.act(keys.set_last_frame, 96)
+    window.act(editing.choose_keys, frozenset({0, 6, 12, 18, 24}))
     window.act(cycles.repeat)
     window.settle()
-    window.act(playback.seek, 84)
+    window.act(playback.seek, 48)
     window.show_tab("Handle")
+    window.act(viewing.fit_pose)
     _still(window, path)
 
 
@@ -157,7 +184,7 @@ def _mesh(window: Film, path: Path) -> None:
 def _layers(window: Film, path: Path) -> None:
     """A child of many layers; the arm hangs on the body."""
     project = open_sample(window, "friend", frame=14)
-    arm = next(figure.id for figure in project.document.figures if figure.name == "left arm")
+    arm = next(figure.id for figure in project.document.figures if figure.name == "right arm")
     window.act(layering.choose, arm)
     window.act(editing.select, frozenset({handle_named(project, "hand")}))
     window.show_tab("Layers")
@@ -198,7 +225,7 @@ def _export(window: Film, path: Path) -> None:
     """What will be exported of an octopus."""
     open_sample(window, "octopus", frame=28)
     window.act(viewing.toggle, "handles")
-    window.resize((1000, 780))
+    window.resize((1000, 810))
     window.show_tab("Export")
     _still(window, path)
 
@@ -244,6 +271,7 @@ def _sheet(window: Film, path: Path) -> None:
 
 def _welcome(window: Film, path: Path) -> None:
     """What is seen at first."""
+    window.resize((1000, 780))
     window.frames(20)
     _still(window, path)
 

@@ -3,12 +3,11 @@
 import argparse
 import os
 import sys
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
-from app.errors import LissomError
-from app.export import missing
+from app.errors import LIBRARIES, Extra, LissomError, missing
 from app.export_formats import EXPORT_FORMATS
 from app.render import Renderer, Scene, canvas_view
 from app.render.gpu import (
@@ -27,6 +26,12 @@ from app.render.gpu import (
 from app.reports import library_version, machine_in_words
 from app.ui.dialogs import find_system_dialogs
 
+USES: Final[dict[Extra, str]] = {
+    "video": ", ".join(name for name, each in EXPORT_FORMATS.items() if each.extra == "video"),
+    "psd": "Photoshop files",
+    "figures": "lissom figures",
+}
+
 
 class Finding(NamedTuple):
     """Whether something works, and which one it is or what to do about it."""
@@ -40,7 +45,7 @@ def run(_: argparse.Namespace) -> int:
     """Print what works here."""
     print(machine_in_words())
     rendering = [_rendering(backend) for backend in AUTOMATIC]
-    for finding in (*rendering, _display(), _dialogs(), *_formats()):
+    for finding in (*rendering, _display(), _dialogs(), *map(_extra, LIBRARIES)):
         print(f"{'ok' if finding.works else '--'}  {finding.name}: {finding.text}")
     if any(finding.works for finding in rendering):
         print("Lissom can render here.")
@@ -105,13 +110,9 @@ def _dialogs() -> Finding:
     return Finding(name, remedy, works=False)
 
 
-def _formats() -> list[Finding]:
-    """Return how it stands about the formats that need more than Lissom always has."""
-    found = []
-    for name, format_ in EXPORT_FORMATS.items():
-        if missing(name):
-            text = f"{format_.library} is not installed: {missing(name)}"
-            found.append(Finding(name, text, works=False))
-        elif format_.library:
-            found.append(Finding(name, f"{format_.library} {library_version(format_.library)}"))
-    return found
+def _extra(extra: Extra) -> Finding:
+    """Return how it stands about something that needs more than Lissom always has."""
+    name, library = USES[extra], LIBRARIES[extra]
+    if remedy := missing(extra):
+        return Finding(name, f"{library} is not installed: {remedy}", works=False)
+    return Finding(name, f"{library} {library_version(library)}")

@@ -2,14 +2,13 @@
 
 import io
 from collections.abc import Mapping, Sequence
-from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from app.cli.figures.easel import Easel, alike, box_of
 from app.cli.figures.track import Tracked
-from app.errors import LissomError
+from app.errors import LissomError, missing
 from app.motion import Box
 from engine.arrays import Floats
 
@@ -31,10 +30,8 @@ def require_matplotlib() -> None:
     LissomError
         If matplotlib is not installed.
     """
-    if find_spec("matplotlib") is None:
-        raise LissomError(
-            "the figures need matplotlib: install Lissom with `pip install 'lissom[figures]'`"
-        )
+    if remedy := missing("figures"):
+        raise LissomError(f"the figures need matplotlib, which is not installed: {remedy}")
 
 
 def new_sheet(width: float, height: float) -> "Figure":

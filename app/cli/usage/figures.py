@@ -11,7 +11,7 @@ Makes the figures of the paper anew with Lissom's own drawings: DIR/figure_N.png
 DIR/figures.html, with captions and measured numbers. Figure 9 times every method, the slowest with
 seconds a frame: --largest 100000 takes many minutes.
 
-It needs matplotlib: pip install 'lissom[figures]'
+It needs matplotlib; without it, it says how to install that.
 
 examples:
   lissom figures --out figures

@@ -219,6 +219,11 @@ def use_own_dialogs(session: Session) -> None:
     session.system_dialogs = False
 
 
+def show_tab(session: Session, title: str) -> None:
+    """Bring a tab at the side to the front."""
+    session.wanted_panel = title
+
+
 def show_shortcuts(session: Session) -> None:
     """Open the sheet of all keys."""
     session.dialog = ShortcutSheet()

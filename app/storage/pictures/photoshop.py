@@ -13,7 +13,7 @@ import numpy as np
 from PIL import Image
 
 from app.document import BlendMode, Group
-from app.errors import LissomError, Told
+from app.errors import LissomError, Told, missing
 from app.storage.pictures.layered import (
     Groups,
     Layer,
@@ -87,8 +87,8 @@ def read_photoshop(data: bytes) -> LayeredPicture:
         import psd_tools  # noqa: PLC0415 - it is an extra
     except ImportError as error:
         raise LissomError(
-            "Photoshop files need psd-tools: install Lissom with `pip install 'lissom[psd]'`, or "
-            "save the drawing as OpenRaster (.ora)"
+            f"Photoshop files need psd-tools: {missing('psd')}; or save the drawing as OpenRaster "
+            "(.ora)"
         ) from error
     try:
         with warnings.catch_warnings():

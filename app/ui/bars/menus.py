@@ -1,6 +1,6 @@
 """The menu bar."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from imgui_bundle import imgui
 
@@ -9,6 +9,7 @@ from app.editor import Action, Session, do
 from app.editor.actions import files, keys, viewing
 from app.errors import shown_name
 from app.storage import CHECKER
+from app.ui.panel import Panel, is_in_front
 from app.ui.shortcuts import MENUS, bound_item
 from app.ui.style import Look, colour_field, tip
 
@@ -16,8 +17,8 @@ PATH_REACHES = {0: "All that play", 6: "6 around the playhead", 12: "12", 24: "2
 BACKDROPS = {"Checker": CHECKER, "White": "#ffffff", "Grey": "#808080", "Black": "#000000"}
 
 
-def draw_menus(session: Session, _: Look) -> list[Action]:
-    """Draw the menus, as the table of shortcuts has them."""
+def draw_menus(session: Session, _: Look, *, panels: Sequence[Panel]) -> list[Action]:
+    """Draw the menus, as the table of shortcuts has them; `panels` are all of the window."""
     actions: list[Action] = []
     for title, bindings in MENUS.items():
         if not imgui.begin_menu(title):
@@ -28,6 +29,8 @@ def draw_menus(session: Session, _: Look) -> list[Action]:
             actions += bound_item(session, name)
             if name in BELOW:
                 actions += BELOW[name](session)
+            if name == "reset layout":
+                actions += _tabs(session, panels)
         imgui.end_menu()
     return actions
 
@@ -45,6 +48,19 @@ def _backdrops(session: Session) -> list[Action]:
     colour = colour_field("own colour", BACKDROPS["Black"] if current == CHECKER else current)
     if colour is not None:
         actions.append(do(viewing.set_backdrop, colour))
+    imgui.end_menu()
+    return actions
+
+
+def _tabs(session: Session, panels: Sequence[Panel]) -> list[Action]:
+    """Draw the menu of the tabs at the side, by their names: their icons may be out of sight."""
+    if not imgui.begin_menu("Tabs", session.project is not None):
+        return []
+    actions = [
+        do(viewing.show_tab, panel.title)
+        for panel in panels
+        if panel.place == "side" and imgui.menu_item(panel.label, "", is_in_front(panel.title))[0]
+    ]
     imgui.end_menu()
     return actions
 

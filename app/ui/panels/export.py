@@ -7,8 +7,8 @@ from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 from app.document import ExportSettings, FrameRange, exported_frames, scene_commands
 from app.editor import Action, Project, Session, do
 from app.editor.actions import editing, exporting
-from app.errors import LissomError, shown_name
-from app.export import frame_view, missing, shown_box
+from app.errors import LIBRARIES, LissomError, missing, shown_name
+from app.export import frame_view, shown_box
 from app.export_formats import EXPORT_FORMATS
 from app.motion import Box, box_around, extent_source
 from app.render import View
@@ -97,8 +97,8 @@ def _format(look: Look, settings: ExportSettings) -> ExportSettings:
         imgui.end_combo()
     look.note_place("format")
     tip(now.use)
-    if missing(settings.format):
-        small(look, f"It needs {now.library}: {missing(settings.format)}")
+    if now.extra and (remedy := missing(now.extra)):
+        small(look, f"It needs {LIBRARIES[now.extra]}: {remedy}")
     return settings
 
 

@@ -8,9 +8,9 @@ from imgui_bundle import ImVec2, hello_imgui, imgui
 from app.ui.panel import Panel, is_in_front
 from app.ui.style import FONT_SIZE
 
-SIDE, BOTTOM = 29.6, 12.2  # em: what tabs and timeline take at first
+SIDE, BOTTOM = 30.2, 12.2  # em: what tabs and timeline take at first
 BARS = (2.7, 4.4)  # em: what the bars around them take of the window
-MOST = (0.51, 0.45)  # parts of the window's width and height that they may take
+MOST = (0.52, 0.45)  # parts of the window's width and height that they may take
 
 
 class _Wish(NamedTuple):

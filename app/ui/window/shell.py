@@ -92,7 +92,7 @@ class Shell:
         calls.setup_imgui_config = self._configure
         calls.setup_imgui_style = self._apply_theme
         calls.pre_new_frame = partial(self.attempt, self._begin_frame)
-        calls.show_menus = self._part("The menu", bars.draw_menus)
+        calls.show_menus = self._part("The menu", partial(bars.draw_menus, panels=self._panels))
         calls.show_status = self._part("The status bar", bars.draw_status)
         calls.show_gui = partial(guard, "The window", self._draw_over_panels, self._report)
         calls.before_imgui_render = self._apply_actions

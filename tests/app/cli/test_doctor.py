@@ -1,4 +1,4 @@
-import importlib.util
+import re
 import shutil
 
 import pytest
@@ -13,7 +13,7 @@ from app.render.view import View
 def test_it_draws_with_every_backend_and_says_what_is_missing(capsys, monkeypatch):
     monkeypatch.setattr(doctor.sys, "platform", "linux")
     monkeypatch.setattr(shutil, "which", lambda _: None)
-    monkeypatch.setattr(importlib.util, "find_spec", lambda _: None)
+    monkeypatch.setattr(doctor, "missing", lambda extra: f"install {extra}")
     for variable in ("DISPLAY", "WAYLAND_DISPLAY"):
         monkeypatch.delenv(variable, raising=False)
     assert main(["doctor"]) == 0
@@ -23,7 +23,9 @@ def test_it_draws_with_every_backend_and_says_what_is_missing(capsys, monkeypatc
     assert "OpenGL 4" in said or "OpenGL 3.3" in said
     assert "--  display for the window: none" in said
     assert "apt install zenity" in said
-    assert "pip install 'lissom[video]'" in said
+    assert "--  mp4, webm, mov: av is not installed: install video\n" in said
+    assert "--  Photoshop files: psd-tools is not installed: install psd\n" in said
+    assert "--  lissom figures: matplotlib is not installed: install figures\n" in said
     assert said.endswith("Lissom can render here.\n")
 
 
@@ -35,7 +37,8 @@ def test_what_is_there_is_named(capsys, monkeypatch):
     said = capsys.readouterr().out
     assert "ok  display for the window: WAYLAND_DISPLAY=wayland-7" in said
     assert "ok  file dialogs of the system: kdialog" in said
-    assert "ok  mp4: av " in said
+    assert "ok  mp4, webm, mov: av " in said
+    assert re.search(r"^ok  Photoshop files: psd-tools \d", said, re.MULTILINE)
     assert "numpy " in said
 
 

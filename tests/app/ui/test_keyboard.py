@@ -6,6 +6,7 @@ from imgui_bundle import imgui
 from app.editor import Question, do
 from app.editor.actions import posing, show_dialog, viewing
 from app.storage.assets import sample_images
+from app.ui.panel import is_in_front
 from app.ui.shortcuts import BINDINGS, MENUS
 from app.ui.shortcuts.keys import chords_of, in_words, with_key
 
@@ -293,3 +294,19 @@ def test_the_mirror_axis_has_another_key_on_macos():
     axis = BINDINGS["mirror axis"]
     assert [in_words(chord, is_mac=True) for chord in axis.chords(is_mac=True)] == ["⇧⌘M"]
     assert [in_words(chord, is_mac=False) for chord in axis.chords(is_mac=False)] == ["Ctrl+M"]
+
+
+def test_a_tab_that_is_out_of_sight_is_found_by_its_name(window):
+    window.open(sample_images() / "ring.png")
+    window.resize((1280, 800), 2.0)
+
+    def choose(robot):
+        robot.set_ref("##MainMenuBar")
+        robot.menu_click("View/Tabs/###Export")
+
+    window.show_tab("Handle")
+    window.run(choose)
+    window.frames(3)
+    assert is_in_front("Export")
+    assert not is_in_front("Handle")
+    window.resize((1280, 800))

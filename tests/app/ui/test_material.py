@@ -3,11 +3,13 @@
 import numpy as np
 import pytest
 from bars import BENT
+from imgui_bundle import ImVec2
 
 from app.document import Target, handle_commands
 from app.document.body import Bone
 from app.editor.actions import editing, material, playback, posing, viewing
 from app.editor.tools import moving
+from app.ui.viewport.hand.gesture import covered
 from app.ui.viewport.material_view import tint_of
 
 ENDS = (0, 1)
@@ -94,6 +96,18 @@ def test_a_bone_is_drawn_from_handle_to_handle(window, tab):
     assert window.session.poses is False
     moving.pose(window.session)
     assert window.session.poses
+
+
+@pytest.mark.parametrize("way", [[0], [0, 100], [0, 100, 0, 60], [0, 0]])
+def test_what_a_stroke_covers_is_shown_once_however_often_it_goes_there(way):
+    triangles = covered([ImVec2(x, 7) for x in way], 20.0)
+    area = sum(
+        abs((two - one).x * (three - one).y - (two - one).y * (three - one).x) / 2
+        for one, two, three in triangles
+    )
+    assert area == pytest.approx(40 * max(way) + np.pi * 20**2, rel=0.01)
+    reach = [np.hypot(at.x - min(max(at.x, 0), max(way)), at.y - 7) for at in sum(triangles, ())]
+    assert max(reach) < 20.01
 
 
 def test_escape_takes_back_a_stroke_and_then_puts_the_brush_away(window, tab):

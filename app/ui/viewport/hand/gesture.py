@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 
+import shapely
 from imgui_bundle import ImVec2, imgui
 
 from app.editor import (
@@ -134,12 +135,22 @@ def _draw_entry(look: Look, screen: Screen, mark: EntryMark) -> None:
 
 def _draw_stroke(look: Look, screen: Screen, mark: StrokeMark) -> None:
     colour = ink(stroke_colour(look, keeps=mark.keeps), STROKE)
-    points, radius = [screen.point(place) for place in mark.points], mark.radius * screen.scale
+    points = [screen.point(place) for place in mark.points]
     draw_list = imgui.get_window_draw_list()
-    if len(points) > 1:
-        draw_list.add_polyline(list(points), colour, 2 * radius, 0)
-    else:
-        draw_list.add_circle_filled(points[0], radius, colour)
+    # Soft edges of triangles would be seen where two meet.
+    draw_list.push_draw_flag(imgui.ImDrawFlags_.aa_fill, False)  # noqa: FBT003 - enabled or not
+    for corners in covered(points, mark.radius * screen.scale):
+        draw_list.add_triangle_filled(*corners, colour)
+    draw_list.pop_draw_flag()
+
+
+def covered(way: Sequence[ImVec2], radius: float) -> list[tuple[ImVec2, ImVec2, ImVec2]]:
+    """Return triangles that cover each place within a radius of a way once."""
+    points = [(point.x, point.y) for point in way]
+    line = shapely.LineString(points) if len(points) > 1 else shapely.Point(points[0])
+    parts = shapely.get_parts(shapely.constrained_delaunay_triangles(line.buffer(radius)))
+    rings = shapely.get_coordinates(parts).reshape(-1, 4, 2).tolist()
+    return [(ImVec2(*one), ImVec2(*two), ImVec2(*three)) for one, two, three, _ in rings]
 
 
 def _draw_joint(look: Look, screen: Screen, mark: JointMark) -> None:

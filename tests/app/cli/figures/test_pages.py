@@ -30,11 +30,11 @@ def test_a_figure_and_its_page_are_written(tmp_path, capsys):
     assert not re.findall(r'(?:src|href)="(?!data:)', page)
 
 
-def test_without_matplotlib_the_extra_is_named(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr("app.cli.figures.sheet.find_spec", lambda _: None)
+def test_without_matplotlib_it_says_how_to_install_that(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr("app.errors.find_spec", lambda _: None)
     with pytest.raises(SystemExit):
         main(["figures", "--out", str(tmp_path / "out")])
-    assert "lissom[figures]" in capsys.readouterr().err
+    assert "matplotlib, which is not installed: " in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
 
 
