@@ -7,6 +7,7 @@ from app.motion.inbetweens.pose_sampler import PoseSampler
 from engine.arrays import Complexes
 from engine.interpolation import Frame, Inbetweens
 
+KEPT = 4  # intervals that stay prepared
 # The one-sided difference of fourth order: in time, in-betweens are analytic from key to key.
 STEP = 2e-3
 FORWARD = (-25 / 12, 4.0, -3.0, 4 / 3, -1 / 4)
@@ -22,10 +23,7 @@ class BaseMotion:
     sampler : PoseSampler
         Of the figure's domain and anchor.
 
-    Attributes
-    ----------
-    nbytes : int
-        Bytes of what is prepared.
+    Of intervals, those that were asked for last stay prepared: frames come one after the other.
     """
 
     def __init__(self, clip: Clip, variant: Variant, sampler: PoseSampler) -> None:
@@ -33,8 +31,13 @@ class BaseMotion:
         self.variant = variant
         self.sampler = sampler
         sampler.keep_only({key.pose for key in clip.keys})
-        self._prepared: dict[int, Inbetweens] = {}
-        self.nbytes = 0
+        # By their numbers, the latest last, with their bytes.
+        self._prepared: dict[int, tuple[Inbetweens, int]] = {}
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of what is prepared."""
+        return sum(size for _, size in tuple(self._prepared.values()))
 
     def frame(self, frame: float) -> Frame:
         """Return positions and derivatives of the points at a frame."""
@@ -48,12 +51,15 @@ class BaseMotion:
 
     def inbetweens(self, interval: int) -> Inbetweens:
         """Return the in-betweens of one of the clip's intervals."""
-        if interval not in self._prepared:
+        known = self._prepared.pop(interval, None)
+        if known is None:
             transit, bounds = transits(self.clip)[interval], self.clip.figure.bounds
             prepared = self.sampler.inbetweens_of(transit, bounds, self.variant)
-            self._prepared[interval] = prepared
-            self.nbytes += prepared.nbytes
-        return self._prepared[interval]
+            known = prepared, prepared.nbytes
+        self._prepared[interval] = known
+        for oldest in list(self._prepared)[:-KEPT]:
+            self._prepared.pop(oldest, None)
+        return known[0]
 
     def velocity(self, interval: int, *, at_end: bool) -> Complexes:
         """Return how fast the points (m,) leave an interval's first key, or reach its second one.

@@ -1,8 +1,7 @@
 """Where figures that hang on others are, at any time (Section 7, "a user curve for the anchor")."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import partial
-from itertools import product
 
 import numpy as np
 
@@ -79,8 +78,7 @@ class Joints:
         self._siblings = siblings
         self._placements: dict[tuple[int, float, bool], RigidMotion] = {}
         self._kept: dict[tuple[int, Attachment, int], RigidMotion] = {}
-        frames = range(document.frames.first, document.frames.last + 1)
-        self._ahead = product(frames, self.tracked.values())
+        self._ahead = self._through()
 
     @property
     def worked_out(self) -> int:
@@ -216,6 +214,14 @@ class Joints:
                 return self
         self.is_whole = True
         return self
+
+    def _through(self) -> Iterator[tuple[int, TrackedPoints]]:
+        """Yield all frames of one figure after the other: they are found with much."""
+        frames = self.document.frames
+        for tracked in self.tracked.values():
+            for frame in range(frames.first, frames.last + 1):
+                yield frame, tracked
+            tracked.rest()
 
     def _joint(
         self, figure: Figure, place: complex, frame: float, poses: Mapping[int, Pose]

@@ -94,6 +94,10 @@ class TrackedPoints:
         moved = self._animate().base.frame(frame)
         return TrackedFrame(moved.positions, moved.fz, ())
 
+    def rest(self) -> None:
+        """Let go of what moments are worked out with; one that is not known needs it again."""
+        self._animation = None
+
     def _animate(self) -> Animation:
         if self._animation is None:
             figure = self.clip.figure
