@@ -406,6 +406,39 @@ def test_a_group_of_mouths_is_offered_as_a_choice(window, scene, ids, use):
     assert scene.declined == {"mouth"}
 
 
+def test_a_group_is_dragged_by_its_row(window, scene, ids, use):
+    for names, path in ((("ah", "oh"), "mouth"), (("head", "stick"), "body")):
+        command = group_commands.put_in_group([ids[name] for name in names], path)
+        window.act(editing.edit, command)
+    window.frames(3)
+
+    def key(name):
+        return next(row.key for row in scene.tree if row.group and row.name == name)
+
+    def inside(path):
+        return {each.name for each in scene.document.figures if each.group == path}
+
+    # Onto a layer, all of it hangs there.
+    before = scene.document
+    use(lambda robot: drop(robot, key("mouth"), ids["hat"]))
+    window.settle()
+    assert [scene.document.figure(ids[name]).hangs for name in ("ah", "oh")] == [True, True]
+    assert scene.history.undo_label == "Attach 2 layers"
+    window.act(editing.undo)
+    assert scene.document is before
+    # Onto another group, it is one in that.
+    use(lambda robot: drop(robot, key("mouth"), key("body")))
+    assert inside("body/mouth") == {"ah", "oh"}
+    window.act(editing.undo)
+    assert scene.document is before
+    # Beside a layer, it lies there.
+    use(lambda robot: drop(robot, key("body"), ids["hat"], 0.1))
+    assert inside("body") == {"head", "stick"}
+    assert [each.name for each in scene.document.figures].index("hat") == 0
+    window.act(editing.undo)
+    assert scene.document is before
+
+
 def test_a_group_in_a_group_of_mouths_is_not_taken_apart(window, scene, ids, use):
     for names, path in ((("ah", "oh", "hat", "stick"), "mouth"), (("hat", "stick"), "mouth/laugh")):
         command = group_commands.put_in_group([ids[name] for name in names], path)
