@@ -8,8 +8,10 @@ from app.document import (
     LINEAR,
     FrameRange,
     cycle_commands,
+    filming_commands,
     key_commands,
     layer_commands,
+    opacity_at,
     scene_commands,
     track_commands,
 )
@@ -207,6 +209,26 @@ def test_chosen_layers_repeat_together_in_one_step(window, cycling):
     with pytest.raises(LissomError, match="bar copy: Frames 0 and 48 show two poses"):
         cycles.repeat(window.session)
     assert cycling.document is before
+
+
+def test_a_still_picture_repeats_with_others_what_it_does_beside_its_pose(window, swinging):
+    bar, copy = swinging.active, swinging.active + 1
+    editing.edit(window.session, layer_commands.duplicate_figure(bar))
+    window.settle()
+    layering.stand_still(window.session, copy)
+    window.settle()
+    layering.choose_all(window.session, bar, copy)
+    editing.choose_keys_of(window.session, {})
+    window.act(cycles.repeat)
+    assert [each.cycles for each in swinging.document.figures] == [(Cycle(first=0, last=48),), ()]
+    editing.undo(window.session)
+    for frame, opacity in ((0, 1.0), (10, 0.2)):
+        editing.edit(window.session, filming_commands.key_opacity(copy, frame, opacity))
+    window.act(cycles.repeat)
+    cycle = (Cycle(first=0, last=48),)
+    assert [each.cycles for each in swinging.document.figures] == [cycle, cycle]
+    faded = opacity_at(swinging.document, swinging.document.figure(copy), 58)
+    assert abs(faded - 0.2) < 1e-9
 
 
 def test_a_drag_on_a_track_in_a_repeat_keys_it_where_it_repeats(window, cycling):

@@ -406,6 +406,60 @@ def test_a_group_of_mouths_is_offered_as_a_choice(window, scene, ids, use):
     assert scene.declined == {"mouth"}
 
 
+def test_a_group_is_dragged_by_its_row(window, scene, ids, use):
+    for names, path in ((("ah", "oh"), "mouth"), (("head", "stick"), "body")):
+        command = group_commands.put_in_group([ids[name] for name in names], path)
+        window.act(editing.edit, command)
+    window.frames(3)
+
+    def key(name):
+        return next(row.key for row in scene.tree if row.group and row.name == name)
+
+    def inside(path):
+        return {each.name for each in scene.document.figures if each.group == path}
+
+    # Onto a layer, all of it hangs there.
+    before = scene.document
+    use(lambda robot: drop(robot, key("mouth"), ids["hat"]))
+    window.settle()
+    assert [scene.document.figure(ids[name]).hangs for name in ("ah", "oh")] == [True, True]
+    assert scene.history.undo_label == "Attach 2 layers"
+    window.act(editing.undo)
+    assert scene.document is before
+    # Onto another group, it is one in that.
+    use(lambda robot: drop(robot, key("mouth"), key("body")))
+    assert inside("body/mouth") == {"ah", "oh"}
+    window.act(editing.undo)
+    assert scene.document is before
+    # Beside a layer, it lies there.
+    use(lambda robot: drop(robot, key("body"), ids["hat"], 0.1))
+    assert inside("body") == {"head", "stick"}
+    assert [each.name for each in scene.document.figures].index("hat") == 0
+    window.act(editing.undo)
+    assert scene.document is before
+
+
+def test_a_group_in_a_group_of_mouths_is_not_taken_apart(window, scene, ids, use):
+    for names, path in ((("ah", "oh", "hat", "stick"), "mouth"), (("hat", "stick"), "mouth/laugh")):
+        command = group_commands.put_in_group([ids[name] for name in names], path)
+        window.act(editing.edit, command)
+    window.frames(3)
+    key = next(row.key for row in scene.tree if row.group and row.group.name == "mouth")
+    before = scene.document
+
+    def take_turns(robot):
+        robot.item_click(row_of(key), 1)
+        robot.item_click("//$FOCUSED/Let its layers take turns")
+        robot.key_press(int(window.Key.escape))
+
+    use(take_turns)
+    assert scene.document is before
+    # The layers that are by themselves are offered, and the group stays as it is.
+    use(lambda robot: robot.item_click("**/Let them take turns"))
+    (choice,) = scene.document.choices
+    assert set(choice.figures) == {ids["ah"], ids["oh"]}
+
+
 def test_a_layer_is_moved_and_ordered_in_time_by_the_tab(window, scene, ids, use):
     window.act(layering.choose, ids["stick"])
     window.act(playback.seek, 12)

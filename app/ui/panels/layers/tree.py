@@ -217,7 +217,10 @@ def _tell(document: Document, row: TreeRow) -> None:
             "These layers take turns: open it, and a click on a circle shows one from here on"
         )
     else:
-        imgui.text_disabled("Click to choose all layers in it, right click for more")
+        imgui.text_disabled(
+            "Click to choose all layers in it, drag it to move or hang them together, right click "
+            "for more"
+        )
     imgui.end_tooltip()
 
 
