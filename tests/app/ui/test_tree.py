@@ -126,6 +126,32 @@ def test_layers_take_turns_by_one_click(window, scene, ids, use):
     assert {"ah", "oh"} & seen(scene, 12) == {first}
 
 
+def test_only_the_layer_that_is_seen_has_a_full_circle(window, scene, ids, use):
+    window.act(editing.edit, choice_commands.form_choice("mouth", [ids["ah"], ids["oh"]]))
+    window.act(layering.toggle, "choice mouth")
+    window.act(layering.choose, ids["head"])
+    window.settle()
+    boxes = {}
+
+    def look(robot):
+        for name in ("ah", "oh"):
+            boxes[name] = robot.item_info(f"**/###turn {ids[name]}").rect_full
+        robot.mouse_move_to_pos(window.point(20 + 20j))
+
+    use(look)
+    picture = np.asarray(window.picture())[..., :3].astype(int)
+
+    def inked(box):
+        x, y = (round(value) for value in (box.get_center().x, box.get_center().y))
+        half = round(window.text_height() / 2)
+        around = picture[y - half : y + half, x - half : x + half]
+        return np.count_nonzero(np.abs(around - around[0, 0]).sum(axis=2) > 90)
+
+    on = scene.document.figure(scene.document.choices[0].at(0)).name
+    (off,) = {"ah", "oh"} - {on}
+    assert 0 < inked(boxes[off]) < inked(boxes[on])
+
+
 def test_where_a_turn_begins_is_dragged_in_the_timeline(window, scene, ids):
     window.act(editing.edit, choice_commands.form_choice("mouth", [ids["ah"], ids["oh"]]))
     other = next(i for i in (ids["ah"], ids["oh"]) if i != scene.document.choices[0].at(0))
