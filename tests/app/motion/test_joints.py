@@ -141,7 +141,7 @@ def test_a_joint_must_be_on_what_hangs():
 
 
 def test_joints_stay_closed_in_documents_that_were_changed_undone_and_saved(tmp_path):
-    document, frames = chain(), np.random.default_rng(6).uniform(0, 48, 2)
+    document, frames = chain(), np.random.default_rng(6).uniform(0, 48, 1)
     history = History(document, saved=True)
     earlier = []
     changes = (
