@@ -21,6 +21,6 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         "--steps",
         metavar="N",
         type=int,
-        default=120,
+        default=60,
         help="of each random walk through the window; many walk farther, and take longer",
     )

@@ -127,6 +127,7 @@ from app.document.queries import (
     turn_frame as turn_frame,
     turns_in as turns_in,
     velocity_at as velocity_at,
+    whole_groups as whole_groups,
     with_repeats as with_repeats,
 )
 from app.document.settings import (

@@ -56,7 +56,7 @@ from engine.maps import Bounds
 
 EXTENTS = 32  # of the motion, which are remembered for undo and redo
 # Bytes of what figures that nobody edits may be prepared with, once series show them.
-MOST_PASSING = 128 * 2**20
+MOST_PASSING = 64 * 2**20
 FIT_MARGIN = 0.08  # of the viewport, left free around what is fitted into it
 
 

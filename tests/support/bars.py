@@ -3,6 +3,7 @@
 import numpy as np
 from harness import Harness
 
+from app.document.commands import figure_commands
 from app.document.keyframe import Target
 from app.document.model import Document
 from app.editor.actions import playback, posing
@@ -32,6 +33,14 @@ def bend_bar(window: Harness) -> Project:
     window.settle()
     width, height = bar.puppet.picture.size
     posing.wish(window.session, {1: Target(position=complex(0.85 * width, 0.9 * height))})
+    window.settle()
+    return bar
+
+
+def bend_loosely(window: Harness) -> Project:
+    """Bend the bar so, none of whose handles stays in between: that is solved for each frame."""
+    bar = bend_bar(window)
+    bar.history.extend_step(figure_commands.set_stillness(bar.active, stillness=False))
     window.settle()
     return bar
 

@@ -4,8 +4,9 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
-from animations import still_document
+from animations import still_document, within
 from documents import altered
+from shapes import regular_polygon
 
 from app.document import FrameRange, Keyframe, Target, clip_of, handle_commands
 from app.motion import Animation
@@ -15,18 +16,21 @@ PLACES = {"left": 25 + 45j, "middle": 60 + 48j, "right": 95 + 45j, "top": 60 + 7
 # Of each key: where the handles go; what is not named stays where it was drawn.
 MOVES = ({}, {"top": 12 + 6j}, {"top": -12 + 6j}, {"top": -4 - 6j, "right": 5 + 8j})
 DRAWN = 10  # frames between two keys
+CORNERS = 16  # of its outline
 
 
 @cache
-def posed(moves=MOVES, *, loop=False):
-    """A document whose handles are dragged to places, with a key for each."""
-    document = still_document()
+def posed(count=4, *, loop=False):
+    """A document whose handles are dragged to so many of those places, with a key for each."""
+    circle = regular_polygon(CORNERS)
+    corners = 60 + 47j + 54 * circle.real + 40j * circle.imag
+    document = within(still_document(), corners)
     for name, place in PLACES.items():
         document = handle_commands.add_handle(0, place, name=name)(document)
     figure = document.figures[0]
     rig, names = Rig.of(figure), {handle.name: handle.id for handle in figure.handles}
     keys = []
-    for number, move in enumerate(moves):
+    for number, move in enumerate(MOVES[:count]):
         targets = {
             identity: Target(position=PLACES[name] + move.get(name, 0))
             for name, identity in names.items()

@@ -4,7 +4,7 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
-from animations import still_document
+from animations import still_document, within
 from PIL import Image, ImageDraw
 
 from app.document import Document, Figure, handle_commands
@@ -15,12 +15,23 @@ HANDLES = {"hip": 70 + 150j, "knee": 66 + 100j, "foot": 84 + 44j}
 FAR = RigidMotion(1.0 + 0j, 60 - 6j)  # where the far leg is drawn, beside the near one
 # Where the leg of the other side is drawn, which is its mirror image.
 AXIS = 120.0
+LEG = np.array([54 + 28j, 106 + 28j, 106 + 58j, 84 + 58j, 84 + 172j, 54 + 172j])
+BODY = np.array([48 + 128j, 152 + 128j, 152 + 192j, 48 + 192j])
 
 
 def leg(
-    name: str, identity: int, by: complex = 0j, *, mirrored: bool = False, turned: bool = False
+    name: str,
+    identity: int,
+    by: complex = 0j,
+    *,
+    mirrored: bool = False,
+    turned: bool = False,
+    traced: bool = True,
 ) -> Figure:
-    """Return a leg with a foot, moved by some whole pixels, mirrored, or turned by a quarter."""
+    """Return a leg with a foot, moved by some whole pixels, mirrored, or turned by a quarter.
+
+    Its outline is traced from its picture, or has few corners.
+    """
     picture = Image.new("RGBA", SIZE)
     pen = ImageDraw.Draw(picture)
     x, y, height = int(by.real), int(by.imag), SIZE[1]
@@ -30,6 +41,8 @@ def leg(
     pixels = np.array(picture)
     pixels = pixels[:, ::-1].copy() if mirrored else pixels
     document = still_document(np.rot90(pixels).copy() if turned else pixels)
+    if not traced:
+        document = within(document, LEG + by)
     for handle, place in HANDLES.items():
         at = place + by
         at = 2 * AXIS - at.conjugate() if mirrored else at
@@ -43,7 +56,11 @@ def walker(near: str = "near leg", far: str = "far leg") -> Document:
     """A body between two legs: the near one at frame 0 alone, as the far one."""
     picture = Image.new("RGBA", SIZE)
     ImageDraw.Draw(picture).rectangle((50, 10, 150, 70), fill=(60, 90, 200, 255))
-    body = still_document(np.array(picture))
+    body = within(still_document(np.array(picture)), BODY)
     body = handle_commands.add_handle(0, 100 + 170j, name="chest")(body)
-    figures = (leg(far, 2, FAR.shift), replace(body.figures[0], id=1, name="body"), leg(near, 0))
+    figures = (
+        leg(far, 2, FAR.shift, traced=False),
+        replace(body.figures[0], id=1, name="body"),
+        leg(near, 0, traced=False),
+    )
     return Document(figures=figures, size=SIZE)

@@ -61,6 +61,7 @@ from app.document.queries.stage import (
     turn_frame as turn_frame,
     turning as turning,
     turns_in as turns_in,
+    whole_groups as whole_groups,
     with_repeats as with_repeats,
 )
 from app.document.queries.timeline import (

@@ -26,6 +26,7 @@ from app.editor.layering.arranging import (
     show as show,
     show_group as show_group,
     switch_here as switch_here,
+    take_in as take_in,
     ungroup as ungroup,
     unswitch_here as unswitch_here,
 )

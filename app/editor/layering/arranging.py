@@ -13,6 +13,7 @@ from app.document import (
     in_turn,
     is_visible,
     layer_commands,
+    paths_to,
     shared_path,
 )
 from app.editor.actions import editing, playback
@@ -80,7 +81,14 @@ def move_beside(
     in_front: bool,  # noqa: FBT001 - of an action
     *identities: int,
 ) -> None:
-    """Put layers in front of another one, or behind it, in the order that they have."""
+    """Put layers in front of another one, or behind it, in the order that they have.
+
+    All of a group stay one.
+    """
+    whole = _whole_group(project, identities)
+    if whole:
+        editing.edit(session, group_commands.put_group_beside(whole, beside, in_front=in_front))
+        return
     order = [figure.id for figure in project.document.figures]
     moved = [each for each in order if each in identities and each != beside]
     commands = []
@@ -121,6 +129,26 @@ def group_together(session: Session, project: Project) -> None:
     taken = {each.name for each in document.groups}
     free = layer_commands.numbered_name(f"{around}/group".removeprefix("/"), taken)
     group(session, free, *chosen)
+
+
+@with_project
+def take_in(session: Session, project: Project, path: str, *identities: int) -> None:
+    """Take layers into a group; all of another group stay one in it."""
+    whole = _whole_group(project, identities)
+    if whole:
+        editing.edit(session, group_commands.put_group_in(whole, path))
+    else:
+        group(session, path, *identities)
+
+
+def _whole_group(project: Project, identities: Sequence[int]) -> str:
+    """Return the path of the outermost group that is made of several layers; "" if none is."""
+    document = project.document
+    for path in paths_to(document.figure(identities[0]).group):
+        inside = {each.id for each in document.figures if path in paths_to(each.group)}
+        if len(inside) > 1 and inside == set(identities):
+            return path
+    return ""
 
 
 def ungroup(session: Session, path: str) -> None:

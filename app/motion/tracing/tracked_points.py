@@ -97,6 +97,9 @@ class TrackedPoints:
     def rest(self) -> None:
         """Let go of what moments are worked out with; one that is not known needs it again."""
         self._animation = None
+        if self.sampler is not None:
+            # It holds the outline's transform, too.
+            self.sampler.forget_extension()
 
     def _animate(self) -> Animation:
         if self._animation is None:

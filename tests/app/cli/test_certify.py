@@ -8,9 +8,10 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from still_poses import posed, with_figure
 
 from app.cli.main import main
-from app.document import HOLD, Document, Extremes, Meshing, new_figure
+from app.document import HOLD, Document, Extremes, Meshing, Passing, new_figure
 from app.reports import IntervalReport, Report, certification
 from app.storage import load_project, save_project
 from engine.interpolation import Proof
@@ -19,13 +20,24 @@ from engine.maps import Certificate
 SAMPLE = Path(__file__).parents[3] / "sample_images/giraffe.lissom"
 
 
-def certified(capsys, *words):
-    status = main(["certify", str(SAMPLE), *words])
+@pytest.fixture(scope="module")
+def still(tmp_path_factory):
+    """A project of a blob, of which handles stay between three keys."""
+    path = tmp_path_factory.mktemp("still") / "still.lissom"
+    document = posed(3)
+    # Which are stopped at, so that the motion has no more room than its keys take.
+    keys = tuple(replace(key, passing=Passing.STOP) for key in document.figures[0].keys)
+    save_project(path, with_figure(document, keys=keys))
+    return path
+
+
+def certified(capsys, *words, project=SAMPLE):
+    status = main(["certify", str(project), *words])
     return status, capsys.readouterr().out
 
 
-def test_in_betweens_are_proven_between_frames_too(capsys):
-    status, said = certified(capsys, "--json")
+def test_in_betweens_are_proven_between_frames_too(still, capsys):
+    status, said = certified(capsys, "--json", project=still)
     # Frames in which handles stay are measured, one by one.
     assert status == 3
     content = json.loads(said)
@@ -46,13 +58,13 @@ def test_in_betweens_are_proven_between_frames_too(capsys):
             assert by == pytest.approx(sign * (proven[name] - interval[f"{name}_keys"]))
 
 
-def test_frames_in_which_handles_stay_are_proven_where_f_z_is_in_closed_form(capsys):
-    status, said = certified(capsys, "--variant", "nu", "--json")
+def test_frames_in_which_handles_stay_are_proven_where_f_z_is_in_closed_form(still, capsys):
+    status, said = certified(capsys, "--variant", "nu", "--json", project=still)
     assert status == 0
     corrected = json.loads(said)["corrected"]
     assert corrected["proven"] == corrected["solved"] > 10
     assert corrected["between"]["k"] <= corrected["k"] + 0.02
-    _, said = certified(capsys, "--variant", "nu")
+    _, said = certified(capsys, "--variant", "nu", project=still)
     assert f"{corrected['proven']} are proven, and 0 are measured" in said
 
 

@@ -95,7 +95,7 @@ def test_a_quarter_of_the_machine_is_usual(budget, monkeypatch):
 
 @pytest.mark.parametrize("kind", ["png", "ora", "jpg", "deep.png", "scene.ora"])
 def test_opening_takes_little_beyond_what_is_decoded(tmp_path, kind):
-    side, count = (4_000, 3) if kind.endswith("ora") else (5_000, 1)
+    side, count = (3_000, 3) if kind.endswith("ora") else (3_600, 1)
     drawn = Image.new("RGBA", (side, side))
     drawn.paste((200, 60, 30, 255), (side // 4, side // 4, 3 * side // 4, 3 * side // 4))
     path = tmp_path / f"a.{kind}"

@@ -14,7 +14,7 @@ from app.document.commands import (
     scene_commands,
 )
 from app.document.layering import Choice, Switch, Turn
-from app.document.queries import alternates, is_visible
+from app.document.queries import alternates, is_visible, whole_groups
 from app.document.settings import FrameRange
 from app.document.timing import Cycle
 from app.errors import LissomError
@@ -218,6 +218,16 @@ def test_layers_named_as_in_a_group_are_offered_as_a_choice(mouths, names, hidde
     # What is painted onto one of them takes no turns with it.
     painted = layer_commands.set_clipped(2, clipped=True)(document)
     assert alternates(painted) == ()
+
+
+def test_a_group_of_several_layers_takes_no_turns_as_a_whole(mouths):
+    document = groups.put_in_group((0,), "face/mouth")(mouths)
+    document = groups.put_in_group((1, 2), "face/mouth/laugh")(document)
+    assert whole_groups(document, "face/mouth") == ("laugh",)
+    assert whole_groups(document, "face") == ("mouth",)
+    assert whole_groups(document, "face/mouth/laugh") == ()
+    single = groups.put_in_group((2,), "face/mouth")(document)
+    assert whole_groups(single, "face/mouth") == ()
 
 
 def turning(document, *, cycle, turns, of=(0, 1, 2)):

@@ -105,6 +105,31 @@ def test_a_figure_that_is_moved_joins_and_leaves_groups_so_that_they_stay_whole(
     assert all(any(path.startswith(name) for path in filled) for name in names_of(after))
 
 
+def test_a_group_is_moved_as_a_whole():
+    document = grouped("sky a/one a/b/two a/b/three c/four c/five", "a", "a/b", "c")
+    document = groups.set_group_opacity("a/b", 0.5)(document)
+    inside = groups.put_group_in("a/b", "c")(document)
+    assert paths(inside) == ["sky", "a/one", "c/four", "c/five", "c/b/two", "c/b/three"]
+    assert inside.group("c/b").opacity == 0.5
+    free = groups.put_group_in("a/b", "")(document)
+    assert paths(free) == ["sky", "a/one", "b/two", "b/three", "c/four", "c/five"]
+    # Before a group that is told of first, and with all of its own around it left empty.
+    late = groups.put_group_in("a", "c")(document)
+    assert paths(late) == ["sky", "c/four", "c/five", "c/a/one", "c/a/b/two", "c/a/b/three"]
+    beside = groups.put_group_beside("a/b", 0, in_front=False)(document)
+    assert paths(beside) == ["b/two", "b/three", "sky", "a/one", "c/four", "c/five"]
+    amid = groups.put_group_beside("a/b", 4, in_front=True)(document)
+    assert paths(amid) == ["sky", "a/one", "c/four", "c/b/two", "c/b/three", "c/five"]
+    stays = groups.put_group_beside("a/b", 1, in_front=False)(document)
+    assert paths(stays) == ["sky", "a/b/two", "a/b/three", "a/one", "c/four", "c/five"]
+    assert groups.put_group_beside("a/b", 1, in_front=True)(document) is document
+    with pytest.raises(LissomError, match="'a' cannot be put in itself"):
+        groups.put_group_in("a", "a/b")(document)
+    # Where its name is taken, it has a number.
+    twice = groups.put_group_in("b", "a")(grouped("a/b/one b/two", "a", "a/b", "b"))
+    assert paths(twice) == ["a/b/one", "a/b 2/two"]
+
+
 def test_a_new_figure_amid_a_group_is_in_it_and_a_copy_is_beside_its_original():
     document = grouped("sky a/one a/two", "a")
     new = replace(document.figures[0], id=9, name="new")

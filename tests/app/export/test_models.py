@@ -16,6 +16,7 @@ from documents import altered
 from numpy.testing import assert_allclose, assert_array_equal
 from PIL import Image
 from pygltflib import GLTF2
+from still_poses import posed
 
 from app.document import HOLD, ExportSettings, FrameRange, Group, Switch, clip_of
 from app.errors import LissomError
@@ -116,10 +117,14 @@ def largest_distance(gltf, document, times, *, node=0):
 
 @pytest.fixture(scope="module")
 def giraffe(tmp_path_factory):
-    """The sample's document with a light mesh, and the model of its first second."""
+    """The sample's document with a light mesh, and the model of its first second.
+
+    Its handles are not held still, which is solved for each frame.
+    """
     out = tmp_path_factory.mktemp("giraffe") / "giraffe.glb"
     second = replace(settings(), frames=FrameRange(0, 24), framing="canvas")
-    document, _ = exported(load_project(sample_images() / "giraffe.lissom"), out, second)
+    project = load_project(sample_images() / "giraffe.lissom")
+    document, _ = exported(altered(project, stillness=False), out, second)
     return document, out
 
 
@@ -127,6 +132,14 @@ def test_a_reader_finds_every_vertex_where_the_engine_has_it_at_any_time(giraffe
     document, out = giraffe
     times = np.random.default_rng(1).uniform(0, 24 / document.fps, 12)
     assert largest_distance(read(out), document, [0.0, *times]) <= TOLERANCE
+
+
+def test_handles_that_stay_do_so_in_a_model(tmp_path):
+    document, _ = exported(posed(3), tmp_path / "a.glb")
+    animation = animation_of(clip_of(document, 0))
+    assert animation.corrections is not None
+    times = np.random.default_rng(2).uniform(0, 20 / document.fps, 5)
+    assert largest_distance(read(tmp_path / "a.glb"), document, times) <= TOLERANCE
 
 
 def test_the_giraffe_is_small(giraffe):

@@ -39,7 +39,7 @@ def check_closed(document, frames):
 def test_a_joint_stays_closed_and_turns_with_the_parent(variant):
     document = chain(variant)
     rng = np.random.default_rng(2)
-    times = rng.uniform(0, 48, 200 if variant == "nu" else 5)
+    times = rng.uniform(0, 48, 60 if variant == "nu" else 5)
     check_closed(document, (*times, 0, 20, 48))
     factors = [Joints(document).placement(2, frame).factor for frame in times[:5]]
     assert_allclose(np.abs(factors), 1, rtol=0, atol=1e-12)
@@ -75,8 +75,7 @@ def test_a_pose_that_is_shown_takes_the_place_of_the_key_s():
     assert_allclose(shown.on(own), f(np.array([joint.at]))[0], rtol=0, atol=1e-9)
 
 
-@pytest.mark.parametrize("frame", [0, 11.5, 20])
-@pytest.mark.parametrize("turns", [True, False])
+@pytest.mark.parametrize(("frame", "turns"), [(0, False), (11.5, True), (20, True), (11.5, False)])
 def test_attaching_moves_nothing_at_the_present_frame(frame, turns):
     document = chain()
     loose = layers.detach(2, 1, 0)(document)
@@ -144,6 +143,7 @@ def test_a_joint_must_be_on_what_hangs():
 def test_joints_stay_closed_in_documents_that_were_changed_undone_and_saved(tmp_path):
     document, frames = chain(), np.random.default_rng(6).uniform(0, 48, 2)
     history = History(document, saved=True)
+    earlier = []
     changes = (
         layers.duplicate_figure(1),
         layers.duplicate_figure(2),
@@ -157,13 +157,13 @@ def test_joints_stay_closed_in_documents_that_were_changed_undone_and_saved(tmp_
         layers.remove_figure(0),
     )
     for change in changes:
+        earlier.append(history.document)
         history.do(change)
         check_closed(history.document, frames)
     assert len(history.document.figures) == 4
-    for _ in changes:
+    for before in reversed(earlier):
         history.undo()
-        check_closed(history.document, frames[:1])
-    assert history.document is document
+        assert history.document is before
     history.redo()
     save_project(tmp_path / "chain.lissom", history.document)
     again = load_project(tmp_path / "chain.lissom")

@@ -5,7 +5,7 @@ from types import MappingProxyType
 
 import numpy as np
 import pytest
-from animations import still_document
+from animations import still_document, within
 from numpy.testing import assert_allclose
 from sessions import session_of, settle
 
@@ -31,7 +31,7 @@ def bar():
     """A bar with three handles, the middle one of which follows."""
     picture = np.zeros((120, 240, 4), np.uint8)
     picture[60:100, 20:220] = 255
-    document = still_document(picture)
+    document = within(still_document(picture), np.array([18 + 18j, 222 + 18j, 222 + 62j, 18 + 62j]))
     for name, x in NAMES.items():
         document = handle_commands.add_handle(0, complex(x, 40), name=name)(document)
     return track_commands.put_spring(0, SPRING)(document)

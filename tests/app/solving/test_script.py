@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from animations import still_document
+from animations import still_document, within
 
 from app.document.timing import HOLD, LINEAR, PRESETS, Cycle, Passing, Spring, Track, TrackKey
 from app.errors import LissomError
@@ -359,7 +359,7 @@ def test_bad_files_are_refused_with_their_name(tmp_path, text, message):
 def test_a_key_on_request_pulls_with_bounded_force():
     picture = np.zeros((80, 240, 4), np.uint8)
     picture[20:60, 20:220] = 255
-    document = still_document(picture)
+    document = within(still_document(picture), np.array([18 + 18j, 222 + 18j, 222 + 62j, 18 + 62j]))
     handles = {"end": [210, 40], "middle": [120, 40], "start": [30, 40]}
     posed = {}
     for pull in ({}, {"pull": 10}):

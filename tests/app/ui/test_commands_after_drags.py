@@ -21,19 +21,19 @@ FURTHER = {"paste on selected", "flip on selected"}
 
 
 @pytest.fixture
-def ready(window, bent, tmp_path, monkeypatch):
+def ready(window, loose, tmp_path, monkeypatch):
     """That bar with all that commands may need: a file, a place for exports, a copied pose."""
     monkeypatch.setattr("app.editor.actions.exporting.clipboard_program", lambda: ("true",))
     monkeypatch.setattr("app.editor.actions.exporting.put_on_clipboard", lambda _: None)
-    export = replace(bent.document.export, format="picture", framing="canvas")
+    export = replace(loose.document.export, format="picture", framing="canvas")
     editing.edit(window.session, scene_commands.set_export(export))
-    bent.exports_to["picture"] = tmp_path / "picture.png"
+    loose.exports_to["picture"] = tmp_path / "picture.png"
     saving.write(window.session, tmp_path / "a.lissom", None)
     playback.scrub(window.session, 0)
     window.settle()
     copying.copy(window.session)
-    bent.selected = frozenset({0})
-    return bent
+    loose.selected = frozenset({0})
+    return loose
 
 
 @pytest.mark.parametrize("name", BINDINGS)

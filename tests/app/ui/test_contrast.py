@@ -28,11 +28,18 @@ from app.solving import Renewal
 from app.storage.assets import sample_images
 from app.ui.style import PALETTES
 
+FADED = 0.5  # seconds
 TABS = ("Handle", "Layers", "Poses", "Deform", "Distortion", "Mesh", "Cut-out", "Export")
 OPEN = imgui.test_engine.TestAction.open
 TEXTS = ("text", "dim", "accent", "good", "warning", "danger", "anchor")
 SURFACES = ("desk", "panel", "raised", "hovered", "pressed")
 FILLED = (("on_accent", "accent"), ("on_accent", "warning"), ("on_accent", "text"))
+
+
+@pytest.fixture
+def bent(loose):
+    """What the motion is like in between is not asked here."""
+    return loose
 
 
 @pytest.fixture(params=["light", "dark"])
@@ -50,7 +57,8 @@ def check(window, theme):
     def look(state):
         window.settle()
         # Messages have faded in by then.
-        window.frames(20)
+        window.clock.now += FADED
+        window.frames(3)
         seen = [glyph for glyph in glyphs(window) if is_enabled(glyph)]
         assert len(seen) > 15, state
         faint = {(each.ink, each.ground): each for each in seen if each.contrast < LEAST}

@@ -14,6 +14,12 @@ ALL, COPY, PASTE = (CTRL | int(key) for key in (imgui.Key.a, imgui.Key.c, imgui.
 ESCAPE = int(imgui.Key.escape)
 
 
+@pytest.fixture
+def bent(loose):
+    """What the motion is like in between is not asked here."""
+    return loose
+
+
 class Hand:
     """The robot, over the drawing or the timeline."""
 

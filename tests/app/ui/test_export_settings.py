@@ -16,6 +16,12 @@ SIZE = (60, 24)
 
 
 @pytest.fixture
+def bent(loose):
+    """What the motion is like in between is not asked here."""
+    return loose
+
+
+@pytest.fixture
 def choose(window, bent, monkeypatch):
     """Choose a format in the list of the tab, and return what is exported then."""
     begin_combo, found = imgui.begin_combo, []

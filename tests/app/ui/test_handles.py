@@ -12,6 +12,12 @@ from app.editor.actions import editing, playback, posing
 
 
 @pytest.fixture
+def bent(loose):
+    """What the motion is like in between is not asked here."""
+    return loose
+
+
+@pytest.fixture
 def play(window):
     """A function that lets the robot play in the tab of handles."""
 

@@ -14,6 +14,12 @@ from app.ui.viewport.viewport import CANVAS
 RIGHT = 1
 
 
+@pytest.fixture
+def bent(loose):
+    """What the motion is like in between is not asked here."""
+    return loose
+
+
 def open_menu(robot, point):
     robot.mouse_move_to_pos(point)
     robot.mouse_click(RIGHT)

@@ -9,6 +9,12 @@ from app.editor.actions import editing, playback
 CTRL, SHIFT = int(imgui.Key.mod_ctrl), int(imgui.Key.mod_shift)
 
 
+@pytest.fixture
+def bent(loose):
+    """What the motion is like in between is not asked here."""
+    return loose
+
+
 def wanted(project, frame=BENT):
     return {i: each.position for i, each in project.figure.key(frame).pose.targets.items()}
 

@@ -42,7 +42,7 @@ from engine.maps.bounds import Bounds
 SEEDS = (1, 2, 15)  # both drawings, one of them by two variants
 MOST_FRAMES = 400  # until the worker has caught up
 REMEMBERED = 20  # actions that are told where the walk fails
-LOOKED_AT, SAVED = 25, 100  # steps between two looks at the invariants, and between two saves
+LOOKED_AT, SAVED = 25, 50  # steps between two looks at the invariants, and between two saves
 USUAL, SMALL = (1280, 800), (800, 560)
 MOST_HANDLES, MOST_KEYS, MOST_LAYERS = 6, 8, 4
 LAST = 90  # frame beyond which the walk does not go

@@ -18,6 +18,12 @@ from app.ui import bars
 from engine.maps import distortion
 
 
+@pytest.fixture
+def bent(loose):
+    """What the motion is like in between is not asked here."""
+    return loose
+
+
 def facts(window):
     return [fact.text for fact in bars.facts(window.session)]
 

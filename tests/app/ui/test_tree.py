@@ -126,6 +126,32 @@ def test_layers_take_turns_by_one_click(window, scene, ids, use):
     assert {"ah", "oh"} & seen(scene, 12) == {first}
 
 
+def test_only_the_layer_that_is_seen_has_a_full_circle(window, scene, ids, use):
+    window.act(editing.edit, choice_commands.form_choice("mouth", [ids["ah"], ids["oh"]]))
+    window.act(layering.toggle, "choice mouth")
+    window.act(layering.choose, ids["head"])
+    window.settle()
+    boxes = {}
+
+    def look(robot):
+        for name in ("ah", "oh"):
+            boxes[name] = robot.item_info(f"**/###turn {ids[name]}").rect_full
+        robot.mouse_move_to_pos(window.point(20 + 20j))
+
+    use(look)
+    picture = np.asarray(window.picture())[..., :3].astype(int)
+
+    def inked(box):
+        x, y = (round(value) for value in (box.get_center().x, box.get_center().y))
+        half = round(window.text_height() / 2)
+        around = picture[y - half : y + half, x - half : x + half]
+        return np.count_nonzero(np.abs(around - around[0, 0]).sum(axis=2) > 90)
+
+    on = scene.document.figure(scene.document.choices[0].at(0)).name
+    (off,) = {"ah", "oh"} - {on}
+    assert 0 < inked(boxes[off]) < inked(boxes[on])
+
+
 def test_where_a_turn_begins_is_dragged_in_the_timeline(window, scene, ids):
     window.act(editing.edit, choice_commands.form_choice("mouth", [ids["ah"], ids["oh"]]))
     other = next(i for i in (ids["ah"], ids["oh"]) if i != scene.document.choices[0].at(0))
@@ -404,6 +430,60 @@ def test_a_group_of_mouths_is_offered_as_a_choice(window, scene, ids, use):
     window.frames(3)
     use(lambda robot: robot.item_click("**/No"))
     assert scene.declined == {"mouth"}
+
+
+def test_a_group_is_dragged_by_its_row(window, scene, ids, use):
+    for names, path in ((("ah", "oh"), "mouth"), (("head", "stick"), "body")):
+        command = group_commands.put_in_group([ids[name] for name in names], path)
+        window.act(editing.edit, command)
+    window.frames(3)
+
+    def key(name):
+        return next(row.key for row in scene.tree if row.group and row.name == name)
+
+    def inside(path):
+        return {each.name for each in scene.document.figures if each.group == path}
+
+    # Onto a layer, all of it hangs there.
+    before = scene.document
+    use(lambda robot: drop(robot, key("mouth"), ids["hat"]))
+    window.settle()
+    assert [scene.document.figure(ids[name]).hangs for name in ("ah", "oh")] == [True, True]
+    assert scene.history.undo_label == "Attach 2 layers"
+    window.act(editing.undo)
+    assert scene.document is before
+    # Onto another group, it is one in that.
+    use(lambda robot: drop(robot, key("mouth"), key("body")))
+    assert inside("body/mouth") == {"ah", "oh"}
+    window.act(editing.undo)
+    assert scene.document is before
+    # Beside a layer, it lies there.
+    use(lambda robot: drop(robot, key("body"), ids["hat"], 0.1))
+    assert inside("body") == {"head", "stick"}
+    assert [each.name for each in scene.document.figures].index("hat") == 0
+    window.act(editing.undo)
+    assert scene.document is before
+
+
+def test_a_group_in_a_group_of_mouths_is_not_taken_apart(window, scene, ids, use):
+    for names, path in ((("ah", "oh", "hat", "stick"), "mouth"), (("hat", "stick"), "mouth/laugh")):
+        command = group_commands.put_in_group([ids[name] for name in names], path)
+        window.act(editing.edit, command)
+    window.frames(3)
+    key = next(row.key for row in scene.tree if row.group and row.group.name == "mouth")
+    before = scene.document
+
+    def take_turns(robot):
+        robot.item_click(row_of(key), 1)
+        robot.item_click("//$FOCUSED/Let its layers take turns")
+        robot.key_press(int(window.Key.escape))
+
+    use(take_turns)
+    assert scene.document is before
+    # The layers that are by themselves are offered, and the group stays as it is.
+    use(lambda robot: robot.item_click("**/Let them take turns"))
+    (choice,) = scene.document.choices
+    assert set(choice.figures) == {ids["ah"], ids["oh"]}
 
 
 def test_a_layer_is_moved_and_ordered_in_time_by_the_tab(window, scene, ids, use):

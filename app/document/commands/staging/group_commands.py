@@ -5,7 +5,11 @@ from dataclasses import replace
 from typing import Any
 
 from app.document.commands.command import command
-from app.document.commands.staging.layer_commands import numbered_name, without_empty_groups
+from app.document.commands.staging.layer_commands import (
+    group_at,
+    numbered_name,
+    without_empty_groups,
+)
 from app.document.figure import Figure
 from app.document.layering import Group, GroupBlend, paths_to, shared_path
 from app.document.model import Document
@@ -41,6 +45,25 @@ def add_groups(document: Document, groups: Sequence[Group]) -> Document:
     known = {group.name for group in document.groups}
     new = tuple(group for group in groups if group.name not in known)
     return replace(document, groups=(*document.groups, *new)) if new else document
+
+
+@command("Move group")
+def put_group_in(document: Document, path: str, around: str) -> Document:
+    """Put a group as it is in another one, in front of what that has, or with "" in none."""
+    _, others = _apart(document, path)
+    return _put_group(document, path, around, _place_in_group(document.figures, others, around))
+
+
+@command("Move group")
+def put_group_beside(document: Document, path: str, beside: int, *, in_front: bool) -> Document:
+    """Put a group as it is right in front of a figure that is not in it, or behind that.
+
+    It joins and leaves other groups as a figure does that is moved there.
+    """
+    run, others = _apart(document, path)
+    place = others.index(document.figure(beside)) + in_front
+    around = group_at(others, place, replace(run[0], group=path.rpartition("/")[0]))
+    return _put_group(document, path, around, place)
 
 
 @command("Rename group")
@@ -124,6 +147,30 @@ def _place_in_group(before: Sequence[Figure], others: Sequence[Figure], path: st
     while 0 < place < len(others) and shared_path(others[place - 1].group, others[place].group):
         place += 1
     return place
+
+
+def _apart(document: Document, path: str) -> tuple[list[Figure], list[Figure]]:
+    """Return the figures of a group, and all others."""
+    document.group(path)
+    run = [figure for figure in document.figures if path in paths_to(figure.group)]
+    return run, [figure for figure in document.figures if figure not in run]
+
+
+def _put_group(document: Document, path: str, around: str, place: int) -> Document:
+    """Return the document with a group in another one, at a place among all other figures."""
+    if path in paths_to(around):
+        raise LissomError(f"The group {path!r} cannot be put in itself.")
+    run, others = _apart(document, path)
+    figures = (*others[:place], *run, *others[place:])
+    outer, _, name = path.rpartition("/")
+    if around == outer and figures == document.figures:
+        return document
+    inner = [group for group in document.groups if path in paths_to(group.name)]
+    rest = [group for group in document.groups if group not in inner]
+    to = numbered_name(f"{around}/{name}".removeprefix("/"), {group.name for group in rest})
+    whole = replace(document, size=document.canvas)
+    # Each group after the one that it is in.
+    return without_empty_groups(_moved(whole, figures, [*rest, *inner], {path: to}))
 
 
 def _moved(

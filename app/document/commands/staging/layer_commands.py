@@ -25,7 +25,7 @@ def add_figure(document: Document, figure: Figure, index: int | None = None) -> 
     """
     figures = list(document.figures)
     place = len(figures) if index is None else index
-    group, name = _group_at(figures, place, figure), free_name(document, figure.name)
+    group, name = group_at(figures, place, figure), free_name(document, figure.name)
     figures.insert(place, replace(figure, name=name, group=group))
     # A canvas that was one picture's stays what it was.
     return replace(document, figures=tuple(figures), size=document.canvas)
@@ -108,7 +108,7 @@ def move_figure(document: Document, identity: int, index: int) -> Document:
         raise LissomError(f"There are {len(others) + 1} layers; none can be number {index + 1}.")
     if document.figures[index] is figure:
         return document
-    group = _group_at(others, index, figure)
+    group = group_at(others, index, figure)
     others.insert(index, figure if group == figure.group else replace(figure, group=group))
     moved = replace(document, figures=tuple(others), size=document.canvas)
     return without_empty_groups(moved)
@@ -289,7 +289,7 @@ def without_empty_groups(document: Document) -> Document:
     return document if groups == document.groups else replace(document, groups=groups)
 
 
-def _group_at(others: Sequence[Figure], index: int, figure: Figure) -> str:
+def group_at(others: Sequence[Figure], index: int, figure: Figure) -> str:
     """Return the group that a figure is in which is put at an index among others."""
     own, beside = figure.group, [each.group for each in others[max(index - 1, 0) : index + 1]]
     amid = shared_path(*beside) if len(beside) == 2 else ""

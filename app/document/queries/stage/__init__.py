@@ -5,7 +5,10 @@ Out: answers; nothing is changed.
 Imports: the values of `app.document`.
 """
 
-from app.document.queries.stage.alternates import alternates as alternates
+from app.document.queries.stage.alternates import (
+    alternates as alternates,
+    whole_groups as whole_groups,
+)
 from app.document.queries.stage.clipping import seen_alone as seen_alone
 from app.document.queries.stage.compositing import Composite as Composite, composed as composed
 from app.document.queries.stage.layer_tree import (

@@ -3,6 +3,7 @@
 import re
 
 from app.document.figure import Figure
+from app.document.layering import paths_to
 from app.document.model import Document
 
 # Of these there is one at a time.
@@ -31,6 +32,20 @@ def alternates(document: Document) -> tuple[tuple[str, tuple[int, ...]], ...]:
         is_free = all(_is_free(document, figure) for figure in members)
         if len(members) > 1 and is_free and (is_mouth or is_one):
             found.append((path, tuple(figure.id for figure in members)))
+    return tuple(found)
+
+
+def whole_groups(document: Document, path: str) -> tuple[str, ...]:
+    """Return the names of groups right in a group that have several layers.
+
+    These would take turns one by one, as lips and teeth of one mouth: none of them is a whole.
+    """
+    found = []
+    for group in document.groups:
+        around, _, name = group.name.rpartition("/")
+        members = [each for each in document.figures if group.name in paths_to(each.group)]
+        if around == path and len(members) > 1:
+            found.append(name)
     return tuple(found)
 
 

@@ -14,13 +14,16 @@ PULL = 0.25  # em by which the list scrolls in each frame while a row is dragged
 def drag_row(look: Look, project: Project, row: TreeRow, low: ImVec2, high: ImVec2) -> list[Action]:
     """Let a row, the last item, be dragged between two others, or onto one.
 
-    Onto a layer it hangs on it, in a group or a choice it is one of them.
+    Onto a layer it hangs on it, in a group or a choice it is one of them. The row of a group or a
+    choice is dragged with all layers in it, which are chosen then.
     """
     actions: list[Action] = []
-    if row.figure is not None and imgui.begin_drag_drop_source():
-        imgui.set_drag_drop_payload_py_id(MOVED, row.figure.id)
-        dragged = _dragged(project, row.figure.id)
-        imgui.text(row.figure.name if len(dragged) == 1 else f"{len(dragged)} layers")
+    if imgui.begin_drag_drop_source():
+        imgui.set_drag_drop_payload_py_id(MOVED, row.figures[0])
+        if row.figure is None and set(project.layers) != set(row.figures):
+            actions.append(do(layering.choose_all, *row.figures))
+        dragged = _dragged(project, row.figures[0])
+        imgui.text(row.name if set(dragged) <= set(row.figures) else f"{len(dragged)} layers")
         imgui.end_drag_drop_source()
     if not imgui.begin_drag_drop_target():
         return actions
@@ -57,7 +60,7 @@ def _onto(project: Project, row: TreeRow, identity: int) -> Action | None:
     if set(row.figures) <= set(dragged):
         return None
     if row.group is not None:
-        return do(layering.group, row.group.name, *dragged)
+        return do(layering.take_in, row.group.name, *dragged)
     if row.choice is not None:
         return None if identity in row.figures else do(layering.join, row.choice.name, identity)
     # Where that would be a circle, it says so, and nothing moves.

@@ -1,10 +1,13 @@
 """The menus of rows in the tree of layers."""
 
+from collections.abc import Sequence
+
 from imgui_bundle import icons_fontawesome_6 as icons, imgui
 
-from app.document import Choice, Figure, Group, TreeRow
+from app.document import Choice, Figure, Group, TreeRow, whole_groups
 from app.editor import Action, Project, do, layering
 from app.ui.shortcuts import BINDINGS
+from app.ui.style import tip
 
 SOLO = icons.ICON_FA_BINOCULARS
 item = imgui.internal.menu_item_ex  # as menu_item_simple, with icons in a column
@@ -23,6 +26,15 @@ def draw_menu(project: Project, row: TreeRow) -> tuple[list[Action], bool]:
         actions = [] if row.group is None else _of_group(project, row, row.group)
     imgui.end_popup()
     return actions, asks
+
+
+def kept_whole(groups: Sequence[str]) -> str:
+    """Return why groups in a group take no turns, and what to do instead."""
+    named = ", ".join(groups)
+    return (
+        f"Only single layers take turns, and {named} {'has' if len(groups) == 1 else 'have'} "
+        "several. Choose the layers that do: a layer that is clipped to one of them is seen with it"
+    )
 
 
 def _of_layer(project: Project, figure: Figure) -> list[Action]:
@@ -100,11 +112,14 @@ def _of_group(project: Project, row: TreeRow, group: Group) -> list[Action]:
     alone = project.solo == set(row.figures)
     if item("Look at all again" if alone else "Look at it alone", SOLO):
         actions.append(do(layering.look_at_alone, *row.figures))
+    whole = whole_groups(project.document, group.name)
     free = len(row.figures) > 1 and all(
         project.document.choice_of(each) is None for each in row.figures
     )
-    if item("Let its layers take turns", icons.ICON_FA_MASKS_THEATER, enabled=free):
+    if item("Let its layers take turns", icons.ICON_FA_MASKS_THEATER, enabled=free and not whole):
         actions.append(do(layering.form, *row.figures, name=row.name))
+    if whole:
+        tip(kept_whole(whole))
     imgui.separator()
     if item("Ungroup", icons.ICON_FA_FOLDER_MINUS):
         actions.append(do(layering.ungroup, group.name))

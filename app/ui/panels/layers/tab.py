@@ -2,9 +2,10 @@
 
 from imgui_bundle import imgui
 
-from app.document import alternates
+from app.document import alternates, whole_groups
 from app.editor import Action, Project, Session, do, layering
 from app.editor.actions import files, playback, rebuilding
+from app.ui.panels.layers.menus import kept_whole
 from app.ui.panels.layers.settings import draw_settings
 from app.ui.panels.layers.tree import SmallPictures, draw_tree
 from app.ui.style import Look, heading, progress, shortened, small
@@ -56,6 +57,9 @@ def _offers(look: Look, project: Project) -> list[Action]:
         name = path.rpartition("/")[2]
         imgui.push_id(path)
         small(look, f"The {len(figures)} layers of {name} look as if they took turns.")
+        whole = whole_groups(project.document, path)
+        if whole:
+            small(look, f"{kept_whole(whole)}.")
         if imgui.button("Let them take turns"):
             actions.append(do(layering.form, *figures, name=name))
         imgui.same_line()

@@ -29,6 +29,7 @@ ROW, WIDE, GAP = 2.1, 2.5, 0.35  # em: height of a row, width of its picture, ro
 INDENT, FOLD = 0.9, 1.2  # em: by which rows in others lie to the right, and of the triangle
 DEEPEST_INDENT = 6  # rows that are deeper are not shifted any more
 FEWEST, OTHERS = 6.5, 20.0  # rows at least, and em that are left to the settings below
+RING = 0.4  # em: radius of the circle of a layer that waits for its turn
 HIDDEN = 0.35  # opacity of the pictures of layers that are not seen now
 PAPER = imgui.IM_COL32(128, 130, 136, 255)  # on which both dark and light drawings are seen
 SIGN = imgui.IM_COL32(12, 13, 16, 255)  # on the paper
@@ -217,7 +218,10 @@ def _tell(document: Document, row: TreeRow) -> None:
             "These layers take turns: open it, and a click on a circle shows one from here on"
         )
     else:
-        imgui.text_disabled("Click to choose all layers in it, right click for more")
+        imgui.text_disabled(
+            "Click to choose all layers in it, drag it to move or hang them together, right click "
+            "for more"
+        )
     imgui.end_tooltip()
 
 
@@ -242,10 +246,12 @@ def _switches(look: Look, project: Project, row: TreeRow, frame: int) -> list[Ac
     choice = None if row.figure is None else document.choice_of(row.figure.id)
     if choice is not None:
         is_on = with_repeats(document, choice).at(frame) == row.figures[0]
-        icon = icons.ICON_FA_CIRCLE_DOT if is_on else icons.ICON_FA_CIRCLE
+        icon = icons.ICON_FA_CIRCLE_DOT if is_on else ""
         hint = f"Seen from frame {frame} on, in place of the others of {choice.name}"
         if icon_button(look, icon, f"turn {row.key}", hint, active=is_on):
             actions.append(do(layering.show_here, row.figures[0]))
+        if not is_on:
+            _ring(look)
     elif row.choice is not None:
         imgui.dummy(ImVec2(1.15 * imgui.get_frame_height(), imgui.get_frame_height()))
     else:
@@ -267,6 +273,13 @@ def _switches(look: Look, project: Project, row: TreeRow, frame: int) -> list[Ac
     if icon_button(look, key, f"lock {row.key}", hint, active=locked):
         actions.append(do(layering.lock, *_of_chosen(project, row)))
     return actions
+
+
+def _ring(look: Look) -> None:
+    """Draw an empty circle on the last item; the icon of a circle is a full one."""
+    middle = (imgui.get_item_rect_min() + imgui.get_item_rect_max()) / 2
+    radius, thick = RING * look.em, 0.1 * look.em
+    imgui.get_window_draw_list().add_circle(middle, radius, ink(look.palette.text), thickness=thick)
 
 
 def _of_chosen(project: Project, row: TreeRow) -> tuple[int, ...]:

@@ -88,7 +88,7 @@ def picture(session):
     session.jobs.deliver()
 
 
-def drag(session, identity, way, *, rests=30):
+def drag(session, identity, way, *, rests=15):
     """Drag a handle some way, and hold it there for some pictures."""
     start = complex(where(session.project)[0][identity])
     editing.select(session, frozenset({identity}))
@@ -144,7 +144,7 @@ def test_a_hand_beyond_reach_moves_a_limb_and_leaves_the_rest(session):
 @pytest.mark.parametrize("session", ["person"], indirect=True)
 def test_loosen_pulls_once_more_to_where_the_hand_went(session):
     project = session.project
-    hand, asked, _ = drag_too_far(session)
+    hand, asked, _ = drag_too_far(session, rests=5)
     pointing.end(session, asked)
     settle(session)
     short = abs(where(project)[0][hand] - asked)
@@ -162,7 +162,7 @@ def test_loosen_pulls_once_more_to_where_the_hand_went(session):
 @pytest.mark.parametrize("session", ["person"], indirect=True)
 def test_alt_keeps_the_wish_and_pulls_as_strongly_as_it_takes(session):
     project = session.project
-    hand, asked, before = drag_too_far(session)
+    hand, asked, before = drag_too_far(session, rests=0)
     pointing.end_insisting(session, asked)
     settle(session)
     after, _ = where(project)
