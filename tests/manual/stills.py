@@ -22,6 +22,7 @@ from app.storage import sample_images
 from tests.manual.film import Film
 from tests.manual.stage import (
     SIZE,
+    heighten_timeline,
     project_of,
     save,
     scroll_to,
@@ -39,6 +40,9 @@ WALK = {
     "far hind hoof": (-FORE, LIFT, FORE, 0j),
 }
 RIGHT = 1  # the other button of the mouse
+HIGHER = (1000, 672)  # of a window where nothing in a tab is cut in half
+LAYERED = (1000, 812)
+CHOICE = 16.0  # pixels that the timeline is higher by, so that a row of a choice is seen whole
 
 
 def _still(window: Film, path: Path) -> None:
@@ -130,6 +134,7 @@ def _poses(window: Film, path: Path) -> None:
         window.act(library.rename, project.figure.library[-1].name, name)
     window.act(playback.seek, 37)
     window.act(viewing.toggle, "onion")
+    window.resize(HIGHER)
     window.show_tab("Poses")
     _still(window, path)
 
@@ -137,7 +142,7 @@ def _poses(window: Film, path: Path) -> None:
 def _ready_motions(window: Film, path: Path) -> None:
     """A giraffe that is about to walk: where its joints are."""
     window.open(sample_images() / "giraffe.png")
-    window.resize((1000, 780))
+    window.resize((1000, 804))
     window.act(drafting.begin)
     window.frames(6)
     window.act(viewing.fit_pose)
@@ -148,6 +153,7 @@ def _front(window: Film, path: Path) -> None:
     """Two arms of an octopus cross; one of them is painted in front."""
     project = open_sample(window, "octopus", frame=16)
     window.act(editing.select, frozenset({handle_named(project, "left 4")}))
+    window.resize((1000, 696))
     window.show_tab("Handle")
     come_to_rest(window)
     scroll_to(window, "**/From this key on")
@@ -157,6 +163,7 @@ def _front(window: Film, path: Path) -> None:
 def _stretch(window: Film, path: Path) -> None:
     """The limits of a giraffe, and how much of them its pose uses."""
     open_sample(window, "giraffe", frame=30)
+    window.resize(HIGHER)
     window.show_tab("Deform")
     window.act(viewing.fit_pose)
     come_to_rest(window)
@@ -176,6 +183,7 @@ def _distortion(window: Film, path: Path) -> None:
 def _mesh(window: Film, path: Path) -> None:
     """The triangles and the cage of a dragon."""
     window.open(sample_images() / "dragon.png")
+    window.resize(HIGHER)
     window.act(viewing.toggle, "wireframe")
     window.show_tab("Mesh")
     _still(window, path)
@@ -187,21 +195,24 @@ def _layers(window: Film, path: Path) -> None:
     arm = next(figure.id for figure in project.document.figures if figure.name == "right arm")
     window.act(layering.choose, arm)
     window.act(editing.select, frozenset({handle_named(project, "hand")}))
+    window.resize(LAYERED)
     window.show_tab("Layers")
-    window.resize((1000, 780))
-    window.show_tab("Layers")
+    heighten_timeline(window, CHOICE)
     _still(window, path)
+    heighten_timeline(window, -CHOICE)
 
 
 def _mouths(window: Film, path: Path) -> None:
     """Two mouths take turns by a click on a circle."""
     project = open_sample(window, "friend", frame=36)
-    window.resize((1000, 780))
+    window.resize(LAYERED)
     window.show_tab("Layers")
     window.act(layering.toggle, next(row.toggle for row in project.tree if row.choice is not None))
     head = next(figure.id for figure in project.document.figures if figure.name == "head")
+    heighten_timeline(window, CHOICE)
     window.act(layering.choose, head)
     _still(window, path)
+    heighten_timeline(window, -CHOICE)
 
 
 def _camera(window: Film, path: Path) -> None:

@@ -172,7 +172,7 @@ def _random_choice_command(rng: np.random.Generator, document: Document) -> Comm
         choice_commands.unchoose_at(name, turn),
         choice_commands.move_turn(name, turn, to),
         choice_commands.rename_choice(name, f"choice {rng.integers(3)}"),
-        choice_commands.join_choice(name, identity),
+        choice_commands.join_choice(name, [identity]),
         choice_commands.leave_choice(identity),
         choice_commands.dissolve_choice(name),
     ]

@@ -51,7 +51,7 @@ def hang(
         names = [project.document.figure(identity).name for identity in (parent, child)]
         session.tell(
             f"{names[0]} hangs on {names[1]}, so that {names[1]} cannot hang on it: that would be "
-            "a circle. Detach one of the layers between first.",
+            f"a circle. Let {names[0]} hang on nothing first.",
             tone="error",
             topic="joint",
         )

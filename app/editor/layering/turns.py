@@ -27,9 +27,9 @@ def decline(_: Session, project: Project, group: str) -> None:
     project.declined |= {group}
 
 
-def join(session: Session, name: str, identity: int) -> None:
-    """Take a layer into a choice."""
-    editing.edit(session, choice_commands.join_choice(name, identity))
+def join(session: Session, name: str, *identities: int) -> None:
+    """Take layers into a choice."""
+    editing.edit(session, choice_commands.join_choice(name, identities))
 
 
 def leave(session: Session, identity: int) -> None:

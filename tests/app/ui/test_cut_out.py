@@ -12,6 +12,7 @@ from PIL import Image
 from app.document import Target
 from app.editor.actions import cutting, editing, posing, rebuilding
 from app.storage.project_file import load_project, save_project
+from app.ui.panel import is_in_front
 from app.ui.style import TOAST
 
 SIZE = 120
@@ -162,6 +163,20 @@ def test_alt_and_x_swap_the_brush_and_brackets_change_its_size(window, drawing):
 
     window.run(leave)
     assert session.cutting is None
+
+
+def test_the_key_of_the_brush_brings_its_tab_to_the_front(window, drawing):
+    assert drawing is window.session.project
+    window.show_tab("Handle")
+    window.run(lambda robot: robot.key_press(int(window.Key.x)))
+    window.frames(3)
+    assert is_in_front("Cut-out")
+    window.show_tab("Handle")
+    # To put it away brings nothing to the front.
+    window.run(lambda robot: robot.key_press(int(window.Key.escape)))
+    window.frames(3)
+    assert window.session.cutting is None
+    assert is_in_front("Handle")
 
 
 def test_a_stroke_that_is_cancelled_is_none(window, drawing):

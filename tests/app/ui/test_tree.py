@@ -290,6 +290,19 @@ def test_chosen_layers_are_dropped_together(window, scene, ids, use):
     assert scene.document is before
 
 
+def test_chosen_layers_are_dropped_on_a_choice_together(window, scene, ids, use):
+    window.act(layering.form, ids["ah"], ids["oh"])
+    before = scene.document
+    (choice,) = before.choices
+    (row,) = (row for row in scene.tree if row.choice is choice)
+    window.act(layering.choose_all, ids["hat"], ids["stick"])
+    use(lambda robot: drop(robot, ids["stick"], row.key))
+    (joined,) = scene.document.choices
+    assert set(joined.figures) == {*choice.figures, ids["hat"], ids["stick"]}
+    window.act(editing.undo)
+    assert scene.document is before
+
+
 def test_what_hung_on_a_layer_that_is_deleted_hangs_on_what_that_hung_on(window, scene, ids):
     for child, parent in (("ah", "hat"), ("hat", "head")):
         window.act(layering.hang, ids[child], ids[parent])

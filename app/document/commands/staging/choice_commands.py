@@ -74,13 +74,15 @@ def rename_choice(document: Document, name: str, new: str) -> Document:
 
 
 @command("Take into the choice")
-def join_choice(document: Document, name: str, identity: int) -> Document:
-    """Take a figure into a choice, as the last one; it is seen where it is chosen only."""
-    choice, figure = document.choice(name), document.figure(identity)
-    if identity in choice.figures:
+def join_choice(document: Document, name: str, figures: Sequence[int]) -> Document:
+    """Take figures into a choice, as the last ones; each is seen where it is chosen only."""
+    choice = document.choice(name)
+    new = tuple(identity for identity in figures if identity not in choice.figures)
+    if not new:
         return document
-    document = _unswitched(document, figure.id)
-    return _exchange(document, choice, replace(choice, figures=(*choice.figures, identity)))
+    for identity in new:
+        document = _unswitched(document, identity)
+    return _exchange(document, choice, replace(choice, figures=(*choice.figures, *new)))
 
 
 @command("Take out of the choice")

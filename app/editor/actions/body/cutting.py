@@ -26,6 +26,7 @@ from engine.geometry import box_diagonal, distance_to_segments
 
 WRITING = Kind("Saving the mask", "The mask was not saved")
 MASKS = (".png",)
+PANEL = "Cut-out"  # has the settings of the brush
 SMALLEST_BRUSH, LARGEST_BRUSH = 1.0, 1000.0  # pixels of the picture
 BRUSH_STEP = 1.25
 FIRST_BRUSH = 0.03  # of the picture's longer side
@@ -39,6 +40,7 @@ def take_up(session: Session, project: Project, tool: CutTool | None) -> None:
     if session.pointer is None:
         session.cutting = None if tool == session.cutting else tool
         session.material = project.draft = None
+        session.wanted_panel = PANEL if session.cutting else session.wanted_panel
 
 
 def begin_or_swap(session: Session) -> None:

@@ -62,7 +62,7 @@ def _onto(project: Project, row: TreeRow, identity: int) -> Action | None:
     if row.group is not None:
         return do(layering.take_in, row.group.name, *dragged)
     if row.choice is not None:
-        return None if identity in row.figures else do(layering.join, row.choice.name, identity)
+        return do(layering.join, row.choice.name, *dragged)
     # Where that would be a circle, it says so, and nothing moves.
     return do(layering.hang_together, row.figures[0], *dragged)
 
