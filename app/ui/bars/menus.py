@@ -9,6 +9,7 @@ from app.editor import Action, Session, do
 from app.editor.actions import files, keys, viewing
 from app.errors import shown_name
 from app.storage import CHECKER
+from app.ui.bars.methods import draw_methods
 from app.ui.panel import Panel, is_in_front
 from app.ui.shortcuts import MENUS, bound_item
 from app.ui.style import Look, colour_field, tip
@@ -92,6 +93,16 @@ def _new_keys(session: Session) -> list[Action]:
     return actions
 
 
+def _methods(session: Session) -> list[Action]:
+    """Draw the menu of how in-betweens are made, for which a narrow timeline has no room."""
+    project = session.project
+    if not imgui.begin_menu("In-betweens", project is not None):
+        return []
+    actions = draw_methods(project) if project is not None else []
+    imgui.end_menu()
+    return actions
+
+
 def _recent(session: Session) -> list[Action]:
     """Draw the menu of the files that were open last."""
     recent = files.recent_files(session)
@@ -117,4 +128,5 @@ BELOW: dict[str, Callable[[Session], list[Action]]] = {
     "motion paths": _path_reaches,
     "smaller": _backdrops,
     "ease not": _new_keys,
+    "repeat no more": _methods,
 }

@@ -4,10 +4,11 @@ from collections.abc import Callable
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
-from app.document import LAST_FRAME, figure_commands
+from app.document import LAST_FRAME
 from app.editor import Action, Project, Session, do
-from app.editor.actions import editing, keys, playback, tracking, viewing
+from app.editor.actions import keys, playback, tracking, viewing
 from app.storage import LARGEST_GHOST_STEP, MOST_GHOSTS
+from app.ui.bars import draw_methods
 from app.ui.methods import VARIANTS
 from app.ui.shortcuts import BINDINGS, bound_button
 from app.ui.style import Look, icon_button, ink, tip
@@ -227,18 +228,8 @@ def _onion_skin(session: Session, look: Look) -> list[Action]:
 
 def _variant(project: Project) -> list[Action]:
     actions: list[Action] = []
-    current = project.figure.variant
-    if imgui.begin_combo("##variant", VARIANTS[current].name):
-        for variant, text in VARIANTS.items():
-            if imgui.selectable(text.title, variant == current)[0]:
-                actions.append(do(keys.set_variant, variant))
-            tip(text.what)
-        imgui.separator()
-        stays = project.figure.stillness
-        if imgui.menu_item("Handles stay between keys", "", stays)[0]:
-            command = figure_commands.set_stillness(project.active, stillness=not stays)
-            actions.append(do(editing.edit, command))
-        tip("Handles stay in between where two keys have them at one place")
+    if imgui.begin_combo("##variant", VARIANTS[project.figure.variant].name):
+        actions += draw_methods(project)
         imgui.end_combo()
     tip("How in-betweens are made")
     return actions

@@ -650,15 +650,19 @@ def test_handles_that_stay_have_a_mark_and_can_be_freed(window, bent, press):
     assert not staying(bent.puppet.shown)
 
 
-def test_handles_stay_or_not_as_the_menu_of_interpolation_says(window, bent):
+@pytest.mark.parametrize("is_narrow", [False, True])
+def test_handles_stay_or_not_as_the_menu_of_interpolation_says(window, bent, is_narrow):
     before = bent.document
     window.act(playback.seek, 12)
     window.settle()
 
     def switch():
         def act(robot):
-            robot.item_click("//###Timeline/##variant")
-            robot.item_click("//##Combo_00/Handles stay between keys")
+            if is_narrow:
+                robot.menu_click("//##MainMenuBar/Keys/In-betweens/Handles stay between keys")
+            else:
+                robot.item_click("//###Timeline/##variant")
+                robot.item_click("//##Combo_00/Handles stay between keys")
 
         window.run(act)
         window.settle()
