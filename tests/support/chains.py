@@ -60,8 +60,8 @@ def exactly(document, figure, place, frame):
     return moved.positions[0], moved.fz[0]
 
 
-def seen(document, figure, frame):
-    """Where some points of a figure are in the scene."""
+def seen(document, figure, frame, joints=None):
+    """Where some points of a figure are in the scene; by its joints where they are known."""
     points = np.array([CENTRE, CENTRE + 30j, CENTRE - 50])
     own = Animation(clip_of(document, figure), points=points).positions(frame)
-    return Joints(document).placement(figure, frame).on(own)
+    return (joints or Joints(document)).placement(figure, frame).on(own)

@@ -324,8 +324,9 @@ def test_what_changes_hands_in_a_cycle_does_so_in_every_repeat(folder, capsys):
         {"frame": 3, "to": "body", "keep": True},
         {"frame": 9, "to": "arm", "keep": True},
     ]
-    patch = {**patch, "visible": [], "attach": joints, "cycles": cycles}
-    figures = [{**body, "cycles": cycles}, {**arm, "cycles": cycles}, patch]
+    common = {"cycles": cycles, "still": False}
+    patch = {**patch, **common, "visible": [], "attach": joints}
+    figures = [{**body, **common}, {**arm, **common}, patch]
     frames = {
         "fps": 24,
         "camera": {"keys": [{"frame": frame, "centre": [120, 100]} for frame in (0, 40)]},

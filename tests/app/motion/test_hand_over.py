@@ -182,7 +182,8 @@ def cycling(document, *, until=None, last=200):
     for figure in document.figures:
         keys = tuple(key for key in figure.keys if key.frame < 48)
         cycles = (Cycle(first=0, last=48, until=until),)
-        document = document.with_figure(replace(figure, keys=keys, cycles=cycles))
+        changed = replace(figure, keys=keys, cycles=cycles, stillness=False)
+        document = document.with_figure(changed)
     return document
 
 
@@ -199,7 +200,7 @@ def juggled(hands):
 def test_what_is_handed_over_in_a_cycle_is_handed_over_in_every_repeat(juggled):
     joints = Joints(juggled)
     for frame in (0, 7.5, 14, 20, 31.9, 32, 40.25, 47.9):
-        placed = [seen(juggled, 2, frame + repeat * 48) for repeat in range(4)]
+        placed = [seen(juggled, 2, frame + repeat * 48, joints) for repeat in range(4)]
         for other in placed[1:]:
             assert_allclose(other, placed[0], rtol=0, atol=1e-5)
         carriers = [juggled.carriers(2, frame + repeat * 48)[1].id for repeat in range(4)]
@@ -216,11 +217,9 @@ def test_what_is_handed_over_in_a_cycle_is_handed_over_in_every_repeat(juggled):
 def test_a_joint_at_the_end_of_a_cycle_is_the_one_at_its_beginning(juggled):
     anchor = juggled.figure(2).anchor
     again = Attachment(to=0, at=CENTRE, frame=48, keeps=True)
+    both = Joints(juggled), Joints(layers.attach(2, anchor, again)(juggled))
     for frame in (40, 48, 60, 70, 100):
-        one, other = (
-            Joints(each).placement(2, frame)
-            for each in (juggled, layers.attach(2, anchor, again)(juggled))
-        )
+        one, other = (each.placement(2, frame) for each in both)
         assert abs(one.shift - other.shift) < TOL
     # With another end, or what is said in the repeats, it has its own time.
     for joint in (replace(again, to=1), replace(again, frame=70)):
@@ -255,13 +254,14 @@ def test_repeats_of_joints_made_into_keys_move_as_before(juggled):
         )
         keyed = cycle_commands.make_keys(2, 5, 200)(document)
         assert not keyed.figure(2).cycles or keyed.figure(2).cycles[0].first > 5
+        stopped = cycle_commands.stop(2, 5)(document)
+        joints, of_keys, of_stopped = map(Joints, (document, keyed, stopped))
         for frame in (8, 20, 35, 52.5, 53, 60, 70, 90, 130, 199):
-            one, other = (Joints(each).placement(2, frame) for each in (document, keyed))
+            one, other = (each.placement(2, frame) for each in (joints, of_keys))
             assert abs(one.factor - other.factor) < 1e-9
             assert abs(one.shift - other.shift) < 1e-6
-        stopped = cycle_commands.stop(2, 5)(document)
         for frame in (20, 35, 52.5, 53):
-            one, other = (Joints(each).placement(2, frame) for each in (document, stopped))
+            one, other = (each.placement(2, frame) for each in (joints, of_stopped))
             assert abs(one.shift - other.shift) < 1e-6
 
 

@@ -47,9 +47,15 @@ def frames_of(project, handle=RIGHT):
 
 def place_of(project, handle, frame):
     """Where a handle is at a frame, exactly."""
+    (place,) = places_of(project, handle, [frame])
+    return place
+
+
+def places_of(project, handle, frames):
+    """Where a handle is at some frames, exactly."""
     clip = clip_of(project.document, project.active)
-    point = np.array([project.figure.handle(handle).position])
-    return complex(Animation(clip, points=point).positions(frame)[0])
+    animation = Animation(clip, points=np.array([project.figure.handle(handle).position]))
+    return [complex(animation.positions(frame)[0]) for frame in frames]
 
 
 class Rows:
@@ -417,7 +423,7 @@ def test_keys_of_a_track_are_copied_and_pasted(window, bent):
 def test_planting_moves_nothing_at_the_keys_and_leads_back(window, bent, press):
     track = with_track(window, bent, delay=1)
     window.act(editing.select, frozenset({RIGHT}))
-    before = [place_of(bent, RIGHT, key.frame + 1) for key in track.keys]
+    before = places_of(bent, RIGHT, [key.frame + 1 for key in track.keys])
     press("kind/###picture")
     planted = bent.figure.track_of(RIGHT)
     assert planted.planted
@@ -446,7 +452,7 @@ def test_planting_keeps_the_motion_around_keys_that_have_velocities(window, bent
     window.settle()
 
     def passing():
-        before, after = (place_of(bent, RIGHT, frame) for frame in (9.99, 10.01))
+        before, after = places_of(bent, RIGHT, (9.99, 10.01))
         return (after - before) / 0.02
 
     beside = passing()
@@ -549,13 +555,13 @@ def test_a_spring_becomes_keys_that_swing_as_it_did(window, bent, press):
     window.act(editing.select, frozenset({RIGHT}))
     window.settle()
     before, frames = bent.document, range(0, 49, 4)
-    swung = np.array([place_of(bent, RIGHT, frame) for frame in frames])
+    swung = np.array(places_of(bent, RIGHT, frames))
     press("Make keys of it")
     track = bent.figure.track_of(RIGHT)
     assert bent.figure.spring_of(RIGHT) is None
     assert bent.chosen_track == RIGHT
     assert len(track.keys) < 20
-    keyed = np.array([place_of(bent, RIGHT, frame) for frame in frames])
+    keyed = np.array(places_of(bent, RIGHT, frames))
     assert np.abs(keyed - swung).max() < 1, "half a pixel, and what is solved"
     window.act(editing.undo)
     assert bent.document is before

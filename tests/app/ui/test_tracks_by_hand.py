@@ -20,7 +20,7 @@ from engine.errors import EngineError
 
 END = 1  # the handle near the right end
 NEAR = 0.3  # pixels that a tracked handle may miss
-PIXEL = 1.5  # as far as the pointer is beside where it is sent
+PIXEL = 2.0  # of the picture: where it is pressed and let go, to whole ones of the screen
 
 
 def place_of(project, handle=END):
