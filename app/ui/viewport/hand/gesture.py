@@ -30,6 +30,7 @@ from engine.geometry import box_diagonal
 DIGITS = "0123456789.,-"
 AXES = ((imgui.Key.x, "x"), (imgui.Key.y, "y"))
 STROKE = 0.45  # opacity of one that is not done yet
+HALF = 0.5  # pixels by which what is shown of one may be beside it
 
 
 def go_on(session: Session, look: Look, screen: Screen) -> list[Action]:
@@ -145,9 +146,11 @@ def _draw_stroke(look: Look, screen: Screen, mark: StrokeMark) -> None:
 
 
 def covered(way: Sequence[ImVec2], radius: float) -> list[tuple[ImVec2, ImVec2, ImVec2]]:
-    """Return triangles that cover each place within a radius of a way once."""
+    """Return triangles that cover each place within a radius of a way once, to half a pixel."""
     points = [(point.x, point.y) for point in way]
     line = shapely.LineString(points) if len(points) > 1 else shapely.Point(points[0])
+    # In each frame anew: of all places of a mouse that would take up to a tenth of a second.
+    line = line.simplify(HALF)
     parts = shapely.get_parts(shapely.constrained_delaunay_triangles(line.buffer(radius)))
     rings = shapely.get_coordinates(parts).reshape(-1, 4, 2).tolist()
     return [(ImVec2(*one), ImVec2(*two), ImVec2(*three)) for one, two, three, _ in rings]
