@@ -284,10 +284,13 @@ class Project:
 
     def make_room(self) -> None:
         """Let go of what figures that nobody edits were made with, as long as that is much."""
-        for clip, puppet in self._unedited():
-            if not self.is_crowded:
+        unedited = self._unedited()
+        held = {puppet: puppet.held(clip) for clip, puppet in unedited}
+        for clip, puppet in unedited:
+            if sum(held.values()) <= MOST_PASSING:
                 return
             puppet.rest(clip)
+            held[puppet] = puppet.held(clip)
 
     def _unedited(self) -> list[tuple[Clip, Puppet]]:
         return [

@@ -63,6 +63,8 @@ class Puppet:
 
     def held(self, clip: Clip) -> int:
         """Return how many bytes `rest` lets go, or will once series show all of a clip."""
+        if self.store.has_failed(clip, "series"):
+            return 0
         stores = filter(None, (self.store, self.fine))
         shown = sum(store.passing_bytes(clip) for store in stores)
         sampler = self.store.sampler
