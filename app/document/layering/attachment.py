@@ -82,13 +82,7 @@ def joints_repeat(joints: Sequence[Attachment], cycle: Cycle) -> bool:
     the figure hangs on what it hung on at the beginning. Else it has its own time.
     """
     begun = _begun(joints, cycle)
-    later = [joint for joint in joints if joint.frame > cycle.first]
-    if cycle.until is not None:
-        later = [joint for joint in later if joint.frame < cycle.until]
-    return any(joint.frame < cycle.last for joint in later) and all(
-        joint.frame < cycle.last or (joint.frame == cycle.last and _is_again(joint, begun))
-        for joint in later
-    )
+    return cycle.has_all(joint.frame for joint in joints if not _is_again(joint, begun, cycle))
 
 
 @lru_cache(maxsize=64)
@@ -112,8 +106,7 @@ def repeated_joints(
         others = [
             joint
             for joint in joints
-            if joint.frame not in again
-            and not (joint.frame == cycle.last and _is_again(joint, begun))
+            if joint.frame not in again and not _is_again(joint, begun, cycle)
         ]
         start = cycle.last
         while start <= min(until, LAST_FRAME):
@@ -131,10 +124,11 @@ def repeated_joints(
     return joints
 
 
-def _is_again(joint: Attachment, begun: Attachment) -> bool:
-    """Tell whether a joint at a cycle's end is that with which the cycle begins."""
+def _is_again(joint: Attachment, begun: Attachment, cycle: Cycle) -> bool:
+    """Tell whether a joint is at a cycle's end, and that with which the cycle begins."""
     same = replace(joint, frame=begun.frame, since=None, leads=begun.leads)
-    return joint.to == begun.to and (joint.keeps or same == begun)
+    is_alike = joint.to == begun.to and (joint.keeps or same == begun)
+    return joint.frame == cycle.last and is_alike
 
 
 def _begun(joints: Sequence[Attachment], cycle: Cycle) -> Attachment:

@@ -52,6 +52,16 @@ class Cycle:
         """Tell whether keys repeat with it: those that go on beyond it have their own time."""
         return self.has(keys[0].frame) and keys[-1].frame <= self.last
 
+    def has_all(self, frames: Iterable[int]) -> bool:
+        """Tell whether what changes at some frames changes in the stretch, and not in repeats.
+
+        What changes before and after has no say, and there is a change at least.
+        """
+        later = [frame for frame in frames if frame > self.first]
+        if self.until is not None:
+            later = [frame for frame in later if frame < self.until]
+        return bool(later) and max(later) < self.last
+
     def moved(self, to: Callable[[int], int]) -> Self:
         """Return the cycle with its frames where a function has them."""
         until = None if self.until is None else to(self.until)

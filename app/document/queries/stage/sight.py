@@ -91,13 +91,8 @@ def turn_frame(document: Document, choice: Choice, frame: int) -> int:
 
 def turns_in(choice: Choice, cycle: Cycle) -> bool:
     """Tell whether all changes of a choice, but for those before and after, are in a cycle."""
-    begun = choice.at(cycle.first)
-    later = [turn for turn in choice.turns if turn.frame > cycle.first]
-    if cycle.until is not None:
-        later = [turn for turn in later if turn.frame < cycle.until]
-    return any(turn.frame < cycle.last for turn in later) and all(
-        turn.frame < cycle.last or turn == (cycle.last, begun) for turn in later
-    )
+    again = Turn(cycle.last, choice.at(cycle.first))
+    return cycle.has_all(turn.frame for turn in choice.turns if turn != again)
 
 
 def repeated(
