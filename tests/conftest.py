@@ -1,12 +1,15 @@
 import hypothesis
 import pytest
+from hypothesis.internal.conjecture import providers
 
 from app.cli.process import use_one_thread
 
 # As in the program, and before anything imports NumPy.
 use_one_thread()
 
-# Runs are repeatable, and no test depends on the machine's speed.
+# Runs are repeatable, and no test depends on the machine's speed. Hypothesis would also draw from
+# the constants of all local modules that are loaded, which are others where a test runs alone.
+providers.is_local_module_file = lambda _: False
 hypothesis.settings.register_profile("lissom", deadline=None, derandomize=True, database=None)
 hypothesis.settings.load_profile("lissom")
 
