@@ -112,6 +112,8 @@ class Project:
     pictures: dict[PictureFile, Picture] = field(default_factory=dict)
     active: int  # the id of the figure whose handles and keys are shown and changed
     pending: list[Promise] = field(default_factory=list)  # all on its way to the document
+    # What decided which jobs are due, when that was looked at last.
+    polled: tuple[object, ...] = ()
     afterwards: list[Afterwards] = field(default_factory=list)  # what is done once it is there
     # Commands given during a gesture make one step of undo together; it is that of a widget.
     gesture: object | None = None

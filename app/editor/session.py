@@ -230,6 +230,9 @@ class Session:
     screen: tuple[int, int] = (640, 480)  # pixels of the viewport
     full_detail: bool = True  # whether this machine draws the full mesh fast enough to move
     solver_seconds: float = 0.0
+    # Whether what nobody looks at yet is prepared meanwhile: in-betweens, corrections, series for
+    # smooth playback, measured distortion and the extent of the motion. Tests mostly go without.
+    prepares_ahead: bool = True
     meshing: Meshing = field(default_factory=Meshing)  # of new pictures
     toasts: list[Toast] = field(default_factory=list)
     dialog: Dialog | None = None

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import NamedTuple
 
-from app.document import Clip, Document, clip_of
+from app.document import Clip, Document, clip_of, resting_pose, time_of
 from app.motion.inbetweens import (
     Corrections,
     FrameCorrection,
@@ -73,7 +73,7 @@ class CorrectedFrames:
 
     def at(self, clip: Clip, frame: int) -> FrameCorrection | None:
         """Return the best that is known of a frame of a clip; of another one there is nothing."""
-        if clip != self.clip or not self._is_asked:
+        if clip != self.clip or not self._is_asked or self._is_resting(frame):
             return None
         return self._exact[frame] if frame in self._exact else self._rough.get(frame)
 
@@ -90,7 +90,17 @@ class CorrectedFrames:
 
     def is_exact(self, clip: Clip, frame: int) -> bool:
         """Tell whether that is what the frame has."""
-        return clip != self.clip or not self._is_asked or frame in self._exact
+        if clip != self.clip or not self._is_asked:
+            return True
+        return frame in self._exact or self._is_resting(frame)
+
+    def _is_resting(self, frame: int) -> bool:
+        """Whether a frame shows a key's pose, to which neither tracks nor springs add anything."""
+        figure = self.clip.figure
+        enabled = [each.enabled for each in figure.tracks]
+        if any(enabled) or any(each.enabled for each in figure.springs):
+            return False
+        return resting_pose(self.clip, time_of(self.clip, frame)) is not None
 
     def ground(self, frame: int) -> Ground | None:
         """Return what tracks are relative to at a frame, if that is known."""

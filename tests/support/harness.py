@@ -66,6 +66,7 @@ class Harness:
     def __init__(self) -> None:
         self.clock = Clock()
         self.folder = Path(tempfile.mkdtemp(prefix="lissom-test-"))
+        self.paints = False  # whether frames of which no picture is taken are drawn, too
         self.session = Session(clock=self.clock, jobs=Jobs(), folder=self.folder)
         self._tests = 0
         self._made: dict[tuple[object, ...], tuple[float, Project, Preferences]] = {}
@@ -88,6 +89,7 @@ class Harness:
 
     def reset(self) -> None:
         """Go back to the welcome view of a person who opens Lissom for the first time."""
+        self.paints = False
         jobs = self.session.jobs
         if not jobs.settle(PATIENCE):
             # A test that failed has left a worker behind: the next ones are not to wait for it.
@@ -98,8 +100,9 @@ class Harness:
         for field in fields(Session):
             if field.name not in {"screen", "full_detail", "graphics"}:
                 setattr(self.session, field.name, getattr(fresh, field.name))
-        # Small meshes, so that the tests are quick.
+        # Small meshes, and nothing that nobody looks at, so that the tests are quick.
         self.session.meshing = Meshing(triangles=2_000, detail="coarse")
+        self.session.prepares_ahead = False
         self.session.autosave.forget()
         for leftover in self.folder.iterdir():
             leftover.unlink()
@@ -121,9 +124,12 @@ class Harness:
 
         Whoever asks for it has what may change in it for themselves.
         """
-        known = (make, *arguments)
+        known, prepares_ahead = (make, *arguments), self.session.prepares_ahead
         if known not in self._made:
+            # Whichever test comes first, it has only what all of them look at.
+            self.session.prepares_ahead = False
             make(self, *arguments)
+            self.session.prepares_ahead = prepares_ahead
             assert not self.session.jobs.kinds
             assert self.session.project is not None
             self._made[known] = (self.clock.now, self.session.project, self.session.preferences)
@@ -134,6 +140,8 @@ class Harness:
         project.autosaved, project.autosaved_at, project.changed_at = None, self.clock.now, None
         saving.put_project(self.session, project)
         self.frames(2)
+        if prepares_ahead:
+            self.settle()
         return project
 
     def point(self, place: complex) -> ImVec2:
@@ -241,6 +249,7 @@ class Harness:
 
     def _frame(self, *, painted: bool = False) -> None:
         self.clock.now += FRAME
+        self._window.paints = painted or self.paints
         self._screen.frame(painted=painted)
 
 

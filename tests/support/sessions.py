@@ -14,10 +14,25 @@ from engine.arrays import Bytes
 BLANK = np.zeros((90, 120, 4), np.uint8)
 
 
-def session_of(document: Document, folder: Path, picture: Bytes = BLANK) -> Session:
-    """Return a session of a document, at rest, whose clock stands still."""
+def session_of(
+    document: Document,
+    folder: Path,
+    picture: Bytes = BLANK,
+    *,
+    prepares_ahead: bool = False,
+) -> Session:
+    """Return a session of a document, at rest, whose clock stands still.
+
+    It prepares only what is shown, or all that the program does.
+    """
     project = project_of(document, picture, "blob")
-    session = Session(clock=lambda: 0.0, jobs=Jobs(), folder=folder, project=project)
+    session = Session(
+        clock=lambda: 0.0,
+        jobs=Jobs(),
+        folder=folder,
+        project=project,
+        prepares_ahead=prepares_ahead,
+    )
     settle(session)
     return session
 

@@ -12,7 +12,7 @@ from app.editor.failures import report
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.timeline_view import measure_shortfalls
-from app.editor.work import Derived, Job, Kind, Puppet
+from app.editor.work import Derived, Job, Kind, Pull, Puppet
 from app.motion import (
     Build,
     IntervalPart,
@@ -59,18 +59,16 @@ def maintain(session: Session, project: Project) -> None:
     posing.give_in(session, project, rebuilding.loosen)
     posing.maintain(session, project)
     tracking.maintain(session, project)
-    for identity, puppet in project.puppets.items():
-        puppet.corrected = corrected_clip(project.document, identity, puppet.corrected)
-    if project.take is not None and project.puppet.corrected is not None:
-        project.puppet.corrected.lead(playback.current_frame(session, project))
-    project.extent.recall(extent_source(project.document))
     rebuilding.maintain(session)
     drafting.maintain(session)
-    project.pair_up(session.split.method if session.split else None)
-    _pin(session, project)
-    for job in missing(session, project):
-        if job.kind not in session.jobs.kinds:
-            session.jobs.put(job)
+    inputs = _inputs(session, project)
+    # Where all is as it was when nothing was missing, nothing is.
+    if inputs != project.polled:
+        project.polled = inputs
+        _follow_document(session, project)
+        for job in missing(session, project):
+            if job.kind not in session.jobs.kinds:
+                session.jobs.put(job)
     shortfalls, figure = project.timing.shortfalls, project.figure
     if not shortfalls.follows(figure):
         # Little work: of the poses that were not measured before, and there is one at a time.
@@ -78,6 +76,41 @@ def maintain(session: Session, project: Project) -> None:
     _show(session, project)
     if project.awaits_extent:
         _fit_motion(session, project)
+
+
+@with_project
+def follow_playhead(session: Session, project: Project) -> None:
+    """Settle what is shown at the frame that it is by now, where the playhead runs."""
+    if project.playhead.since is not None:
+        _show(session, project)
+
+
+def _inputs(session: Session, project: Project) -> tuple[object, ...]:
+    """Return all that what is missing depends on; what jobs have brought shows in their kinds."""
+    take = project.take
+    return (
+        *(project.document, project.history.position, project.active, project.selected),
+        *(playback.current_frame(session, project), project.playhead.since is None),
+        *(session.jobs.kinds, session.prepares_ahead, session.overlays, session.split),
+        *(session.export_frame, project.awaits_extent, session.pointer, session.records),
+        *(project.chosen_track, take, take and (take.is_over, len(take.samples))),
+        *(project.unkeyed, tuple(project.pending), tuple(map(_stage, project.pulls))),
+        tuple(puppet.store for puppet in project.puppets.values()),
+    )
+
+
+def _stage(pull: Pull) -> tuple[object, ...]:
+    """Return how far a pull has come, as far as others are asked for in-betweens of it."""
+    return pull.is_held, pull.is_left, pull.frame, pull.kept, pull.tried, pull.ready
+
+
+def _follow_document(session: Session, project: Project) -> None:
+    """Let what is known follow the document."""
+    for identity, puppet in project.puppets.items():
+        puppet.corrected = corrected_clip(project.document, identity, puppet.corrected)
+    project.extent.recall(extent_source(project.document))
+    project.pair_up(session.split.method if session.split else None)
+    _pin(session, project)
 
 
 def give_up(session: Session, kind: Kind) -> None:
@@ -107,7 +140,7 @@ def missing(session: Session, project: Project) -> Iterator[Job]:
     yield from _cut(session, project)
     # First of all: they are watched while the hand moves, and are of few points only.
     yield from _trace(session, project)
-    if (session.export_frame is not None or project.awaits_extent) and not project.is_posing:
+    if _asks_extent(session, project) and not project.is_posing:
         yield from _span(session, project)
     yield from _make_frames(session, project)
     yield from tracking.missing_here(session, project)
@@ -127,15 +160,28 @@ def missing(session: Session, project: Project) -> Iterator[Job]:
                 return
     if tracking.is_under_way(session, project):
         return
-    yield from tracking.missing(session, project)
+    if _prepares_all(session, project):
+        yield from tracking.missing(session, project)
     if project.is_posing:
         # What follows takes longer than the hand stays where it is.
         return
     yield from _hang(session, project)
+    if not session.prepares_ahead:
+        return
     yield from _stream(session, project)
     yield from _measure(session, project)
     if project.document.frames.last - project.document.frames.first < MOST_UNASKED:
         yield from _span(session, project)
+
+
+def _asks_extent(session: Session, project: Project) -> bool:
+    """Tell whether the extent of the motion is waited for."""
+    return session.export_frame is not None or project.awaits_extent
+
+
+def _prepares_all(session: Session, project: Project) -> bool:
+    """Tell whether all frames are prepared, and not only the one that is shown."""
+    return session.prepares_ahead or session.overlays.onion or _asks_extent(session, project)
 
 
 def _clips(project: Project) -> list[tuple[Clip, Puppet]]:
@@ -173,21 +219,31 @@ def _wanted(session: Session, project: Project) -> Iterator[tuple[Kind, Puppet, 
     """Yield the clips that are to have their in-betweens, what is missed most first."""
     frame, clips = playback.current_frame(session, project), _clips(project)
     clips = [(clip, puppet) for clip, puppet in clips if not puppet.store.has_failed(clip)]
+    prepares_all = _prepares_all(session, project)
+
+    def is_wanted(clip: Clip, store: IntervalStore) -> bool:
+        return prepares_all or not store.is_exact(clip, frame)
+
     # Where nobody sees them before the hand rests, they are not worked out for each move.
     is_seen = session.overlays.onion or project.pull is None
     if is_seen or posing.POSING not in session.jobs.kinds:
         # Those that something stands in for come first.
         for clip, puppet in sorted(clips, key=lambda each: each[1].store.is_exact(each[0], frame)):
-            yield SKETCHING, puppet, clip
-    for clip in posing.tried_clips(project):
+            if is_wanted(clip, puppet.store):
+                yield SKETCHING, puppet, clip
+    for clip in posing.tried_clips(project, left=not prepares_all):
         yield SKETCHING, project.puppets[clip.figure.id], clip
     if project.is_posing:
         return
     for puppet in project.puppets.values():
         if puppet.twin is not None:
-            yield COMPARING, puppet, puppet.twin.clip(project.document)
+            twin = puppet.twin.clip(project.document)
+            if is_wanted(twin, puppet.store):
+                yield COMPARING, puppet, twin
     for clip, puppet in clips:
-        if puppet.store.mesh.domain is not clip.figure.domain:
+        if puppet.store.mesh.domain is not clip.figure.domain and (
+            puppet.fine is None or is_wanted(clip, puppet.fine)
+        ):
             yield REFINING, puppet, clip
 
 
@@ -368,6 +424,8 @@ def _fit_motion(session: Session, project: Project) -> None:
 def _show(session: Session, project: Project) -> None:
     """Settle what is drawn in the next frame, and beside it by the method that is compared."""
     frame, document = playback.current_frame(session, project), project.document
+    if project.take is not None and project.puppet.corrected is not None:
+        project.puppet.corrected.lead(frame)
     shown, twins, poses = {}, {}, {}
     for clip, puppet in _clips(project):
         figure, twin = clip.figure.id, puppet.twin

@@ -2,11 +2,13 @@
 
 import threading
 from collections.abc import Sequence, Set as AbstractSet
+from functools import partial
 
 import numpy as np
 
 from app.document import Pose, Transit, Variant
 from app.errors import tell
+from app.motion.inbetweens.content_cache import ContentCache, digest
 from app.motion.inbetweens.correction import FrameCorrection
 from engine.arrays import Complexes, freeze
 from engine.dirichlet import Extension, HilbertTransform
@@ -31,6 +33,14 @@ from engine.interpolation import (
 from engine.maps import Bounds, HarmonicMap
 from engine.paths import root_sheets
 
+# Outlines, transforms and keyframes that were sampled last, in bytes; what layers hold themselves
+# takes no more memory by being here, too.
+_SAMPLED = ContentCache(64 * 2**20)
+
+
+def _nbytes(value: Sites | HilbertTransform | Extension | KeyframeSamples) -> int:
+    return value.nbytes
+
 
 class OutlineKnowledge:
     """What samplers of one outline and cage share, worked out when it is asked for first.
@@ -46,6 +56,7 @@ class OutlineKnowledge:
 
     def __init__(self, domain: Domain) -> None:
         self._domain = domain
+        self._key = "transform", digest(*domain.loops, *domain.cages)
         # Of its own, so that others wait for the transform alone.
         self._lock = threading.RLock()
         self._transform: HilbertTransform | None = None
@@ -59,9 +70,10 @@ class OutlineKnowledge:
         with self._lock:
             if self._transform is None:
                 domain = self._domain
-                self._transform = HilbertTransform.on(
-                    domain.outline, domain.cage, domain.holes, progress=tell
+                make = partial(
+                    HilbertTransform.on, domain.outline, domain.cage, domain.holes, progress=tell
                 )
+                self._transform = _SAMPLED.find(self._key, make, _nbytes)
                 self.nbytes = self._transform.nbytes
             return self._transform
 
@@ -69,6 +81,7 @@ class OutlineKnowledge:
         """Let go of the transform, which is soon made again."""
         with self._lock:
             self._transform, self.nbytes = None, 0
+        _SAMPLED.forget(self._key)
 
 
 class PoseSampler:
@@ -110,14 +123,20 @@ class PoseSampler:
         self.domain = domain
         self.anchor = anchor
         mesh = domain.mesh
-        self.sites: Sites = prepare_sites(
+        triangles = mesh.triangles if points is None else None
+        points = mesh.vertices if points is None else points
+        # What all that is sampled here depends on.
+        self._content = digest(*domain.loops, *domain.cages, points, triangles), anchor
+        prepare = partial(
+            prepare_sites,
             domain.outline,
             domain.cage,
-            mesh.vertices if points is None else points,
+            points,
             holes=domain.holes,
-            triangles=mesh.triangles if points is None else None,
+            triangles=triangles,
             anchor=anchor,
         )
+        self.sites: Sites = _SAMPLED.find(("sites", *self._content), prepare, _nbytes)
         self._lock = threading.RLock()
         self._samples: dict[Pose, KeyframeSamples] = {}
         self._tangents: dict[tuple[tuple[Pose, ...], Joint, Bounds, Variant], Tangent] = {}
@@ -134,7 +153,9 @@ class PoseSampler:
         """The transform at the nodes of the paths, prepared when it is asked for first."""
         with self._extension_lock:
             if self._extension is None:
-                self._extension = self.known.transform.at(self.sites.paths.nodes, single=True)
+                transform = self.known.transform
+                make = partial(transform.at, self.sites.paths.nodes, single=True)
+                self._extension = _SAMPLED.find(("extension", *self._content), make, _nbytes)
                 self.extension_bytes = self._extension.nbytes
             return self._extension
 
@@ -142,6 +163,7 @@ class PoseSampler:
         """Let go of the transform at the nodes, most of what a figure takes that is not edited."""
         with self._extension_lock:
             self._extension, self.extension_bytes = None, 0
+        _SAMPLED.forget(("extension", *self._content))
 
     def keep_only(self, poses: AbstractSet[Pose]) -> None:
         """Forget what was kept for other poses."""
@@ -160,7 +182,9 @@ class PoseSampler:
                     holes=self.domain.holes,
                     logs=pose.logs,
                 )
-                (self._samples[pose],) = sample_keyframes([f], self.sites)
+                key = "samples", *self._content, digest(pose.phi, pose.psi, pose.logs)
+                sample = partial(_sampled, f, self.sites)
+                self._samples[pose] = _SAMPLED.find(key, sample, _nbytes)
             return self._samples[pose]
 
     def inbetweens(
@@ -250,3 +274,8 @@ class PoseSampler:
             bounds=bounds,
             transform=self.extension if variant.needs_transform else None,
         )
+
+
+def _sampled(f: HarmonicMap, sites: Sites) -> KeyframeSamples:
+    (samples,) = sample_keyframes([f], sites)
+    return samples

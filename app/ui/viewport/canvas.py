@@ -55,8 +55,8 @@ class Canvas:
         self._forget_drawing()
         return True
 
-    def draw(self, session: Session) -> None:
-        """Draw the project of a session as it is shown now."""
+    def draw(self, session: Session, *, paints: bool = True) -> None:
+        """Draw the project of a session as it is shown now; without `paints`, the next time."""
         project = session.project
         if project is None or project.puppet.shown is None:
             self.pose_pictures.release()
@@ -70,7 +70,7 @@ class Canvas:
         posable = partial(self._drawing.drawn_mesh, number=SMALL_PICTURE)
         self.pose_pictures.draw(session, project, posable)
         inputs = _inputs(session, project)
-        if inputs != self._drawn:
+        if paints and inputs != self._drawn:
             view = project.view(session.screen)
             scene = _scene(session, project, project.puppet.shown, self._drawing)
             self._renderer.draw(self._targets[0], view, scene)

@@ -204,7 +204,7 @@ class Shell:
         session.export_frame = session.pointed_layer = None
         playback.halt_at_end(session)
         # Panels are to see the frame that it is by now.
-        self.attempt(partial(upkeep.maintain, session))
+        self.attempt(partial(upkeep.follow_playhead, session))
         if _is_busy(session):
             self._awake_until = session.clock() + AWAKE
         if session.clock() < self._awake_until:

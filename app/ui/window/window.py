@@ -90,6 +90,8 @@ class Window:
         self._exporter: Exporter | None = None
         self._renderer: Renderer | None = None
         self._shell = Shell(session, self._panels(), self._thumbnail, self._moments)
+        # Whether the viewport's picture is drawn; a test that takes no picture does without.
+        self.paints = True
         self._memory = FreeMemory(session)
         self._taps = Taps()
         self._title = NAME
@@ -191,7 +193,7 @@ class Window:
             return
         try:
             self._memory.maintain(has_closed=self._canvas.release_others(self.session.project))
-            self._canvas.draw(self.session)
+            self._canvas.draw(self.session, paints=self.paints)
         except Exception as error:  # noqa: BLE001 - part of the frame guard
             self._tell_of_drawing(error)
         if self._exporter is not None:

@@ -23,6 +23,12 @@ def window(_only_window: Harness) -> Iterator[Harness]:
 
 
 @pytest.fixture
+def everything(window: Harness) -> None:
+    """Prepare all in-betweens, corrections, series and measures, as the program does unasked."""
+    window.session.prepares_ahead = True
+
+
+@pytest.fixture
 def bar(window: Harness) -> Project:
     """The sample of a bar, with a handle near each end, the second one selected."""
     return window.again(open_bar)

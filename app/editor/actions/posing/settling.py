@@ -64,9 +64,13 @@ def _bring(session: Session, project: Project, pull: Pull, *, is_here: bool) -> 
         adopt(session, project, pull, pull.ready)
 
 
-def tried_clips(project: Project) -> Sequence[Clip]:
-    """Return clips with poses that the document does not have yet, to prepare their in-betweens."""
-    return [clip for pull in project.pulls if (clip := _tried_clip(project, pull)) is not None]
+def tried_clips(project: Project, *, left: bool = False) -> Sequence[Clip]:
+    """Return clips with poses that the document does not have yet, to prepare their in-betweens.
+
+    With `left`, only of those that the playhead has left: the document waits for them.
+    """
+    tried = (_tried_clip(project, pull) for pull in project.pulls if pull.is_left or not left)
+    return [clip for clip in tried if clip is not None]
 
 
 def bring_all(session: Session, project: Project) -> None:

@@ -38,8 +38,8 @@ def missing(session: Session, project: Project) -> Iterator[Job]:
 
 def missing_here(session: Session, project: Project) -> Iterator[Job]:
     """Yield what finds the correction of the frame that is watched, and what hands need."""
-    # Pulls come first, but for those that wait until what a hand on a track sees is there.
-    if not project.pulls or is_under_way(session, project):
+    # Pulls come first, but for those that wait until what is seen is there.
+    if not (project.pulls and session.prepares_ahead) or is_under_way(session, project):
         yield from _follow(session, project)
         yield from _ground(session, project)
 
@@ -53,7 +53,8 @@ def _follow(session: Session, project: Project) -> Iterator[Job]:
     for clip, puppet, corrected in _corrected(project):
         work = corrected.missing_here(project.document, frame, project.samplers)
         # The next drag of a pose is not to wait until all is prepared.
-        if work is not None and (corrected.is_begun or is_urgent):
+        is_wanted = corrected.is_begun or is_urgent or not session.prepares_ahead
+        if work is not None and is_wanted:
             yield _job(session, project, FOLLOWING, puppet, clip, work)
             return
 

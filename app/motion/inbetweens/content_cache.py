@@ -1,0 +1,75 @@
+"""Values that are worked out from arrays, found again by what is in the arrays."""
+
+import threading
+from collections.abc import Callable, Hashable
+from hashlib import blake2b
+from typing import Any, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+Value = TypeVar("Value")
+
+
+class ContentCache:
+    """A cache of frozen values within a budget; several threads may use it at once.
+
+    Two domains with equal outlines, as those of a duplicated layer or of a file that is opened
+    again, share what is worked out of them. What was not used longest makes room first.
+
+    Parameters
+    ----------
+    budget : int
+        Bytes of all values together.
+    """
+
+    def __init__(self, budget: int) -> None:
+        self._budget = budget
+        self._guard = threading.Lock()
+        self._values: dict[Hashable, tuple[Any, int]] = {}  # with their bytes, the latest used last
+        self._used = 0
+
+    def find(
+        self, key: Hashable, make: Callable[[], Value], size_of: Callable[[Value], int]
+    ) -> Value:
+        """Return the value of a key, made where it is not there.
+
+        Two threads that ask at once may both make it; one of the equal values is kept.
+        """
+        with self._guard:
+            known = self._values.pop(key, None)
+            if known is not None:
+                self._values[key] = known
+                value: Value = known[0]
+                return value
+        value = make()
+        with self._guard:
+            self._drop(key)
+            size = size_of(value)
+            if size <= self._budget:
+                self._values[key] = value, size
+                self._used += size
+            while self._used > self._budget:
+                self._drop(next(iter(self._values)))
+        return value
+
+    def forget(self, key: Hashable) -> None:
+        """Let go of the value of a key, where memory is short."""
+        with self._guard:
+            self._drop(key)
+
+    def _drop(self, key: Hashable) -> None:
+        _, size = self._values.pop(key, (None, 0))
+        self._used -= size
+
+
+def digest(*arrays: npt.NDArray[Any] | None) -> bytes:
+    """Return a digest by which arrays with the same contents, types and shapes are known."""
+    found = blake2b(digest_size=16)
+    for array in arrays:
+        if array is None:
+            found.update(b"none")
+        else:
+            found.update(f"{array.dtype.str}{array.shape}".encode())
+            found.update(np.ascontiguousarray(array).data)
+    return found.digest()
