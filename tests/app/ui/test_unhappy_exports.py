@@ -163,27 +163,6 @@ def test_dots_in_the_name_of_a_folder_are_no_endings(window, project, tmp_path):
     assert project.exports_to == {"png": tmp_path / "shot.010"}
 
 
-@pytest.mark.usefixtures("project")
-def test_quitting_asks_about_an_export_that_runs(window, tmp_path):
-    session = window.session
-    keys.set_last_frame(session, 2000)  # it is to last longer than the answers
-    saving.write(session, tmp_path / "saved.lissom", None)
-    window.settle()
-    begin(window, tmp_path / "frames")
-    window.act(saving.quit_lissom)
-    assert not session.quitting
-    assert question(window).title == "An export is running"
-    answer(window, "Cancel")
-    assert session.export is not None
-    window.act(saving.quit_lissom)
-    answer(window, "Quit")
-    assert session.quitting
-    session.quitting = False
-    hello_imgui.get_runner_params().app_shall_exit = False
-    exporting.cancel(session)
-    window.frames()
-
-
 def test_cancelled_frames_are_whole_and_the_next_export_works(window, project, tmp_path):
     out = tmp_path / "frames"
     begin(window, out)
@@ -422,6 +401,31 @@ def is_of_an_export(thread=None):
 
 def export_threads():
     return list(filter(is_of_an_export, threading.enumerate()))
+
+
+@pytest.mark.usefixtures("project")
+def test_quitting_asks_about_an_export_that_runs(window, tmp_path, held):
+    session = window.session
+    saving.write(session, tmp_path / "saved.lissom", None)
+    window.settle()
+    calls = itertools.count()
+    # It lasts longer than the answers.
+    worker = held(PngSequence, "add", lambda: next(calls) == 3)
+    begin(window, tmp_path / "frames")
+    window.until(worker.begun.is_set)
+    window.act(saving.quit_lissom)
+    assert not session.quitting
+    assert question(window).title == "An export is running"
+    answer(window, "Cancel")
+    assert session.export is not None
+    window.act(saving.quit_lissom)
+    answer(window, "Quit")
+    assert session.quitting
+    session.quitting = False
+    hello_imgui.get_runner_params().app_shall_exit = False
+    exporting.cancel(session)
+    worker.end.set()
+    window.until(lambda: not export_threads())
 
 
 def test_disk_that_gets_full_midway_ends_the_export(window, project, tmp_path, monkeypatch):
