@@ -1,6 +1,6 @@
 """Texts stand out from all that they are written on, in both themes."""
 
-from itertools import product
+from itertools import cycle, product
 
 import numpy as np
 import pytest
@@ -48,18 +48,19 @@ def show_in(window, theme):
     window.frames(3)
 
 
-@pytest.fixture
-def check(window):
+@pytest.fixture(params=["by turns", pytest.param("both", marks=pytest.mark.long)])
+def check(window, request):
     """Checks all that is written in the window as it is, and says where a text is hard to read.
 
-    That is shown in one theme after the other.
+    That is shown in one theme and the next state in the other one, or each in both.
     """
+    turns = cycle(PALETTES)
 
     def look(state):
         window.settle()
         # Messages have faded in by then.
         window.clock.now += FADED
-        for theme in PALETTES:
+        for theme in PALETTES if request.param == "both" else (next(turns),):
             show_in(window, theme)
             seen = [glyph for glyph in glyphs(window) if is_enabled(glyph)]
             assert len(seen) > 15, (theme, state)
