@@ -4,13 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from bars import BENT, bend_bar
+from bars import BENT
+from brief_bars import HALF, LAST, bend_briefly, bend_until
 from harness import MOST_FRAMES
 from numpy.testing import assert_allclose
 
 from app.document import Target, track_at
-from app.document.commands import key_commands, scene_commands, track_commands
-from app.document.settings import FrameRange
+from app.document.commands import scene_commands, track_commands
 from app.document.timing import Track, TrackKey
 from app.editor.actions import editing, playback, posing, tracking
 from app.editor.actions.timing import tracks
@@ -19,8 +19,7 @@ from app.ui.viewport.marks import unreached
 from engine.errors import EngineError
 
 END = 1  # the handle near the right end
-LAST, HALF = 8, 4  # frames: of the second key, and half way
-LATER, EARLIER = 6, 2
+EARLIER, LATER = 2, 6  # frames between the keys, before and after half way
 NEAR = 0.3  # pixels that a tracked handle may miss
 PIXEL = 2.0  # of the picture: where it is pressed and let go, to whole ones of the screen
 
@@ -49,18 +48,9 @@ def drag(window, start, end, *, then=lambda robot: robot.mouse_up(0)):
     window.settle()
 
 
-def bend_until(window, last):
-    """Bend the bar by a key at a frame, with no frame after it: less is worked out."""
-    bent = bend_bar(window)
-    if last != BENT:
-        bent.history.do(key_commands.move_keys(bent.active, {BENT}, last - BENT))
-    bent.history.do(scene_commands.set_frames(FrameRange(0, last)))
-    window.settle()
-
-
 def key_end(window):
     """Key the handle at the bent bar's end alone, half way to its key, and choose that row."""
-    bend_until(window, LAST)
+    bend_briefly(window)
     playback.scrub(window.session, HALF)
     window.settle()
     tracks.key_here(window.session, (END,))
@@ -76,7 +66,7 @@ def bent(window):
 @pytest.fixture
 def brief(window):
     """The same in few frames."""
-    return window.again(bend_until, LAST)
+    return window.again(bend_briefly)
 
 
 @pytest.fixture
