@@ -8,7 +8,7 @@ import pytest
 from app.document import Pose, intervals, time_of, transits
 from app.document.commands import key_commands
 from app.document.keyframe import Target
-from app.editor.actions import editing, playback, posing
+from app.editor.actions import editing, keys, playback, posing
 from app.motion import PoseSampler
 from app.motion.intervals import pair_of
 
@@ -156,11 +156,16 @@ def test_in_betweens_are_there_when_the_playhead_leaves_a_pose_on_its_way(window
 
 
 @pytest.mark.parametrize(
-    "ends",
-    [(posing.let_go,), pytest.param((posing.let_go, None), marks=pytest.mark.long)],
+    ("variant", "ends"),
+    [
+        ("nu", (posing.let_go,)),
+        pytest.param("metric", (posing.let_go, None), marks=pytest.mark.long),
+    ],
     ids=["let go", "held, too"],
 )
-def test_what_is_shown_after_a_drag_is_never_wrong(window, bent, check, ends):
+def test_what_is_shown_after_a_drag_is_never_wrong(window, bent, check, variant, ends):
+    keys.set_variant(window.session, variant)
+    window.settle()
     window.session.clock = count(step=1 / 60).__next__
 
     def on(*verb):
