@@ -39,19 +39,19 @@ def contrast(ink: Floats, ground: Floats) -> float:
 
 def glyphs(window: Harness) -> list[Glyph]:
     """Return the glyphs that are seen in the next frame, without those of disabled items."""
-    written = np.asarray(window.picture()).astype(int)
+    written = np.asarray(window.picture())
     boxes, inks = [], []
     for commands in imgui.get_draw_data().cmd_lists:
         for box, ink in _take_glyphs(commands):
             boxes.append(box)
             inks.append(ink)
-    blank = np.asarray(window.repainted()).astype(int)
+    blank = np.asarray(window.repainted())
     disabled = round(255 * imgui.get_style().disabled_alpha)
     found = []
     for box, (*colour, alpha) in zip(boxes, inks, strict=True):
         x0, y0, x1, y1 = box
         part = np.s_[max(y0, 0) : max(y1, 0), max(x0, 0) : max(x1, 0)]
-        behind = blank[part].reshape(-1, 3)
+        behind = blank[part].reshape(-1, 3).astype(int)
         if alpha <= disabled or not behind.size:
             continue
         ground = np.median(behind, axis=0)

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import pytest
-from bars import check_at_rest, drag_bar
+from bars import BENT, check_at_rest, drag_bar
 from invariants import check_invariants
 
 from app.document.commands import scene_commands
@@ -12,6 +12,21 @@ from app.editor.dialogs import Question
 from app.editor.poses import copying
 from app.storage import load_project
 from app.ui.shortcuts import BINDINGS
+
+# Which edit the document at once, by a step of their own beside the drag's.
+EDITS = (
+    *("keep pose", "lock", "loop", "preview start", "preview end", "marker", "key camera"),
+    *("pass", "ease", "ease in", "ease out"),
+)
+# Which wait for the pose, change it or its handles, or leave its frame or the project. All others
+# are held to edit nothing: a new one that does so, and is in no list, fails there.
+ALONE = (
+    *("save", "export again", "copy picture", "close", "quit", "undo"),
+    *("paste", "paste flipped", "paste swapped", "paste on selected", "flip on selected"),
+    *("delete", "suggest handles", "pin here", "key handle", "mirror"),
+    *("start", "play", "insert key", "first animation"),
+)
+VIEWS = [name for name in BINDINGS if name not in {*EDITS, *ALONE}]
 
 # Whose own effect is that the key has another pose, or is gone: one step back it is there.
 INSTEAD = {"paste", "paste flipped", "paste on selected", "flip on selected", "undo"}
@@ -36,16 +51,77 @@ def ready(window, loose, tmp_path, monkeypatch):
     return loose
 
 
-@pytest.mark.parametrize("name", BINDINGS)
-def test_a_drag_comes_to_rest_whatever_command_follows(window, ready, name):
+def call(window, name):
+    binding = BINDINGS[name]
+    window.act(binding.action.verb, *binding.action.arguments)
+
+
+def test_drag_survives_each_command_that_edits_nothing(window, ready, monkeypatch):
+    session, start = window.session, ready.document
+    goal = drag_bar(window, ready)
+    (pull,) = ready.pulls
+    window.until(lambda: pull.kept is not None)
+    # Nothing more comes of it until all commands are done.
+    deliver = session.jobs.deliver
+    monkeypatch.setattr(session.jobs, "deliver", lambda: None)
+    dragged, label = ready.document, ready.history.undo_label
+    for name in VIEWS:
+        call(window, name)
+        session.dialog = None
+        playback.scrub(session, BENT)
+        check_invariants(session)
+        held = {
+            "project": session.project is ready,
+            "document": ready.document is dragged,
+            "step": ready.history.undo_label == label,
+            "drag": ready.pulls == [pull] and ready.pull is pull,
+            "at once": not ready.afterwards and not exporting.is_under_way(session),
+        }
+        lost = [what for what, is_held in held.items() if not is_held]
+        assert not lost, f"“{name}” edits, waits or leaves: it belongs to another list"
+        ready.selected = frozenset({0})
+    assert not pull.is_at_rest
+    monkeypatch.setattr(session.jobs, "deliver", deliver)
+    window.until(lambda: not ready.pending)
+    check_at_rest(ready.document, goal)
+    while ready.document is not start:
+        assert ready.history.undo_label is not None
+        editing.undo(session)
+
+
+def test_drag_is_a_step_beside_each_edit_that_follows(window, ready):
+    session, start = window.session, ready.document
+    goal = drag_bar(window, ready)
+    (pull,) = ready.pulls
+    window.until(lambda: pull.kept is not None)
+    lost, steps = [], [ready.history.position]
+    for name in EDITS:
+        call(window, name)
+        steps.append(ready.history.position)
+        if steps[-1] != steps[-2] + 1:
+            lost.append(name)
+    assert not lost, "each is one step"
+    window.until(lambda: not ready.pending and not ready.afterwards)
+    check_invariants(session)
+    for name in reversed(EDITS):
+        before = ready.document
+        check_at_rest(before, goal)
+        editing.undo(session)
+        assert ready.document is not before, name
+    check_at_rest(ready.document, goal)
+    editing.undo(session)
+    assert ready.document is start
+
+
+@pytest.mark.parametrize("name", ALONE)
+def test_drag_comes_to_rest_whatever_command_follows(window, ready, name):
     session, path = window.session, ready.path
     start = ready.document
     goal = drag_bar(window, ready)
     assert ready.pulls
     if name in FURTHER:
         window.until(lambda: ready.pulls[-1].kept is not None)
-    binding = BINDINGS[name]
-    window.act(binding.action.verb, *binding.action.arguments)
+    call(window, name)
     window.until(lambda: not ready.pending and not ready.afterwards)
     assert session.project is ready, "it asks first"
     if isinstance(session.dialog, Question):

@@ -1,6 +1,6 @@
 """Texts stand out from all that they are written on, in both themes."""
 
-from itertools import product
+from itertools import cycle, product
 
 import numpy as np
 import pytest
@@ -42,27 +42,30 @@ def bent(loose):
     return loose
 
 
-@pytest.fixture(params=["light", "dark"])
-def theme(window, request):
-    if window.session.preferences.theme != request.param:
+def show_in(window, theme):
+    if window.session.preferences.theme != theme:
         viewing.toggle_theme(window.session)
     window.frames(3)
-    return request.param
 
 
-@pytest.fixture
-def check(window, theme):
-    """Checks all that is written in the window as it is, and says where a text is hard to read."""
+@pytest.fixture(params=["by turns", pytest.param("both", marks=pytest.mark.long)])
+def check(window, request):
+    """Checks all that is written in the window as it is, and says where a text is hard to read.
+
+    That is shown in one theme and the next state in the other one, or each in both.
+    """
+    turns = cycle(PALETTES)
 
     def look(state):
         window.settle()
         # Messages have faded in by then.
         window.clock.now += FADED
-        window.frames(3)
-        seen = [glyph for glyph in glyphs(window) if is_enabled(glyph)]
-        assert len(seen) > 15, state
-        faint = {(each.ink, each.ground): each for each in seen if each.contrast < LEAST}
-        assert not faint, (theme, state, *faint.values())
+        for theme in PALETTES if request.param == "both" else (next(turns),):
+            show_in(window, theme)
+            seen = [glyph for glyph in glyphs(window) if is_enabled(glyph)]
+            assert len(seen) > 15, (theme, state)
+            faint = {(each.ink, each.ground): each for each in seen if each.contrast < LEAST}
+            assert not faint, (theme, state, *faint.values())
 
     return look
 
@@ -83,8 +86,9 @@ def over(colour, ground):
     return ground + colour.w * (levels(colour) - ground)
 
 
-@pytest.mark.usefixtures("window")
-def test_each_colour_of_texts_stands_out_from_each_surface(theme):
+@pytest.mark.parametrize("theme", PALETTES)
+def test_each_colour_of_texts_stands_out_from_each_surface(window, theme):
+    show_in(window, theme)
     palette = PALETTES[theme]
     surfaces = {name: levels(getattr(palette, name)) for name in SURFACES}
     surfaces["chosen row"] = over(imgui.get_style_color_vec4(imgui.Col_.header), surfaces["panel"])

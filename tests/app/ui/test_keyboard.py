@@ -17,6 +17,12 @@ CTRL, SHIFT, ALT = (
 
 
 @pytest.fixture
+def bent(loose):
+    """What the motion is like in between is not asked here."""
+    return loose
+
+
+@pytest.fixture
 def asked(window):
     """A question with two answers and Cancel; returns which of them were given."""
     given = []
@@ -158,17 +164,17 @@ def test_the_fonts_have_the_signs_of_all_keys(window):
 
 @pytest.mark.usefixtures("bent")
 def test_menus_are_made_from_the_table(window):
-    """Each entry is in its menu, and does what its keys do."""
+    """Each entry is in its menu."""
     found = []
-    entries = [(menu, *each) for menu, bindings in MENUS.items() for each in bindings.items()]
 
     def look(robot):
         robot.set_ref("##MainMenuBar")
-        for menu, name, binding in entries:
+        for menu, bindings in MENUS.items():
             robot.menu_click(menu)
-            path = f"//$FOCUSED/{'###' if binding.detail else ''}{binding.label}"
-            if robot.item_exists(path):
-                found.append(name)
+            for name, binding in bindings.items():
+                path = f"//$FOCUSED/{'###' if binding.detail else ''}{binding.label}"
+                if robot.item_exists(path):
+                    found.append(name)
             robot.popup_close_all()
 
     window.run(look)

@@ -8,7 +8,7 @@ import pytest
 from app.document import Pose, intervals, time_of, transits
 from app.document.commands import key_commands
 from app.document.keyframe import Target
-from app.editor.actions import editing, playback, posing
+from app.editor.actions import editing, keys, playback, posing
 from app.motion import PoseSampler
 from app.motion.intervals import pair_of
 
@@ -155,7 +155,17 @@ def test_in_betweens_are_there_when_the_playhead_leaves_a_pose_on_its_way(window
     assert bent.figure.key(24).pose is moving.newest
 
 
-def test_what_is_shown_after_a_drag_is_never_wrong(window, bent, check):
+@pytest.mark.parametrize(
+    ("variant", "ends"),
+    [
+        ("nu", (posing.let_go,)),
+        pytest.param("metric", (posing.let_go, None), marks=pytest.mark.long),
+    ],
+    ids=["let go", "held, too"],
+)
+def test_what_is_shown_after_a_drag_is_never_wrong(window, bent, check, variant, ends):
+    keys.set_variant(window.session, variant)
+    window.settle()
     window.session.clock = count(step=1 / 60).__next__
 
     def on(*verb):
@@ -168,7 +178,7 @@ def test_what_is_shown_after_a_drag_is_never_wrong(window, bent, check):
 
     window.act(editing.edit, key_commands.copy_keys(bent.active, {0}, 48))
     window.settle()
-    for end in (posing.let_go, None):
+    for end in ends:
         playback.scrub(window.session, 24)
         window.settle()
         pull(window, bent, 70j)

@@ -30,7 +30,6 @@ def hand(window):
             robot.mouse_up(0)
 
         window.run(act)
-        window.settle()
         window.frames(5)
 
     window.resize(SIZE)
@@ -46,7 +45,7 @@ def test_the_places_lead_from_the_welcome_view_to_each_export(window, hand):
 
     hand("begin")
     window.until(lambda: session.guide is not None and step() == "handle")
-    window.settle()
+    window.frames(5)
     assert re.fullmatch(r"giraffe.* – Lissom", window_title(session))
     hand("nose")
     assert step() == "time"

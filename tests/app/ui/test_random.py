@@ -39,7 +39,8 @@ from app.ui.shortcuts import ARROWS, BINDINGS, MODIFIERS
 from engine.domain.picture.cut_out import Stroke
 from engine.maps.bounds import Bounds
 
-SEEDS = (1, 2, 15)  # both drawings, one of them by two variants
+# Both drawings, one of them by two variants.
+SEEDS = (1, 2, pytest.param(15, marks=pytest.mark.long))
 MOST_FRAMES = 400  # until the worker has caught up
 REMEMBERED = 20  # actions that are told where the walk fails
 LOOKED_AT, SAVED = 25, 50  # steps between two looks at the invariants, and between two saves

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from bars import bend_bar
+from brief_bars import HALF, LAST, bend_loosely_and_briefly
 from imgui_bundle import ImVec2
 
 from app.document import Baseline, Target, Variant
@@ -16,14 +16,14 @@ def between(window):
 
 
 def stop_half_way(window):
-    bent = bend_bar(window)
+    bent = bend_loosely_and_briefly(window)
     width, _ = bent.document.canvas
     wishes = dict(bent.puppet.shown.pose.targets)
     last = max(wishes)
     wishes[last] = Target(position=complex(0.35 * width, 0.6 * width))
     posing.wish(window.session, wishes)
     window.settle()
-    playback.seek(window.session, 12)
+    playback.seek(window.session, HALF)
     window.settle()
 
 
@@ -102,7 +102,7 @@ def test_methods_for_comparison_play_beside_the_drawing_and_are_measured(window,
     assert between.document is document
     # All frames are there before anybody looks.
     (inbetweens,) = between.puppet.store.prepared(twin.clip(document))
-    assert len(inbetweens._frames) >= 23
+    assert len(inbetweens._frames) >= LAST - 1
 
 
 def test_a_method_that_leads_handles_leads_a_new_one(window, between):
@@ -158,7 +158,7 @@ def test_both_are_measured_and_the_linear_one_leaves_the_bounds(window, between)
 def test_a_key_looks_the_same_by_every_method_and_posing_goes_on(window, between):
     session = window.session
     viewing.compare_with(session, Variant.NU)
-    playback.seek(session, 24)
+    playback.seek(session, LAST)
     window.settle()
     np.testing.assert_allclose(
         between.puppet.shown.positions, between.puppet.twin.shown.positions, rtol=0, atol=1e-9

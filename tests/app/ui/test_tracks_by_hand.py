@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from bars import BENT
+from brief_bars import HALF, LAST, bend_briefly, bend_until
 from harness import MOST_FRAMES
 from numpy.testing import assert_allclose
 
 from app.document import Target, track_at
 from app.document.commands import scene_commands, track_commands
-from app.document.settings import FrameRange
 from app.document.timing import Track, TrackKey
 from app.editor.actions import editing, playback, posing, tracking
 from app.editor.actions.timing import tracks
@@ -19,6 +19,7 @@ from app.ui.viewport.marks import unreached
 from engine.errors import EngineError
 
 END = 1  # the handle near the right end
+EARLIER, LATER = 2, 6  # frames between the keys, before and after half way
 NEAR = 0.3  # pixels that a tracked handle may miss
 PIXEL = 2.0  # of the picture: where it is pressed and let go, to whole ones of the screen
 
@@ -47,22 +48,31 @@ def drag(window, start, end, *, then=lambda robot: robot.mouse_up(0)):
     window.settle()
 
 
-@pytest.fixture
-def bent(window, bent):
-    """The bent bar, with no frame after that of its second key: less is worked out."""
-    bent.history.do(scene_commands.set_frames(FrameRange(0, BENT)))
-    window.settle()
-    return bent
-
-
-@pytest.fixture
-def keyed(window, bent):
-    """The bent bar, with the handle at its end keyed alone at frame 12, and its row chosen."""
-    playback.scrub(window.session, BENT // 2)
+def key_end(window):
+    """Key the handle at the bent bar's end alone, half way to its key, and choose that row."""
+    bend_briefly(window)
+    playback.scrub(window.session, HALF)
     window.settle()
     tracks.key_here(window.session, (END,))
     window.settle()
-    return bent
+
+
+@pytest.fixture
+def bent(window):
+    """The bent bar, and as much time as a hand takes for a circle."""
+    return window.again(bend_until, BENT)
+
+
+@pytest.fixture
+def brief(window):
+    """The same in few frames."""
+    return window.again(bend_briefly)
+
+
+@pytest.fixture
+def keyed(window):
+    """The same, with the handle at its end keyed alone half way, and its row chosen."""
+    return window.again(key_end)
 
 
 def test_a_drag_keys_the_handle_of_a_chosen_row_alone(window, keyed):
@@ -70,8 +80,8 @@ def test_a_drag_keys_the_handle_of_a_chosen_row_alone(window, keyed):
     start, way = place_of(keyed), 20 + 30j
     drag(window, start, start + way)
     (track,) = keyed.figure.tracks
-    assert [key.frame for key in track.keys] == [12]
-    still, turn = ground(keyed, 12)
+    assert [key.frame for key in track.keys] == [HALF]
+    still, turn = ground(keyed, HALF)
     # The offset is in the frame that turns with the shape.
     assert_allclose(track.keys[0].place, (start + way - still) * np.conj(turn), atol=PIXEL)
     assert abs(turn - 1) > 0.05
@@ -84,12 +94,12 @@ def test_a_drag_keys_the_handle_of_a_chosen_row_alone(window, keyed):
 
 
 def test_a_drag_at_another_frame_inserts_a_key(window, keyed):
-    playback.scrub(window.session, 18)
+    playback.scrub(window.session, LATER)
     window.settle()
     start = place_of(keyed)
     drag(window, start, start - 25j)
     (track,) = keyed.figure.tracks
-    assert [key.frame for key in track.keys] == [12, 18]
+    assert [key.frame for key in track.keys] == [HALF, LATER]
     assert track.keys[0].place == 0
     assert abs(place_of(keyed) - (start - 25j)) < PIXEL
 
@@ -158,7 +168,7 @@ def turned(project):
 
 
 def test_the_ring_turns_the_track_of_a_chosen_row_and_not_the_pose(window, keyed):
-    keys = tuple(TrackKey(frame=f, place=p) for f, p in ((6, 0), (12, 8j), (20, 0)))
+    keys = tuple(TrackKey(frame=f, place=p) for f, p in ((EARLIER, 0), (HALF, 8j), (LATER, 0)))
     keyed.history.do(track_commands.put_track(keyed.active, Track(handles=(END,), keys=keys)))
     window.settle()
     before, poses, shown_before = keyed.document, keyed.figure.keys, turned(keyed)
@@ -167,9 +177,9 @@ def test_the_ring_turns_the_track_of_a_chosen_row_and_not_the_pose(window, keyed
     assert keyed.figure.keys == poses, "the pose stays"
     assert track.turns, "what turned nothing does from now on"
     assert any(toast.topic == "turning" for toast in window.session.toasts)
-    assert [(key.frame, key.place) for key in track.keys] == [(6, 0), (12, 8j), (20, 0)]
+    assert [(key.frame, key.place) for key in track.keys] == [(EARLIER, 0), (HALF, 8j), (LATER, 0)]
     assert [key.turn for key in track.keys[::2]] == [0, 0]
-    still = np.angle(ground(keyed, 12)[1])
+    still = np.angle(ground(keyed, HALF)[1])
     assert abs(track.keys[1].turn + still - (shown_before + 0.5)) < 0.05
     assert abs(turned(keyed) - (shown_before + 0.5)) < 0.05
     keyed.history.undo()
@@ -177,14 +187,14 @@ def test_the_ring_turns_the_track_of_a_chosen_row_and_not_the_pose(window, keyed
 
 
 def test_the_ring_inserts_a_key_that_moves_nothing_and_turns_on_from_there(window, keyed):
-    keys = tuple(TrackKey(frame=f, place=p, turn=0.3) for f, p in ((6, 0), (20, 8j)))
+    keys = tuple(TrackKey(frame=f, place=p, turn=0.3) for f, p in ((EARLIER, 0), (LATER, 8j)))
     track = Track(handles=(END,), keys=keys, turns=True)
     keyed.history.do(track_commands.put_track(keyed.active, track))
     window.settle()
-    at = track_at(track, keyed.clip, 12)
+    at = track_at(track, keyed.clip, HALF)
     turn_by(window, keyed, -0.4)
     (track,) = keyed.figure.tracks
-    assert [key.frame for key in track.keys] == [6, 12, 20]
+    assert [key.frame for key in track.keys] == [EARLIER, HALF, LATER]
     assert track.keys[1].place == at.place
     # The pointer goes by whole pixels.
     assert abs(track.keys[1].turn - (at.turn - 0.4)) < 0.05
@@ -207,14 +217,14 @@ def test_the_ring_turns_the_pose_where_no_row_of_a_track_is_chosen(window, keyed
     tracks.choose(window.session, None)
     window.settle()
     tracked, poses = keyed.figure.tracks, keyed.figure.keys
-    playback.scrub(window.session, BENT)
+    playback.scrub(window.session, LAST)
     window.settle()
     turn_by(window, keyed, 0.4)
     assert keyed.figure.tracks == tracked
     assert keyed.figure.keys != poses
 
 
-def offset_by(window, project, offset, frames=(6, 12, 18)):
+def offset_by(window, project, offset, frames):
     """Give the handle at the end a track with an offset, whose row is not chosen."""
     keys = tuple(TrackKey(frame=frame, place=offset) for frame in frames)
     track = Track(handles=(END,), keys=keys)
@@ -224,42 +234,42 @@ def offset_by(window, project, offset, frames=(6, 12, 18)):
 
 
 @pytest.mark.parametrize("auto_key", [True, False])
-def test_a_pose_has_what_a_track_adds_on_it_and_not_in_it(window, bent, auto_key):
+def test_a_pose_has_what_a_track_adds_on_it_and_not_in_it(window, brief, auto_key):
     window.session.preferences = replace(window.session.preferences, auto_key=auto_key)
-    offset_by(window, bent, 30j)
-    playback.scrub(window.session, 12)
+    offset_by(window, brief, 30j, (EARLIER, HALF, LATER))
+    playback.scrub(window.session, HALF)
     window.settle()
-    still, turn = ground(bent, 12)
-    shown_at, other = place_of(bent), place_of(bent, 0)
+    still, turn = ground(brief, HALF)
+    shown_at, other = place_of(brief), place_of(brief, 0)
     assert abs(shown_at - still - 30j * turn) < NEAR
     seen = []
 
     def then(robot):
         for _ in range(8):
-            seen.append(place_of(bent))
+            seen.append(place_of(brief))
             robot.yield_()
         robot.mouse_up(0)
 
     drag(window, other, other + 12j, then=then)
     assert max(abs(place - shown_at) for place in seen) < 4, "nothing pops"
-    pose = bent.unkeyed or bent.figure.key(12).pose
-    assert (bent.unkeyed is None) == auto_key
-    position = bent.figure.handle(END).position
-    own = complex(bent.figure.map_of(pose)(np.array([position]))[0])
+    pose = brief.unkeyed or brief.figure.key(HALF).pose
+    assert (brief.unkeyed is None) == auto_key
+    position = brief.figure.handle(END).position
+    own = complex(brief.figure.map_of(pose)(np.array([position]))[0])
     assert abs(own - still) < 6, "the pose is where the body has the handle"
-    assert abs(place_of(bent) - shown_at) < 6
+    assert abs(place_of(brief) - shown_at) < 6
 
 
 def test_a_key_of_a_path_is_dragged_where_it_is_seen(window, keyed):
     playback.scrub(window.session, 0)
     window.settle()
-    still, turn = ground(keyed, 12)
+    still, turn = ground(keyed, HALF)
     before, way = keyed.document, 40j
     drag(window, still, still + way)
     (track,) = keyed.figure.tracks
-    assert [key.frame for key in track.keys] == [12]
+    assert [key.frame for key in track.keys] == [HALF]
     assert_allclose(track.keys[0].place, way * np.conj(turn), atol=PIXEL)
-    assert playback.current_frame(window.session, keyed) == 12
+    assert playback.current_frame(window.session, keyed) == HALF
     keyed.history.undo()
     assert keyed.document is before
 
@@ -282,6 +292,7 @@ def record(window, project, ways, *, until=None, handle=END):
 
 
 CIRCLE = 25 * (np.exp(2j * np.pi * np.arange(41) / 40) - 1)
+ARC = CIRCLE[:9]
 
 
 def test_a_drag_is_recorded_while_it_plays_and_fitted_by_few_keys(window, bent):
@@ -332,121 +343,128 @@ def test_a_recording_is_as_smooth_as_the_hand_was_on_the_screen(window, bent):
     assert keys[0.1] < keys[1.0] < keys[10.0]
 
 
-def test_a_take_is_done_again_or_given_up(window, bent):
+def test_a_take_is_done_again_or_given_up(window, brief):
     playback.scrub(window.session, 0)
     window.settle()
-    before = bent.document
-    record(window, bent, CIRCLE)
+    before = brief.document
+    record(window, brief, ARC)
+    assert brief.figure.tracks
     window.run(lambda robot: robot.item_click("**/Again"))
-    assert bent.document is before
+    assert brief.document is before
     assert window.session.records
     window.run(lambda robot: robot.key_press(int(window.Key.escape)))
     assert not window.session.records
+    record(window, brief, ARC)
+    assert brief.figure.tracks
+    window.run(lambda robot: robot.key_press(int(window.Key.escape)))
+    assert brief.document is before
+
+
+def test_escape_ends_a_recording_and_takes_it_back(window, brief):
+    playback.scrub(window.session, 0)
+    window.settle()
+    before = brief.document
 
     def until(robot):
         robot.key_press(int(window.Key.escape))
         robot.mouse_up(0)
 
-    record(window, bent, CIRCLE, until=until)
-    assert bent.document is before
-    assert bent.take is None
-    assert bent.playhead.since is None
-    assert playback.current_frame(window.session, bent) == 0
-    record(window, bent, CIRCLE)
-    assert bent.figure.tracks
-    window.run(lambda robot: robot.key_press(int(window.Key.escape)))
-    assert bent.document is before
+    record(window, brief, ARC, until=until)
+    assert brief.document is before
+    assert brief.take is None
+    assert brief.playhead.since is None
+    assert playback.current_frame(window.session, brief) == 0
 
 
-def test_the_end_of_the_range_ends_a_recording_and_other_keys_stay(window, bent):
-    offset_by(window, bent, 10j, frames=(2, 20))
-    last = bent.document.frames.last
-    playback.scrub(window.session, last - 8)
+def test_the_end_of_the_range_ends_a_recording_and_other_keys_stay(window, brief):
+    offset_by(window, brief, 10j, (1, LATER))
+    last = brief.document.frames.last
+    playback.scrub(window.session, last - 4)
     window.settle()
-    taken = [key for key in bent.figure.tracks[0].keys if key.frame == 2]
-    record(window, bent, [*CIRCLE, *CIRCLE, *CIRCLE])
-    assert bent.take.is_over
-    (track,) = bent.figure.tracks
+    taken = [key for key in brief.figure.tracks[0].keys if key.frame == 1]
+    record(window, brief, [*CIRCLE, *CIRCLE])
+    assert brief.take.is_over
+    (track,) = brief.figure.tracks
     frames = [key.frame for key in track.keys]
     assert track.keys[0] == taken[0]
     assert frames[-1] == last
     assert window.session.pointer is None
-    assert bent.playhead.speed == 1.0
+    assert brief.playhead.speed == 1.0
 
 
-def test_in_a_loop_a_recording_goes_on_over_the_seam_at_most_once_round(window, bent):
-    bent.history.do(scene_commands.set_loop(loop=True))
-    playback.scrub(window.session, 16)
+def test_in_a_loop_a_recording_goes_on_over_the_seam_at_most_once_round(window, brief):
+    brief.history.do(scene_commands.set_loop(loop=True))
+    playback.scrub(window.session, 5)
     window.settle()
-    record(window, bent, [*CIRCLE, *CIRCLE, *CIRCLE])
-    take = bent.take
+    record(window, brief, [*CIRCLE, *CIRCLE])
+    take = brief.take
     assert take.is_over
-    assert take.samples[-1].time == 16 + BENT
-    (track,) = bent.figure.tracks
+    assert take.samples[-1].time == 5 + LAST
+    (track,) = brief.figure.tracks
     frames = [key.frame for key in track.keys]
     assert frames[0] == 0
-    assert frames[-1] == BENT
+    assert frames[-1] == LAST
     assert abs(track.keys[0].place - track.keys[-1].place) < 1e-9, "it comes round"
 
 
-def test_a_click_records_nothing(window, bent):
-    before = bent.document
-    record(window, bent, [])
-    assert bent.document is before
-    assert bent.take is None
-    assert bent.playhead.since is None
+def test_a_click_records_nothing(window, brief):
+    before = brief.document
+    record(window, brief, [])
+    assert brief.document is before
+    assert brief.take is None
+    assert brief.playhead.since is None
 
 
-def test_passes_add_up_and_undo_takes_back_the_last(window, bent):
+def test_passes_add_up_and_undo_takes_back_the_last(window, brief):
     playback.scrub(window.session, 0)
     window.settle()
-    record(window, bent, CIRCLE)
-    (first,) = bent.figure.tracks
+    record(window, brief, ARC)
+    (first,) = brief.figure.tracks
     # Without a word the first one is kept.
-    record(window, bent, CIRCLE / 5, handle=0)
-    assert {track.handles for track in bent.figure.tracks} == {(END,), (0,)}
-    assert bent.figure.track_of(END) == first
-    assert bent.take is not None
+    record(window, brief, ARC / 5, handle=0)
+    assert {track.handles for track in brief.figure.tracks} == {(END,), (0,)}
+    assert brief.figure.track_of(END) == first
+    assert brief.take is not None
     editing.undo(window.session)
     window.settle()
-    assert bent.figure.tracks == (first,)
-    assert bent.take is None, "there is nothing to be kept"
+    assert brief.figure.tracks == (first,)
+    assert brief.take is None, "there is nothing to be kept"
 
 
-def test_a_planted_track_is_recorded_in_places_of_the_picture(window, bent):
+def test_a_planted_track_is_recorded_in_places_of_the_picture(window, brief):
     playback.scrub(window.session, 0)
     window.settle()
-    planted = Track(handles=(END,), planted=True, keys=(TrackKey(frame=0, place=place_of(bent)),))
-    bent.history.do(track_commands.put_track(bent.active, planted))
+    planted = Track(handles=(END,), planted=True, keys=(TrackKey(frame=0, place=place_of(brief)),))
+    brief.history.do(track_commands.put_track(brief.active, planted))
     window.settle()
-    record(window, bent, CIRCLE)
-    (track,) = bent.figure.tracks
+    record(window, brief, ARC)
+    (track,) = brief.figure.tracks
     assert track.planted
-    places = {sample.time: sample.in_scene for sample in bent.take.samples}
+    places = {sample.time: sample.in_scene for sample in brief.take.samples}
     for key in track.keys:
         time = min(places, key=lambda time: abs(time - key.frame))
         assert abs(key.place - places[time]) < 5
 
 
 def test_a_late_track_says_why_it_has_no_key_there(window, keyed):
-    keyed.history.do(track_commands.set_delay(keyed.active, END, 16))
+    keyed.history.do(track_commands.set_delay(keyed.active, END, LATER))
     window.settle()
     before, start = keyed.document, place_of(keyed)
     drag(window, start, start + 30j)
     assert keyed.document is before
     assert [toast.text for toast in window.session.toasts if toast.topic == "late"] == [
-        "The track is 16 frames late: no key of it can be seen at frame 12."
+        f"The track is {LATER} frames late: no key of it can be seen at frame {HALF}."
     ]
 
 
 def test_a_hand_sees_its_track_while_a_pose_elsewhere_waits_for_what_is_shown(window, keyed):
     start, track = place_of(keyed), keyed.chosen_track
-    playback.scrub(window.session, BENT)
+    playback.scrub(window.session, LAST)
     keyed.chosen_track = None
-    place = complex(keyed.figure.key(BENT).pose.targets[END].position)
+    place = complex(keyed.figure.key(LAST).pose.targets[END].position)
     posing.wish(window.session, {END: Target(position=place - 15j)})
     posing.let_go(window.session)
-    playback.scrub(window.session, 12)
+    playback.scrub(window.session, HALF)
     keyed.chosen_track = track
     assert any(not pull.is_at_rest for pull in keyed.pulls)
 
@@ -474,10 +492,10 @@ def test_a_pose_elsewhere_comes_to_rest_where_frames_cannot_be_corrected(
     for name in ("_begin", "_find"):
         monkeypatch.setattr(f"app.motion.corrected_frames.{name}", broken)
     keyed.chosen_track = None
-    playback.scrub(window.session, BENT)
-    place = complex(keyed.figure.key(BENT).pose.targets[END].position)
+    playback.scrub(window.session, LAST)
+    place = complex(keyed.figure.key(LAST).pose.targets[END].position)
     posing.wish(window.session, {END: Target(position=place - 15j)})
     posing.let_go(window.session)
-    playback.scrub(window.session, 6)
+    playback.scrub(window.session, EARLIER)
     window.until(lambda: not keyed.pending)
     assert any("held still, or on their tracks" in toast.text for toast in window.session.toasts)
