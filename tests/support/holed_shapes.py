@@ -48,18 +48,18 @@ def round_hole(centre: complex, radius: float, sides: int, share: float = 0.82) 
 
 
 @cache
-def ring(radius: float = 0.5) -> Holed:
+def ring(radius: float = 0.5, sides: int = 48) -> Holed:
     return Holed(
-        outline=regular_polygon(48),
-        cage=1.08 * regular_polygon(48),
-        holes=(round_hole(0, radius, 36),),
+        outline=regular_polygon(sides),
+        cage=1.08 * regular_polygon(sides),
+        holes=(round_hole(0, radius, 3 * sides // 4),),
         anchor=0.75 + 0j,
     )
 
 
 @cache
-def plate(count: int = 3) -> Holed:
-    """A plate with up to three round holes."""
+def plate(count: int = 3, pieces: int = 12) -> Holed:
+    """A plate with up to three round holes; each of its edges is in so many pieces."""
     corners = np.array([-1.7 - 0.6j, 1.7 - 0.6j, 1.7 + 0.6j, -1.7 + 0.6j])
 
     def frame(offset: float, pieces: int) -> Complexes:
@@ -69,10 +69,10 @@ def plate(count: int = 3) -> Holed:
 
     centres, radii = (-1.1, 0.05, 1.1), (0.28, 0.36, 0.22)
     return Holed(
-        outline=frame(0.0, 12),
-        cage=frame(0.06, 12),
+        outline=frame(0.0, pieces),
+        cage=frame(0.06, pieces),
         holes=tuple(
-            round_hole(c, r, 24) for c, r in list(zip(centres, radii, strict=True))[:count]
+            round_hole(c, r, 2 * pieces) for c, r in list(zip(centres, radii, strict=True))[:count]
         ),
         anchor=-0.55 + 0j,
     )

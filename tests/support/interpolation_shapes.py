@@ -1,14 +1,28 @@
 """Domains and keyframes for the tests of the interpolation."""
 
-from functools import cache
+from dataclasses import dataclass
+from functools import cache, cached_property
 
 import numpy as np
 import shapely
 
 from engine.arrays import Complexes
+from engine.dirichlet import Extension, HilbertTransform
 from engine.geometry.polygon import as_xy, box_diagonal, edges, sample_graded
+from engine.interpolation import (
+    Inbetweens,
+    Interval,
+    Passage,
+    Sites,
+    Variant,
+    prepare_inbetweens,
+    prepare_sites,
+    sample_keyframes,
+)
+from engine.maps import Bounds
 from engine.maps.cauchy import evaluate
 from engine.maps.harmonic_map import HarmonicMap
+from engine.paths import root_sheets
 
 Shape = tuple[Complexes, Complexes]
 
@@ -64,6 +78,48 @@ def spiral(turns: float = 2.3) -> Shape:
     width = 0.36 * pitch
     outline = np.concatenate([middle - width * normal, (middle + width * normal)[::-1]])
     return outline, around(outline, 0.01)
+
+
+@dataclass(frozen=True, eq=False)
+class Stage:
+    """A shape and the points at which in-betweens are wanted, ready for any keyframes."""
+
+    sites: Sites
+
+    @property
+    def transform(self) -> HilbertTransform:
+        """Of the shape, made once."""
+        return _transform(self.sites.outline.tobytes(), self.sites.cage.tobytes())
+
+    @cached_property
+    def extension(self) -> Extension:
+        """At the sites; only the metric variant needs it."""
+        return self.transform.at(self.sites.paths.nodes)
+
+    def between(self, maps, variant, bounds: Bounds = Bounds()) -> Inbetweens:
+        """Return the in-betweens of two keyframes, as `prepare` does."""
+        variant = Variant(variant)
+        keys = sample_keyframes(maps, self.sites)
+        sheets = root_sheets(np.array([key.anchor_fz for key in keys]))
+        extension = self.extension if variant.needs_transform else None
+        interval = Interval(self.sites, Passage.of(keys, sheets), bounds, extension)
+        return prepare_inbetweens(variant, interval)
+
+
+@cache
+def _transform(outline: bytes, cage: bytes) -> HilbertTransform:
+    return HilbertTransform.on(np.frombuffer(outline, complex), np.frombuffer(cage, complex))
+
+
+@cache
+def _stage(outline: bytes, cage: bytes, points: bytes, anchor: complex | None) -> Stage:
+    arrays = (np.frombuffer(each, complex) for each in (outline, cage, points))
+    return Stage(prepare_sites(*arrays, anchor=anchor))
+
+
+def stage_of(shape: Shape, points: Complexes, anchor: complex | None = None) -> Stage:
+    """Return the stage of a shape and points, which is prepared once."""
+    return _stage(*(z.tobytes() for z in shape), points.tobytes(), anchor)
 
 
 def outline_samples(shape: Shape) -> Complexes:

@@ -1,5 +1,7 @@
 """Keyframes as a person makes them: handles dragged far, and left until the pose has settled."""
 
+from functools import cache
+
 import numpy as np
 from interpolation_shapes import bar, inner_points, letter_l, narrow_u, outline_samples, spiral
 
@@ -16,6 +18,7 @@ STEPS = 40
 LOOKED_AT = 200  # times between the samples of a series
 
 
+@cache
 def settled_poses(name, seed):
     """Drag the handles of a shape to two poses at the default bounds."""
     outline, cage = SHAPES[name]()
@@ -31,7 +34,7 @@ def settled_poses(name, seed):
         for _ in range(STEPS):
             state = deformer.step(state, wish)
         maps.append(state.map)
-    return maps
+    return tuple(maps)
 
 
 def series_of(name, seed, variant, *, count=1000):

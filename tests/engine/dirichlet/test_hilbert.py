@@ -100,7 +100,9 @@ def solutions(shape, coarsenesses):
         yield len(transform.nodes), without_constant(values)
 
 
-@pytest.mark.parametrize("shape", [letter_l(), narrow_u(0.04), spiral()])
+@pytest.mark.parametrize(
+    "shape", [letter_l(), narrow_u(0.04), pytest.param(spiral(), marks=pytest.mark.long)]
+)
 def test_the_error_falls_with_a_high_order_as_panels_shorten(shape):
     (_, reference), *others = solutions(shape, (0.5, 1.0, 2.0, 4.0, 8.0))
     errors = np.array([np.abs(values - reference).max() for _, values in others])
@@ -128,16 +130,19 @@ def test_the_number_of_nodes_comes_from_the_shape():
     assert near > 1.5 * far
 
 
-def test_any_number_of_nodes_is_taken_and_memory_grows_with_it():
+@pytest.mark.parametrize(
+    ("coarseness", "nodes"), [(0.5, 4_500), pytest.param(0.25, 9_000, marks=pytest.mark.long)]
+)
+def test_any_number_of_nodes_is_taken_and_memory_grows_with_it(coarseness, nodes):
     # Four times the panels, four times the memory; a matrix would take sixteen times.
     outline, cage = spiral()
     coarse, fine = (
-        HilbertTransform.of((outline,), Panels.on(outline, cage, coarseness=coarseness))
-        for coarseness in (2.0, 0.25)
+        HilbertTransform.of((outline,), Panels.on(outline, cage, coarseness=each))
+        for each in (8 * coarseness, coarseness)
     )
     more = len(fine.nodes) / len(coarse.nodes)
     assert more > 3
-    assert len(fine.nodes) > 9_000
+    assert len(fine.nodes) > nodes
     assert fine.nbytes < 1.5 * more * coarse.nbytes
     points = inner_points(outline, 60, 0)
     values, _, _ = fine.at(points).extend(entire(fine.nodes)[0].real)

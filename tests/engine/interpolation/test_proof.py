@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from holed_shapes import plate, random_map as holed_map
 from hypothesis import given, settings, strategies as st
-from interpolation_shapes import bar, inner_points, letter_l, random_map, scattered_on
+from interpolation_shapes import bar, inner_points, letter_l, random_map, scattered_on, stage_of
 
 from engine.errors import EngineError
 from engine.interpolation import Course, Joint, Tangent, Variant, prepare
@@ -20,7 +20,7 @@ from engine.maps.harmonic_map import HarmonicMap
 
 OUTLINE, CAGE = SHAPE = letter_l()
 BOUNDARY = Boundary.sample(OUTLINE, CAGE)
-POINTS = np.concatenate([inner_points(OUTLINE, 30, 0), scattered_on(OUTLINE, 500)])
+POINTS = np.concatenate([inner_points(OUTLINE, 30, 0), scattered_on(OUTLINE, 150)])
 TIMES = np.concatenate([np.linspace(0, 1, 17), np.random.default_rng(3).uniform(0, 1, 4)])
 ACCURACY = 1e-4  # relative, of the metric variant's integral equation near a cage vertex
 
@@ -44,7 +44,7 @@ def measured(interval, times=TIMES):
 @pytest.mark.parametrize("seed", [1, 4])
 def test_nothing_is_beyond_what_is_proven_and_that_is_tight(variant, seed):
     maps = [random_map(SHAPE, 2 * seed + i, k=0.5, bend=0.8) for i in range(2)]
-    (interval,) = prepare(maps, POINTS, outline=OUTLINE, variant=variant).intervals
+    interval = stage_of(SHAPE, POINTS).between(maps, variant)
     k, sigma_a, sigma_b = measured(interval)
     proof = prove(interval)
     slack = ACCURACY if variant is Variant.METRIC else 1e-9
@@ -63,7 +63,10 @@ def test_nothing_is_beyond_what_is_proven_and_that_is_tight(variant, seed):
 def test_motion_through_keyframes_is_proven(variant):
     maps = [random_map(SHAPE, seed, k=0.3, bend=0.5) for seed in (1, 2, 5, 8)]
     bounds = Bounds(k=0.6, sigma_a=4, sigma_b=0.2)
-    prepared = prepare(maps, POINTS, outline=OUTLINE, variant=variant, through=True, bounds=bounds)
+    options = {"outline": OUTLINE, "variant": variant, "through": True, "bounds": bounds}
+    if variant.needs_transform:
+        options["transform"] = stage_of(SHAPE, POINTS).transform
+    prepared = prepare(maps, POINTS[::3], **options)
     for interval in prepared.intervals:
         k, sigma_a, sigma_b = measured(interval, TIMES[::4])
         proof = prove(interval)
@@ -81,10 +84,26 @@ def test_motion_through_keyframes_is_proven(variant):
             assert proof.never_folds
 
 
-@pytest.mark.parametrize("through", [False, True])
-@pytest.mark.parametrize("variant", [v for v in Variant if v is not Variant.LINEAR])
+@pytest.mark.parametrize(
+    ("variant", "through"),
+    [
+        (Variant.NU, True),
+        (Variant.ETA, False),
+        (Variant.SCALED_ETA, False),
+        (Variant.METRIC, True),
+        *(
+            pytest.param(variant, through, marks=pytest.mark.long)
+            for variant, through in (
+                (Variant.NU, False),
+                (Variant.ETA, True),
+                (Variant.SCALED_ETA, True),
+                (Variant.METRIC, False),
+            )
+        ),
+    ],
+)
 def test_in_betweens_around_holes_are_proven(variant, through):
-    shape = plate(2)
+    shape = plate(2, 8)
     boundary = Boundary.sample(shape.outline, shape.cage, shape.holes)
     maps = [holed_map(shape, seed, 0.1) for seed in range(3 if through else 2)]
     points = boundary.points[::9]
@@ -105,8 +124,8 @@ def test_in_betweens_around_holes_are_proven(variant, through):
 
 def test_a_small_rho_is_proven_as_tightly_as_any_other():
     maps = [random_map(SHAPE, seed, k=0.85, bend=1.0) for seed in (0, 1)]
-    points = np.concatenate([POINTS, scattered_on(OUTLINE, 3000)])
-    (interval,) = prepare(maps, points, outline=OUTLINE, variant="scaled-eta").intervals
+    points = np.concatenate([POINTS, scattered_on(OUTLINE, 600)])
+    interval = stage_of(SHAPE, points).between(maps, "scaled-eta")
     times = np.linspace(0, 1, 33)
     assert min(map(interval.rho, times)) < 0.2
     k, sigma_a, sigma_b = measured(interval, times)
@@ -138,7 +157,7 @@ def test_what_folds_between_its_keyframes_is_not_proven():
 def test_where_nothing_is_proven_sigma_b_is_0(monkeypatch):
     monkeypatch.setattr(bisection, "MOST_CELLS", 1)
     maps = [random_map(SHAPE, seed, k=0.95, bend=1.0) for seed in range(2)]
-    (interval,) = prepare(maps, POINTS[:2], outline=OUTLINE, variant="nu").intervals
+    interval = stage_of(SHAPE, POINTS[:2]).between(maps, "nu")
     proof = prove(interval)
     assert proof.k < 1
     assert proof.sigma_b == 0
@@ -149,7 +168,7 @@ def test_where_nothing_is_proven_sigma_b_is_0(monkeypatch):
 def test_times_that_cannot_be_settled_are_named(monkeypatch):
     monkeypatch.setattr(bisection, "MOST_CELLS", 1)
     maps = [HarmonicMap.identity(CAGE), random_map(SHAPE, 3, k=0.5, bend=0.8)]
-    (interval,) = prepare(maps, POINTS[:2], outline=OUTLINE, variant="eta").intervals
+    interval = stage_of(SHAPE, POINTS[:2]).between(maps, "eta")
     proof = prove(interval)
     assert proof.never_folds
     assert proof.unsettled == ()
@@ -198,7 +217,7 @@ def linearly(patch, s, t):
     return along[0] * (1 - t) + along[1] * t
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30)
 @given(st.integers(0, 2**32 - 1), st.sampled_from([1, 3]))
 def test_cells_enclose_what_is_blended_on_them(seed, degree):
     rng = np.random.default_rng(seed)
@@ -270,7 +289,7 @@ def test_a_course_is_cut_exactly():
 
 def test_the_bound_on_rho_encloses_it_and_is_near():
     maps = [random_map(SHAPE, seed, k=0.6, bend=1.0) for seed in (3, 6)]
-    (interval,) = prepare(maps, POINTS[:2], outline=OUTLINE, variant="scaled-eta").intervals
+    interval = stage_of(SHAPE, POINTS[:2]).between(maps, "scaled-eta")
     rng = np.random.default_rng(0)
     starts = np.concatenate([rng.uniform(size=300), [0.0, 1e-9, 0.999999]])
     ends = np.minimum(starts + 10.0 ** rng.uniform(-9, -2, len(starts)), 1.0)
@@ -311,11 +330,23 @@ def distortion_of_sum(interval, time, span, added, factor, points):
 CLOSED = [v for v in Variant if v is not Variant.METRIC]
 
 
-@pytest.mark.parametrize("through", [False, True])
-@pytest.mark.parametrize("holed", [False, True])
-@pytest.mark.parametrize("variant", CLOSED)
+# Each variant with two of the four, which make each pair with another variant.
+@pytest.mark.parametrize(
+    ("variant", "holed", "through"),
+    [
+        pytest.param(
+            variant,
+            holed,
+            through,
+            marks=() if (number + holed + through) % 2 == 0 else pytest.mark.long,
+        )
+        for number, variant in enumerate(CLOSED)
+        for holed in (False, True)
+        for through in (False, True)
+    ],
+)
 def test_frames_with_a_map_added_are_proven_as_tightly(variant, holed, through):
-    shape = plate(2) if holed else None
+    shape = plate(2, 8) if holed else None
     outline, cage, holes = (shape.outline, shape.cage, shape.holes) if holed else (*SHAPE, ())
     boundary = Boundary.sample(outline, cage, holes)
     draw = (
@@ -326,7 +357,7 @@ def test_frames_with_a_map_added_are_proven_as_tightly(variant, holed, through):
     maps = [draw(seed) for seed in range(3 if through else 2)]
     ends = boundary.points[boundary.following]
     points = np.concatenate(
-        [boundary.points, *(boundary.points * (1 - s) + ends * s for s in (0.21, 0.5, 0.83))]
+        [boundary.points, *(boundary.points * (1 - s) + ends * s for s in (0.33, 0.66))]
     )
     bounds = Bounds(k=0.8, sigma_a=5, sigma_b=0.1)
     interval = prepare(
@@ -349,7 +380,7 @@ def test_frames_with_a_map_added_are_proven_as_tightly(variant, holed, through):
 
 def test_a_frame_that_folds_with_what_is_added_is_not_certified():
     maps = [random_map(SHAPE, seed, k=0.3, bend=0.5) for seed in (1, 2)]
-    (interval,) = prepare(maps, BOUNDARY.points, outline=OUTLINE, variant="nu").intervals
+    interval = stage_of(SHAPE, BOUNDARY.points).between(maps, "nu")
     wide = Bounds(k=0.999, sigma_a=1e6, sigma_b=1e-6)
     assert prove_frame(interval, 0.5, added_to(SHAPE, size=0.02), wide).certified
     folded = prove_frame(interval, 0.5, added_to(SHAPE, size=3.0), wide)
@@ -359,9 +390,7 @@ def test_a_frame_that_folds_with_what_is_added_is_not_certified():
 
 def test_what_is_added_may_not_wind():
     # f_z has a zero inside, and on the boundary nothing shows it but how often it turns.
-    (interval,) = prepare(
-        [HarmonicMap.identity(CAGE)] * 2, BOUNDARY.points, outline=OUTLINE, variant="nu"
-    ).intervals
+    interval = stage_of(SHAPE, BOUNDARY.points).between([HarmonicMap.identity(CAGE)] * 2, "nu")
     centre = complex(inner_points(OUTLINE, 1, 0)[0])
     phi = 4 * (CAGE - centre) ** 2 / np.ptp(OUTLINE.real) - CAGE
     added = np.column_stack([phi, 0 * phi])
@@ -372,8 +401,8 @@ def test_what_is_added_may_not_wind():
 
 def test_of_the_metric_variant_no_frame_is_proven():
     maps = [random_map(SHAPE, seed, k=0.3, bend=0.5) for seed in (1, 2)]
-    (interval,) = prepare(maps, BOUNDARY.points, outline=OUTLINE, variant="metric").intervals
+    interval = stage_of(SHAPE, BOUNDARY.points).between(maps, "metric")
     assert prove_frame(interval, 0.5, added_to(SHAPE), interval.bounds) is None
-    (other,) = prepare(maps, POINTS, outline=OUTLINE, variant="nu").intervals
+    other = stage_of(SHAPE, POINTS).between(maps, "nu")
     with pytest.raises(EngineError, match="samples"):
         prove_frame(other, 0.5, added_to(SHAPE), interval.bounds)

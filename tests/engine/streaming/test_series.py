@@ -1,16 +1,22 @@
 """Series in time against the direct path, and what they cost."""
 
 from dataclasses import dataclass, replace
-from functools import cache
 
 import numpy as np
 import pytest
 from holed_shapes import inner_points as holed_points, ring
 from hypothesis import given, settings, strategies as st
-from interpolation_shapes import bar, bent, inner_points, letter_l, narrow_u, random_map
+from interpolation_shapes import (
+    bar,
+    bent,
+    inner_points,
+    letter_l,
+    narrow_u,
+    random_map,
+    stage_of,
+)
 from numpy.testing import assert_allclose, assert_array_equal
 
-from engine.dirichlet.hilbert import HilbertTransform
 from engine.errors import EngineError
 from engine.interpolation import Variant, chebyshev, prepare
 from engine.maps import HarmonicMap, distortion
@@ -22,16 +28,10 @@ SHAPES = {"bar": bar(), "letter L": letter_l(), "narrow U": narrow_u(0.1)}
 cases = st.tuples(st.sampled_from(sorted(SHAPES)), st.integers(0, 10_000))
 
 
-@cache
-def transform_of(name):
-    return HilbertTransform.on(*SHAPES[name])
-
-
 def prepared(name, variant, maps):
     outline, _ = SHAPES[name]
     points = np.concatenate([inner_points(outline, 200, 1), outline])
-    transform = transform_of(name) if variant == "metric" else None
-    return prepare(maps, points, outline=outline, variant=variant, transform=transform)
+    return stage_of(SHAPES[name], points).between(maps, variant)
 
 
 def random_pair(name, seed):
@@ -68,10 +68,10 @@ class Curves:
 @given(case=cases, seed=st.integers(0, 10_000))
 @settings(max_examples=2)
 def test_positions_are_those_of_the_direct_path(variant, case, seed):
-    motion = prepared(case[0], variant, random_pair(*case))
-    between, diameter = motion.intervals[0], motion.sites.diameter
-    channels = Positions.of(between, motion.sites)
-    largest = max(np.abs(key.positions).max() for key in motion.keyframes)
+    between = prepared(case[0], variant, random_pair(*case))
+    channels = Positions.of(between, between.sites)
+    diameter = between.sites.diameter
+    largest = max(np.abs(key.positions).max() for key in between.passage.ends)
     assert channels.tolerance <= max(1e-6 * diameter, 5e-7 * largest)
     series = finish(build_series(channels))
     for time in np.random.default_rng(seed).random(12):
@@ -83,9 +83,9 @@ def test_positions_are_those_of_the_direct_path(variant, case, seed):
 
 @pytest.mark.parametrize("variant", Variant)
 def test_keyframes_are_exact_to_float32(variant):
-    motion = prepared("letter L", variant, random_pair("letter L", 5))
-    series = finish(build_series(Positions.of(motion.intervals[0], motion.sites)))
-    for time, key in enumerate(motion.keyframes):
+    between = prepared("letter L", variant, random_pair("letter L", 5))
+    series = finish(build_series(Positions.of(between, between.sites)))
+    for time, key in enumerate(between.passage.ends):
         expected = key.positions.astype(np.complex64)
         assert_array_equal(series.values(float(time)).view(np.complex64), expected)
         beside = series.values(abs(time - 1e-9)).view(np.complex64)
@@ -94,9 +94,8 @@ def test_keyframes_are_exact_to_float32(variant):
 
 @pytest.mark.parametrize("variant", Variant)
 def test_distortions_are_those_of_the_direct_path(variant):
-    motion = prepared("letter L", variant, random_pair("letter L", 8))
-    between = motion.intervals[0]
-    series = finish(build_series(Distortions.of(between, motion.sites)))
+    between = prepared("letter L", variant, random_pair("letter L", 8))
+    series = finish(build_series(Distortions.of(between, between.sites)))
     for time in np.random.default_rng(0).random(12):
         fz, fzbar = as_complex(series.values(time)).reshape(2, -1)
         frame = direct(between, time)
@@ -114,13 +113,12 @@ def test_a_scaled_map_far_from_its_bounds_has_its_rho_in_the_series():
     grown = 2 * np.exp(0.5 * cage + 1)
     maps = [bent(SHAPES["bar"]), bent(SHAPES["bar"])]
     maps[1] = type(maps[0])(cage=cage, phi=grown, psi=0.4 * grown)
-    motion = prepared("bar", "scaled-eta", maps)
-    between = motion.intervals[0]
+    between = prepared("bar", "scaled-eta", maps)
     assert min(between.rho(time) for time in (0.25, 0.5, 0.75)) < 0.9
-    series = finish(build_series(Positions.of(between, motion.sites)))
+    series = finish(build_series(Positions.of(between, between.sites)))
     for time in np.random.default_rng(3).random(60):
         expected = direct(between, time).positions
-        atol = 1e-6 * motion.sites.diameter
+        atol = 1e-6 * between.sites.diameter
         assert_allclose(as_complex(series.values(time)), expected, rtol=0, atol=atol)
 
 
@@ -143,9 +141,8 @@ def extreme_pair(kind):
 @pytest.mark.parametrize("variant", ["nu", "scaled-eta", "metric"])
 @pytest.mark.parametrize("kind", ["k .95", "k .99", "from 20 to .05"])
 def test_extreme_keys_are_streamed_as_accurately_and_from_few_samples(variant, kind):
-    motion = prepared("bar", variant, extreme_pair(kind))
-    between = motion.intervals[0]
-    channels = Positions.of(between, motion.sites)
+    between = prepared("bar", variant, extreme_pair(kind))
+    channels = Positions.of(between, between.sites)
     times = []
     counted = Curves(lambda t: times.append(t) or channels.sample(t), channels.tolerance)
     counted = replace(counted, probe=channels.probe)
@@ -277,16 +274,16 @@ def test_what_jumps_is_left_to_the_direct_path():
 
 def test_far_from_the_origin_the_tolerance_is_what_float32_holds():
     maps = [bent(SHAPES["bar"], shift=9000j), bent(SHAPES["bar"], bend=0.7, shift=9000j)]
-    motion = prepared("bar", "nu", maps)
-    series = finish(build_series(Positions.of(motion.intervals[0], motion.sites)))
+    between = prepared("bar", "nu", maps)
+    series = finish(build_series(Positions.of(between, between.sites)))
     assert len(series.pieces) == 1
     found = as_complex(series.values(0.4))
-    assert_allclose(found, direct(motion.intervals[0], 0.4).positions, rtol=0, atol=9000 * 2**-21)
+    assert_allclose(found, direct(between, 0.4).positions, rtol=0, atol=9000 * 2**-21)
 
 
 def test_building_goes_in_small_steps_that_may_take_turns():
     motions = [prepared("bar", variant, random_pair("bar", 2)) for variant in ("nu", "metric")]
-    channels = [Positions.of(motion.intervals[0], motion.sites) for motion in motions]
+    channels = [Positions.of(motion, motion.sites) for motion in motions]
     calls = []
 
     @dataclass(frozen=True)
