@@ -66,5 +66,5 @@ def animate(document, points=None):
 
 @cache
 def animated(document):
-    """The motion of its handles and its outline, whose frames are known once they were asked for."""
+    """The motion of its handles and its outline, with all frames that were asked for."""
     return animate(document)

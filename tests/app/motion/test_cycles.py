@@ -56,7 +56,9 @@ def unlike(animation, cycle, frames, until=None):
 
 
 # Of each variant the one or the other: whether a key follows the repeats.
-@pytest.mark.parametrize(("variant", "after"), zip(Variant, alternate([(), (110,)]), strict=False))
+@pytest.mark.parametrize(
+    ("variant", "after"), [*zip(Variant, alternate([(), (110,)]), strict=False)]
+)
 def test_every_repeat_is_the_same_motion(variant, after):
     document = cycling(*KEYS, *after, cycle=WALK, last=120, variant=variant)
     assert unlike(moving(document), WALK, range(20, 44, 3)) < 1e-9
