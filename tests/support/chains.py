@@ -60,8 +60,13 @@ def exactly(document, figure, place, frame):
     return moved.positions[0], moved.fz[0]
 
 
+@cache
+def among(clip):
+    """Some points of a figure by itself."""
+    return Animation(clip, points=np.array([CENTRE, CENTRE + 30j, CENTRE - 50]))
+
+
 def seen(document, figure, frame, joints=None):
     """Where some points of a figure are in the scene; by its joints where they are known."""
-    points = np.array([CENTRE, CENTRE + 30j, CENTRE - 50])
-    own = Animation(clip_of(document, figure), points=points).positions(frame)
+    own = among(clip_of(document, figure)).positions(frame)
     return (joints or Joints(document)).placement(figure, frame).on(own)

@@ -1,10 +1,12 @@
 """Documents with a row of keys through which the motion passes, and what their clips have ready."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
-from animations import moving_document
+from animations import still_document, within
 from documents import altered
+from shapes import regular_polygon
 
 from app.document.keyframe import Keyframe
 from app.document.queries.clips import clip_of
@@ -16,12 +18,22 @@ from engine.maps import Bounds
 TURNS = (1.0, np.exp(0.3j), np.exp(-0.4j), np.exp(0.2j), np.exp(0.5j), np.exp(-0.1j), np.exp(0.1j))
 
 
+@cache
+def drawing():
+    """Return a document of the blob within a polygon, and a pose that turns and bends it."""
+    circle = regular_polygon(12)
+    document = within(still_document(), 60 + 47j + 54 * circle.real + 40j * circle.imag)
+    (figure,) = document.figures
+    middle = figure.domain.cage.mean()
+    z = figure.domain.cage - middle
+    return document, replace(figure.keys[0].pose, phi=middle + z * np.exp(0.5j) + 5e-4 * z**2)
+
+
 def row(count, *, loop=False, **settings):
     """Return a document with keys 10 frames apart, between others of which the motion passes."""
-    document = moving_document(10)
-    last = document.figures[0].keys[-1]
+    document, pose = drawing()
     keys = tuple(
-        Keyframe(frame=10 * i, pose=replace(last.pose, phi=turn * last.pose.phi))
+        Keyframe(frame=10 * i, pose=replace(pose, phi=turn * pose.phi))
         for i, turn in enumerate(TURNS[:count])
     )
     frames = FrameRange(0, 10 * (count if loop else count - 1))

@@ -20,27 +20,37 @@ CORNERS = 16  # of its outline
 
 
 @cache
-def posed(count=4, *, loop=False):
-    """A document whose handles are dragged to so many of those places, with a key for each."""
+def drawing():
+    """A document of the blob within a polygon, with a handle at each of its places."""
     circle = regular_polygon(CORNERS)
     corners = 60 + 47j + 54 * circle.real + 40j * circle.imag
     document = within(still_document(), corners)
     for name, place in PLACES.items():
         document = handle_commands.add_handle(0, place, name=name)(document)
-    figure = document.figures[0]
-    rig, names = Rig.of(figure), {handle.name: handle.id for handle in figure.handles}
-    keys = []
-    for number, move in enumerate(MOVES[:count]):
-        targets = {
-            identity: Target(position=PLACES[name] + move.get(name, 0))
-            for name, identity in names.items()
-        }
-        drag = Drag.begin(rig, figure.keys[0].pose)
-        while not drag.is_over:
-            drag = drag.towards(targets, 50)
-        keys.append(Keyframe(frame=DRAWN * number, pose=drag.pose(targets)))
-    last = DRAWN * (len(keys) if loop else len(keys) - 1)
-    return altered(document, keys=tuple(keys), frames=FrameRange(0, last), loop=loop)
+    return document
+
+
+@cache
+def dragged(number):
+    """The pose to which the handles of that drawing are dragged by one of the moves."""
+    figure, move = drawing().figures[0], MOVES[number]
+    targets = {
+        handle.id: Target(position=handle.position + move.get(handle.name, 0))
+        for handle in figure.handles
+    }
+    drag = Drag.begin(Rig.of(figure), figure.keys[0].pose)
+    while not drag.is_over:
+        drag = drag.towards(targets, 50)
+    return drag.pose(targets)
+
+
+@cache
+def posed(count=4, *, loop=False, drawn=DRAWN, variant="nu"):
+    """A document whose handles are dragged to so many of those places, with a key for each."""
+    keys = tuple(Keyframe(frame=drawn * number, pose=dragged(number)) for number in range(count))
+    last = drawn * (count if loop else count - 1)
+    frames = FrameRange(0, last)
+    return altered(drawing(), keys=keys, frames=frames, loop=loop, variant=variant)
 
 
 def with_figure(document, **changes):
@@ -52,3 +62,9 @@ def animate(document, points=None):
     handles = np.array([handle.position for handle in figure.handles])
     points = np.concatenate([handles, figure.domain.outline]) if points is None else points
     return Animation(clip_of(document, 0), points=points)
+
+
+@cache
+def animated(document):
+    """The motion of its handles and its outline, with all frames that were asked for."""
+    return animate(document)

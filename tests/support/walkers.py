@@ -19,6 +19,7 @@ LEG = np.array([54 + 28j, 106 + 28j, 106 + 58j, 84 + 58j, 84 + 172j, 54 + 172j])
 BODY = np.array([48 + 128j, 152 + 128j, 152 + 192j, 48 + 192j])
 
 
+@cache
 def leg(
     name: str,
     identity: int,

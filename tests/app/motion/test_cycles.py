@@ -1,6 +1,7 @@
 """Stretches that repeat: each repeat is the same motion, closed as a loop is."""
 
 from dataclasses import replace
+from itertools import cycle as alternate
 
 import numpy as np
 import pytest
@@ -54,8 +55,10 @@ def unlike(animation, cycle, frames, until=None):
     return worst
 
 
-@pytest.mark.parametrize("variant", Variant)
-@pytest.mark.parametrize("after", [(), (110,)])
+# Of each variant the one or the other: whether a key follows the repeats.
+@pytest.mark.parametrize(
+    ("variant", "after"), [*zip(Variant, alternate([(), (110,)]), strict=False)]
+)
 def test_every_repeat_is_the_same_motion(variant, after):
     document = cycling(*KEYS, *after, cycle=WALK, last=120, variant=variant)
     assert unlike(moving(document), WALK, range(20, 44, 3)) < 1e-9

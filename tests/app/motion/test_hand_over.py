@@ -27,7 +27,7 @@ from engine.geometry import HERE
 TOL = 1e-9 * 200
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def hands():
     """Two hands that move by themselves, and a thing that hangs on the first of them."""
     document = layers.detach(1, 1, 0)(chain())
@@ -187,7 +187,7 @@ def cycling(document, *, until=None, last=200):
     return document
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def juggled(hands):
     """A thing that goes from hand to hand and back, and comes round with them."""
     document = cycling(hands)

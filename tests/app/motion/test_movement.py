@@ -20,11 +20,12 @@ def moving(document, identity, keys=MOVES):
 
 def test_what_hangs_on_a_figure_that_moves_goes_along():
     still, moved = chain(), moving(chain(), 0)
+    without, along = Joints(still), Joints(moved)
     for frame in (0.0, 7.5, 20.0, 33.0):
         motion = movement_at(moved, moved.figure(0), frame)
         for figure in (0, 1, 2):
-            before = Joints(still).placement(figure, frame)
-            after = Joints(moved).placement(figure, frame)
+            before = without.placement(figure, frame)
+            after = along.placement(figure, frame)
             assert_allclose(after, motion.after(before), rtol=0, atol=1e-9)
 
 
@@ -41,11 +42,9 @@ def test_a_figure_is_as_distorted_and_certified_as_without():
 
 
 def test_a_figure_is_not_moved_by_itself_while_it_hangs():
-    document = chain()
+    moved, still = Joints(moving(chain(), 1)), Joints(chain())
     for frame in (0, 9.5):
-        assert Joints(moving(document, 1)).placement(1, frame) == Joints(document).placement(
-            1, frame
-        )
+        assert moved.placement(1, frame) == still.placement(1, frame)
 
 
 def test_what_is_let_go_goes_on_from_where_it_is():

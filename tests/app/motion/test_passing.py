@@ -3,8 +3,7 @@
 from dataclasses import replace
 
 import pytest
-from animations import moving_document
-from documents import altered
+from documents import altered, disc_domain
 from key_rows import jump, prepared, row
 from numpy.testing import assert_allclose
 
@@ -73,9 +72,9 @@ def test_how_much_of_their_velocity_keys_keep_is_told():
 
 
 def test_an_outline_whose_preparation_was_ended_is_prepared_anew():
-    document = moving_document()
-    sampler = PoseSampler(document.figures[0].domain, anchor=None)
-    sibling = PoseSampler(document.figures[0].domain, anchor=None, sibling=sampler)
+    domain = disc_domain(11)  # of which nothing is known yet
+    sampler = PoseSampler(domain, anchor=None)
+    sibling = PoseSampler(domain, anchor=None, sibling=sampler)
 
     def end(share):
         raise LissomError(f"it was cancelled at {share:.0%}")

@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -29,9 +30,16 @@ BAR[20:60, 20:460] = 255
 PLACES = (30 + 40j, 240 + 40j, 450 + 40j)
 
 
+@cache
+def drawn():
+    """The bar as it was opened."""
+    return still_document(BAR)
+
+
+@cache
 def bar(amount=40.0):
     """A bar with handles at its ends and in the middle, and a bone in its left half."""
-    document = still_document(BAR)
+    document = drawn()
     for place in PLACES:
         document = handle_commands.add_handle(0, place)(document)
     if amount is not None:
@@ -43,8 +51,8 @@ def targets_of(*places):
     return {number: Target(position=place) for number, place in enumerate(places)}
 
 
-def pulled(figure, start, targets):
-    drag = Drag.begin(Rig.of(figure), start).towards(targets, 300)
+def pulled(figure, start, targets, steps=300):
+    drag = Drag.begin(Rig.of(figure), start).towards(targets, steps)
     assert drag.state.certificate.certified
     return drag.pose(targets)
 
@@ -93,7 +101,7 @@ def test_what_is_stiff_is_known_to_rigs_and_taken_from_earlier_ones():
 
 
 def still_with(figure):
-    return still_document(BAR).with_figure(figure)
+    return drawn().with_figure(figure)
 
 
 def test_a_pose_of_before_stays_and_begins_a_drag_though_it_is_beyond_new_limits():
@@ -111,7 +119,8 @@ def test_a_pose_of_before_stays_and_begins_a_drag_though_it_is_beyond_new_limits
 def test_a_limb_that_its_bone_holds_back_is_said_to_be_at_the_limits():
     boned = bar(100.0)
     far = targets_of(30 + 40j, 330 + 40j, 540 + 40j)
-    pose = pulled(boned, boned.keys[0].pose, far)
+    # In some steps it is at the limits, long before all of it is at rest.
+    pose = pulled(boned, boned.keys[0].pose, far, steps=30)
     shortfall = find_shortfall(boned, pose)
     assert 1 in shortfall.lags
     assert shortfall.at_limits
@@ -129,20 +138,18 @@ SCRIPT = {
 
 
 def test_a_script_says_what_is_stiff():
-    document, notices = pose_document(
-        still_document(BAR), parse_pose_script(SCRIPT), lambda _: None
-    )
+    document, notices = pose_document(drawn(), parse_pose_script(SCRIPT), lambda _: None)
     (figure,) = document.figures
     assert notices == ()
     assert figure.bones[0].ends == (0, 1)
     assert figure.bones[0].amount == 30
     assert figure.stiffness[np.argmax(figure.domain.outline.real)] > 5
     plain = {name: value for name, value in SCRIPT.items() if name != "stiff"}
-    usual, _ = pose_document(still_document(BAR), parse_pose_script(plain), lambda _: None)
+    usual, _ = pose_document(drawn(), parse_pose_script(plain), lambda _: None)
     stiff, soft = figure.keys[1].pose, usual.figures[0].keys[1].pose
     assert bent_in(figure, stiff, 110, 160) < 0.5 * bent_in(figure, soft, 110, 160)
     nowhere = {**SCRIPT, "stiff": [{"around": [240, 400], "radius": 6, "amount": 10}]}
-    _, notices = pose_document(still_document(BAR), parse_pose_script(nowhere), lambda _: None)
+    _, notices = pose_document(drawn(), parse_pose_script(nowhere), lambda _: None)
     assert notices == (
         "no outline is seen within 6 px of (240, 400): nothing is stiff or soft there",
     )
@@ -179,12 +186,12 @@ def test_a_bone_of_a_script_that_leaves_the_drawing_is_named():
         pose_document(still_document(picture), parse_pose_script(script), lambda _: None)
     script["stiff"] = 2 * [{"from": "start", "to": "elbow", "amount": 3}]
     with pytest.raises(LissomError, match="There is a bone from 'start' to 'elbow' already"):
-        pose_document(still_document(BAR), parse_pose_script(script), lambda _: None)
+        pose_document(drawn(), parse_pose_script(script), lambda _: None)
 
 
 def arm():
     """A bar whose handles are a shoulder, an elbow and a hand, with two bones between them."""
-    document = still_document(BAR)
+    document = drawn()
     for place in (30 + 40j, 240 + 40j, 450 + 40j):
         document = handle_commands.add_handle(0, place)(document)
     for ends in ((0, 1), (1, 2)):

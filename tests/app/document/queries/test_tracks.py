@@ -194,7 +194,7 @@ def test_a_key_at_the_velocity_of_the_moment_changes_nothing(frame, delay):
         return
     keys = [*track.keys, TrackKey(frame=frame, place=at.place, velocity=velocity)]
     more = replace(track, keys=tuple(sorted(keys, key=lambda key: key.frame)))
-    between = np.linspace(delay, 40 + delay, 81)
+    between = np.linspace(delay, 40 + delay, 21)
     assert_allclose(places(more, between), places(track, between), rtol=0, atol=1e-7)
 
 
