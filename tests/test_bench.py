@@ -5,10 +5,11 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
-from tests.bench import memory
+from tests.bench import __main__ as whole, memory, part, scenes
 from tests.bench.__main__ import PARTS
 
 ROOT = Path(__file__).parents[1]
@@ -28,12 +29,54 @@ def rows_of_tables(said: str) -> list[int]:
     return [len(table.splitlines()) - 1 for table in tables]
 
 
+def test_opening_a_drawing_is_measured():
+    opening = next(iter(scenes.tables(scenes.BRIEF)))
+    assert "2 layers of 160 pixels" in opening.title
+    read, shown, until_here = opening.rows
+    assert 0 < read.seconds <= shown.seconds
+    assert (until_here.seconds, until_here.note) == (None, memory.most_held())
+
+
+@pytest.mark.long
 def test_a_part_that_draws_needs_no_display():
     done = bench("scenes", DISPLAY="", WAYLAND_DISPLAY="")
     assert done.returncode == 0, done.stderr
     assert rows_of_tables(done.stdout) == [3, 4, 1]
 
 
+# In place of the parts: only one of them measures something.
+FAILING = """
+import sys
+assert sys.argv[1:] == [sys.argv[1], "--brief"]
+print("\\nrows\\n  one" if sys.argv[1] == "deform" else sys.exit("it is broken"), flush=True)
+"""
+
+
+def test_bench_tries_all_parts_when_some_fail(tmp_path, monkeypatch, capfd):
+    folder = tmp_path / "tests" / "bench"
+    folder.mkdir(parents=True)
+    (folder / "part.py").write_text(FAILING)
+    monkeypatch.setattr(whole, "ROOT", tmp_path)
+    monkeypatch.setattr(sys, "argv", ["bench", "domain", "deform", "export", "--brief"])
+    assert whole.main() == 1
+    out, err = capfd.readouterr()
+    assert rows_of_tables(out) == [1]
+    assert err.count("it is broken") == 2
+    assert err.splitlines()[-1] == "failed: domain, export"
+
+
+def test_part_prints_its_tables(monkeypatch, capsys):
+    measured = SimpleNamespace(
+        BRIEF="little", Extent=lambda: "much", tables=lambda extent: (extent, "another table")
+    )
+    monkeypatch.setitem(sys.modules, "tests.bench.domain", measured)
+    for words, extent in (["--brief"], "little"), ([], "much"):
+        monkeypatch.setattr(sys, "argv", ["part", "domain", *words])
+        part.main()
+        assert capsys.readouterr().out == f"\n{extent}\n\nanother table\n"
+
+
+@pytest.mark.long
 def test_all_parts_are_tried_though_some_fail(tmp_path):
     # Only the deformer's does without Pillow.
     (tmp_path / "PIL.py").write_text("raise ImportError('Pillow is broken')")
@@ -45,8 +88,8 @@ def test_all_parts_are_tried_though_some_fail(tmp_path):
 
 
 def test_every_part_is_there():
-    for part in PARTS:
-        module = importlib.import_module(f"tests.bench.{part}")
+    for name in PARTS:
+        module = importlib.import_module(f"tests.bench.{name}")
         assert callable(module.tables)
         assert isinstance(module.BRIEF, module.Extent)
 

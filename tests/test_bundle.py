@@ -30,12 +30,13 @@ for name in lists["HIDDEN"]:
 """
 # The one GLFW that is loaded must be the one that Python speaks to.
 LIBRARIES = """
-import re, sys
+import os, re, sys
 for name in sys.argv[1:]:
     __import__(name)
 import glfw
 maps = open("/proc/self/maps").read()
-print(*{*re.findall(r"\\S*libglfw\\S*", maps), glfw.library.glfw._name}, sep="\\n")
+loaded = {*re.findall(r"\\S*libglfw\\S*", maps), glfw.library.glfw._name}
+print(*{os.path.realpath(path) for path in loaded}, sep="\\n")
 """
 
 

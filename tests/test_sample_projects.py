@@ -1,5 +1,7 @@
 """The sample projects that ship with Lissom are what their scripts say, and keep their bounds."""
 
+from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -7,6 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 from PIL import Image
 
+from app.document import Document, FrameRange
 from app.document.queries.shortfall import Extremes
 from app.document.queries.stage.sight import is_visible
 from app.document.queries.timeline import clip_of, exported_frames
@@ -24,13 +27,18 @@ LAYERED = ("friend",)
 NAMES = sorted({path.stem for path in SAMPLES.glob("*.json")} - set(LAYERED))
 
 
+@cache
+def sample(name: str) -> Document:
+    return load_project(SAMPLES / f"{name}.lissom")
+
+
 def test_four_creatures_move():
     assert {"character", "dragon", "giraffe", "octopus"} <= set(NAMES)
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_sample_is_what_its_script_says(name):
-    document = load_project(SAMPLES / f"{name}.lissom")
+    document = sample(name)
     (script,) = load_pose_script(SAMPLES / f"{name}.json").figures
     assert document.figures[0].picture.data == (SAMPLES / f"{name}.png").read_bytes()
     assert {handle.name: handle.position for handle in document.figures[0].handles} == {
@@ -57,7 +65,7 @@ def test_a_sample_is_what_its_script_says(name):
 
 @pytest.mark.parametrize("name", [*NAMES, *LAYERED])
 def test_the_welcome_view_shows_all_of_a_samples_motion(name):
-    document = load_project(SAMPLES / f"{name}.lissom")
+    document = sample(name)
     with Image.open(SAMPLES / "moving" / f"{name}.webp") as moving:
         assert document.loop
         seconds = document.frames.last / document.fps
@@ -68,7 +76,7 @@ def test_the_welcome_view_shows_all_of_a_samples_motion(name):
 
 @pytest.mark.parametrize("name", LAYERED)
 def test_a_sample_on_layers_is_what_its_script_says(name):
-    document = load_project(SAMPLES / f"{name}.lissom")
+    document = sample(name)
     drawing = read_openraster((SAMPLES / f"{name}.ora").read_bytes())
     script = load_pose_script(SAMPLES / f"{name}.json")
     assert [figure.name for figure in document.figures] == [layer.name for layer in drawing.layers]
@@ -88,17 +96,16 @@ def test_a_sample_on_layers_is_what_its_script_says(name):
     joints = Joints(document)
     laugh, head = (next(f for f in document.figures if f.name == n) for n in ("laugh", "head"))
     assert [is_visible(document, laugh, frame) for frame in (29, 30, 52)] == [True, False, True]
-    at = np.array([laugh.joints[0].at])
-    for frame in (9.5, 36):
-        carrier = joints.placement(head.id, frame)
-        moved = Animation(clip_of(document, head.id), points=at).positions(frame)
-        own = Animation(clip_of(document, laugh.id), points=np.array([laugh.anchor]))
-        held = joints.placement(laugh.id, frame).on(own.positions(frame))
-        assert_allclose(held, carrier.on(moved), rtol=0, atol=1e-9 * 1500)
+    at, frame = np.array([laugh.joints[0].at]), 9.5
+    carrier = joints.placement(head.id, frame)
+    moved = Animation(clip_of(document, head.id), points=at).positions(frame)
+    own = Animation(clip_of(document, laugh.id), points=np.array([laugh.anchor]))
+    held = joints.placement(laugh.id, frame).on(own.positions(frame))
+    assert_allclose(held, carrier.on(moved), rtol=0, atol=1e-9 * 1500)
 
 
 def test_the_octopus_crosses_its_arms_one_way_and_then_the_other():
-    document = load_project(SAMPLES / "octopus.lissom")
+    document = sample("octopus")
     clip, mesh = clip_of(document, 0), document.figures[0].domain.mesh
     places = {handle.name: handle.position for handle in document.figures[0].handles}
     higher = []
@@ -116,7 +123,7 @@ def test_the_octopus_crosses_its_arms_one_way_and_then_the_other():
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_sample_begins_and_ends_as_it_was_drawn(name):
-    document = load_project(SAMPLES / f"{name}.lissom")
+    document = sample(name)
     vertices = document.figures[0].domain.mesh.vertices
     for key in (document.figures[0].keys[0], document.figures[0].keys[-1]):
         assert_allclose(document.figures[0].map_of(key.pose)(vertices), vertices, rtol=0, atol=1e-2)
@@ -126,24 +133,44 @@ def test_a_sample_begins_and_ends_as_it_was_drawn(name):
 
 @pytest.mark.parametrize("name", [*NAMES, *LAYERED])
 def test_no_pose_of_a_sample_sits_at_its_limits(name):
-    for figure in load_project(SAMPLES / f"{name}.lissom").figures:
+    for figure in sample(name).figures:
         uses = (use for pose in figure.poses for use in Extremes.of(pose).uses(figure.bounds))
         assert max(use.share for use in uses) < 0.9, figure.name
 
 
-def test_no_motion_of_the_friend_is_slowed_down_by_its_limits():
-    document = load_project(SAMPLES / "friend.lissom")
-    for figure in document.figures:
-        if len(figure.keys) > 2:
-            store = IntervalStore(mesh=PosableMesh.coarse(figure.domain))
-            clip = clip_of(document, figure.id)
-            store.take(store.preparing(clip, store.missing(clip, 0))())
-            assert min(store.velocity_shares(clip).values(), default=1.0) > 0.6, figure.name
+@pytest.mark.parametrize(
+    "name",
+    [
+        "right arm",  # which has most keys
+        *(pytest.param(name, marks=pytest.mark.long) for name in ("left arm", "body", "head")),
+    ],
+)
+def test_limits_do_not_slow_down_a_motion_of_the_friend(name):
+    document = sample("friend")
+    moving = {figure.name: figure for figure in document.figures if len(figure.keys) > 2}
+    assert set(moving) == {"left arm", "right arm", "body", "head"}
+    figure = moving[name]
+    store = IntervalStore(mesh=PosableMesh.coarse(figure.domain))
+    clip = clip_of(document, figure.id)
+    store.take(store.preparing(clip, store.missing(clip, 0))())
+    assert min(store.velocity_shares(clip).values(), default=1.0) > 0.6
 
 
-def test_a_sample_keeps_its_bounds():
-    # The command tries the giraffe.
-    report = certify_clip(clip_of(load_project(SAMPLES / "character.lissom"), 0))
+def test_head_of_the_friend_keeps_its_bounds_between_two_keys():
+    head = next(figure for figure in sample("friend").figures if figure.name == "head")
+    keys = tuple(key for key in head.keys if 22 <= key.frame <= 50)
+    assert len(keys) == 2
+    alone = Document(figures=(replace(head, keys=keys, joints=()),), frames=FrameRange(22, 50))
+    report = certify_clip(clip_of(alone, head.id))
+    (interval,) = report.intervals
+    assert interval.verdict is Verdict.PROVEN
+    assert report.corrected.frames == 27
+    assert report.corrected.excess == Extremes(0, 0, 0)
+
+
+@pytest.mark.long
+def test_character_keeps_its_bounds():
+    report = certify_clip(clip_of(sample("character"), 0))
     # In between handles stay where two keys have them: that is measured, frame by frame.
     assert report.verdict is Verdict.MEASURED
     assert {interval.verdict for interval in report.intervals} == {Verdict.PROVEN}

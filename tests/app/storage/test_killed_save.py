@@ -17,6 +17,7 @@ from app.storage.project_file import load_project, save_project
 
 FOLDER = Path({folder!r})
 LATE = 16
+STEPS = {steps!r}
 CALLS = ("open", "fdopen", "fsync", "chmod", "replace", "unlink")
 OLD, NEW = disc_document(), full_document()
 
@@ -74,7 +75,7 @@ def save_killed(path, calls):
     return status
 
 
-for first in ("old", "none"):
+for first, step in STEPS.items():
     survivors = replaced = 0
     path = FOLDER / first / "a.lissom"
     path.parent.mkdir()
@@ -83,7 +84,7 @@ for first in ("old", "none"):
     save_killed(path, 1_000_000)
     last = int((FOLDER / "calls").read_text())
     # Most of them write members of the file, one like the other.
-    early = range(1, last - LATE, 12 if first == "old" else 40)
+    early = range(1, last - LATE, step)
     for calls in (*early, *range(last - LATE, last + 2)):
         folder = FOLDER / first / str(calls)
         folder.mkdir(parents=True)
@@ -110,9 +111,18 @@ for first in ("old", "none"):
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs processes that can be forked")
-def test_a_killed_save_leaves_the_old_or_the_new_file(tmp_path):
+@pytest.mark.parametrize(
+    "steps",
+    [
+        pytest.param({"old": 200}, id="few"),
+        pytest.param({"old": 12, "none": 40}, id="many", marks=pytest.mark.long),
+    ],
+)
+def test_killed_save_leaves_the_old_or_the_new_file(tmp_path, steps):
     tests = Path(__file__).parents[2]
-    script = SAVE.format(tests=str(tests / "support"), root=str(tests.parent), folder=str(tmp_path))
+    script = SAVE.format(
+        tests=str(tests / "support"), root=str(tests.parent), folder=str(tmp_path), steps=steps
+    )
     done = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True, check=False
     )
@@ -121,6 +131,6 @@ def test_a_killed_save_leaves_the_old_or_the_new_file(tmp_path):
         first, calls, survivors, replaced = line.split()
         # Before the replacement and after it, which the last kill and the end without one are.
         assert int(calls) > 100
-        assert int(survivors) > (30 if first == "old" else 10)
+        assert int(survivors) > 10 + int(calls) // (2 * steps[first])
         assert int(replaced) >= 3
-    assert len(done.stdout.splitlines()) == 2
+    assert len(done.stdout.splitlines()) == len(steps)

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 
+@pytest.mark.long
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs processes that can be forked")
 def test_what_is_killed_or_refused_while_it_saves_or_exports_loses_nothing():
     command = [sys.executable, "-m", "tests.campaigns", "--only", "kills", "faults"]

@@ -102,7 +102,7 @@ def test_only_clocks_that_there_are_are_written(tmp_path):
     assert not load_project(STORED_2).figures[1].stillness
 
 
-@settings(max_examples=40)
+@settings(max_examples=20)
 @given(
     st.lists(st.integers(0, 2**32 - 1), max_size=12),
     st.sampled_from([disc_document, full_document, clocked_document]),
@@ -722,14 +722,15 @@ def test_files_that_cannot_be_read(tmp_path):
         save_project(tmp_path / "no" / "a", disc_document())
 
 
-def test_no_damage_gets_through(tmp_path):
+@pytest.mark.parametrize("count", [60, pytest.param(300, marks=pytest.mark.long)])
+def test_no_damage_gets_through(tmp_path, count):
     """Cut, flip or overwrite anywhere: what opens is what was saved, all else is a plain error."""
     path = tmp_path / "a"
     save_project(path, full_document())
     whole = path.read_bytes()
     rng = np.random.default_rng(7)
     refused = 0
-    for trial in range(300):
+    for trial in range(count):
         damaged = bytearray(whole)
         if trial % 3 == 0:
             del damaged[rng.integers(len(whole)) :]
@@ -745,7 +746,7 @@ def test_no_damage_gets_through(tmp_path):
             refused += 1
         else:
             assert not differences(document, full_document())
-    assert refused > 200
+    assert refused > 2 * count / 3
 
 
 def test_a_domain_that_was_parted_comes_back_so_and_needs_what_closes_it(tmp_path):
