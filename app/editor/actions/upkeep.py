@@ -86,12 +86,13 @@ def follow_playhead(session: Session, project: Project) -> None:
 
 
 def _inputs(session: Session, project: Project) -> tuple[object, ...]:
-    """Return all that what is missing depends on; what jobs have brought shows in their kinds."""
+    """Return all on which it depends which jobs are due."""
     take = project.take
     return (
         *(project.document, project.history.position, project.active, project.selected),
         *(playback.current_frame(session, project), project.playhead.since is None),
-        *(session.jobs.kinds, session.prepares_ahead, session.overlays, session.split),
+        *(session.jobs.kinds, session.jobs.delivered, session.prepares_ahead),
+        *(session.overlays, session.split),
         *(session.export_frame, project.awaits_extent, session.pointer, session.records),
         *(project.chosen_track, take, take and (take.is_over, len(take.samples))),
         *(project.unkeyed, tuple(project.pending), tuple(map(_stage, project.pulls))),

@@ -69,6 +69,7 @@ class Jobs:
     def __init__(self, clock: Callable[[], float] = time.perf_counter) -> None:
         # Called on the worker's thread whenever something is there to deliver.
         self.wake: Callable[[], None] = lambda: None
+        self.delivered = 0  # how many results were handed over so far
         self._clock = clock
         self._condition = threading.Condition()
         self._waiting: list[Job] = []
@@ -165,6 +166,7 @@ class Jobs:
                 if not self._finished:
                     return
                 _, hand_over = self._finished.pop(0)
+            self.delivered += 1
             hand_over()
 
     def settle(self, timeout: float = 60.0) -> bool:

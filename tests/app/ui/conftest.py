@@ -29,6 +29,12 @@ def everything(window: Harness) -> None:
 
 
 @pytest.fixture
+def painted(window: Harness) -> None:
+    """Draw the viewport in frames of which no picture is taken, too."""
+    window.paints = True
+
+
+@pytest.fixture
 def bar(window: Harness) -> Project:
     """The sample of a bar, with a handle near each end, the second one selected."""
     return window.again(open_bar)

@@ -183,6 +183,7 @@ def test_it_is_not_lost_where_something_else_follows(window, bent, come, leave):
     assert abs(target.position - in_between(bent)[1] - WAY) < pixel(window, bent)
 
 
+@pytest.mark.usefixtures("everything")
 def test_undo_and_redo_need_not_wait(window, bent):
     playback.scrub(window.session, FRAME)
     for turn in (TURN, TURN**2):

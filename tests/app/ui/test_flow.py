@@ -42,6 +42,7 @@ def handle_places(project):
     }
 
 
+@pytest.mark.usefixtures("everything")
 def test_a_person_makes_an_animation_and_takes_it_back(window, tmp_path):
     session = window.session
     window.frames(10)
@@ -208,6 +209,7 @@ def test_a_shape_that_is_held_back_is_left_alone_when_the_hand_lets_go(window, b
     np.testing.assert_array_equal(bar.puppet.shown.positions, held)
 
 
+@pytest.mark.usefixtures("everything")
 def test_inbetweens_follow_a_drag_before_the_hand_lets_go(window, bar):
     session = window.session
     keys.set_variant(session, "metric")
@@ -525,6 +527,7 @@ def test_home_fits_the_pose_wherever_it_is(window, bent):
         check_fitted(window, bent, *corners(bent.puppet.shown.positions))
 
 
+@pytest.mark.usefixtures("everything")
 def test_shift_home_fits_the_whole_motion(window, bent):
     points = []
     for frame in range(0, 25, 3):
@@ -613,6 +616,7 @@ def test_ctrl_click_on_the_shape_puts_the_anchor_there(window, bent):
     assert marks.find_anchor(bent, bent.puppet.shown) is None  # the handle itself shows it
 
 
+@pytest.mark.usefixtures("everything")
 def test_an_anchor_that_was_chosen_for_the_person_is_shown(window, bent):
     assert bent.document.figures[0].anchor is None
     place = marks.find_anchor(bent, bent.puppet.shown)

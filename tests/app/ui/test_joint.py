@@ -306,6 +306,7 @@ def test_a_layer_that_is_let_go_stays_where_it_is_though_it_moves_by_itself(wind
     np.testing.assert_allclose(after.placement.on(after.positions), before, rtol=0, atol=0.01)
 
 
+@pytest.mark.usefixtures("everything")
 def test_where_layers_hang_is_not_told_by_joints_of_an_earlier_document(window, swung):
     (way,) = ways(window, swung)
     joints = swung.joints.value
@@ -416,6 +417,7 @@ def test_ghosts_are_in_front_where_that_is_wished(window, nodding):
     assert np.abs(around(window, front, at) - around(window, plain, at)).max() > 20
 
 
+@pytest.mark.usefixtures("everything")
 def test_what_hangs_on_something_moved_just_now_has_no_ghost_until_it_is_known_where(
     window, nodding
 ):

@@ -72,6 +72,7 @@ def test_nothing_moves_once_the_pose_rests(window, bar):
     np.testing.assert_array_equal(bar.puppet.shown.positions, shown)
 
 
+@pytest.mark.usefixtures("everything")
 def test_in_betweens_are_exact_while_the_pose_that_was_left_comes_to_rest(window, bent, check):
     window.session.clock = count().__next__
     wish = pull(window, bent, 80j)

@@ -1028,6 +1028,7 @@ def test_blends_clipping_and_groups_are_set_in_the_panel(window, stranger):
     assert project.document.figure(arm).blend == "normal"
 
 
+@pytest.mark.usefixtures("painted")
 def test_figures_of_one_picture_share_it_on_the_graphics_card_until_one_is_cut(window, stranger):
     project = window.again(Harness.open, stranger)
     window.settle()
@@ -1053,6 +1054,7 @@ def brush_at(project, figure):
     return Stroke(points=np.array([middle, middle + 5]), radius=8, keeps=False)
 
 
+@pytest.mark.usefixtures("everything")
 def test_what_prepares_layers_that_nobody_edits_is_let_go_and_comes_again(
     window, keyed, monkeypatch
 ):

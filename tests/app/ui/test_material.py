@@ -195,7 +195,7 @@ def test_dragging_goes_on_where_a_part_is_stiff(window, tab):
     assert tab.figure.key(BENT).pose.certificate.certified
 
 
-@pytest.mark.usefixtures("tab")
+@pytest.mark.usefixtures("tab", "painted")
 def test_colours_are_worked_out_anew_only_where_something_is_stiff_otherwise(window, monkeypatch):
     calls = []
 

@@ -50,6 +50,7 @@ def test_what_is_used_for_minutes_on_end_is_given_back(slow_window, bar, tmp_pat
     assert last.cached <= first.cached + 2
 
 
+@pytest.mark.usefixtures("painted")
 def test_a_project_that_was_closed_is_let_go(slow_window, tmp_path):
     project = slow_window.open(sample_images() / "bar.png")
     soak.export(slow_window, tmp_path, "png")
@@ -93,6 +94,7 @@ def test_messages_that_are_gone_leave_nothing(window):
     assert tell_some() - first < 0.05
 
 
+@pytest.mark.usefixtures("everything")
 def test_what_is_free_is_given_back_once_after_work_has_come_to_rest(slow_window, bar, monkeypatch):
     window, given = slow_window, []
     monkeypatch.setattr(memory, "give_back", lambda: given.append(window.clock.now))

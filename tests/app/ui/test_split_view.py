@@ -85,6 +85,7 @@ def test_the_divider_is_dragged_and_the_methods_change_sides_there(window, betwe
 
 
 @pytest.mark.parametrize("baseline", [Baseline.ARAP, Baseline.SIG13])
+@pytest.mark.usefixtures("everything")
 def test_methods_for_comparison_play_beside_the_drawing_and_are_measured(window, between, baseline):
     session = window.session
     document = between.document
@@ -144,6 +145,7 @@ def test_side_by_side_each_method_has_half_of_the_viewport(window):
     assert session.screen == whole
 
 
+@pytest.mark.usefixtures("everything")
 def test_both_are_measured_and_the_linear_one_leaves_the_bounds(window, between):
     viewing.toggle_split(window.session)
     window.show_tab("Distortion")

@@ -55,6 +55,7 @@ def test_a_pose_shows_its_distortion_the_handles_and_the_solver(window, bent):
     assert solver == "pose 6 ms"
 
 
+@pytest.mark.usefixtures("everything")
 def test_inbetweens_show_what_was_measured(window, bent):
     playback.seek(window.session, 12)
     window.settle()
@@ -106,6 +107,7 @@ def test_a_pull_that_is_held_back_is_told_with_its_remedy(window, bent):
     assert bent.history.undo_label == steps
 
 
+@pytest.mark.usefixtures("everything")
 def test_extremes_between_the_times_that_were_measured(bent):
     curves = measure_curves(bent.clip, bent.puppet.store.prepared(bent.clip))
     assert curves.extremes.shape == (TIMES, 3)

@@ -217,6 +217,7 @@ def test_cancelled_solving_changes_nothing(project, window, monkeypatch):
     assert project.renewal is None
 
 
+@pytest.mark.usefixtures("everything")
 def test_heat_map_and_curves_follow_the_document(window, project, tab):
     def act(robot):
         robot.item_click("**/heat map/###sigma_a")
@@ -234,6 +235,7 @@ def test_heat_map_and_curves_follow_the_document(window, project, tab):
     assert project.curves.value.frames[-1] == 28
 
 
+@pytest.mark.usefixtures("everything")
 def test_curves_of_an_older_document_are_not_kept(window, project, tab):
     tab("Distortion", lambda _: None)
     editing.edit(window.session, key_commands.move_keys(0, frozenset({24}), 4))
@@ -246,6 +248,7 @@ def test_curves_of_an_older_document_are_not_kept(window, project, tab):
 
 
 @pytest.mark.usefixtures("project")
+@pytest.mark.usefixtures("everything")
 def test_curves_are_saved_as_picture_and_table(window, tab, tmp_path):
     for suffix in (".png", ".csv"):
 
@@ -383,6 +386,7 @@ def test_what_single_formats_ask_is_entered(window, project, tab):
     assert project.document.export.sheet == wanted
 
 
+@pytest.mark.usefixtures("everything")
 def test_frame_of_the_export_shows_only_with_its_tab(window, project, tab):
     tab("Export", lambda _: None)
     assert window.session.export_frame is not None
@@ -405,6 +409,7 @@ def note_of_the_frame(window, project):
     return project.extent.follows(source), where["start"]
 
 
+@pytest.mark.usefixtures("everything")
 def test_extent_follows_undo_and_redo_at_once(window, project, tab):
     tab("Export", lambda _: None)
     first = project.extent.value

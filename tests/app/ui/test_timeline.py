@@ -339,6 +339,7 @@ def test_the_paths_of_selected_handles_are_shown_and_follow_the_keys(window, pro
     window.session.overlays = replace(window.session.overlays, paths=False)
 
 
+@pytest.mark.usefixtures("everything")
 def test_keys_that_the_limits_slow_down_are_told_with_a_remedy(window, project):
     assert limit_of_motion(window.session) == ""
     tight = Bounds(k=0.01, sigma_a=1.001, sigma_b=0.999)

@@ -580,6 +580,7 @@ def test_a_spring_that_nothing_moves_stays_a_spring(window, bent):
     assert "does not swing" in window.session.toasts[-1].text
 
 
+@pytest.mark.usefixtures("everything")
 def test_what_the_limits_hold_back_is_told_with_its_pixels(window, bent):
     hold = Track(handles=(LEFT,), keys=tuple(TrackKey(frame=f, place=0j) for f in (4, 16)))
     editing.edit(window.session, track_commands.put_track(bent.active, hold))
@@ -606,6 +607,7 @@ def test_what_the_limits_hold_back_is_told_with_its_pixels(window, bent):
     assert not misses_of(bent, bent.figure, bent.figure.track_of(RIGHT))
 
 
+@pytest.mark.usefixtures("everything")
 def test_a_red_stretch_of_a_row_tells_by_how_much_it_is_missed(window, bent, play):
     hold = Track(handles=(LEFT,), keys=tuple(TrackKey(frame=f, place=0j) for f in (4, 16)))
     editing.edit(window.session, track_commands.put_track(bent.active, hold))
@@ -616,6 +618,7 @@ def test_a_red_stretch_of_a_row_tells_by_how_much_it_is_missed(window, bent, pla
     assert tooltip_at(window, at[1]) is not None
 
 
+@pytest.mark.usefixtures("everything")
 def test_a_tracked_handle_at_a_key_of_poses_is_not_short_of_that(window, bent):
     with_track(window, bent, keys=((20, 0), (24, 60j), (30, 0)))
     window.act(playback.seek, 24)

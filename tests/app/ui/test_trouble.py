@@ -466,7 +466,7 @@ def test_a_graphics_driver_that_fails_is_told_and_the_work_is_kept(
     window.session.autosave.forget()
     project.autosaved = None
 
-    def lost(*_):
+    def lost(*_, **__):
         raise RuntimeError("the context was lost")
 
     def full(*_):

@@ -323,6 +323,7 @@ def test_loose_pose_over_a_cage_that_is_rebuilt_is_given_up(window, bent):
 # The solver at its bounds.
 
 
+@pytest.mark.usefixtures("painted")
 def test_handle_out_of_reach_is_told_and_freed_again(window, bent, monkeypatch):
     session = window.session
     undo_all(window)
@@ -487,6 +488,7 @@ FAILURES = {
 
 
 @pytest.mark.parametrize("kind", FAILURES)
+@pytest.mark.usefixtures("everything")
 def test_job_that_raises_is_told_once_and_the_window_lives_on(
     window, bent, monkeypatch, request, kind
 ):
@@ -522,6 +524,7 @@ def test_job_that_raises_is_told_once_and_the_window_lives_on(
 
 
 @pytest.mark.usefixtures("bent")
+@pytest.mark.usefixtures("everything")
 def test_work_that_tells_how_far_it_is_is_cancelled_at_once_and_ends(window, monkeypatch):
     jobs, ended = window.session.jobs, threading.Event()
 
@@ -594,6 +597,7 @@ def test_a_new_key_stands_in_for_in_betweens_that_are_not_prepared(window, bent,
 
 
 @pytest.mark.parametrize("kind", WAITING)
+@pytest.mark.usefixtures("everything")
 def test_results_for_a_closed_project_go_nowhere(window, bent, monkeypatch, kind):
     where, begin = WAITING[kind]
     before = bent.document
@@ -643,6 +647,7 @@ def test_saved_work_is_not_kept_as_unsaved(window, bent, tmp_path):
 # Where the pointer is right, and windows in which little is.
 
 
+@pytest.mark.usefixtures("everything")
 def test_click_in_the_plot_goes_to_its_frame(window, bent):
     window.act(playback.seek, 0)
     window.show_tab("Distortion")
