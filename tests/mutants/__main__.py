@@ -84,7 +84,9 @@ def main() -> int:
 
 
 def _run(arguments: argparse.Namespace, checkouts: list[Checkout], stop: Event) -> int:
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    # Shells let what they start in the background ignore the first.
+    for each in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(each, signal.default_int_handler)
     first = checkouts[0]
     drawn = draw_mutants(
         arguments.draw_from or first.folder, seed=arguments.seed, count=arguments.count
