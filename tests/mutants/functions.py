@@ -8,9 +8,10 @@ before and after a change of the tests.
 import ast
 import hashlib
 from collections.abc import Iterator
-from copy import deepcopy
+from copy import copy
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeAlias
 
 ROOMS = ("app", "engine")
 SIGNS: dict[type[ast.AST], ast.operator] = {
@@ -31,6 +32,8 @@ LIMITS: dict[type[ast.AST], ast.cmpop] = {
     ast.In: ast.NotIn(),
     ast.NotIn: ast.In(),
 }
+# A place in a function: the kind of mistake, the node that it replaces, and the new text.
+Site: TypeAlias = tuple[str, ast.expr | ast.stmt, str]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,6 +52,10 @@ class Mutant:
         Where the mistake is.
     before, after : str
         What stood there, and what stands there now.
+    code : str
+        The line of the function in which it begins, before the mistake.
+    turn : int
+        How many places of the function before it are alike: in kind, text and line.
     source : str
         The whole file with the mistake.
     """
@@ -59,6 +66,8 @@ class Mutant:
     line: int
     before: str
     after: str
+    code: str
+    turn: int
     source: str
 
     @property
@@ -67,41 +76,57 @@ class Mutant:
         return f"{self.path}:{self.function}"
 
     def __str__(self) -> str:
-        return f"{self.name}: {self.kind}, {self.before!r} -> {self.after!r}"
+        before, after = (" ".join(text.split()) for text in (self.before, self.after))
+        return f"{self.name}:{self.line}: {self.kind}, {before!r} -> {after!r}"
 
 
 def draw_mutants(root: Path, *, seed: int, count: int) -> list[Mutant]:
     """Return mutants of so many functions of a project."""
-    drawn: list[tuple[str, Mutant]] = []
+    candidates: list[tuple[str, tuple[str, str, str, list[Site], int]]] = []
     for path in sorted(each for room in ROOMS for each in (root / room).rglob("*.py")):
-        source, place = path.read_text(), path.relative_to(root).as_posix()
+        source, place = path.read_text(encoding="utf-8"), path.relative_to(root).as_posix()
         for name, function in _functions(ast.parse(source)):
-            text = ast.get_source_segment(source, function) or ""
-            sites = list(_sites(function))
-            if not sites:
+            if not (sites := list(_sites(function))):
                 continue
+            text = ast.get_source_segment(source, function) or ""
             digest = hashlib.sha256(f"{seed} {place} {name} {text}".encode()).hexdigest()
-            kind, node, mistake = sites[int(digest[:8], 16) % len(sites)]
-            before = ast.get_source_segment(source, node) or ""
-            mutant = Mutant(
-                path=place,
-                function=name,
-                kind=kind,
-                line=node.lineno,
-                before=before,
-                after=mistake,
-                source=_replaced(source, node, mistake),
-            )
-            drawn.append((digest[8:], mutant))
-    return [mutant for _, mutant in sorted(drawn, key=lambda each: each[0])[:count]]
+            chosen = int(digest[:8], 16) % len(sites)
+            candidates.append((digest[8:], (place, name, source, sites, chosen)))
+    candidates.sort(key=lambda each: each[0])
+    return [_mutant(*candidate) for _, candidate in candidates[:count]]
+
+
+def find_mutant(root: Path, mutant: Mutant) -> Mutant | None:
+    """Return the same mistake in another state of the project, None where its line is gone."""
+    path = root / mutant.path
+    if not path.is_file():
+        return None
+    source = path.read_text(encoding="utf-8")
+    function = dict(_functions(ast.parse(source))).get(mutant.function)
+    if function is None:
+        return None
+    likeness = (mutant.kind, mutant.before, mutant.after, mutant.code)
+    sites = list(_sites(function))
+    alike = [place for place, site in enumerate(sites) if _likeness(source, site) == likeness]
+    if len(alike) <= mutant.turn:
+        return None
+    return _mutant(mutant.path, mutant.function, source, sites, alike[mutant.turn])
 
 
 def with_counters(root: Path, mutants: list[Mutant]) -> dict[str, str]:
-    """Return the files of the mutants' functions, each of which tells first that it was called."""
+    """Return the files of the mutants' functions, each of which tells first that it was called.
+
+    Each tells the place of its mutant in the list. Functions that are not there are left out.
+    """
     changed: dict[str, str] = {}
     for number, mutant in enumerate(mutants):
-        source = changed.get(mutant.path) or (root / mutant.path).read_text()
-        function = dict(_functions(ast.parse(source)))[mutant.function]
+        path = root / mutant.path
+        if not path.is_file():
+            continue
+        source = changed.get(mutant.path) or path.read_text(encoding="utf-8")
+        function = dict(_functions(ast.parse(source))).get(mutant.function)
+        if function is None:
+            continue
         first = function.body[1 if ast.get_docstring(function) and len(function.body) > 1 else 0]
         lines = source.splitlines(keepends=True)
         call = f'__import__("mutant_hits").hit({number})\n'
@@ -111,6 +136,30 @@ def with_counters(root: Path, mutants: list[Mutant]) -> dict[str, str]:
         lines.insert(line - 1, " " * first.col_offset + call)
         changed[mutant.path] = "".join(lines)
     return changed
+
+
+def _likeness(source: str, site: Site) -> tuple[str, str, str, str]:
+    """Return by what a place is found again in another state of its function."""
+    kind, node, mistake = site
+    code = source.splitlines()[node.lineno - 1].strip()
+    return kind, ast.get_source_segment(source, node) or "", mistake, code
+
+
+def _mutant(path: str, function: str, source: str, sites: list[Site], chosen: int) -> Mutant:
+    likeness = _likeness(source, sites[chosen])
+    kind, before, after, code = likeness
+    node = sites[chosen][1]
+    return Mutant(
+        path=path,
+        function=function,
+        kind=kind,
+        line=node.lineno,
+        before=before,
+        after=after,
+        code=code,
+        turn=sum(_likeness(source, site) == likeness for site in sites[:chosen]),
+        source=_replaced(source, node, after),
+    )
 
 
 def _functions(tree: ast.Module) -> Iterator[tuple[str, ast.FunctionDef]]:
@@ -134,11 +183,13 @@ def _is_stub(function: ast.FunctionDef) -> bool:
     return (len(function.body) == 1 and is_text) or first.lineno == function.lineno
 
 
-def _sites(function: ast.FunctionDef) -> Iterator[tuple[str, ast.AST, str]]:
-    """Yield where a mistake can be made: its kind, the node that it replaces, and the new text."""
+def _sites(function: ast.FunctionDef) -> Iterator[Site]:
+    """Yield where a mistake can be made."""
     for statement in function.body:
         for node in _walk(statement):
-            wrong = deepcopy(node)
+            if not isinstance(node, ast.expr | ast.stmt):
+                continue
+            wrong = copy(node)
             match wrong:
                 case ast.BinOp(op=op) if type(op) in SIGNS and not _is_text(wrong):
                     wrong.op = SIGNS[type(op)]
@@ -185,13 +236,13 @@ def _is_text(node: ast.BinOp) -> bool:
     )
 
 
-def _replaced(source: str, node: ast.AST, text: str) -> str:
+def _replaced(source: str, node: ast.expr | ast.stmt, text: str) -> str:
     """Return a file with another text in place of a node."""
     lines = source.encode().splitlines(keepends=True)
     starts = [0]
     for line in lines:
         starts.append(starts[-1] + len(line))
     whole = b"".join(lines)
-    first = starts[node.lineno - 1] + node.col_offset  # type: ignore[attr-defined]
-    last = starts[node.end_lineno - 1] + node.end_col_offset  # type: ignore[attr-defined]
+    first = starts[node.lineno - 1] + node.col_offset
+    last = starts[(node.end_lineno or node.lineno) - 1] + (node.end_col_offset or 0)
     return (whole[:first] + text.encode() + whole[last:]).decode()

@@ -44,3 +44,11 @@ def test_the_readmes_lead_to_each_other():
 def test_the_first_page_is_short():
     first = (ROOT / "README.md").read_text(encoding="utf-8")
     assert len(first.splitlines()) <= MOST_LINES
+
+
+def test_the_index_of_support_names_every_module():
+    page = (ROOT / "tests" / "README.md").read_text(encoding="utf-8")
+    index = page.partition("\n## Shared modules\n")[2].partition("\n## ")[0]
+    named = re.findall(r"^\| `(\w+)` \| \S", index, flags=re.MULTILINE)
+    there = {path.stem for path in (ROOT / "tests" / "support").glob("*.py")}
+    assert sorted(named) == sorted(there)
