@@ -1,3 +1,4 @@
+import json
 import os
 import pkgutil
 import subprocess
@@ -10,7 +11,7 @@ from documents import disc_document
 
 from app.cli import commands, options, usage
 from app.cli.commands import window
-from app.cli.main import COMMANDS, main
+from app.cli.main import COMMANDS, EXIT_PIPE_CLOSED, main
 from app.cli.usage import pose
 from app.document import FRAMINGS, SPRINGS, VARIANTS, Meshing
 from app.editor.actions import saving
@@ -65,54 +66,62 @@ def test_the_program_runs_as_a_process(tmp_path):
     assert run("--version").stdout.startswith("lissom ")
 
 
+# One process answers all of them, one after the other: what is loaded once stays loaded.
 LOADED = """
-import sys
+import contextlib, io, json, sys
 from app.cli.main import main
-try:
-    main(sys.argv[1:])
-except SystemExit as leaving:
-    heavy = {"numpy", "scipy", "PIL", "shapely", "moderngl", "imgui_bundle"} & set(sys.modules)
-    print("left with", leaving.code, "and", sorted(heavy), file=sys.stderr)
+for words in json.load(sys.stdin):
+    said = io.StringIO()
+    try:
+        with contextlib.redirect_stderr(said), contextlib.redirect_stdout(io.StringIO()):
+            main(words)
+    except SystemExit as leaving:
+        heavy = {"numpy", "scipy", "PIL", "shapely", "moderngl", "imgui_bundle"} & set(sys.modules)
+        print(json.dumps([leaving.code, sorted(heavy), said.getvalue()]))
 """
-
-
-@pytest.mark.parametrize(
-    ("words", "status"),
-    [
-        ("--help", 0),
-        ("--version", 0),
-        ("domain --help", 0),
-        ("window no.lissom", 2),
-        ("domain", 2),
-        ("domain {here} --out x.npz --detail finest", 2),
-        ("domain no.png --out x.npz", 2),
-        ("domain {here} --out x.npz --background blue", 2),
-        ("domain {here} --out x.npz --background none --mask {here}", 2),
-        ("pose no.png no.json --out x.lissom", 2),
-        ("certify no.lissom", 2),
-        ("certify {here} --variant mu", 2),
-        ("deform no.npz --out x.npz", 2),
-        ("interpolate no.npz --variant nu --times 0,1 --out x.npz", 2),
-        ("interpolate {here} --variant nu --times one --out x.npz", 2),
-        ("export no.lissom --out x", 2),
-        ("export {here} --out x --size big", 2),
-        ("figures --out x --triangles 10", 2),
-        ("desktop", 2),
-        ("desktop --install --remove", 2),
-        ("thumbnail no.lissom --out x.png", 2),
-        ("thumbnail {here} --out x.png --size 0", 2),
-        ("manual", 2),
-        ("nonsense", 2),
-    ],
+LIGHT = (
+    ("--help", 0),
+    ("--version", 0),
+    ("domain --help", 0),
+    ("window no.lissom", 2),
+    ("domain", 2),
+    ("domain {here} --out x.npz --detail finest", 2),
+    ("domain no.png --out x.npz", 2),
+    ("domain {here} --out x.npz --background blue", 2),
+    ("domain {here} --out x.npz --background none --mask {here}", 2),
+    ("pose no.png no.json --out x.lissom", 2),
+    ("certify no.lissom", 2),
+    ("certify {here} --variant mu", 2),
+    ("deform no.npz --out x.npz", 2),
+    ("interpolate no.npz --variant nu --times 0,1 --out x.npz", 2),
+    ("interpolate {here} --variant nu --times one --out x.npz", 2),
+    ("export no.lissom --out x", 2),
+    ("export {here} --out x --size big", 2),
+    ("figures --out x --triangles 10", 2),
+    ("desktop", 2),
+    ("desktop --install --remove", 2),
+    ("thumbnail no.lissom --out x.png", 2),
+    ("thumbnail {here} --out x.png --size 0", 2),
+    ("manual", 2),
+    ("nonsense", 2),
 )
-def test_what_is_answered_from_the_words_alone_loads_nothing_heavy(words, status):
-    words = words.format(here=__file__).split()
+
+
+def test_nothing_heavy_is_loaded_when_the_words_suffice():
+    calls = [words.format(here=__file__).split() for words, _ in LIGHT]
     done = subprocess.run(
-        [sys.executable, "-c", LOADED, *words], capture_output=True, text=True, check=False
+        [sys.executable, "-c", LOADED],
+        input=json.dumps(calls),
+        capture_output=True,
+        text=True,
+        check=True,
     )
-    assert done.stderr.splitlines()[-1] == f"left with {status} and []"
-    if status == 2:
-        assert error_line(done.stderr)
+    answers = [json.loads(line) for line in done.stdout.splitlines()]
+    assert len(answers) == len(LIGHT)
+    for (words, status), (code, heavy, said) in zip(LIGHT, answers, strict=True):
+        assert (code, heavy) == (status, []), words
+        if status == 2:
+            assert error_line(said)
 
 
 def test_the_words_to_choose_from_are_those_that_the_program_knows():
@@ -134,19 +143,33 @@ def test_every_command_says_what_it_understands_and_does_it():
         assert modules == set(COMMANDS)
 
 
-def test_a_reader_that_stops_early_is_no_error():
+@pytest.fixture
+def closed_pipe():
+    """The end of a pipe that nobody reads."""
     reading, writing = os.pipe()
     os.close(reading)
-    with os.fdopen(writing, "wb") as closed:
-        done = subprocess.run(
-            [sys.executable, "-m", "app", "doctor"],
-            stdout=closed,
-            stderr=subprocess.PIPE,
-            text=True,
-            check=False,
-        )
-    assert done.returncode == 141
+    with os.fdopen(writing, "w") as pipe:
+        yield pipe
+
+
+def test_help_is_no_error_when_its_reader_stops(closed_pipe):
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"}
+    done = subprocess.run(
+        [sys.executable, "-m", "app", "domain", "--help"],
+        env=environment,
+        stdout=closed_pipe,
+        stderr=subprocess.PIPE,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == EXIT_PIPE_CLOSED == 141
     assert done.stderr == ""
+
+
+def test_command_is_no_error_when_its_reader_stops(closed_pipe, monkeypatch, capsys):
+    monkeypatch.setattr(sys, "stdout", closed_pipe)
+    assert main(["move", "--list"]) == EXIT_PIPE_CLOSED
+    assert capsys.readouterr().err == ""
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems always have a display")
@@ -160,10 +183,15 @@ def test_without_a_display_the_window_says_what_works(monkeypatch, capsys):
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems always have a display")
-def test_a_display_that_is_not_there_is_an_error_in_words():
+def test_window_is_an_error_in_words_when_its_display_is_missing(tmp_path):
     done = subprocess.run(
-        [sys.executable, "-m", "app", str(SAMPLE)],
-        env={**os.environ, "DISPLAY": ":9999", "WAYLAND_DISPLAY": ""},
+        [sys.executable, "-m", "app", "window"],
+        env={
+            **os.environ,
+            "DISPLAY": ":9999",
+            "WAYLAND_DISPLAY": "",
+            "XDG_CONFIG_HOME": str(tmp_path),
+        },
         capture_output=True,
         text=True,
         check=False,
@@ -188,11 +216,11 @@ def test_an_autosave_that_is_written_while_the_person_leaves_is_not_offered(tmp_
 
             def keep():
                 begun.set()
-                left.wait(10)
+                left.wait()
                 session.autosave.write(disc_document(), Origin("disc", None))
 
             session.jobs.put(Job(kind=saving.AUTOSAVING, work=keep, done=print, failed=print))
-            assert begun.wait(10)
+            begun.wait()
             saving.leave(session)
             left.set()
             farewell()

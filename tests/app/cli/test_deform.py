@@ -97,7 +97,9 @@ def test_on_request_handles_pull_with_bounded_force(write, tmp_path, pull):
     assert np.abs(got["handles_mapped"] - far)[others].max() < 0.02
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize(
+    "seed", [0, 1, *(pytest.param(seed, marks=pytest.mark.long) for seed in (2, 3))]
+)
 def test_what_is_certified_can_be_started_from(write, tmp_path, seed):
     # At a bound to the last digits.
     rng = np.random.default_rng(seed)

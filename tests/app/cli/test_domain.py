@@ -75,7 +75,7 @@ def test_the_file_is_as_documented(drawing, tmp_path, capsys):
 def test_holes_are_kept_where_they_are_wanted(drawing, tmp_path, capsys):
     out, preview = tmp_path / "d.npz", tmp_path / "p.png"
     words = ["domain", drawing, "--out", out, "--preview", preview]
-    assert main([*map(str, words), "--triangles", "3000"]) == 0
+    assert main([*map(str, words), "--triangles", "1000"]) == 0
     said = capsys.readouterr()
     assert "hole" not in said.err
     assert "1 hole, " in said.out
@@ -163,7 +163,7 @@ def test_projects_and_exports_are_cut_out_likewise(photo, tmp_path):
         (["--background", "none"], mask >= 0),
     ):
         project, frames = tmp_path / "posed.lissom", tmp_path / "frames"
-        posing = ["pose", photo, script, "--out", project, "--triangles", 2000, *words]
+        posing = ["pose", photo, script, "--out", project, "--triangles", 1000, *words]
         assert main([str(word) for word in posing]) == 0
         exporting = ["export", project, "--out", frames, "--framing", "canvas"]
         assert main([str(word) for word in exporting]) == 0
@@ -175,7 +175,7 @@ def test_projects_and_exports_are_cut_out_likewise(photo, tmp_path):
 
 
 def test_the_preview_shows_picture_outline_cage_and_mesh(drawing, tmp_path):
-    words = ["domain", drawing, "--out", tmp_path / "d.npz", "--triangles", 2000]
+    words = ["domain", drawing, "--out", tmp_path / "d.npz", "--triangles", 1000]
     assert main([str(w) for w in (*words, "--preview", tmp_path / "p.png")]) == 0
     pixels = np.asarray(Image.open(tmp_path / "p.png")).reshape(-1, 3).astype(int)
     for colour in ((0, 120, 215), (235, 94, 40), (200, 60, 30), (250, 249, 246)):

@@ -93,7 +93,16 @@ def test_a_quarter_of_the_machine_is_usual(budget, monkeypatch):
     assert cores._budget() == 10_240_000
 
 
-@pytest.mark.parametrize("kind", ["png", "ora", "jpg", "deep.png", "scene.ora"])
+@pytest.mark.parametrize(
+    "kind",
+    [
+        "png",
+        *(
+            pytest.param(kind, marks=pytest.mark.long)
+            for kind in ("ora", "jpg", "deep.png", "scene.ora")
+        ),
+    ],
+)
 def test_opening_takes_little_beyond_what_is_decoded(tmp_path, kind):
     side, count = (3_000, 3) if kind.endswith("ora") else (3_600, 1)
     drawn = Image.new("RGBA", (side, side))

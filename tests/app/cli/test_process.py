@@ -11,7 +11,7 @@ import pytest
 from documents import disc_document
 
 from app.cli.commands import doctor, window
-from app.cli.main import main
+from app.cli.main import EXIT_FAILED, main
 from app.document import History
 from app.document.commands import scene_commands
 from app.editor import failures
@@ -192,6 +192,50 @@ def test_what_was_not_saved_is_kept_however_the_window_ends(
         assert f"{type(error).__name__}: {error}" in text
         assert str(Path(__file__).parent) not in text
         assert report.stat().st_mode & 0o777 == 0o600
+
+
+class LostDisplay:
+    """Xlib, whose server goes away when a test says so."""
+
+    def __init__(self):
+        self.handler = None
+
+    def XSetIOErrorHandler(self, handler):  # noqa: N802 - Xlib's own name
+        self.handler = handler
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems have no X server")
+def test_unsaved_work_is_kept_when_the_display_is_lost(tmp_path, monkeypatch, capfd):
+    ended, display = [], LostDisplay()
+
+    class LostWindow(EndedWindow):
+        def run(self, *, is_over, farewell):
+            history = History(disc_document(), saved=True)
+            history.do(scene_commands.add_marker(0, "unsaved"))
+            self.session.project = Project(
+                name="disc", history=history, path=None, puppets={}, active=0
+            )
+            display.handler(None)
+            assert list(tmp_path.rglob("unsaved-*.lissom"))
+            assert ended == [EXIT_FAILED]
+            assert not is_over()
+            farewell()
+
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
+    # The handler as Python knows it: it returns here, where the process would have ended.
+    monkeypatch.setattr("app.cli.process.ctypes.CFUNCTYPE", lambda *_: lambda handler: handler)
+    monkeypatch.setattr("app.cli.process.ctypes.CDLL", lambda _: display)
+    monkeypatch.setattr(window, "has_display", lambda: True)
+    monkeypatch.setattr(window, "Window", LostWindow)
+    monkeypatch.setattr(window, "end_within", lambda *_: None)
+    monkeypatch.setattr(sys, "setswitchinterval", lambda _: None)
+    monkeypatch.setattr(os, "_exit", ended.append)
+    main(["window"])
+    said = capfd.readouterr().err
+    assert "the display is gone" in said
+    assert "your unsaved work was kept" in said
+    (kept,) = tmp_path.rglob("unsaved-*.lissom")
+    assert load_leftover(kept)[0].markers[0].name == "unsaved"
 
 
 def test_where_a_process_crashed_is_kept_for_the_next_start(tmp_path):

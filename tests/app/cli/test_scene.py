@@ -19,6 +19,8 @@ from app.storage.project_file import load_project, save_project
 from engine.errors import EngineError
 from engine.maps import Bounds
 
+pytestmark = pytest.mark.usefixtures("one_context")
+
 WIDTH, HEIGHT = 240, 200
 # No test looks at the mesh, nor at which variant leads from key to key.
 FEW = ("--triangles", "1000", "--detail", "coarse")

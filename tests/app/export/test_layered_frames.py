@@ -40,7 +40,7 @@ def opened(tmp_path_factory):
     )
     path = tmp_path_factory.mktemp("layered") / "walk.ora"
     path.write_bytes(openraster(SIZE, stack, [picture for picture, _, _ in LAYERS.values()]))
-    scene = open_layered(path, Meshing(triangles=4_000))
+    scene = open_layered(path, Meshing(triangles=1_000, detail="coarse"))
     assert not scene.document.told.losses
     return scene
 

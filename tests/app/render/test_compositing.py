@@ -86,9 +86,14 @@ def check(easel: Easel, parts: tuple, pictures: dict, colour=(0.0, 0.0, 0.0, 0.0
     assert_allclose(shown, meant, rtol=0, atol=2.5 / 255)
 
 
+PAPER = (0.8, 0.5, 0.1, 1.0)
+
+
 @pytest.mark.parametrize("blend", BLENDS)
-@pytest.mark.parametrize("opacity", [1.0, 0.4, 0.0])
-@pytest.mark.parametrize("colour", [(0.0, 0.0, 0.0, 0.0), (0.8, 0.5, 0.1, 1.0)])
+@pytest.mark.parametrize(
+    ("opacity", "colour"),
+    [(1.0, (0.0, 0.0, 0.0, 0.0)), (0.4, (0.0, 0.0, 0.0, 0.0)), (0.4, PAPER), (0.0, PAPER)],
+)
 def test_figures_meet_what_is_behind_them_as_they_are_blended(easel, blend, opacity, colour):
     pictures = {laid(easel, pixels): pixels for pixels in (colours(1), colours(2))}
     below, above = pictures
@@ -103,7 +108,7 @@ def test_groups_are_composited_as_one_and_then_faded(easel):
     check(easel, parts, pictures)
 
 
-@pytest.mark.parametrize("colour", [(0.0, 0.0, 0.0, 0.0), (0.8, 0.5, 0.1, 1.0)])
+@pytest.mark.parametrize("colour", [(0.0, 0.0, 0.0, 0.0), PAPER])
 def test_what_blends_in_a_faded_group_that_passes_through_meets_all_behind(easel, colour):
     pictures = {laid(easel, pixels): pixels for pixels in map(colours, range(5))}
     sky, one, two, three, four = pictures
