@@ -26,8 +26,13 @@ MIDDLE, RADIUS = 100 + 100j, 80.0
 
 
 @cache
+def coarse() -> Holed:
+    return ring(sides=24)
+
+
+@cache
 def shape() -> Holed:
-    return ring().moved(RADIUS, MIDDLE)
+    return coarse().moved(RADIUS, MIDDLE)
 
 
 @cache
@@ -42,7 +47,7 @@ def document() -> Document:
     boundary = Boundary.sample(domain.outline, domain.cage, domain.holes)
     keys = []
     for number in range(3):
-        f = random_map(ring(), number, 0.08)
+        f = random_map(coarse(), number, 0.08)
         f = HarmonicMap(
             cage=domain.cage,
             phi=RADIUS * f.phi + MIDDLE * (np.arange(len(f.phi)) < len(domain.cage)),
