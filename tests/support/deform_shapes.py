@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 from interpolation_shapes import around, subdivided
 
-from engine.deform import Deformer, Handles, Objective
+from engine.deform import Deformer, Handles, Objective, State
 from engine.deform.model import MARGIN
 from engine.deform.rest import Search, Way, advance, begin_search
 from engine.maps import Boundary, Bounds
@@ -40,8 +40,26 @@ def bar(bounds: Bounds = Bounds()) -> Deformer:
     return Deformer(boundary=boundary, handles=Handles.place(boundary, BAR_POINTS), bounds=bounds)
 
 
+ARCHED = BAR_POINTS + np.array([0, 1j, 0])
 TIGHT = Bounds(k=0.2, sigma_a=1.5, sigma_b=0.6)
 TWISTED = STAR_POINTS * np.exp(1j * np.array([0, 0.7, -0.5, 0.6, -0.8, 0.4]))
+
+
+def settle(deformer: Deformer, targets) -> State:
+    """Return the pose of least energy for targets, from the shape at rest."""
+    return deformer.settle(deformer.start(), deformer.handles.wish(targets))[0]
+
+
+@cache
+def settled_star() -> State:
+    """The star, twisted within tight bounds."""
+    return settle(star(TIGHT), TWISTED)
+
+
+@cache
+def arched_bar() -> State:
+    """The bar with its middle pulled up within the default bounds."""
+    return settle(bar(), ARCHED)
 
 
 def search_from_rest(steps: int, way: Way = Way.REST, bounds: Bounds = TIGHT) -> Search:

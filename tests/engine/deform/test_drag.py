@@ -5,8 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from deform_shapes import (
+    ARCHED,
     BAR_POINTS,
     STAR_POINTS,
+    arched_bar,
     assert_sound,
     bar,
     bar_boundary,
@@ -32,7 +34,6 @@ from engine.maps.span import Span
 
 BOUNDS = Bounds()
 BENT = BAR_POINTS + np.array([0, 0.3j, 0])
-ARCHED = BAR_POINTS + np.array([0, 1j, 0])
 
 
 def dragged(deformer, targets, steps, state=None):
@@ -125,7 +126,7 @@ def moved_star(factor, shift):
 
 def test_a_recorded_drag_is_repeated_bit_for_bit():
     rng = np.random.default_rng(4)
-    path = STAR_POINTS + 0.3 * (rng.normal(size=(15, 6)) + 1j * rng.normal(size=(15, 6)))
+    path = STAR_POINTS + 0.3 * (rng.normal(size=(6, 6)) + 1j * rng.normal(size=(6, 6)))
 
     def run():
         deformer = star()
@@ -148,7 +149,15 @@ WILD = {
 }
 
 
-@pytest.mark.parametrize("name", WILD)
+@pytest.mark.parametrize(
+    "name",
+    [
+        "three times as far",
+        "collapsed",
+        pytest.param("swapped", marks=pytest.mark.long),
+        pytest.param("outside", marks=pytest.mark.long),
+    ],
+)
 def test_wild_requests_stay_certified_and_the_shape_comes_back(name):
     deformer = star()
     state = deformer.start()
@@ -203,11 +212,11 @@ def test_dual_variables_follow_the_steps_of_a_drag():
     assert_allclose(products, step.barrier.weight, rtol=0.05)
 
 
-def test_sixty_random_jerks():
+def test_a_drag_in_random_jerks_stays_certified():
     deformer = star()
     rng = np.random.default_rng(11)
     state = deformer.start()
-    for jerk in range(60):
+    for jerk in range(30):
         targets = STAR_POINTS + 0.8 * (rng.normal(size=6) + 1j * rng.normal(size=6))
         state = dragged(deformer, targets, 2, state)
         assert state.certificate.certified
@@ -218,7 +227,7 @@ def test_sixty_random_jerks():
     assert_allclose(deformer.positions(state), STAR_POINTS, rtol=0, atol=1e-5)
 
 
-@settings(max_examples=8)
+@settings(max_examples=5)
 @given(
     st.integers(0, 10**6),
     st.floats(0.02, 3.0),
@@ -240,14 +249,12 @@ def test_any_drag_keeps_the_certificate(seed, size, bounds):
 def test_bounds_that_are_active_are_used_up():
     bounds = Bounds(k=0.15, sigma_a=1.6, sigma_b=0.7)
     deformer = bar(bounds)
-    targets = ARCHED
-    state, _ = deformer.settle(deformer.start(), deformer.handles.wish(targets))
+    state, _ = deformer.settle(deformer.start(), deformer.handles.wish(ARCHED))
     assert_sound(state, bounds)
     near = bounds.towards_identity(0.01)
     certificate = state.certificate
     assert not near.allow(k=certificate.k, sigma_a=certificate.sigma_a, sigma_b=certificate.sigma_b)
-    loose = bar()
-    free, _ = loose.settle(loose.start(), loose.handles.wish(targets))
+    free = arched_bar()
     # The bounds cost energy or accuracy, never less than nothing.
     assert free.statistics.handle_error <= state.statistics.handle_error
 
@@ -292,8 +299,7 @@ def test_without_handles_the_pose_stays():
 
 
 def test_without_handles_tighter_bounds_are_kept():
-    deformer = bar()
-    state, _ = deformer.settle(deformer.start(), deformer.handles.wish(ARCHED))
+    deformer, state = bar(), arched_bar()
     tight = Bounds(k=0.5 * state.certificate.k, sigma_a=1.2, sigma_b=0.8)
     none = Deformer(
         boundary=deformer.boundary, handles=Handles.place(deformer.boundary, []), bounds=tight
@@ -326,15 +332,13 @@ def test_one_handle_carries_the_shape_without_turning_it():
 
 
 def test_tightened_bounds_are_walked_into_through_certified_maps():
-    deformer = bar()
-    wish = deformer.handles.wish(ARCHED)
-    state, _ = deformer.settle(deformer.start(), wish)
+    state = arched_bar()
     loose = state.certificate
     tight = Bounds(k=0.5 * loose.k, sigma_a=1 + 0.6 * (loose.sigma_a - 1), sigma_b=0.6)
     deformer = bar(tight)
-    before = deformer.start
+    wish = deformer.handles.wish(ARCHED)
     with pytest.raises(EngineError, match="start map"):
-        before(state.map)
+        deformer.start(state.map)
     for steps in range(200):  # noqa: B007 - the count is asserted
         at = deformer.positions(state)
         state = deformer.step(state, wish)
@@ -359,9 +363,7 @@ def test_tightened_bounds_are_walked_into_through_certified_maps():
 
 
 def test_a_map_that_finds_no_way_into_its_bounds_says_so(monkeypatch):
-    deformer = bar()
-    wish = deformer.handles.wish(ARCHED)
-    state, _ = deformer.settle(deformer.start(), wish)
+    state, wish = arched_bar(), bar().handles.wish(ARCHED)
     # Steps that go nowhere.
     monkeypatch.setattr("engine.deform.certified_step.line_search", lambda _, jet, *__: (0.0, jet))
     stuck, steps = bar(Bounds(k=0.05)).settle(state, wish)
@@ -388,7 +390,7 @@ def test_rotations_are_met():
 
 def test_heavier_handles_win():
     boundary = bar_boundary()
-    targets = np.array([-1.8, 2.5, 1.8])
+    targets = np.array([-1.8, 2.5j, 1.8])
     errors = []
     for weights in ([1, 1, 1], [1, 30, 1]):
         deformer = Deformer(
@@ -534,6 +536,7 @@ def test_a_wild_drag_adds_samples():
     assert most > len(deformer.boundary.points)
 
 
+@pytest.mark.long
 def test_a_shape_that_stays_entangled_is_settled_anew():
     # A thin band whose handles were dragged through each other under tight bounds.
     x = np.linspace(0, 3, 14)
@@ -551,8 +554,3 @@ def test_a_shape_that_stays_entangled_is_settled_anew():
     back, _ = deformer.settle(state, home)
     assert back.status is Status.CONVERGED
     assert_allclose(deformer.positions(back), points, rtol=0, atol=1e-6)
-    # What the handles cannot reach from anywhere is at its limits.
-    far = handles.wish(5 * points)
-    reached, _ = deformer.settle(back, far)
-    assert reached.status is Status.AT_LIMITS
-    assert reached.certificate.certified

@@ -1,5 +1,7 @@
 """Hands that pull with bounded force: their energy, where they lead, and where they let go."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from deform_shapes import BAR_POINTS, STAR_POINTS, bar, star, star_boundary
@@ -46,6 +48,14 @@ def settled(deformer, wish, state=None):
 def pixels(one, other):
     """Return how far points are from others at most, if a drawing has a diagonal of 1,000."""
     return 1000 * float(np.abs(one - other).max()) / SIZE
+
+
+@cache
+def pulled_out():
+    """Return the star at rest with one arm pulled beyond reach, and its wish."""
+    deformer = star(BOUNDS)
+    wish = deformer.handles.wish(OUT, None, (Hand([1]),))
+    return wish, settled(deformer, wish)
 
 
 @pytest.mark.parametrize("away", [1e-4, 3e-3, 0.1, 1.0, 1e5])
@@ -106,8 +116,7 @@ def test_a_hand_beyond_reach_moves_what_it_holds_and_nothing_else():
     held = settled(deformer, deformer.handles.wish(OUT))
     others = [0, 2, 3, 4, 5]
     assert pixels(deformer.positions(held)[others], STAR_POINTS[others]) > 10
-    wish = deformer.handles.wish(OUT, None, (Hand([1]),))
-    state = settled(deformer, wish)
+    wish, state = pulled_out()
     assert state.status is Status.AT_LIMITS
     assert state.certificate.sigma_a > 0.99 * BOUNDS.sigma_a
     places = deformer.positions(state)
@@ -127,8 +136,7 @@ def test_a_hand_beyond_reach_moves_what_it_holds_and_nothing_else():
 
 def test_what_a_hand_lets_go_stays_where_it_is_and_is_found_again():
     deformer = star(BOUNDS)
-    wish = deformer.handles.wish(OUT, None, (Hand([1]),))
-    state = settled(deformer, wish)
+    wish, state = pulled_out()
     places, shape = deformer.positions(state), state.map(BOUNDARY.outline)
     left = wish.let_go(places, deformer.handles.stiffness)
     assert left.hands is None

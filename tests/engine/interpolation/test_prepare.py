@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from interpolation_shapes import bar, bent, inner_points, letter_l, narrow_u, random_map
+from interpolation_shapes import bar, bent, inner_points, letter_l, narrow_u, random_map, stage_of
 from numpy.testing import assert_allclose, assert_array_equal
 
 from engine.dirichlet.hilbert import HilbertTransform
@@ -31,11 +31,14 @@ POINTS = inner_points(OUTLINE, 25, 0)
 
 
 def between(maps=MAPS, points=POINTS, outline=OUTLINE, **options):
-    return prepare(maps, points, outline=outline, **{"variant": "nu"} | options)
+    options = {"variant": "nu"} | options
+    if options["variant"] == "metric" and outline is OUTLINE:
+        options.setdefault("transform", stage_of(SHAPE, POINTS).transform)
+    return prepare(maps, points, outline=outline, **options)
 
 
 def test_frames_are_pure_and_their_inputs_frozen():
-    prepared = between(variant="metric")
+    prepared = between(variant="metric", transform=None)
     first = prepared.frame(0.3)
     prepared.frame(1.9)
     again = prepared.frame(0.3)
@@ -54,7 +57,7 @@ def test_intervals_are_prepared_one_at_a_time_and_keyframes_shared(variant):
     keys = sample_keyframes(MAPS[:2], sites)
     keys += sample_keyframes(MAPS[2:], sites)
     sheets = root_sheets(np.array([key.anchor_fz for key in keys]))
-    transform = HilbertTransform.on(OUTLINE, CAGE).at(sites.paths.nodes)
+    transform = stage_of(SHAPE, POINTS).transform.at(sites.paths.nodes)
     for i, pair in enumerate((keys[:2], keys[1:])):
         passage = Passage.of(pair, sheets[i : i + 2])
         interval = prepare_inbetweens(variant, Interval(sites, passage, Bounds(), transform))
@@ -63,7 +66,6 @@ def test_intervals_are_prepared_one_at_a_time_and_keyframes_shared(variant):
         assert_allclose(frame.positions, expected.positions, rtol=0, atol=1e-12)
         position = interval.passage.anchor_position(0.4)
         assert_allclose(position + interval.offsets(0.4), frame.positions, rtol=0, atol=1e-13)
-        held = interval.nbytes
         held = interval.nbytes
         # The keyframes' own arrays are not counted again.
         assert (held < 100) == (variant == Variant.NU)

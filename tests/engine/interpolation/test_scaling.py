@@ -270,7 +270,7 @@ def test_the_smooth_rho_has_no_kinks():
     falls = []
     for rho, count in (
         (sharp, 1000),
-        (lambda times: np.array([smooth(time) for time in times]), 16_000),
+        (lambda times: np.array([smooth(time) for time in times]), 8_000),
     ):
         largest = [
             np.abs(np.diff(rho(np.arange(0.05, 0.95, 1 / n)), 2)).max() for n in (count, 2 * count)

@@ -1,6 +1,9 @@
+"""Harmonic maps of domains without holes and with."""
+
 import numpy as np
 import pytest
-from hypothesis import given, strategies as st
+from holed_shapes import Holed, inner_points, plate, random_map as holed_map, ring
+from hypothesis import given, settings, strategies as st
 from numpy.testing import assert_allclose
 from shapes import points_inside_disc, regular_polygon
 
@@ -10,6 +13,12 @@ from engine.maps.harmonic_map import HarmonicMap
 
 CAGE = regular_polygon(20, 1.2)
 POINTS = points_inside_disc(1.0, 80, seed=5)
+# A shape, and points in it: without holes and with.
+DOMAINS = {
+    "disc": (Holed(outline=regular_polygon(20), cage=CAGE, holes=(), anchor=0j), POINTS),
+    "one hole": (ring(), inner_points(ring(), 150)),
+    "three holes": (plate(3), inner_points(plate(3), 150)),
+}
 
 
 def random_map(seed: int, size: float = 0.1) -> HarmonicMap:
@@ -32,29 +41,36 @@ def test_affine_maps_are_exact():
     assert_allclose(distortion.sigma_b(fz, fzbar), singular_values[1], rtol=1e-12, atol=0)
 
 
-def test_the_identity_is_the_identity():
-    identity = HarmonicMap.identity(CAGE)
-    assert_allclose(identity(POINTS), POINTS, rtol=0, atol=1e-14)
+@pytest.mark.parametrize("name", DOMAINS)
+def test_the_identity_and_similarities_are_exact(name):
+    shape, points = DOMAINS[name]
+    identity = HarmonicMap.identity(shape.cage, shape.holes)
+    assert_allclose(identity(points), points, rtol=0, atol=1e-14)
+    similarity = HarmonicMap.similarity(shape.cage, shape.holes, factor=2j, shift=5)
+    assert_allclose(similarity(points), 2j * points + 5, rtol=0, atol=1e-13)
 
 
-@given(st.integers(0, 10_000))
-def test_derivatives_agree_with_finite_differences(seed):
-    f = random_map(seed)
-    h = 1e-3
+@pytest.mark.parametrize("name", DOMAINS)
+@given(seed=st.integers(0, 10_000))
+@settings(max_examples=20)
+def test_derivatives_agree_with_finite_differences(name, seed):
+    shape, points = DOMAINS[name]
+    f = random_map(seed) if name == "disc" else holed_map(shape, seed)
+    h, atol = (1e-3, 1e-7) if name == "disc" else (2e-4, 1e-8)
     by_x, by_y = (
         (
-            8 * (f(POINTS + h * d) - f(POINTS - h * d))
-            - (f(POINTS + 2 * h * d) - f(POINTS - 2 * h * d))
+            8 * (f(points + h * d) - f(points - h * d))
+            - (f(points + 2 * h * d) - f(points - 2 * h * d))
         )
         / (12 * h)
         for d in (1, 1j)
     )
-    fz, fzbar = f.derivatives(POINTS)
-    assert_allclose(fz, (by_x - 1j * by_y) / 2, rtol=0, atol=1e-7)
-    assert_allclose(fzbar, (by_x + 1j * by_y) / 2, rtol=0, atol=1e-7)
-    (second,) = f.span.evaluate(f.coefficients, POINTS, orders=(2,))
-    ahead, behind = f.derivatives(POINTS + h), f.derivatives(POINTS - h)
-    far_ahead, far_behind = f.derivatives(POINTS + 2 * h), f.derivatives(POINTS - 2 * h)
+    fz, fzbar = f.derivatives(points)
+    assert_allclose(fz, (by_x - 1j * by_y) / 2, rtol=0, atol=atol)
+    assert_allclose(fzbar, (by_x + 1j * by_y) / 2, rtol=0, atol=atol)
+    (second,) = f.span.evaluate(f.coefficients, points, orders=(2,))
+    ahead, behind = f.derivatives(points + h), f.derivatives(points - h)
+    far_ahead, far_behind = f.derivatives(points + 2 * h), f.derivatives(points - 2 * h)
     for derivative, order in ((second[:, 0], 0), (second[:, 1].conj(), 1)):
         difference = 8 * (ahead[order] - behind[order]) - (far_ahead[order] - far_behind[order])
         assert_allclose(derivative, difference / (12 * h), rtol=0, atol=1e-5)

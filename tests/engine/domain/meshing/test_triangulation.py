@@ -165,8 +165,19 @@ def assert_well_shaped(outline: Complexes, mesh: Mesh) -> None:
     assert angles.min() > min(15.0, interior_angles(outline).min()) - 1e-6
 
 
-@pytest.mark.parametrize("count", [1_000, 20_000])
-@pytest.mark.parametrize("name", SHAPES)
+FINE = {"60-gon", "very thin comb", "thin spiral", "corner of 15°", "zigzag"}
+
+
+@pytest.mark.parametrize(
+    ("name", "count"),
+    [
+        *((name, 1_000) for name in SHAPES),
+        *(
+            pytest.param(name, 20_000, marks=() if name in FINE else pytest.mark.long)
+            for name in SHAPES
+        ),
+    ],
+)
 def test_named_shapes(name: str, count: int) -> None:
     mesh = triangulate(SHAPES[name], count)
     assert_conforming(SHAPES[name], mesh)
@@ -174,9 +185,15 @@ def test_named_shapes(name: str, count: int) -> None:
     assert abs(len(mesh.triangles) - count) <= 0.05 * count
 
 
-@pytest.mark.parametrize("name", ["hexagon", "star", "comb", "spiral", "bar 40:1", "zigzag"])
-def test_ordinary_meshes_are_nearly_equilateral(name: str) -> None:
-    mesh = triangulate(SHAPES[name], 100_000)
+@pytest.mark.parametrize(
+    ("name", "count"),
+    [
+        ("comb", 100_000),
+        *((name, 40_000) for name in ("hexagon", "star", "spiral", "bar 40:1", "zigzag")),
+    ],
+)
+def test_ordinary_meshes_are_nearly_equilateral(name: str, count: int) -> None:
+    mesh = triangulate(SHAPES[name], count)
     angles = mesh.smallest_angles()
     assert angles.mean() > 57.5
     assert np.quantile(angles, 0.01) > 37
@@ -188,8 +205,8 @@ def test_coarse_meshes_are_still_good(name: str) -> None:
     assert triangulate(SHAPES[name], 1_000).smallest_angles().mean() > 53
 
 
-@settings(max_examples=15, deadline=None)
-@given(outline=star_polygons(largest=60), count=st.sampled_from([1_000, 3_000, 10_000]))
+@settings(max_examples=10)
+@given(outline=star_polygons(largest=60), count=st.sampled_from([1_000, 3_000]))
 def test_star_shaped_polygons(outline: Complexes, count: int) -> None:
     mesh = triangulate(outline, count)
     assert_conforming(outline, mesh)
@@ -197,16 +214,16 @@ def test_star_shaped_polygons(outline: Complexes, count: int) -> None:
     assert abs(len(mesh.triangles) - count) <= 0.05 * count
 
 
-@settings(max_examples=15, deadline=None)
-@given(outline=limbs(), count=st.sampled_from([1_000, 3_000, 10_000]))
+@settings(max_examples=10)
+@given(outline=limbs(), count=st.sampled_from([1_000, 3_000]))
 def test_trees_of_limbs(outline: Complexes, count: int) -> None:
     mesh = triangulate(outline, count)
     assert_conforming(outline, mesh)
     assert_well_shaped(outline, mesh)
 
 
-@settings(max_examples=15, deadline=None)
-@given(outline=uneven_polygons(), count=st.sampled_from([1_000, 10_000]))
+@settings(max_examples=8)
+@given(outline=uneven_polygons(), count=st.sampled_from([1_000, 3_000]))
 def test_edges_of_very_mixed_lengths(outline: Complexes, count: int) -> None:
     mesh = triangulate(outline, count)
     assert_conforming(outline, mesh)
@@ -240,8 +257,9 @@ HOLED = {
 }
 
 
-@pytest.mark.parametrize("count", [1_000, 20_000])
-@pytest.mark.parametrize("name", HOLED)
+@pytest.mark.parametrize(
+    ("name", "count"), [*((name, 1_000) for name in HOLED), ("thin ring", 20_000)]
+)
 def test_holes_are_left_out(name: str, count: int) -> None:
     outline, holes = HOLED[name]
     mesh = triangulate(outline, count, holes=holes)
@@ -250,7 +268,7 @@ def test_holes_are_left_out(name: str, count: int) -> None:
     assert abs(len(mesh.triangles) - count) <= 0.05 * count
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=10)
 @given(outline=star_polygons(), size=st.floats(0.01, 0.9), turn=st.floats(0, 6.3))
 def test_holes_of_any_size_in_star_shaped_polygons(
     outline: Complexes, size: float, turn: float
@@ -289,13 +307,16 @@ def test_triangles_grow_away_from_short_edges() -> None:
     assert far.max() < 0.3
 
 
-def test_a_million_triangles() -> None:
-    mesh = triangulate(SHAPES["star"], 1_000_000)
-    assert abs(len(mesh.triangles) - 1_000_000) <= 20_000
+@pytest.mark.parametrize(
+    ("count", "least"), [(60_000, 58), pytest.param(1_000_000, 59, marks=pytest.mark.long)]
+)
+def test_meshes_may_have_many_triangles(count: int, least: float) -> None:
+    mesh = triangulate(SHAPES["star"], count)
+    assert abs(len(mesh.triangles) - count) <= 0.02 * count
     assert mesh.areas().min() > 0
     np.testing.assert_allclose(mesh.areas().sum(), signed_area(SHAPES["star"]), rtol=1e-9)
     assert len(mesh.vertices) - len(mesh.edges()) + len(mesh.triangles) == 1
-    assert mesh.smallest_angles().mean() > 59
+    assert mesh.smallest_angles().mean() > least
 
 
 def test_the_same_outline_gives_the_same_mesh() -> None:

@@ -69,7 +69,7 @@ strokes = st.tuples(
 )
 
 
-@settings(max_examples=15)
+@settings(max_examples=10)
 @given(
     ends=st.lists(strokes, min_size=1, max_size=7),
     size=st.sampled_from([64, 200, 400]),
@@ -105,8 +105,10 @@ def test_the_margin_is_what_the_detail_says() -> None:
         assert_allclose(distance - 0.5, share * diagonal(mask), rtol=0, atol=0.6)
 
 
-@pytest.mark.parametrize("size", [200, 400, 1024])
-@pytest.mark.parametrize("gap", [3, 5, 12])
+@pytest.mark.parametrize(
+    ("gap", "size"),
+    [(3, 200), (3, 1024), (5, 400), (12, 200)],
+)
 def test_limbs_a_few_pixels_apart_stay_separate(gap: int, size: int) -> None:
     mask = pictures.limbs(gap, size)[..., 3] > 0
     outline = enclose(mask, detail="normal")
@@ -167,16 +169,18 @@ def test_icons_get_smooth_sides() -> None:
     assert turns.max() < 30
 
 
-def test_twenty_megapixels() -> None:
-    rgba = np.kron(pictures.blob(250, 7), np.ones((18, 18, 1), dtype=np.uint8))
+@pytest.mark.parametrize("scale", [6, pytest.param(18, marks=pytest.mark.long)])
+def test_pictures_of_many_megapixels_are_outlined_alike(scale: int) -> None:
+    rgba = np.kron(pictures.blob(250, 7), np.ones((scale, scale, 1), dtype=np.uint8))
     mask = subject_mask(rgba).mask
     outline = enclose(mask, detail="normal")
     small = outlined(pictures.blob(250, 7))
-    check_outline(mask[::9, ::9], enclose(mask[::9, ::9], detail="normal"))
+    few = mask[:: scale // 2, :: scale // 2]
+    check_outline(few, enclose(few, detail="normal"))
     rows, columns = np.nonzero(mask & ~ndimage.binary_erosion(mask))
     assert contains(outline.outline, columns + 0.5 + 1j * (mask.shape[0] - rows - 0.5)).all()
     assert_allclose(
-        signed_area(outline.outline) / 18**2, signed_area(small.outline), rtol=0.02, atol=0
+        signed_area(outline.outline) / scale**2, signed_area(small.outline), rtol=0.02, atol=0
     )
 
 
@@ -245,6 +249,6 @@ def test_limbs_that_are_fused_are_told() -> None:
 
 
 def test_gaps_are_closed_before_an_outline_has_more_vertices_than_it_may() -> None:
-    result = outlined(pictures.spiral(600, 10))
+    result = outlined(pictures.spiral(400, 10))
     assert len(result.outline) <= LARGEST_OUTLINE
     assert any("fused" in notice for notice in result.notices)
