@@ -41,7 +41,7 @@ def around(joints, figure, frame, by=1e-7):
     return [joints.placement(figure, at) for at in (frame - by, frame)]
 
 
-def test_what_is_handed_over_does_not_jump_and_goes_on_with_the_other(hands):
+def test_reparented_layer_goes_on_without_a_jump(hands):
     as_before = Joints(hands)
     joint = hand_over(as_before, 2, 1, 20, turns=True)
     document = layers.attach(2, hands.figure(2).anchor, joint)(hands)
@@ -76,7 +76,7 @@ def test_it_does_not_jump_whatever_is_posed_later(hands):
     assert abs(before.shift - after.shift) < 1e-3
 
 
-def test_what_is_let_go_stays_or_goes_back_to_where_it_is_by_itself(hands):
+def test_detached_layer_stays_or_goes_back_as_asked(hands):
     anchor, before = hands.figure(2).anchor, Joints(hands)
     there = before.placement(2, 20)
     for keeps in (True, False):
@@ -166,7 +166,7 @@ def test_joints_are_taken_back_moved_and_stretched_in_time(hands):
     assert gone.figure(2).joints == hands.figure(2).joints
 
 
-def test_a_loop_comes_round_with_its_joints(hands):
+def test_joints_come_round_in_a_loop(hands):
     document = scene_commands.set_loop(loop=True)(
         layers.attach(2, CENTRE - 30, Attachment(to=1, at=CENTRE, frame=20))(hands)
     )
@@ -198,7 +198,7 @@ def juggled(hands):
     return document
 
 
-def test_what_is_handed_over_in_a_cycle_is_handed_over_in_every_repeat(juggled):
+def test_reparented_layer_is_reparented_in_every_repeat(juggled):
     joints = Joints(juggled)
     for frame in (0, 14, 20, 31.9, 32, 47.9):
         placed = [seen(juggled, 2, frame + repeat * 48, joints) for repeat in range(3)]

@@ -210,7 +210,7 @@ def test_a_failure_is_known_of_the_same_keys_as_long_as_they_are_there(clip, pre
 
 
 @pytest.mark.parametrize("variant", ["metric", "nu"])
-def test_what_is_exact_is_shown_as_it_is_and_nothing_else(variant):
+def test_only_exact_in_betweens_are_shown_as_current(variant):
     clip = clip_of(row(4, variant=variant), 0)
     store = IntervalStore(mesh=PosableMesh.fine(clip.figure.domain))
     frames = (0, 4, 10, 13, 17, 25, 30)

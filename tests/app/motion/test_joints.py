@@ -37,7 +37,7 @@ def check_closed(document, frames, earlier=None):
 
 
 @pytest.mark.parametrize("variant", VARIANTS)
-def test_a_joint_stays_closed_and_turns_with_the_parent(variant):
+def test_joint_stays_closed_and_turns_with_its_parent(variant):
     document = chain(variant, 3 if variant == "nu" else 2)
     last = document.figures[-1].id
     times = np.random.default_rng(2).uniform(0, 48, 16 if variant == "nu" else 2)
@@ -99,7 +99,7 @@ def test_detaching_moves_nothing_at_the_present_frame():
     assert_allclose(seen(loose, 2, frame), seen(document, 2, frame, joints), rtol=0, atol=1e-9)
 
 
-def test_without_a_common_anchor_layers_are_joined_where_they_overlap():
+def test_layers_are_joined_where_they_overlap_without_an_anchor():
     document = layers.detach(2, 1, 0)(chain())
     figure = document.figure(2)
     apart = replace(figure, anchor=CENTRE - 80)
@@ -112,7 +112,7 @@ def test_without_a_common_anchor_layers_are_joined_where_they_overlap():
     assert_allclose(seen(hung, 2, 0), seen(document, 2, 0, before), rtol=0, atol=1e-8)
 
 
-def test_what_hangs_is_beside_what_it_hangs_on_where_that_is_not():
+def test_attached_layer_keeps_its_distance_beside_its_parent():
     """Nothing moves now, and later it goes with the nearest point, as it was beside it."""
     document = layers.detach(2, 1, 0)(chain())
     far = document.with_figure(
@@ -144,7 +144,7 @@ def test_a_joint_must_be_on_what_hangs():
         hang(Joints(document), 2, 0, 0, place=5000 + 0j, turns=True)
 
 
-def test_joints_stay_closed_in_documents_that_were_changed_undone_and_saved(tmp_path):
+def test_joints_stay_closed_when_documents_change_and_are_saved(tmp_path):
     document, frames = chain(), np.random.default_rng(6).uniform(0, 48, 1)
     history, joints = History(document, saved=True), Joints(document)
     earlier = []
@@ -174,7 +174,7 @@ def test_joints_stay_closed_in_documents_that_were_changed_undone_and_saved(tmp_
 
 
 @pytest.mark.parametrize("variant", VARIANTS)
-def test_what_hangs_is_as_distorted_as_by_itself(variant):
+def test_attached_layer_is_as_distorted_as_by_itself(variant):
     """Its anchor and its turn are all that a joint decides."""
     hung = chain(variant, 3 if variant == "nu" else 2)
     rng = np.random.default_rng(9)
@@ -190,7 +190,7 @@ def test_what_hangs_is_as_distorted_as_by_itself(variant):
                 assert_allclose(*values, rtol=0, atol=1e-9)
 
 
-def test_a_joint_that_is_streamed_stays_closed_on_the_screen():
+def test_streamed_joint_stays_closed_on_the_screen():
     document = chain()
     # Joints at vertices of a finer mesh, which series move.
     domain = document.figures[0].domain

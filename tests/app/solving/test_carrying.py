@@ -84,7 +84,7 @@ def near():
 
 
 @pytest.mark.parametrize("drawn", ["elsewhere", "mirrored and turned"])
-def test_a_leg_that_is_drawn_elsewhere_or_mirrored_does_the_same(near, drawn):
+def test_carried_pose_is_the_same_on_a_leg_drawn_elsewhere(near, drawn):
     source, pose = near
     mirrored, turned = "mirrored" in drawn, "turned" in drawn
     by = FAR.shift if drawn == "elsewhere" else 0j

@@ -168,7 +168,7 @@ def test_keys_of_a_script_do_not_hold_what_follows_and_say_so():
     assert last.pose is first.pose
 
 
-def test_dragging_the_body_carries_what_follows_and_dragging_it_bends_the_body(bar, tmp_path):
+def test_springs_are_carried_by_drags_and_pose_when_dragged(bar, tmp_path):
     few = replace(bar, frames=FrameRange(0, 4))  # in each of which the spring is worked out
     session = session_of(few, tmp_path, np.zeros((120, 240, 4), np.uint8))
     project = session.project
