@@ -135,7 +135,7 @@ def test_turns_are_in_order_and_of_the_choice():
         Choice(name="mouth", figures=(0, 1), turns=(Turn(8, 2),))
 
 
-def test_after_any_commands_one_of_each_choice_is_seen():
+def test_one_layer_of_a_switch_is_visible_after_any_commands():
     rng = np.random.default_rng(5)
     document, formed = disc_document(), 0
     for _ in range(500):

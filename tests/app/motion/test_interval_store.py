@@ -4,15 +4,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from animations import moving_document
 from documents import altered
+from key_rows import row
 from numpy.testing import assert_allclose
 from projects import project_of
 from sessions import session_of, settle
 
 from app.document.commands import key_commands
 from app.document.history import History
-from app.document.keyframe import Keyframe, Passing
+from app.document.keyframe import Passing
 from app.document.queries.clips import clip_of
 from app.document.settings import FrameRange
 from app.editor.actions import editing, keys, viewing
@@ -37,20 +37,9 @@ from engine.variant import Variant
 FRAME = 13  # in the second of three intervals
 
 
-def three_intervals(variant="nu"):
-    document = moving_document(10)
-    last = document.figures[0].keys[-1]
-    turns = (1.0, np.exp(0.3j), np.exp(-0.4j), np.exp(0.2j))
-    keys = tuple(
-        Keyframe(frame=10 * i, pose=replace(last.pose, phi=turn * last.pose.phi))
-        for i, turn in enumerate(turns)
-    )
-    return altered(document, keys=keys, frames=FrameRange(0, 30), variant=variant)
-
-
 @pytest.fixture(scope="module")
 def document():
-    return three_intervals()
+    return row(4)
 
 
 @pytest.fixture(scope="module")
@@ -221,8 +210,8 @@ def test_a_failure_is_known_of_the_same_keys_as_long_as_they_are_there(clip, pre
 
 
 @pytest.mark.parametrize("variant", ["metric", "nu"])
-def test_what_is_exact_is_shown_as_it_is_and_nothing_else(variant):
-    clip = clip_of(three_intervals(variant), 0)
+def test_only_exact_in_betweens_are_shown_as_current(variant):
+    clip = clip_of(row(4, variant=variant), 0)
     store = IntervalStore(mesh=PosableMesh.fine(clip.figure.domain))
     frames = (0, 4, 10, 13, 17, 25, 30)
 

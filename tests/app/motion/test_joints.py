@@ -17,9 +17,9 @@ from engine.geometry import HERE
 from engine.maps import distortion
 
 
-def check_closed(document, frames):
-    """Hold each joint of a document against the points that it joins."""
-    joints = Joints(document)
+def check_closed(document, frames, earlier=None):
+    """Hold each joint of a document against the points that it joins; return its joints."""
+    joints = Joints(document, earlier=earlier)
     for figure in document.figures:
         joint = document.joint_at(figure, 0)
         if joint is None:
@@ -33,15 +33,15 @@ def check_closed(document, frames):
             if joint.turns:
                 turned = carrier.factor * fz / abs(fz) * np.exp(-1j * joint.rest)
                 assert abs(own.factor - turned) < 1e-9
+    return joints
 
 
 @pytest.mark.parametrize("variant", VARIANTS)
-def test_a_joint_stays_closed_and_turns_with_the_parent(variant):
+def test_joint_stays_closed_and_turns_with_its_parent(variant):
     document = chain(variant, 3 if variant == "nu" else 2)
     last = document.figures[-1].id
     times = np.random.default_rng(2).uniform(0, 48, 16 if variant == "nu" else 2)
-    check_closed(document, (*times, 0, 20, 48))
-    joints = Joints(document)
+    joints = check_closed(document, (*times, 0, 20, 48))
     factors = [joints.placement(last, frame).factor for frame in times[:2]]
     assert_allclose(np.abs(factors), 1, rtol=0, atol=1e-12)
 
@@ -86,31 +86,33 @@ def test_attaching_moves_nothing_at_the_present_frame(frame, turns):
     anchor, joint = hang(before, 2, 0, frame, place=place, turns=turns)
     assert abs(anchor - CENTRE) < 1e-8
     hung = layers.attach(2, anchor, joint)(loose)
-    assert_allclose(seen(hung, 2, frame), seen(loose, 2, frame), rtol=0, atol=1e-8)
+    assert_allclose(seen(hung, 2, frame), seen(loose, 2, frame, before), rtol=0, atol=1e-8)
     by_anchor = hang(before, 2, 0, frame, turns=turns)
     assert abs(by_anchor[0] - document.figure(2).anchor) < 1e-12
 
 
 def test_detaching_moves_nothing_at_the_present_frame():
     document, frame = chain(), 20
-    before = Joints(document).placement(2, frame)
+    joints = Joints(document)
+    before = joints.placement(2, frame)
     loose = layers.detach(2, before.factor, before.shift)(document)
-    assert_allclose(seen(loose, 2, frame), seen(document, 2, frame), rtol=0, atol=1e-9)
+    assert_allclose(seen(loose, 2, frame), seen(document, 2, frame, joints), rtol=0, atol=1e-9)
 
 
-def test_without_a_common_anchor_layers_are_joined_where_they_overlap():
+def test_layers_are_joined_where_they_overlap_without_an_anchor():
     document = layers.detach(2, 1, 0)(chain())
     figure = document.figure(2)
     apart = replace(figure, anchor=CENTRE - 80)
     keys = tuple(replace(k, pose=bent(figure, 0, 0, 130)) for k in figure.keys)
     document = document.with_figure(replace(apart, keys=keys))
-    anchor, joint = hang(Joints(document), 2, 0, 0, turns=True)
+    before = Joints(document)
+    anchor, joint = hang(before, 2, 0, 0, turns=True)
     assert anchor.real < CENTRE.real
     hung = layers.attach(2, anchor, joint)(document)
-    assert_allclose(seen(hung, 2, 0), seen(document, 2, 0), rtol=0, atol=1e-8)
+    assert_allclose(seen(hung, 2, 0), seen(document, 2, 0, before), rtol=0, atol=1e-8)
 
 
-def test_what_hangs_is_beside_what_it_hangs_on_where_that_is_not():
+def test_attached_layer_keeps_its_distance_beside_its_parent():
     """Nothing moves now, and later it goes with the nearest point, as it was beside it."""
     document = layers.detach(2, 1, 0)(chain())
     far = document.with_figure(
@@ -122,16 +124,17 @@ def test_what_hangs_is_beside_what_it_hangs_on_where_that_is_not():
             ),
         )
     )
-    anchor, joint = hang(Joints(far), 2, 0, 11.5, turns=True)
+    before = Joints(far)
+    anchor, joint = hang(before, 2, 0, 11.5, turns=True)
     hung = layers.attach(2, anchor, joint)(far)
-    assert_allclose(seen(hung, 2, 11.5), seen(far, 2, 11.5), rtol=0, atol=1e-8)
+    joints = Joints(hung)
+    assert_allclose(seen(hung, 2, 11.5, joints), seen(far, 2, 11.5, before), rtol=0, atol=1e-8)
     assert abs(joint.offset) > 200
-    joints, (place, other) = Joints(hung), (np.array([anchor]), np.array([joint.at]))
     lengths = []
     for frame in (0, 11.5, 30.2, 48):
-        own = Animation(clip_of(hung, 2), points=place).positions(frame)
-        parent = Animation(clip_of(hung, 0), points=other).positions(frame)
-        lengths.append(abs(joints.placement(2, frame).on(own) - parent)[0])
+        own, _ = exactly(hung, 2, anchor, frame)
+        parent, _ = exactly(hung, 0, joint.at, frame)
+        lengths.append(abs(joints.placement(2, frame).on(own) - parent))
     assert_allclose(lengths, abs(joint.offset), rtol=1e-9)
 
 
@@ -141,22 +144,22 @@ def test_a_joint_must_be_on_what_hangs():
         hang(Joints(document), 2, 0, 0, place=5000 + 0j, turns=True)
 
 
-def test_joints_stay_closed_in_documents_that_were_changed_undone_and_saved(tmp_path):
+def test_joints_stay_closed_when_documents_change_and_are_saved(tmp_path):
     document, frames = chain(), np.random.default_rng(6).uniform(0, 48, 1)
-    history = History(document, saved=True)
+    history, joints = History(document, saved=True), Joints(document)
     earlier = []
     changes = (
         (layers.duplicate_figure(1), layers.duplicate_figure(2), layers.move_figure(2, 0)),
         (layers.rename_figure(3, "copy"), key_commands.copy_keys(1, {20}, 7)),
         (key_commands.move_keys(0, {20}, 5), layers.set_hidden(1, hidden=True)),
-        (layers.detach(3, *Joints(document).placement(1, 11.5)),),
+        (layers.detach(3, *joints.placement(1, 11.5)),),
         (scene_commands.set_loop(loop=True), layers.remove_figure(0)),
     )
     for some in changes:
         for change in some:
             earlier.append(history.document)
             history.do(change)
-        check_closed(history.document, frames)
+        joints = check_closed(history.document, frames, joints)
     assert len(history.document.figures) == 4
     for before in reversed(earlier):
         history.undo()
@@ -171,7 +174,7 @@ def test_joints_stay_closed_in_documents_that_were_changed_undone_and_saved(tmp_
 
 
 @pytest.mark.parametrize("variant", VARIANTS)
-def test_what_hangs_is_as_distorted_as_by_itself(variant):
+def test_attached_layer_is_as_distorted_as_by_itself(variant):
     """Its anchor and its turn are all that a joint decides."""
     hung = chain(variant, 3 if variant == "nu" else 2)
     rng = np.random.default_rng(9)
@@ -187,7 +190,7 @@ def test_what_hangs_is_as_distorted_as_by_itself(variant):
                 assert_allclose(*values, rtol=0, atol=1e-9)
 
 
-def test_a_joint_that_is_streamed_stays_closed_on_the_screen():
+def test_streamed_joint_stays_closed_on_the_screen():
     document = chain()
     # Joints at vertices of a finer mesh, which series move.
     domain = document.figures[0].domain

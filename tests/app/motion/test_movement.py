@@ -18,7 +18,7 @@ def moving(document, identity, keys=MOVES):
     return document.with_figure(replace(document.figure(identity), movement=keys))
 
 
-def test_what_hangs_on_a_figure_that_moves_goes_along():
+def test_attached_layers_go_along_when_their_parent_moves():
     still, moved = chain(), moving(chain(), 0)
     without, along = Joints(still), Joints(moved)
     for frame in (0.0, 7.5, 20.0, 33.0):
@@ -41,7 +41,7 @@ def test_a_figure_is_as_distorted_and_certified_as_without():
     assert_allclose(hung.positions(13.0), motion.on(one.positions), rtol=0, atol=1e-9)
 
 
-def test_a_figure_is_not_moved_by_itself_while_it_hangs():
+def test_layer_is_not_moved_by_itself_while_attached():
     moved, still = Joints(moving(chain(), 1)), Joints(chain())
     for frame in (0, 9.5):
         assert moved.placement(1, frame) == still.placement(1, frame)

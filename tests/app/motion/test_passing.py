@@ -71,7 +71,7 @@ def test_how_much_of_their_velocity_keys_keep_is_told():
     assert prepared(tight)[0].velocity_shares(clip_of(document, 0)) == {}
 
 
-def test_an_outline_whose_preparation_was_ended_is_prepared_anew():
+def test_transform_is_made_anew_when_it_was_cancelled():
     domain = disc_domain(11)  # of which nothing is known yet
     sampler = PoseSampler(domain, anchor=None)
     sibling = PoseSampler(domain, anchor=None, sibling=sampler)

@@ -43,7 +43,7 @@ def velocities(animation, frame):
 
 
 @pytest.mark.parametrize(("loop", "variant"), [(False, "metric"), (True, "nu")])
-def test_handles_stay_where_two_keys_have_them(loop, variant):
+def test_handles_stay_when_two_keys_have_them_at_one_place(loop, variant):
     document = posed(loop=loop, variant=variant)
     assert drift(document) < 0.05
     still = still_handles(clip_of(document, 0))
@@ -51,7 +51,7 @@ def test_handles_stay_where_two_keys_have_them(loop, variant):
     assert_array_equal(still[0], [True, True, True, False])
 
 
-def test_without_stillness_they_wander_and_the_motion_is_the_closed_form():
+def test_motion_is_the_closed_form_without_auto_pins():
     document = with_figure(posed(), stillness=False)
     animation = animate(document)
     assert animation.corrections is None
@@ -65,7 +65,7 @@ def test_without_stillness_they_wander_and_the_motion_is_the_closed_form():
 
 
 @pytest.mark.parametrize("loop", [False, True])
-def test_keys_are_what_they_were_and_are_passed_as_smoothly(loop):
+def test_keys_stay_and_are_passed_smoothly_when_corrected(loop):
     document = posed(loop=loop)
     animation = animated(document)
     for number, key in enumerate(document.figures[0].keys):
@@ -79,7 +79,7 @@ def test_keys_are_what_they_were_and_are_passed_as_smoothly(loop):
         assert np.abs(before - after).max() < 0.02
 
 
-def test_nothing_jolts():
+def test_corrected_motion_does_not_jolt():
     animation = animated(posed())
     times = np.arange(0, 30.01, 0.5)
     corrected = np.array([animation.positions(t) for t in times])
@@ -88,7 +88,7 @@ def test_nothing_jolts():
     assert jolts[0] <= 2 * jolts[1]
 
 
-def test_frames_are_the_same_in_any_order():
+def test_corrected_frames_are_the_same_in_any_order():
     frames = [3.0, 27.0, 14.0, 8.25]
     one, other = animated(posed()), animate(posed())
     found = {frame: one.positions(frame) for frame in frames}
@@ -96,7 +96,7 @@ def test_frames_are_the_same_in_any_order():
         assert_array_equal(other.positions(frame), found[frame])
 
 
-def test_the_bounds_are_kept_between_samples_too():
+def test_limits_are_kept_between_samples():
     document = posed()
     figure = document.figures[0]
     boundary = animated(document).sampler.sites.boundary
@@ -163,7 +163,7 @@ def test_keys_that_are_not_passed_through_keep_their_handles_too(passing):
     assert drift(with_figure(document, keys=keys)) < 0.05
 
 
-def test_a_hung_figure_keeps_its_joint_and_turns_about_it_alone():
+def test_attached_layer_is_corrected_about_its_joint_alone():
     document = posed()
     figure = document.figures[0]
     child = replace(

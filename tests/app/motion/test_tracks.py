@@ -61,7 +61,7 @@ def reversed_in_time(keys):
     return [replace(key, frame=f, pose=p) for key, f, p in zip(keys, frames, poses, strict=True)]
 
 
-def test_tracked_handles_go_beside_the_pose_as_their_keys_say():
+def test_tracked_handles_go_beside_the_pose_by_their_keys():
     wave = track()
     document = tracked(wave)
     animation, clip = animated(document), clip_of(document, 0)
@@ -74,7 +74,7 @@ def test_tracked_handles_go_beside_the_pose_as_their_keys_say():
         assert np.abs(moved.positions[:2] - still.positions[:2]).max() < 0.1
 
 
-def test_outside_its_keys_a_track_changes_nothing_to_the_bit():
+def test_track_changes_nothing_outside_its_keys():
     one, other = animated(tracked(track())), animated(posed())
     for frame in (0.0, 4.999, 25.001, 29.0):
         assert_array_equal(one.positions(frame), other.positions(frame))
@@ -111,7 +111,7 @@ def planted_child():
     return replace(document, figures=(parent, child)), place
 
 
-def test_a_planted_handle_of_a_hung_figure_stays_in_the_scene():
+def test_planted_handle_stays_in_the_scene_when_attached():
     scene, place = planted_child()
     child = scene.figures[1]
     joints = Joints(scene)
@@ -148,7 +148,7 @@ def test_a_still_handle_beside_one_that_goes_gives_way():
     assert abs(moved[len(PLACES)] - (8 + 4j) * turn) < 1.0
 
 
-def test_a_second_track_begins_without_a_jump():
+def test_second_track_begins_without_a_jump():
     first, second = track(), track("top", ((14, 0), (18, 5), (22, 0)))
     one, both = animated(tracked(first)), animate(tracked(first, second))
     assert np.abs(both.positions(13.999) - both.positions(14.001)).max() < 0.02
@@ -165,7 +165,7 @@ def test_tracks_come_round_in_a_loop_with_their_delay():
 
 
 @pytest.mark.parametrize(("variant", "wish"), [("nu", 300 + 200j), ("scaled-eta", 8j)])
-def test_frames_of_closed_variants_are_proven(variant, wish):
+def test_corrected_frames_are_proven_in_closed_variants(variant, wish):
     document = pulled(wish)
     report = certify_clip(clip_of(document, 0), variant)
     corrected = report.corrected
@@ -181,7 +181,7 @@ def test_frames_of_closed_variants_are_proven(variant, wish):
         assert found.beyond(corrected.reached) == Extremes(0, 0, 0)
 
 
-def test_out_of_reach_a_handle_keeps_the_bounds_and_says_by_how_much_it_misses():
+def test_track_out_of_reach_keeps_limits_and_reports_its_error():
     document = pulled(300 + 200j, "metric", stillness=False)
     report = certify_clip(clip_of(document, 0))
     assert report.verdict is Verdict.MEASURED
@@ -206,7 +206,7 @@ def springy(*, loop=False, **settings):
     return with_figure(posed(loop=loop, drawn=SHORT), springs=(spring,))
 
 
-def test_a_spring_swings_about_its_place_and_comes_round_in_a_loop():
+def test_spring_swings_about_its_place_and_closes_a_loop():
     document = springy(loop=True)
     animation = animate(document)
     swung = [
@@ -219,7 +219,7 @@ def test_a_spring_swings_about_its_place_and_comes_round_in_a_loop():
     assert np.abs(before - after).max() < 0.01
 
 
-def test_without_strength_and_under_a_track_a_spring_moves_nothing():
+def test_spring_moves_nothing_without_strength_or_under_a_track():
     still = animate(springy(strength=0.0))
     assert_array_equal(still.positions(5.2), still.still_frame(5.2).positions)
     wave = (track("top", ((0, 0), (4, 6j), (12, 0))),)
@@ -236,7 +236,7 @@ def test_without_strength_and_under_a_track_a_spring_moves_nothing():
     assert sizes[0] == pytest.approx(sizes[1], abs=0.1)
 
 
-def test_a_hung_spring_feels_what_it_hangs_on():
+def test_attached_spring_swings_with_its_parent():
     document = posed(FEW, drawn=SHORT)
     spring = Spring(handle=IDS["top"], frequency=5.0, damping=0.2)
     child = replace(
@@ -311,7 +311,7 @@ def test_the_frames_of_a_window_are_those_of_an_export():
     assert later.at(clip, 12) is None
 
 
-def test_the_extent_and_the_exports_are_of_what_is_shown():
+def test_extent_and_exports_are_of_the_shown_frames():
     document = pulled(25 - 10j)
     clip, figure = clip_of(document, 0), document.figures[0]
     store = IntervalStore(mesh=PosableMesh.coarse(figure.domain))
@@ -332,7 +332,7 @@ def test_the_extent_and_the_exports_are_of_what_is_shown():
     assert_allclose(shown, places[4], rtol=0, atol=1e-2)
 
 
-def test_what_a_hung_figure_is_planted_in_follows_its_parent():
+def test_planted_track_is_solved_anew_when_the_parent_changes():
     scene, place = planted_child()
     parent, child = scene.figures
     points = np.array([handle.position for handle in child.handles])

@@ -55,7 +55,7 @@ def wagging(scenes) -> Document:
     return given(scenes["chain"], CHAIN)
 
 
-def test_a_new_drawing_loops_its_motion_to_the_digit(wagging):
+def test_given_motion_loops_exactly_on_a_new_drawing(wagging):
     (figure,) = wagging.figures
     assert (wagging.frames, wagging.loop) == (FrameRange(0, 12), True)
     assert figure.keys[0].pose is figure.keys[-1].pose
@@ -65,7 +65,7 @@ def test_a_new_drawing_loops_its_motion_to_the_digit(wagging):
     assert all(figure.is_proven(key.pose) for key in figure.keys)
 
 
-def test_planted_feet_keep_one_ground_speed_and_lengths_stay(scenes):
+def test_planted_feet_keep_one_speed_and_shins_their_length(scenes):
     order = MotionOrder(
         motion="walk",
         kind="biped-side",
@@ -105,7 +105,7 @@ def test_it_is_given_again_in_another_way_until_it_is_edited(wagging):
     assert not is_as_given(moved.figures[0], figure.motions[0])
 
 
-def test_motions_follow_each_other_and_blend_where_they_meet(wagging):
+def test_second_motion_blends_in_when_it_begins_in_the_first(wagging):
     second = replace(CHAIN, motion="slither", first=9, rounds=2, stiff=False, limits=None)
     scene = given(wagging, second)
     moved = scene.figures[0]
@@ -128,7 +128,7 @@ def test_it_survives_saving(wagging, tmp_path):
     assert is_as_given(read, read.motions[0])
 
 
-def test_what_is_out_of_reach_is_told_with_a_size_that_is_not(scenes):
+def test_motion_out_of_reach_is_told_with_a_size_in_reach(scenes):
     order = MotionOrder(
         motion="breathe", kind="anything", joints={}, parameters=Parameters(size=2.0), limits=None
     )

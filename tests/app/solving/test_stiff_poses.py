@@ -116,7 +116,7 @@ def test_a_pose_of_before_stays_and_begins_a_drag_though_it_is_beyond_new_limits
     assert drag.towards(UP, 200).state.certificate.certified
 
 
-def test_a_limb_that_its_bone_holds_back_is_said_to_be_at_the_limits():
+def test_limb_held_back_by_its_bone_is_told_to_be_at_the_limits():
     boned = bar(100.0)
     far = targets_of(30 + 40j, 330 + 40j, 540 + 40j)
     # In some steps it is at the limits, long before all of it is at rest.
@@ -137,7 +137,7 @@ SCRIPT = {
 }
 
 
-def test_a_script_says_what_is_stiff():
+def test_script_stiffens_what_it_says():
     document, notices = pose_document(drawn(), parse_pose_script(SCRIPT), lambda _: None)
     (figure,) = document.figures
     assert notices == ()
@@ -177,7 +177,7 @@ def test_other_stiff_parts_are_refused(stiff, message):
         parse_pose_script({**SCRIPT, "stiff": stiff})
 
 
-def test_a_bone_of_a_script_that_leaves_the_drawing_is_named():
+def test_script_names_a_bone_that_leaves_the_drawing():
     picture = BAR.copy()
     picture[20:45, 200:280] = 0
     script = {**SCRIPT, "handles": {"start": [30, 50], "elbow": [240, 26], "end": [450, 50]}}

@@ -187,7 +187,7 @@ def test_the_seam_of_a_loop_has_one_velocity_or_none():
 
 
 @given(st.floats(0.01, 39.99), st.integers(0, 5))
-def test_a_key_at_the_velocity_of_the_moment_changes_nothing(frame, delay):
+def test_track_stays_when_a_key_is_set_at_its_own_velocity(frame, delay):
     track = track_of(0, 10, 16, 40, velocity=VELOCITIES, delay=delay)
     at, velocity = track_at(track, clip(), frame + delay), velocity_at(track, clip(), frame + delay)
     if frame in {0.0, 10.0, 16.0}:
