@@ -1035,8 +1035,10 @@ def test_figures_of_one_picture_share_it_on_the_graphics_card_until_one_is_cut(w
     drawing = window._window._canvas._drawing
     arm, glow, shine = (identity(project, name) for name in ("arm", "glow", "shine"))
     assert drawing._picture(arm) is drawing._picture(glow) is drawing._picture(shine)
-    before = window.picture()
     window.act(layering.choose, glow)
+    # Behind it are others with the same picture.
+    project.solo = frozenset({glow})
+    before = window.picture()
     window.act(editing.edit, figure_commands.brush(glow, brush_at(project, glow)))
     window.settle()
     assert drawing._picture(arm) is drawing._picture(shine) is not drawing._picture(glow)
