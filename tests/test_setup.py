@@ -9,7 +9,7 @@ import pytest
 
 SETUP = Path(__file__).parents[1] / ".ci" / "setup"
 NEEDED = {"python3", "python3-venv", "libegl1", "libgl1", "libgl1-mesa-dri"}
-TESTING = {"xvfb", "xdotool"}
+TESTING = {"xvfb", "xdotool", "shared-mime-info"}
 WELCOME = {"libosmesa6", "chromium"}
 # As apt-get does, it knows no package before an update, and installs all that it is asked for or
 # nothing. Options begin with a dash.
