@@ -232,6 +232,7 @@ def test_a_curve_that_few_vertices_cannot_follow_is_not_fitted(fitted) -> None:
     result = outlined(pictures.spiral(300, 10))
     ((least, found),) = fitted
     assert least <= found == len(result.outline) <= 200
+    assert any("fused" in notice for notice in result.notices)
 
 
 def test_where_every_curve_is_intricate_the_simplest_one_is_fitted(fitted, monkeypatch) -> None:
@@ -258,7 +259,8 @@ def test_limbs_that_are_fused_are_told() -> None:
         assert not any("fused" in notice for notice in outlined(apart).notices)
 
 
+@pytest.mark.long
 def test_gaps_are_closed_before_an_outline_has_more_vertices_than_it_may() -> None:
-    result = outlined(pictures.spiral(400, 10))
+    result = outlined(pictures.spiral(600, 10))
     assert len(result.outline) <= LARGEST_OUTLINE
     assert any("fused" in notice for notice in result.notices)
