@@ -326,7 +326,9 @@ def test_what_changes_hands_does_not_jump(folder, capsys):
         assert abs(just.factor - now.factor) < 1e-5
     assert joints.placement(patch.id, 8) == joints.placement(patch.id, 6)
     # The nearest point of the body when it is handed over, not as it was drawn.
+    as_drawn = body.domain.nearest(np.array([patch.joints[0].at]))[0]
     assert patch.joints[1].at.real > 105
+    assert abs(patch.joints[1].at - as_drawn) > 1
 
 
 def test_layer_changes_its_parent_in_every_repeat_of_a_cycle(drawing):
