@@ -13,9 +13,7 @@ LAST, HALF = 8, 4  # frames: of the second key, which is the last one, and half 
 
 def bend_until(window: Harness, last: int, *, loosely: bool = False) -> Project:
     """Bend the bar by a key at a frame, which is shown, with no frame after it."""
-    (bend_loosely if loosely else bend_bar)(window)
-    bent = window.session.project
-    assert bent is not None
+    bent = window.again(bend_loosely if loosely else bend_bar)
     if last != BENT:
         bent.history.do(key_commands.move_keys(bent.active, {BENT}, last - BENT))
     bent.history.do(scene_commands.set_frames(FrameRange(0, last)))

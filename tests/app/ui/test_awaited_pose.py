@@ -16,7 +16,7 @@ WAY = 30 - 20j  # pixels of the picture
 
 def bend_by_nu(window):
     """Bend the bar loosely: which in-between it is that is awaited is not asked."""
-    bend_loosely_and_briefly(window)
+    window.again(bend_loosely_and_briefly)
     keys.set_variant(window.session, "nu")
     window.settle()
 

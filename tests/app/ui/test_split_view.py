@@ -16,7 +16,7 @@ def between(window):
 
 
 def stop_half_way(window):
-    bent = bend_loosely_and_briefly(window)
+    bent = window.again(bend_loosely_and_briefly)
     width, _ = bent.document.canvas
     wishes = dict(bent.puppet.shown.pose.targets)
     last = max(wishes)
