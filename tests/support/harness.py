@@ -21,6 +21,7 @@ from app.editor.actions import files, saving
 from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.work.jobs import Jobs
+from app.motion import CorrectedFrames
 from app.render.gpu.context import create_context
 from app.render.renderer import Renderer
 from app.storage.preferences import Preferences
@@ -259,7 +260,7 @@ def own(value: Value) -> Value:
         return [own(each) for each in value]
     if isinstance(value, dict):
         return {key: own(each) for key, each in value.items()}
-    if isinstance(value, History):
+    if isinstance(value, History | CorrectedFrames):
         copied = copy(value)
         vars(copied).update({name: own(each) for name, each in vars(value).items()})
         return copied

@@ -1,0 +1,44 @@
+"""What the window prepares before anybody asks, and what it leaves in the tests."""
+
+import pytest
+
+from app.editor import Session
+from app.editor.actions import playback
+from app.editor.work import Jobs
+from app.motion import Streamed
+from app.motion.extent import extent_source
+
+HALFWAY = 12  # between the two keys
+
+
+def prepared(project):
+    """Return which of all that can be prepared of a project is there."""
+    puppet, clip = project.puppet, project.clip
+    vertices = puppet.store.vertices(clip, HALFWAY)
+    return {
+        "in-betweens": puppet.store.has(clip),
+        "corrections": puppet.corrected.is_whole,
+        "smooth playback": isinstance(vertices, Streamed),
+        "distortion": project.curves.follows(clip),
+        "extent": project.extent.follows(extent_source(project.document)),
+    }
+
+
+def test_session_prepares_ahead_by_itself(tmp_path):
+    assert Session(clock=lambda: 0.0, jobs=Jobs(), folder=tmp_path).prepares_ahead
+
+
+@pytest.mark.usefixtures("everything")
+def test_window_prepares_everything_unasked(bent):
+    assert bent.playhead.frame == bent.clip.keys[-1].frame
+    assert all(prepared(bent).values()), prepared(bent)
+
+
+def test_window_of_tests_prepares_only_what_is_shown(window, bent):
+    assert not any(prepared(bent).values()), prepared(bent)
+    playback.seek(window.session, HALFWAY)
+    window.settle()
+    assert bent.puppet.shown.is_current
+    found = prepared(bent)
+    assert found.pop("in-betweens")
+    assert not any(found.values()), found
