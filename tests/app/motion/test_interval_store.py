@@ -135,7 +135,7 @@ def test_a_copied_key_costs_nothing(document):
 
 
 def test_another_method_of_the_split_view_finds_the_figures_own(document, tmp_path):
-    session = session_of(document, tmp_path)
+    session = session_of(document, tmp_path, prepares_ahead=True)
     project, store = session.project, session.project.puppet.store
     viewing.compare_with(session, Variant.ETA)
     settle(session)
@@ -149,7 +149,7 @@ def test_another_method_of_the_split_view_finds_the_figures_own(document, tmp_pa
 
 
 def test_undo_and_redo_find_what_was_made(document, tmp_path):
-    session = session_of(document, tmp_path)
+    session = session_of(document, tmp_path, prepares_ahead=True)
     project, store = session.project, session.project.puppet.store
     made = [store.prepared(project.clip)]
     for variant in ("eta", "nu", "eta"):
@@ -413,7 +413,7 @@ def test_distortions_are_built_while_they_are_shown(clip, prepared):
 
 
 def test_a_session_streams_what_it_plays_and_stops_while_a_hand_pulls(document, clip, tmp_path):
-    session = session_of(document, tmp_path)
+    session = session_of(document, tmp_path, prepares_ahead=True)
     project, store = session.project, session.project.puppet.store
     assert streamed(store, clip) == [True] * 3
     project.playhead = project.playhead.seek(13, 0.0)
@@ -442,7 +442,7 @@ def test_where_much_is_prepared_figures_that_nobody_edits_come_one_after_the_oth
     (figure,) = document.figures
     figures = tuple(replace(figure, id=number, name=f"{number}") for number in range(3))
     document = replace(document, figures=figures)
-    session = session_of(document, tmp_path)
+    session = session_of(document, tmp_path, prepares_ahead=True)
     for clip, puppet in zip(
         [clip_of(document, number) for number in range(3)],
         session.project.puppets.values(),

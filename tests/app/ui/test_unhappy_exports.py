@@ -256,11 +256,11 @@ def held(monkeypatch):
 @pytest.mark.parametrize(
     ("name", "stage"),
     [
-        ("frames", "prepare_inbetweens"),
-        ("bar.gif", "prepare_sites"),
-        ("sheet.png", "prepare_inbetweens"),
-        ("bar.webm", "prepare_sites"),
-        ("bar.html", "prepare_inbetweens"),
+        ("frames", "intervals"),
+        ("bar.gif", "sites"),
+        ("sheet.png", "intervals"),
+        ("bar.webm", "sites"),
+        ("bar.html", "intervals"),
     ],
 )
 @pytest.mark.usefixtures("loose")
@@ -271,10 +271,11 @@ def test_cancel_is_answered_at_once_while_it_is_prepared(window, tmp_path, held,
     settings = ExportSettings(format=format_, size=SIZE, framing="canvas", frames=few)
     exporting.set_export(session, settings)
     window.settle()
-    worker = held(pose_sampler, stage)
+    where = {"sites": (exporting, "PoseSampler"), "intervals": (pose_sampler, "prepare_inbetweens")}
+    worker = held(*where[stage])
     window.act(exporting.start, out)
     window.until(worker.begun.is_set)
-    assert (session.export is None) == (stage == "prepare_sites")
+    assert (session.export is None) == (stage == "sites")
     left = weakref.ref(session.export.poses[0]) if session.export else None
     window.act(exporting.cancel)
     window.frames()
