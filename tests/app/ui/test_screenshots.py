@@ -43,6 +43,8 @@ def dragon(window):
         )
         window.settle()
     editing.choose_keys(session, frozenset({16}))
+    session.prepares_ahead = True
+    window.settle()
     return project
 
 
@@ -92,7 +94,6 @@ def differs(picture, other):
     return float((np.abs(picture - other).max(axis=2) > 12).mean())
 
 
-@pytest.mark.usefixtures("everything")
 def test_screenshots_of_the_main_states(window, dragon, save):
     session, palette = window.session, PALETTES["dark"]
     playback.seek(session, 16)

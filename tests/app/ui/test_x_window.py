@@ -290,6 +290,8 @@ def test_a_person_animates_a_drawing_and_finds_it_again(window, bar, person, tmp
     assert len(recovered.markers) == 1
 
 
+# What the window does with them is asked in test_names.py; this asks the whole program.
+@pytest.mark.long
 def test_names_that_are_not_utf_8_keep_nobody_out(display, tmp_path):
     odd, shown = os.fsdecode(b"caf\xe9"), "caf\N{REPLACEMENT CHARACTER}"
     home = tmp_path / odd

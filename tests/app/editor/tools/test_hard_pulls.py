@@ -54,7 +54,9 @@ SHAPES = {
 }
 
 
-@pytest.fixture(params=SHAPES)
+@pytest.fixture(
+    params=["person", *(pytest.param(name, marks=pytest.mark.long) for name in ("snake", "tree"))]
+)
 def session(request, tmp_path):
     """A drawing with handles, the first of which is at the end of a limb."""
     picture, places = SHAPES[request.param]
@@ -172,7 +174,7 @@ def test_alt_keeps_the_wish_and_pulls_as_strongly_as_it_takes(session):
 
 
 @pytest.mark.parametrize("session", ["person"], indirect=True)
-@pytest.mark.parametrize("rests", [0, 2])
+@pytest.mark.parametrize("rests", [0, pytest.param(2, marks=pytest.mark.long)])
 def test_the_next_drag_does_not_pull_on_at_what_the_hand_has_left(session, rests):
     project = session.project
     hand, asked, before = drag_too_far(session, rests=rests)
