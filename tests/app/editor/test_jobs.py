@@ -150,6 +150,32 @@ def test_result_may_make_the_next_one_stale():
     assert results == []
 
 
+def test_jobs_wait_while_their_kind_is_held_and_others_begin():
+    jobs, results = Jobs(), []
+    with jobs.held(Kind("pose")):
+        jobs.put(job("pose", lambda: 1, results))
+        jobs.put(job("in-betweens", lambda: 2, results))
+        while labels(jobs.kinds) != ("pose",):
+            jobs.deliver()
+        assert results == [("in-betweens", 2)]
+    assert jobs.settle()
+    jobs.deliver()
+    assert results == [("in-betweens", 2), ("pose", 1)]
+
+
+def test_jobs_of_all_kinds_wait_but_the_first_few_while_held():
+    jobs, results = Jobs(), []
+    with jobs.held(first=2):
+        for number in range(3):
+            jobs.add(job("pose", lambda number=number: number, results))
+        while len(results) < 2:
+            jobs.deliver()
+        assert labels(jobs.kinds) == ("pose",)
+    assert jobs.settle()
+    jobs.deliver()
+    assert results == [("pose", 0), ("pose", 1), ("pose", 2)]
+
+
 @pytest.mark.parametrize("lane", ["hand", "export"])
 def test_urgent_jobs_do_not_wait_for_others(busy, lane):
     jobs, _ = busy
@@ -280,7 +306,9 @@ def test_closing_does_not_wait_for_ever(stuck):
     jobs = Jobs()
     jobs.put(job("stuck", work, []))
     has_begun()
+    assert jobs.given_up == 0
     jobs.leave(Kind("stuck"))
+    assert jobs.given_up == 1
     assert not jobs.close(patience=0.05)
 
 
@@ -311,7 +339,7 @@ def test_closing_waits_for_what_runs_and_drops_what_waits():
     assert begun.wait(10)
     closing = threading.Thread(target=jobs.close)
     closing.start()
-    while not jobs._is_closed:
+    while not jobs.is_closed:
         pass
     assert closing.is_alive()
     gate.set()

@@ -1,7 +1,8 @@
 """Whoever quits while something goes on is asked, and nothing is lost by the answer."""
 
+from contextlib import ExitStack
+
 import pytest
-from gates import held_up
 from imgui_bundle import hello_imgui
 
 from app.document.keyframe import Target
@@ -23,9 +24,10 @@ def saved(window, bar, tmp_path):
 
 
 @pytest.fixture
-def gate(monkeypatch):
-    """Saves wait until it is set."""
-    with held_up(monkeypatch, "app.editor.actions.saving.save_project") as gate:
+def gate(window):
+    """Saves wait until it is closed."""
+    with ExitStack() as gate:
+        gate.enter_context(window.session.jobs.held(saving.SAVING))
         yield gate
 
 
@@ -65,7 +67,7 @@ def test_two_saves_at_a_time_are_one_after_the_other_and_nobody_elses(window, ba
         posing.add_handle(window.session, complex(50, 50) + step)
         window.frames(2)
         window.act(saving.save)
-    gate.set()
+    gate.close()
     window.settle()
     assert question(window) is None
     assert bar.history.is_saved
@@ -84,7 +86,7 @@ def test_quitting_waits_for_a_save_that_is_under_way_unless_the_person_insists(
     answer(window, "Cancel")
     quit_lissom(window)
     assert question(window) is None
-    gate.set()
+    gate.close()
     window.settle()
     assert window.session.quitting
     assert len(load_project(saved).figures[0].handles) == len(bar.figure.handles)

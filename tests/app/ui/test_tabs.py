@@ -3,7 +3,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from documents import CENTRE, RADIUS, altered, disc_document
-from gates import held_up
 from imgui_bundle import ImVec2, imgui
 from PIL import Image
 from projects import project_of
@@ -13,6 +12,7 @@ from app.document.commands.scene_commands import set_export
 from app.document.keyframe import Handle, Keyframe, Pose, Target
 from app.document.settings import NATURAL, RUBBERY, STIFF, Meshing
 from app.editor.actions import editing, exporting, playback, posing, upkeep
+from app.editor.actions.body.rebuilding import RENEWING
 from app.export_formats import ShapeDetail, SheetLayout
 from app.motion.extent import extent_source
 from engine.maps.boundary import Boundary
@@ -200,7 +200,7 @@ def test_pose_that_no_handle_holds_is_brought_within_the_bounds(window, project,
     assert certificate.k <= bound + 1e-6
 
 
-def test_cancelled_solving_changes_nothing(project, window, monkeypatch):
+def test_cancelled_solving_changes_nothing(project, window):
     before = project.document
 
     def act(robot):
@@ -210,7 +210,7 @@ def test_cancelled_solving_changes_nothing(project, window, monkeypatch):
 
     window.show_tab("Deform")
     # A fast machine would be done before the button is found.
-    with held_up(monkeypatch, "app.solving.renewal._solved"):
+    with window.session.jobs.held(RENEWING):
         window.run(act)
     window.settle()
     assert project.document is before

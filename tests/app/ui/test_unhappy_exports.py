@@ -294,7 +294,7 @@ def test_cancel_is_answered_at_once_while_it_is_prepared(window, tmp_path, held,
     worker.end.set()
     assert not any(exporting.PREPARING.complaint in text for text in texts(window))
     window.until(lambda: left is None or is_gone(left))
-    window.until(lambda: not any(lane.thread.is_alive() for lane in session.jobs._left))
+    window.until(lambda: not session.jobs.given_up)
     assert {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*")} == made
 
 
