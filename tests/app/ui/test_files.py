@@ -29,7 +29,7 @@ def drop(window):
     """Drops files on the window."""
 
     def take(*paths):
-        window._window._take_dropped(list(paths))
+        window.program.take_dropped(list(paths))
         window.frames(2)
         window.settle()
 
@@ -303,16 +303,16 @@ def test_a_saved_project_is_known_by_its_picture_in_the_welcome_view(window, pro
     assert small.shape[1] / small.shape[0] == pytest.approx(
         project.document.canvas[0] / project.document.canvas[1], rel=0.05
     )
-    textures = window._window._thumbnails
-    assert path not in textures._textures
+    textures = window.program.thumbnails
+    assert path not in textures.files
     window.act(saving.close)
     window.frames(30)
     shown = textures.get(path)
     assert shown.size == small.shape[1::-1]
     window.open(BAR)
-    assert path not in textures._textures
+    assert path not in textures.files
     # Samples stay: nobody writes to them.
-    assert textures._textures
+    assert textures.files
 
 
 def test_a_drag_keeps_what_a_later_version_wrote_about_its_target(window, project, tmp_path):

@@ -318,8 +318,7 @@ def test_decoded_pictures_go_with_the_steps_that_have_them(window, bent, tmp_pat
         window.settle()
         window.act(editing.undo)
         window.settle()
-    steps = {figure.picture for step in bent.history._steps for figure in step.document.figures}
-    assert bent.pictures.keys() <= steps
+    assert bent.pictures.keys() <= bent.history.picture_files
 
 
 def test_within_a_job_the_clock_goes_on(window):
