@@ -25,6 +25,8 @@ Extra = Literal["video", "psd", "figures"]
 LIBRARIES: Final[dict[Extra, str]] = {"video": "av", "psd": "psd-tools", "figures": "matplotlib"}
 Listener = Callable[[float], None]
 _listener: ContextVar[Listener | None] = ContextVar("listener", default=None)
+CANCELLED: Final = "it was cancelled"
+REINSTALL: Final = "install Lissom again"
 # What Python makes of the bytes of a file's name that are no UTF-8, on Linux.
 _UNREADABLE = re.compile("[\ud800-\udfff]")
 

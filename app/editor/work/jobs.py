@@ -14,10 +14,9 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, Literal, get_args
 
-from app.errors import LissomError, told_to
+from app.errors import CANCELLED, LissomError, told_to
 
 LaneName = Literal["hand", "export", "display", "keep"]
-CANCELLED = "it was cancelled"
 PATIENCE = 10.0  # seconds that the end of the program waits for what runs
 MOMENT = 0.5  # seconds that it waits for what was given up
 

@@ -197,7 +197,7 @@ def test_copying_the_picture_leaves_an_export_alone_that_is_prepared(
         exporting.start(window.session, tmp_path / "a.gif")
         window.frames()
         exporting.copy_picture(window.session)
-        assert "An export is under way" in window.session.toasts[-1].text
+        assert window.session.toasts[-1].text == exporting.UNDER_WAY
     window.until(lambda: (tmp_path / "a.gif").exists() and window.session.export is None)
 
 

@@ -8,6 +8,7 @@ from imgui_bundle import hello_imgui
 from app.document.keyframe import Target
 from app.editor.actions import posing, saving
 from app.editor.dialogs import Question
+from app.storage import NO_FOLDER
 from app.storage.project_file import load_project
 
 
@@ -79,7 +80,7 @@ def test_quitting_waits_for_a_save_that_is_under_way_unless_the_person_insists(
 ):
     posing.add_handle(window.session, complex(50, 50))
     window.act(saving.save)
-    for title in (None, "Unsaved changes"):
+    for title in (None, saving.UNSAVED):
         quit_lissom(window)
         assert question(window) == title
         assert not window.session.quitting
@@ -103,9 +104,11 @@ def test_a_save_that_fails_ends_nothing(window, saved):
     answer(window, "Save")
     window.settle()
     assert not window.session.quitting
-    assert any("does not exist" in toast.text for toast in window.session.toasts)
+    assert any(
+        NO_FOLDER.format(folder=saved.parent) in toast.text for toast in window.session.toasts
+    )
     quit_lissom(window)
-    assert question(window) == "Unsaved changes"
+    assert question(window) == saving.UNSAVED
 
 
 def test_a_drag_that_goes_on_while_the_window_is_to_close_is_kept(window, bar, saved):

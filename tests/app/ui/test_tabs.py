@@ -15,6 +15,7 @@ from app.editor.actions import editing, exporting, playback, posing, upkeep
 from app.editor.actions.body.rebuilding import RENEWING
 from app.export_formats import ShapeDetail, SheetLayout
 from app.motion.extent import extent_source
+from app.storage import NO_FOLDER
 from engine.maps.boundary import Boundary
 from engine.maps.certificate import certify
 from engine.maps.harmonic_map import HarmonicMap
@@ -465,7 +466,10 @@ def test_export_that_cannot_begin_is_told(window, project, tab, tmp_path):
     project.exports_to["png"] = tmp_path / "missing" / "frames"
     tab("Export", lambda robot: robot.item_click("**/###start"))
     assert window.session.export is None
-    assert any("does not exist" in toast.text for toast in window.session.toasts)
+    assert any(
+        NO_FOLDER.format(folder=tmp_path / "missing") in toast.text
+        for toast in window.session.toasts
+    )
 
 
 def test_the_export_tab_changes_nothing_by_itself(window, project):

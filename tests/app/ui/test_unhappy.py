@@ -27,7 +27,7 @@ from app.editor.actions import (
 from app.editor.actions.posing.inserting import INSERTING
 from app.editor.timeline_view import KeyBox
 from app.editor.work.derived import Derived
-from app.errors import tell
+from app.errors import CANCELLED, tell
 from app.motion.extent import Box, extent_source
 from app.storage.assets import sample_images
 from app.storage.autosave import SECONDS
@@ -539,7 +539,7 @@ def test_work_that_tells_how_far_it_is_is_cancelled_at_once_and_ends(window, mon
     window.run(lambda robot: robot.item_click("//**/Cancel"))
     assert ended.wait(10)
     window.settle()
-    assert any("cancelled" in toast.text for toast in window.session.toasts)
+    assert any(CANCELLED in toast.text for toast in window.session.toasts)
 
 
 WAITING = {
