@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 import pytest
-from bars import bend_bar, bend_loosely, open_bar
+from bars import bend_bar, open_bar
 from harness import Harness
 
 from app.editor.project import Project
@@ -49,7 +49,7 @@ def bent(window: Harness) -> Project:
 @pytest.fixture
 def loose(window: Harness) -> Project:
     """The same bar, none of whose handles stays between its keys."""
-    return window.again(bend_loosely)
+    return window.again(bend_bar, None, "loose")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
