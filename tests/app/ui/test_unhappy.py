@@ -419,6 +419,7 @@ def test_scrubbing_while_the_worker_builds(window, bent):
     assert bent.puppet.shown.frame == 12
 
 
+@pytest.mark.usefixtures("everything")
 def test_poses_that_follow_each_other_twice_are_prepared_once(window, bent):
     keys.set_variant(window.session, "nu")
     editing.edit(window.session, key_commands.copy_keys(0, {0, 24}, 48))
