@@ -46,21 +46,22 @@ def bend_bar(
         Handles stay between the keys where both have them at one place, which is solved for each
         frame; or none does.
     """
-    bar = open_bar(window)
-    playback.seek(window.session, BENT)
-    window.settle()
-    width, height = bar.puppet.picture.size
-    posing.wish(window.session, {1: Target(position=complex(0.85 * width, 0.9 * height))})
-    window.settle()
-    if held == "loose":
-        bar.history.extend_step(figure_commands.set_stillness(bar.active, stillness=False))
-        window.settle()
     if last is not None:
+        bar = window.again(bend_bar, None, held)
         if last != BENT:
             bar.history.do(key_commands.move_keys(bar.active, {BENT}, last - BENT))
         bar.history.do(scene_commands.set_frames(FrameRange(0, last)))
         playback.seek(window.session, last)
+    elif held == "loose":
+        bar = window.again(bend_bar, None, "auto-pins")
+        bar.history.extend_step(figure_commands.set_stillness(bar.active, stillness=False))
+    else:
+        bar = window.again(open_bar)
+        playback.seek(window.session, BENT)
         window.settle()
+        width, height = bar.puppet.picture.size
+        posing.wish(window.session, {1: Target(position=complex(0.85 * width, 0.9 * height))})
+    window.settle()
     return bar
 
 

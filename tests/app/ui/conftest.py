@@ -43,7 +43,7 @@ def bar(window: Harness) -> Project:
 @pytest.fixture
 def bent(window: Harness) -> Project:
     """The bar, bent at its right end: keys at frames 0 and 24, the second one is shown."""
-    return window.again(bend_bar)
+    return window.again(bend_bar, None, "auto-pins")
 
 
 @pytest.fixture

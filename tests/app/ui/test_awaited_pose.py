@@ -16,7 +16,7 @@ WAY = 30 - 20j  # pixels of the picture
 
 def bend_by_nu(window):
     """Bend the bar loosely: which in-between it is that is awaited is not asked."""
-    bend_bar(window, LAST, "loose")
+    window.again(bend_bar, LAST, "loose")
     keys.set_variant(window.session, "nu")
     window.settle()
 

@@ -36,7 +36,7 @@ def cycling(window):
 
 
 def swing(window):
-    bent = bend_bar(window, held="loose")
+    bent = window.again(bend_bar, None, "loose")
     editing.edit(window.session, key_commands.copy_keys(bent.active, {0}, 48))
     editing.edit(window.session, scene_commands.set_frames(FrameRange(0, 150)))
     editing.choose_keys(window.session, frozenset({0, 24, 48}))

@@ -16,7 +16,7 @@ def between(window):
 
 
 def stop_half_way(window):
-    bent = bend_bar(window, LAST, "loose")
+    bent = window.again(bend_bar, LAST, "loose")
     width, _ = bent.document.canvas
     wishes = dict(bent.puppet.shown.pose.targets)
     last = max(wishes)

@@ -49,7 +49,7 @@ def drag(window, start, end, *, then=lambda robot: robot.mouse_up(0)):
 
 def key_end(window):
     """Key the handle at the bent bar's end alone, half way to its key, and choose that row."""
-    bend_bar(window, LAST)
+    window.again(bend_bar, LAST)
     playback.scrub(window.session, HALF)
     window.settle()
     tracks.key_here(window.session, (END,))
