@@ -25,6 +25,8 @@ Extra = Literal["video", "psd", "figures"]
 LIBRARIES: Final[dict[Extra, str]] = {"video": "av", "psd": "psd-tools", "figures": "matplotlib"}
 Listener = Callable[[float], None]
 _listener: ContextVar[Listener | None] = ContextVar("listener", default=None)
+CANCELLED: Final = "it was cancelled"
+REINSTALL: Final = "install Lissom again"
 # What Python makes of the bytes of a file's name that are no UTF-8, on Linux.
 _UNREADABLE = re.compile("[\ud800-\udfff]")
 
@@ -110,16 +112,16 @@ def _how_to_install(extra: Extra) -> str:
         return "a part of Lissom is gone, install it again"
     home = Path(sys.prefix)
     if (home / "pipx_metadata.json").is_file():
-        return f"pipx inject {_quoted(home.name)} {_quoted(_needed(extra))}"
+        return f"pipx inject {_quoted(home.name)} {_quoted(required_library(extra))}"
     if (home / "uv-receipt.toml").is_file() or find_spec("pip") is None:
-        return f"uv pip install --python {_quoted(str(home))} {_quoted(_needed(extra))}"
+        return f"uv pip install --python {_quoted(str(home))} {_quoted(required_library(extra))}"
     found = shutil.which("pip")
     is_ours = found is not None and Path(found).parent == Path(sys.executable).parent
     pip = "pip" if is_ours else f"{_quoted(sys.executable)} -m pip"
     return f"{pip} install {_quoted(f'lissom[{extra}]')}"
 
 
-def _needed(extra: Extra) -> str:
+def required_library(extra: Extra) -> str:
     """Return an extra's library, with the versions that will do."""
     lines = (line.partition(";") for line in requires("lissom") or ())
     return next(name.strip() for name, _, case in lines if re.search(rf"\b{extra}\b", case))

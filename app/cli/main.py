@@ -17,12 +17,16 @@ from app.cli.process import (
     require_memory,
     use_one_thread,
 )
-from app.errors import EXPECTED_ERRORS, told_to
+from app.errors import EXPECTED_ERRORS, REINSTALL, told_to
 
 EXIT_FAILED, EXIT_PIPE_CLOSED = 1, 141
 
 # Subcommand → its summary. The module of that name in app.cli.usage declares its options, which is
 # quickly loaded; that in app.cli.commands runs it, and is loaded when all that was said is right.
+TOO_LITTLE_MEMORY = (
+    "not enough memory for this; ask for fewer triangles or a smaller picture, or allow "
+    "Lissom more of it"
+)
 COMMANDS = {
     "window": "Open the window, with a picture or a project if one is named.",
     "domain": "Find a picture's outline; build the cage and the triangulation.",
@@ -61,14 +65,11 @@ def main(argv: Sequence[str] | None = None) -> int:
     except EXPECTED_ERRORS as error:
         fail(str(error))
     except ImportError as error:
-        fail(f"a library cannot be loaded ({error}); give it more memory, or install Lissom again")
+        fail(f"a library cannot be loaded ({error}); give it more memory, or {REINSTALL}")
     except (MemoryError, RuntimeError) as error:
         if isinstance(error, RuntimeError) and "start new thread" not in str(error):
             return _report(error, words)
-        fail(
-            "not enough memory for this; ask for fewer triangles or a smaller picture, or allow "
-            "Lissom more of it"
-        )
+        fail(TOO_LITTLE_MEMORY)
     except KeyboardInterrupt:
         print(f"lissom: interrupted by {endings.name}", file=sys.stderr, flush=True)
         if has_threads_left():

@@ -10,7 +10,7 @@ from typing import Final
 
 from app.errors import LissomError
 from app.export_formats import EXPORT_FORMATS
-from app.storage import check_writable
+from app.storage import NO_FOLDER, check_writable
 
 FRAMES: Final = " frames"  # what the name of a folder for them ends in
 # Stands for the project's name.
@@ -90,7 +90,7 @@ def check_destination(
                 "choose the format of the name"
             )
         if not out.parent.is_dir():
-            raise LissomError(f"cannot write {out}: the folder {out.parent} does not exist")
+            raise LissomError(f"cannot write {out}: {NO_FOLDER.format(folder=out.parent)}")
     folder = out if out.is_dir() else out.parent
     if not os.access(folder, os.W_OK):
         raise LissomError(

@@ -26,6 +26,16 @@ class Thumbnails:
         self._fresh = True
         self.is_behind = False  # whether more were asked for in this frame than were read
 
+    @property
+    def files(self) -> frozenset[Path]:
+        """The files that were read."""
+        return frozenset(self._textures)
+
+    @property
+    def moving_files(self) -> frozenset[Path]:
+        """The files whose small animation was read."""
+        return frozenset(self._moments)
+
     def begin_frame(self) -> None:
         """Allow one more file to be read: one a frame, so that the window opens at once."""
         self._fresh, self.is_behind = True, False

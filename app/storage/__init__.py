@@ -28,6 +28,10 @@ from app.storage.autosave import (
     take_news as take_news,
 )
 from app.storage.files import (
+    IS_FOLDER as IS_FOLDER,
+    NO_ARRAYS as NO_ARRAYS,
+    NO_FOLDER as NO_FOLDER,
+    SAME_FILE as SAME_FILE,
     Cancellation as Cancellation,
     Hold as Hold,
     HoldError as HoldError,

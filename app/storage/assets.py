@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from app.errors import LissomError
+from app.errors import REINSTALL, LissomError
 
 _APP = Path(__file__).resolve().parents[1]
 
@@ -26,7 +26,7 @@ def manual_page(name: str = "index") -> Path:
     """Return a page of the manual; its pictures, and all other pages, lie beside it."""
     page = _APP / "manual" / "site" / f"{name}.html"
     if not page.is_file():
-        raise LissomError(f"the page {page} of the manual is missing; install Lissom again")
+        raise LissomError(f"the page {page} of the manual is missing; {REINSTALL}")
     return page
 
 
@@ -34,7 +34,7 @@ def _read(path: Path) -> bytes:
     try:
         return path.read_bytes()
     except OSError as error:
-        raise LissomError(f"cannot read {path}; install Lissom again") from error
+        raise LissomError(f"cannot read {path}; {REINSTALL}") from error
 
 
 def _folder(name: str) -> Path:
@@ -42,4 +42,4 @@ def _folder(name: str) -> Path:
     for path in (_APP / "shipped" / name, _APP.parent / name):
         if path.is_dir():
             return path
-    raise LissomError(f"the folder {name!r} of Lissom is missing; install Lissom again")
+    raise LissomError(f"the folder {name!r} of Lissom is missing; {REINSTALL}")

@@ -31,6 +31,7 @@ from app.storage.files import (
 from app.storage.json_values import JsonObject, as_object, as_text, as_whole, without_repeats
 from app.storage.project import (
     MEBIBYTE,
+    NO_PROJECT,
     SCHEMA,
     Archive,
     figure_members,
@@ -115,7 +116,7 @@ def load_project(path: Path) -> Document:
     except EXPECTED_ERRORS as error:
         raise LissomError(f"cannot open {path}: {error}") from error
     except DAMAGED_ZIP as error:
-        raise LissomError(f"{path} is not a Lissom project, or it is damaged") from error
+        raise LissomError(f"{path} {NO_PROJECT}, or it is damaged") from error
 
 
 def load_thumbnail(path: Path) -> bytes | None:

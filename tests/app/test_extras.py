@@ -30,7 +30,7 @@ def test_every_extra_has_its_library():
     said = importlib.metadata.metadata("lissom").get_all("Provides-Extra")
     assert set(errors.LIBRARIES) == set(said) - {"test"}
     for extra, library in errors.LIBRARIES.items():
-        assert re.match(r"[\w-]+", errors._needed(extra))[0] == library
+        assert re.match(r"[\w-]+", errors.required_library(extra))[0] == library
         assert errors.missing(extra) == ""
 
 
@@ -48,13 +48,13 @@ def test_another_environment_is_named(home, monkeypatch):
 
 def test_pipx_puts_it_beside(home):
     (home / "pipx_metadata.json").touch()
-    assert errors.missing("psd") == f"pipx inject lissom '{errors._needed('psd')}'"
+    assert errors.missing("psd") == f"pipx inject lissom '{errors.required_library('psd')}'"
 
 
 def test_uv_has_no_pip(home, monkeypatch):
     receipt = home / "uv-receipt.toml"
     receipt.touch()
-    told = f"uv pip install --python {home} '{errors._needed('figures')}'"
+    told = f"uv pip install --python {home} '{errors.required_library('figures')}'"
     assert errors.missing("figures") == told
     receipt.unlink()
     monkeypatch.setattr(errors, "find_spec", lambda _: None)
@@ -71,4 +71,4 @@ def test_windows_takes_other_quotes(home, monkeypatch):
     monkeypatch.setattr(platform, "system", lambda: "Windows")
     assert errors.missing("video") == 'pip install "lissom[video]"'
     (home / "pipx_metadata.json").touch()
-    assert errors.missing("video") == f'pipx inject lissom "{errors._needed("video")}"'
+    assert errors.missing("video") == f'pipx inject lissom "{errors.required_library("video")}"'

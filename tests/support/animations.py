@@ -49,6 +49,19 @@ def within(document: Document, corners: Complexes) -> Document:
     return Document(figures=(new_figure(document.figures[0].picture, domain, Meshing()),))
 
 
+def bar_picture(length: int = 240) -> Bytes:
+    """A white bar, 20 pixels within a picture of so many."""
+    picture = np.zeros((80, length, 4), np.uint8)
+    picture[20:60, 20:-20] = 255
+    return picture
+
+
+def bar_document() -> Document:
+    """That bar as it was opened, within four corners."""
+    corners = np.array([18 + 18j, 222 + 18j, 222 + 62j, 18 + 62j])
+    return within(still_document(bar_picture()), corners)
+
+
 def moving_document(last: int = 6, cut_out: CutOut | None = None) -> Document:
     """The blob as it was drawn in frame 0, turned and bent in the last frame."""
     document = still_document(cut_out=cut_out)

@@ -1,46 +1,66 @@
 """A bar in the window: what most tests of the interface begin with."""
 
+from typing import Literal
+
 import numpy as np
 from harness import Harness
 
-from app.document.commands import figure_commands
+from app.document.commands import figure_commands, key_commands, scene_commands
 from app.document.keyframe import Target
 from app.document.model import Document
+from app.document.settings import FrameRange
 from app.editor.actions import playback, posing
 from app.editor.project import Project
 from app.storage.assets import sample_images
 
 BENT = 24  # the frame of the key in which it is bent
+LAST, HALF = 8, 4  # frames: of that key in few frames, and half way to it
 WAY = 60 - 90j  # pixels of the picture that it is dragged
 NEAR = 3  # pixels, which the solver may leave
 
 
-def open_bar(window: Harness) -> Project:
-    """Open the sample of a bar, and put a handle near each end; the second one is selected."""
+def open_bar(window: Harness, *shares: float) -> Project:
+    """Open the sample of a bar, and put handles at shares of its length; the last one is selected.
+
+    By default there is one near each end.
+    """
     project = window.open(sample_images() / "bar.png")
     width, height = project.document.canvas
-    for share in (0.1, 0.9):
+    for share in shares or (0.1, 0.9):
         posing.add_handle(window.session, complex(share * width, height / 2))
         window.frames(2)
     window.settle()
     return project
 
 
-def bend_bar(window: Harness) -> Project:
-    """Bend that bar at its right end: keys at frames 0 and 24, the second one is shown."""
-    bar = open_bar(window)
-    playback.seek(window.session, BENT)
-    window.settle()
-    width, height = bar.puppet.picture.size
-    posing.wish(window.session, {1: Target(position=complex(0.85 * width, 0.9 * height))})
-    window.settle()
-    return bar
+def bend_bar(
+    window: Harness, last: int | None = None, held: Literal["auto-pins", "loose"] = "auto-pins"
+) -> Project:
+    """Bend that bar at its right end: keys at frames 0 and 24, the second one is shown.
 
-
-def bend_loosely(window: Harness) -> Project:
-    """Bend the bar so, none of whose handles stays in between: that is solved for each frame."""
-    bar = bend_bar(window)
-    bar.history.extend_step(figure_commands.set_stillness(bar.active, stillness=False))
+    Parameters
+    ----------
+    last : int, optional
+        The frame of the second key, after which there is none.
+    held : {"auto-pins", "loose"}
+        Handles stay between the keys where both have them at one place, which is solved for each
+        frame; or none does.
+    """
+    if last is not None:
+        bar = window.again(bend_bar, None, held)
+        if last != BENT:
+            bar.history.do(key_commands.move_keys(bar.active, {BENT}, last - BENT))
+        bar.history.do(scene_commands.set_frames(FrameRange(0, last)))
+        playback.seek(window.session, last)
+    elif held == "loose":
+        bar = window.again(bend_bar, None, "auto-pins")
+        bar.history.extend_step(figure_commands.set_stillness(bar.active, stillness=False))
+    else:
+        bar = window.again(open_bar)
+        playback.seek(window.session, BENT)
+        window.settle()
+        width, height = bar.puppet.picture.size
+        posing.wish(window.session, {1: Target(position=complex(0.85 * width, 0.9 * height))})
     window.settle()
     return bar
 

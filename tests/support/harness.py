@@ -72,8 +72,8 @@ class Harness:
         self._tests = 0
         self._made: dict[tuple[object, ...], tuple[float, Project, Preferences]] = {}
         self.gl = create_context()
-        self._window = Window(self.session, lambda: Renderer(self.gl))
-        self._screen = Offscreen(self._window, self.gl, with_test_engine=True)
+        self.program = Window(self.session, lambda: Renderer(self.gl))
+        self._screen = Offscreen(self.program, self.gl, with_test_engine=True)
         self._engine = hello_imgui.get_imgui_test_engine()
         settings = imgui.test_engine.get_io(self._engine)
         settings.config_run_speed = imgui.test_engine.TestRunSpeed.fast
@@ -164,7 +164,7 @@ class Harness:
     @property
     def awaits_worker(self) -> bool:
         """Whether the window sleeps until the worker, or the person, does something."""
-        return self._window.awaits_worker
+        return self.program.awaits_worker
 
     def show_tab(self, title: str) -> None:
         """Bring a panel to the front."""
@@ -187,7 +187,7 @@ class Harness:
 
     def act(self, verb: Callable[..., None], *arguments: object) -> None:
         """Do something as a panel would ask for it, with its errors told as theirs are."""
-        self._window.ask(do(verb, *arguments))
+        self.program.ask(do(verb, *arguments))
         self.frames()
 
     def settle(self) -> None:
@@ -250,7 +250,7 @@ class Harness:
 
     def _frame(self, *, painted: bool = False) -> None:
         self.clock.now += FRAME
-        self._window.paints = painted or self.paints
+        self.program.paints = painted or self.paints
         self._screen.frame(painted=painted)
 
 

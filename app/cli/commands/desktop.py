@@ -16,7 +16,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from app.cli.console import say
-from app.errors import LissomError
+from app.errors import REINSTALL, LissomError
 from app.storage import app_icon, decode_picture, draw_thumbnail, home_folder, write_atomically
 
 PROGRAM = "lissom"
@@ -143,7 +143,7 @@ def _program() -> str:
     own = Path(sysconfig.get_path("scripts")) / PROGRAM
     program = str(own) if own.is_file() else shutil.which(PROGRAM)
     if program is None:
-        raise LissomError(f"there is no program {PROGRAM} in {own.parent}; install Lissom again")
+        raise LissomError(f"there is no program {PROGRAM} in {own.parent}; {REINSTALL}")
     return program
 
 

@@ -33,6 +33,8 @@ from app.ui.dialogs import find_system_dialogs
 from app.ui.window import Window, has_display, share_heap
 
 EXIT_FAILED = 1
+DISPLAY_GONE = "the display is gone"
+WORK_KEPT = "your unsaved work was kept; it is offered when Lissom starts again"
 HINDRANCES = (*EXPECTED_ERRORS, ImportError, MemoryError, OSError, RuntimeError)
 # Seconds that workers have to end: when the person has closed the window, when something else has.
 LEISURE, HURRY = 6.0, 2.0
@@ -140,7 +142,7 @@ def _make(folder: Path, session: Session) -> None:
 def _keep_at_lost_display(session: Session) -> None:
     """Keep unsaved work, and tell why the window ends."""
     end_within(PATIENCE, EXIT_FAILED)
-    notice("the display is gone")
+    notice(DISPLAY_GONE)
     if not session.quitting:
         _keep(session)
     sys.stderr.flush()
@@ -154,4 +156,4 @@ def _keep(session: Session) -> None:
         notice(f"unsaved work could not be kept: {error}")
         return
     if session.project is not None and not session.project.history.is_saved:
-        notice("your unsaved work was kept; it is offered when Lissom starts again")
+        notice(WORK_KEPT)

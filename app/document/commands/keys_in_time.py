@@ -16,6 +16,7 @@ from app.errors import LissomError
 
 Key = TypeVar("Key", Keyframe, TrackKey, CameraKey, MoveKey, OpacityKey)
 Row = tuple[Key, ...]
+TWO_KEYS = "Two keys would be at frame {frame}; move or delete the one there first."
 
 
 def at_frames(keys: Row[Key], frames: Iterable[int]) -> list[Key]:
@@ -32,9 +33,7 @@ def in_order(keys: Iterable[Key]) -> Row[Key]:
     ordered = tuple(sorted(keys, key=lambda key: key.frame))
     for frame, count in Counter(key.frame for key in ordered).items():
         if count > 1:
-            raise LissomError(
-                f"Two keys would be at frame {frame}; move or delete the one there first."
-            )
+            raise LissomError(TWO_KEYS.format(frame=frame))
     return ordered
 
 

@@ -35,6 +35,10 @@ from app.export_formats import EXPORT_FORMATS, STILL
 from app.motion import Animation, Box, PoseSampler, extent_source, hung_animations
 from app.storage import Cancellation, make_settings_folder, passing_picture
 
+UNDER_WAY = "An export is under way. The next one can begin when it is done."
+RUNNING = "An export is running"
+CANCELLED_UNWRITTEN = "The export was cancelled. Nothing was written."
+CANCELLED_MIDWAY = "The export was cancelled. Frames that were written stay."
 PREPARING = Kind("Preparing the export", "The export could not begin", "export")
 COPYING = Kind("Copying the picture", "The picture was not copied", "export")
 
@@ -175,7 +179,7 @@ def _is_free(session: Session) -> bool:
     """Tell whether no export is under way; if there is one, say so."""
     if not is_under_way(session):
         return True
-    session.tell("An export is under way. The next one can begin when it is done.", topic="export")
+    session.tell(UNDER_WAY, topic="export")
     return False
 
 
@@ -249,8 +253,7 @@ def cancel(session: Session) -> None:
     if run is not None and _is_one_file(run) and not is_nothing_written:
         return
     session.export = None
-    left = "Nothing was written" if is_nothing_written else "Frames that were written stay"
-    session.tell(f"The export was cancelled. {left}.")
+    session.tell(CANCELLED_UNWRITTEN if is_nothing_written else CANCELLED_MIDWAY)
 
 
 def unless_running(session: Session, then: Action) -> None:
@@ -264,7 +267,7 @@ def unless_running(session: Session, then: Action) -> None:
     is_lost = run is not None and _is_one_file(run)
     left = "Nothing is written" if is_lost else "Frames that are written stay"
     session.dialog = Question(
-        title="An export is running",
+        title=RUNNING,
         text=f"{how_far} {left} if it ends now.",
         answers=(("Quit", then),),
     )

@@ -30,6 +30,7 @@ from app.storage import (
 
 PROJECT = ".lissom"
 PATIENCE = 10.0  # seconds that saving and closing wait for what is on its way
+UNSAVED = "Unsaved changes"
 SAVING = Kind("Saving", "The project was not saved", "keep")
 AUTOSAVING = Kind("Autosaving", "Unsaved work cannot be kept", "keep")
 WRITING = Kind("Saving preferences", "The preferences cannot be kept", "keep")
@@ -245,7 +246,7 @@ def ask_unsaved(session: Session, project: Project, then: Action) -> None:
         text += f" The pose at frame {unkeyed.frame} is in no key: saving makes one of it."
         save = do(key_and_save, then)
     session.dialog = Question(
-        title="Unsaved changes", text=text, answers=(("Save", save), ("Don't save", then))
+        title=UNSAVED, text=text, answers=(("Save", save), ("Don't save", then))
     )
 
 

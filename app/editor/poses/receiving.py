@@ -13,6 +13,7 @@ from app.solving import Carriage, Likeness
 
 # As it is; with pairs of layers and of handles exchanged; or with all of it mirrored, too.
 PasteWay = Literal["as it is", "swapped", "flipped"]
+NOTHING_COPIED = "Copy a pose or keys first."
 MOST_NAMED = 3  # handles in a sentence
 
 
@@ -97,7 +98,7 @@ def hindrance(session: Session, project: Project, way: PasteWay) -> str:
     """Return in a sentence why the keys that were copied cannot be pasted; empty where they can."""
     copied = _copied(session)
     if not copied:
-        return "Copy a pose or keys first."
+        return NOTHING_COPIED
     found = _landings(session, project, way)
     if not found:
         names = ", ".join(f"“{each.figure.name}”" for each in copied[:MOST_NAMED])

@@ -8,15 +8,15 @@ kept. None keeps another waiting, and one that never comes to an end can be left
 import atexit
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, Literal, get_args
 
-from app.errors import LissomError, told_to
+from app.errors import CANCELLED, LissomError, told_to
 
 LaneName = Literal["hand", "export", "display", "keep"]
-CANCELLED = "it was cancelled"
 PATIENCE = 10.0  # seconds that the end of the program waits for what runs
 MOMENT = 0.5  # seconds that it waits for what was given up
 
@@ -53,6 +53,17 @@ class _Lane:
     share: float | None = None  # that is done, where the job tells it
 
 
+@dataclass(slots=True, eq=False)
+class _Hold:
+    """Kinds of which no job begins, all of them where none is named, but for the first few."""
+
+    kinds: frozenset[Kind]
+    first: int
+
+    def holds(self, kind: Kind) -> bool:
+        return not self.kinds or kind in self.kinds
+
+
 class Jobs:
     """The queue and its worker threads.
 
@@ -79,6 +90,7 @@ class Jobs:
         atexit.register(self.close)
         self._lanes: dict[LaneName, _Lane] = {name: _Lane() for name in get_args(LaneName)}
         self._left: list[_Lane] = []
+        self._holds: list[_Hold] = []
 
     def put(self, job: Job) -> None:
         """Queue a job in place of an unfinished one of its kind."""
@@ -91,6 +103,24 @@ class Jobs:
             self._staff(job.kind.lane)
             self._waiting.append(job)
             self._condition.notify_all()
+
+    @contextmanager
+    def held(self, *kinds: Kind, first: int = 0) -> Iterator[None]:
+        """Let no job of these kinds begin within the block, or of any kind where none is given.
+
+        A job that is held waits, and others of its lane begin before it. The first few begin all
+        the same.
+        """
+        hold = _Hold(frozenset(kinds), first)
+        with self._condition:
+            self._holds.append(hold)
+            self._condition.notify_all()
+        try:
+            yield
+        finally:
+            with self._condition:
+                self._holds.remove(hold)
+                self._condition.notify_all()
 
     def drop(self, kind: Kind) -> None:
         """Make an unfinished job of this kind stale."""
@@ -132,6 +162,17 @@ class Jobs:
             ]
             finished = [kind for kind, _ in self._finished]
             return (*finished, *running, *(job.kind for job in self._waiting))
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether no job begins any more."""
+        return self._is_closed
+
+    @property
+    def given_up(self) -> int:
+        """How many jobs that were given up still run."""
+        with self._condition:
+            return sum(lane.thread is not None and lane.thread.is_alive() for lane in self._left)
 
     def running_for(self, seconds: float) -> tuple[Kind, ...]:
         """Return the kinds of jobs that run since so many seconds or more.
@@ -239,6 +280,8 @@ class Jobs:
                         return
                     self._condition.wait()
                 self._waiting.remove(job)
+                for hold in self._holds:
+                    hold.first -= hold.holds(job.kind)
                 lane.running, lane.since, lane.is_stale = job, self._clock(), False
                 lane.share = None
             with told_to(partial(self._hear, lane)):
@@ -259,7 +302,11 @@ class Jobs:
         lane.share = share
 
     def _next(self, lane: LaneName) -> Job | None:
-        return next((job for job in self._waiting if job.kind.lane == lane), None)
+        held = [hold for hold in self._holds if hold.first <= 0]
+        for job in self._waiting:
+            if job.kind.lane == lane and not any(hold.holds(job.kind) for hold in held):
+                return job
+        return None
 
 
 def _attempt(job: Job) -> Callable[[], None]:

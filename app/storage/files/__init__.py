@@ -5,7 +5,11 @@ Out: bytes and arrays; files that are whole or absent; locks that end with their
 Imports: nothing of the project but `app.errors`.
 """
 
-from app.storage.files.arrays import read_arrays as read_arrays, write_arrays as write_arrays
+from app.storage.files.arrays import (
+    NO_ARRAYS as NO_ARRAYS,
+    read_arrays as read_arrays,
+    write_arrays as write_arrays,
+)
 from app.storage.files.atomic import (
     atomic_file as atomic_file,
     atomic_files as atomic_files,
@@ -17,7 +21,12 @@ from app.storage.files.atomic import (
 from app.storage.files.cancellation import Cancellation as Cancellation
 from app.storage.files.hold import Hold as Hold, HoldError as HoldError
 from app.storage.files.locks import is_locked as is_locked, lock as lock
-from app.storage.files.outputs import check_writable as check_writable
+from app.storage.files.outputs import (
+    IS_FOLDER as IS_FOLDER,
+    NO_FOLDER as NO_FOLDER,
+    SAME_FILE as SAME_FILE,
+    check_writable as check_writable,
+)
 from app.storage.files.reading import (
     DAMAGED_ZIP as DAMAGED_ZIP,
     MOST_UNPACKED as MOST_UNPACKED,

@@ -17,6 +17,7 @@ from app.storage.files.reading import DAMAGED_ZIP, MOST_UNPACKED, opened_file, o
 HEADERS = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
 TEXT = "US"  # as NumPy tells kinds of arrays by letters
 NUMERIC = "biufc"
+NO_ARRAYS = "is not an NPZ file of numeric arrays, or is damaged"
 # What NumPy raises besides on damaged files.
 DAMAGE = (*DAMAGED_ZIP, SyntaxError, TypeError, tokenize.TokenError)
 
@@ -50,7 +51,7 @@ def read_arrays(
     except OSError as error:
         raise LissomError(f"cannot read {path}: {error.strerror or error}") from error
     except DAMAGE as error:
-        raise LissomError(f"{path} is not an NPZ file of numeric arrays, or is damaged") from error
+        raise LissomError(f"{path} {NO_ARRAYS}") from error
 
 
 def _members(

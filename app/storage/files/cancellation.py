@@ -4,7 +4,7 @@ import threading
 from contextlib import suppress
 from pathlib import Path
 
-from app.errors import LissomError
+from app.errors import CANCELLED, LissomError
 
 
 class Cancellation:
@@ -52,7 +52,7 @@ class Cancellation:
             If something was.
         """
         if self._is_cancelled:
-            raise LissomError("it was cancelled")
+            raise LissomError(CANCELLED)
 
     def settle(self) -> None:
         """Let the files that were begun take their places, whatever comes.

@@ -12,6 +12,9 @@ from app.errors import LissomError
 # that is not there yet, that is its folder and its name in it.
 Identity = tuple[int, int, str]
 STREAMS = (0, 1, 2)  # descriptors
+NO_FOLDER = "the folder {folder} does not exist"
+SAME_FILE = "it is the same file as"
+IS_FOLDER = "it is a folder; name a file"
 
 
 def check_writable(*outs: Path, sources: Iterable[Path] = ()) -> None:
@@ -42,9 +45,7 @@ def check_writable(*outs: Path, sources: Iterable[Path] = ()) -> None:
             reason = getattr(error, "strerror", None) or error
             raise LissomError(f"cannot write {out}: {reason}") from error
         if own in taken:
-            raise LissomError(
-                f"cannot write {out}: it is the same file as {taken[own]}; name another one"
-            )
+            raise LissomError(f"cannot write {out}: {SAME_FILE} {taken[own]}; name another one")
         taken[own] = f"{out}, which is written as well"
 
 
@@ -57,10 +58,10 @@ def _check_place(path: Path) -> None:
     except (FileNotFoundError, NotADirectoryError):
         if not target.parent.is_dir():
             folder = target.parent if path.is_symlink() else path.parent
-            raise LissomError(f"cannot write {path}: the folder {folder} does not exist") from None
+            raise LissomError(f"cannot write {path}: {NO_FOLDER.format(folder=folder)}") from None
         return
     if stat.S_ISDIR(status.st_mode):
-        raise LissomError(f"cannot write {path}: it is a folder; name a file")
+        raise LissomError(f"cannot write {path}: {IS_FOLDER}")
     if not stat.S_ISREG(status.st_mode) or _is_stream(status):
         raise LissomError(
             f"cannot write {path}: it is a device, a pipe, a socket or standard output, which "

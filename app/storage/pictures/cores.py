@@ -3,7 +3,6 @@
 import os
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
-from functools import cache
 from typing import TypeVar
 
 from app.errors import LissomError
@@ -24,7 +23,7 @@ SHARE, USUAL = 0.25, 8_000_000_000
 
 def require_memory(sizes: Iterable[tuple[int, int]]) -> None:
     """Refuse pictures of these widths and heights if decoded they would take too much memory."""
-    needed, budget = sum(PIXEL * width * height for width, height in sizes), _budget()
+    needed, budget = sum(PIXEL * width * height for width, height in sizes), memory_budget()
     if needed > budget:
         raise LissomError(
             f"decoded it takes {needed / 1e6:,.0f} MB of memory, and pictures may take "
@@ -33,8 +32,7 @@ def require_memory(sizes: Iterable[tuple[int, int]]) -> None:
         )
 
 
-@cache
-def _budget() -> int:
+def memory_budget() -> int:
     """Return how many bytes the pictures of a file may take."""
     chosen = load_preferences(settings_folder()).memory
     if chosen is not None:

@@ -7,6 +7,7 @@ Imports: `app.document`, `app.storage.json_values`, `app.storage.pictures`.
 
 from app.storage.project.archive import (
     MEBIBYTE as MEBIBYTE,
+    NO_PROJECT as NO_PROJECT,
     Archive as Archive,
     write_archive as write_archive,
 )

@@ -14,6 +14,7 @@ from app.storage.files import MOST_UNPACKED
 from engine.arrays import Bytes, Complexes, Floats, Integers, readonly
 
 MIMETYPE = b"application/x-lissom"
+NO_PROJECT = "is not a Lissom project"
 MOST_MEMBERS = 65_535
 MEBIBYTE = 1024 * 1024
 # Members that deflating makes smaller; pictures are packed already, and the mimetype stays legible.
@@ -67,7 +68,7 @@ class Archive:
         if len(members) > MOST_MEMBERS:
             raise LissomError(f"it has {len(members):,} members, more than any project")
         if not members or members[0].filename != "mimetype":
-            raise LissomError("it is not a Lissom project")
+            raise LissomError(f"it {NO_PROJECT}")
         self._members = {member.filename: member for member in members}
         if len(self._members) < len(members):
             raise LissomError("it has two members of one name")
@@ -77,7 +78,7 @@ class Archive:
         if unpacked > size + MOST_UNPACKED:
             raise LissomError(f"it would unpack to {unpacked:,} bytes, more than any project")
         if self.read("mimetype", largest=len(MIMETYPE)) != MIMETYPE:
-            raise LissomError("it is not a Lissom project")
+            raise LissomError(f"it {NO_PROJECT}")
 
     @property
     def unread(self) -> list[str]:

@@ -18,6 +18,7 @@ PROGRAMS: Final = ("zenity", "kdialog", "matedialog", "qarma")
 # tells no more of the two than that nothing was chosen.
 TOO_SOON = 0.5  # seconds
 MOST_NAMED = 4  # kinds of files in the name of a filter
+REPLACE = "Replace the file?"
 
 
 def find_system_dialogs() -> str | None:
@@ -89,7 +90,7 @@ def _follow(dialog: FileDialog, chosen: Path) -> Action:
         return do(choose, dialog, path)
     # The system has asked about the name without its suffix only.
     question = Question(
-        title="Replace the file?",
+        title=REPLACE,
         text=f"{path.name} is there already.",
         answers=(("Replace", do(choose, dialog, path)),),
     )

@@ -34,7 +34,7 @@ class Canvas:
         self._renderer = renderer
         self._targets: list[RenderTarget] = []
         self._retired: list[RenderTarget] = []
-        self._drawing: Drawing | None = None
+        self.drawing: Drawing | None = None
         self._drawn: tuple[object, ...] = ()
         self.pose_pictures = PosePictures(renderer)
 
@@ -50,7 +50,7 @@ class Canvas:
 
     def release_others(self, project: Project | None) -> bool:
         """Let go of any other project than this; return whether there was one."""
-        if self._drawing is None or self._drawing.project is project:
+        if self.drawing is None or self.drawing.project is project:
             return False
         self._forget_drawing()
         return True
@@ -65,17 +65,17 @@ class Canvas:
         is_split = all(twin is not None and twin.shown is not None for twin in twins)
         is_split &= session.cutting is None
         self._fit_targets(session.screen, 1 + is_split)
-        if self._drawing is None:
-            self._drawing = Drawing(self._renderer, project)
-        posable = partial(self._drawing.drawn_mesh, number=SMALL_PICTURE)
+        if self.drawing is None:
+            self.drawing = Drawing(self._renderer, project)
+        posable = partial(self.drawing.drawn_mesh, number=SMALL_PICTURE)
         self.pose_pictures.draw(session, project, posable)
         inputs = _inputs(session, project)
         if paints and inputs != self._drawn:
             view = project.view(session.screen)
-            scene = _scene(session, project, project.puppet.shown, self._drawing)
+            scene = _scene(session, project, project.puppet.shown, self.drawing)
             self._renderer.draw(self._targets[0], view, scene)
             if is_split:
-                twin = _twin_scene(session, project, scene, self._drawing)
+                twin = _twin_scene(session, project, scene, self.drawing)
                 self._renderer.draw(self._targets[1], view, twin)
             self._drawn = inputs
 
@@ -98,9 +98,9 @@ class Canvas:
         self._drawn = ()
 
     def _forget_drawing(self) -> None:
-        if self._drawing is not None:
-            self._drawing.release()
-            self._drawing = None
+        if self.drawing is not None:
+            self.drawing.release()
+            self.drawing = None
             self._drawn = ()
             forget_places()
 

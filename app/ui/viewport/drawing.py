@@ -58,7 +58,7 @@ class Drawing:
 
     def drawn_mesh(self, figure: int, mesh: PosableMesh, number: int = 0) -> DrawnMesh:
         """Return the copy of a figure's mesh with this number, which is posed by itself."""
-        if mesh in self._meshes and self._meshes[mesh].picture is not self._picture(figure):
+        if mesh in self._meshes and self._meshes[mesh].picture is not self.picture(figure):
             # What is cut out of the picture is its own now, or is not any more.
             self.release_but(self._meshes.keys() - {mesh})
         if (mesh, number) not in self._drawn_meshes:
@@ -152,14 +152,20 @@ class Drawing:
             drawn = mesh.domain.mesh
             self._meshes[mesh] = GpuMesh(
                 self._renderer.programs,
-                self._picture(figure),
+                self.picture(figure),
                 rest=drawn.vertices - self.project.document.figure(figure).corner,
                 triangles=drawn.triangles,
                 seam=find_seam(mesh.domain),
             )
         return self._meshes[mesh]
 
-    def _picture(self, figure: int) -> GpuPicture:
+    @property
+    def picture_count(self) -> int:
+        """How many pictures of layers are on the graphics card."""
+        return len(self._pictures)
+
+    def picture(self, figure: int) -> GpuPicture:
+        """Return a layer's picture on the graphics card; uncut layers of one file share it."""
         key = self._key(figure)
         if key not in self._pictures:
             texture = self.project.puppets[figure].cut.value.texture

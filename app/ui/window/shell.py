@@ -68,7 +68,7 @@ class Shell:
         self._bold: imgui.ImFont | None = None
         self._themed: tuple[str, float] | None = None
         self._dialogs = Dialogs()
-        self._callout = Callout()
+        self.callout = Callout()
         # Where things are drawn in this frame, and were in the one before.
         self._places: dict[str, tuple[ImVec2, ImVec2]] = {}
         self._seen: dict[str, tuple[ImVec2, ImVec2]] = {}
@@ -217,7 +217,7 @@ class Shell:
         if session.project is None:
             pictures = welcome.Previews(self._thumbnail, self._moments)
             self._part("The welcome view", partial(welcome.draw, pictures=pictures))()
-        self._part("The guide", partial(self._callout.draw, places=self._seen))()
+        self._part("The guide", partial(self.callout.draw, places=self._seen))()
         self._part("The dialog", partial(self._dialogs.draw, thumbnail=self._thumbnail))()
         self._part("The messages", toasts.draw)()
         # Where the pointer is down on no widget, that counts as one.

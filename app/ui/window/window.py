@@ -84,12 +84,12 @@ class Window:
     def __init__(self, session: Session, connect: Callable[[], Renderer]) -> None:
         self.session = session
         self._connect = connect
-        self._thumbnails: Thumbnails | None = None
+        self.thumbnails: Thumbnails | None = None
         self._layer_pictures: LayerPictures | None = None
-        self._canvas: Canvas | None = None
+        self.canvas: Canvas | None = None
         self._exporter: Exporter | None = None
         self._renderer: Renderer | None = None
-        self._shell = Shell(session, self._panels(), self._thumbnail, self._moments)
+        self.shell = Shell(session, self._panels(), self._thumbnail, self._moments)
         # Whether the viewport's picture is drawn; a test that takes no picture does without.
         self.paints = True
         self._memory = FreeMemory(session)
@@ -100,14 +100,14 @@ class Window:
 
     def runner_params(self) -> hello_imgui.RunnerParams:
         """Return the parameters to run the window with."""
-        params = self._shell.runner_params()
+        params = self.shell.runner_params()
         calls = params.callbacks
         calls.enqueue_post_init(self._start)
         calls.before_imgui_render = hello_imgui.sequence_functions(
             calls.before_imgui_render, self.draw_canvas
         )
         calls.pre_new_frame = hello_imgui.sequence_functions(
-            partial(self._shell.attempt, self._begin_frame), calls.pre_new_frame
+            partial(self.shell.attempt, self._begin_frame), calls.pre_new_frame
         )
         calls.pre_new_frame = hello_imgui.sequence_functions(
             calls.pre_new_frame, self._taps.hold_back
@@ -181,19 +181,19 @@ class Window:
     @property
     def awaits_worker(self) -> bool:
         """Whether the next frame can wait, up to `PAUSE`, for the worker or for some input."""
-        return self._shell.awaits_worker and not self._taps.are_left
+        return self.shell.awaits_worker and not self._taps.are_left
 
     def ask(self, action: Action) -> None:
         """Do something in the next frame, as if a panel had asked for it."""
-        self._shell.ask(action)
+        self.shell.ask(action)
 
     def draw_canvas(self) -> None:
         """Draw the viewport's picture, and go on with an export; once a frame."""
-        if self._canvas is None or self._renderer is None:
+        if self.canvas is None or self._renderer is None:
             return
         try:
-            self._memory.maintain(has_closed=self._canvas.release_others(self.session.project))
-            self._canvas.draw(self.session, paints=self.paints)
+            self._memory.maintain(has_closed=self.canvas.release_others(self.session.project))
+            self.canvas.draw(self.session, paints=self.paints)
         except Exception as error:  # noqa: BLE001 - part of the frame guard
             self._tell_of_drawing(error)
         if self._exporter is not None:
@@ -241,13 +241,13 @@ class Window:
         ]
 
     def _draw_viewport(self, session: Session, look: Look, project: Project) -> list[Action]:
-        if self._canvas is None:
+        if self.canvas is None:
             return []
-        pictures = SplitTextures(self._canvas.texture, self._canvas.twin_texture)
+        pictures = SplitTextures(self.canvas.texture, self.canvas.twin_texture)
         return viewport.draw(session, look, project, pictures)
 
     def _pose_picture(self, figure: int, pose: Pose, side: int) -> int | None:
-        return self._canvas.pose_pictures.get(figure, pose, side) if self._canvas else None
+        return self.canvas.pose_pictures.get(figure, pose, side) if self.canvas else None
 
     def _layer_picture(self, identity: int, small: Bytes) -> Thumbnail | None:
         return self._layer_pictures.get(identity, small) if self._layer_pictures else None
@@ -256,17 +256,18 @@ class Window:
         renderer = self._renderer = self._connect()
         self.session.full_detail = not is_software(renderer.programs.context)
         self.session.graphics = graphics_in_words(renderer.programs.context)
-        self._canvas = Canvas(renderer)
+        self.canvas = Canvas(renderer)
         self._exporter = Exporter(renderer)
-        self._thumbnails = Thumbnails(renderer.programs.context)
+        self.thumbnails = Thumbnails(renderer.programs.context)
         self._layer_pictures = LayerPictures(renderer.programs.context)
 
     def _accept_files(self) -> None:
         """Open what is dropped on the window."""
         window = glfw_utils.glfw_window_hello_imgui()
-        self._dropped = accept_files(window, self._take_dropped)
+        self._dropped = accept_files(window, self.take_dropped)
 
-    def _take_dropped(self, paths: list[Path]) -> None:
+    def take_dropped(self, paths: list[Path]) -> None:
+        """Open what was dropped on the window, or add it to what is open."""
         self.ask(do(layering.drop, paths))
 
     def _rename(self) -> None:
@@ -278,27 +279,27 @@ class Window:
 
     def _release(self) -> None:
         exporting.cancel(self.session)
-        self._shell.release()
-        owners = (self._exporter, self._canvas, self._thumbnails, self._layer_pictures)
+        self.shell.release()
+        owners = (self._exporter, self.canvas, self.thumbnails, self._layer_pictures)
         for owner in (*owners, self._renderer):
             if owner is not None:
                 owner.release()
 
     def _begin_frame(self) -> None:
-        if self._thumbnails is None or self._layer_pictures is None:
+        if self.thumbnails is None or self._layer_pictures is None:
             return
         self._layer_pictures.begin_frame()
-        if self._thumbnails.is_behind:
+        if self.thumbnails.is_behind:
             # There are more to be read.
             hello_imgui.request_refresh()
-        self._thumbnails.begin_frame()
+        self.thumbnails.begin_frame()
         if self.session.project is not None and not isinstance(self.session.dialog, FileDialog):
             # Only the welcome view and the file browser show them, and until the next time files
             # may have been saved anew; samples are not.
-            self._thumbnails.release(but=sample_images())
+            self.thumbnails.release(but=sample_images())
 
     def _thumbnail(self, path: Path) -> Thumbnail | None:
-        return self._thumbnails.get(path) if self._thumbnails else None
+        return self.thumbnails.get(path) if self.thumbnails else None
 
     def _moments(self, path: Path) -> list[Thumbnail]:
-        return self._thumbnails.moments(path) if self._thumbnails else []
+        return self.thumbnails.moments(path) if self.thumbnails else []

@@ -12,8 +12,9 @@ import pytest
 from refusals import refusal
 
 from app.cli import process
+from app.cli.main import TOO_LITTLE_MEMORY
 from app.cli.process import LEAST_MEMORY
-from app.storage import sample_images
+from app.storage import NO_ARRAYS, sample_images
 
 SQUARE = np.array([0, 1, 1 + 1j, 1j])
 CAGE = (SQUARE - 0.5 - 0.5j) * 1.4 + 0.5 + 0.5j
@@ -45,7 +46,7 @@ def test_what_is_packed_in_rare_ways_is_refused(tmp_path, capsys, packing):
     content = bytearray(path.read_bytes())
     content[60:70] = b"\xff" * 10  # of the first member, packed
     path.write_bytes(content)
-    assert "not an NPZ file" in interpolated(capsys, tmp_path, path)
+    assert NO_ARRAYS in interpolated(capsys, tmp_path, path)
     path = path.rename(tmp_path / "a.ora")
     assert "not an OpenRaster" in refusal(capsys, "domain", path, "--out", tmp_path / "out")
 
@@ -202,11 +203,11 @@ def test_a_library_that_cannot_be_loaded_is_told_in_one_line(monkeypatch, capsys
     monkeypatch.undo()
     monkeypatch.setattr(process.threading.Thread, "start", _no_thread)
     words = ("domain", SAMPLE, "--out", tmp_path / "out")
-    assert "not enough memory" in refusal(capsys, *words)
+    assert TOO_LITTLE_MEMORY in refusal(capsys, *words)
     # Nor later.
     monkeypatch.undo()
     monkeypatch.setattr("app.cli.commands.domain.run", _no_thread)
-    assert "not enough memory" in refusal(capsys, *words)
+    assert TOO_LITTLE_MEMORY in refusal(capsys, *words)
 
 
 def _no_thread(_):

@@ -18,6 +18,7 @@ from PIL import Image
 
 from app.cli.commands import desktop
 from app.cli.main import main
+from app.errors import REINSTALL
 from app.storage import draw_thumbnail, read_thumbnail, sample_images, save_project
 
 PROGRAM = Path(sysconfig.get_path("scripts")) / "lissom"
@@ -218,7 +219,7 @@ def test_an_installation_without_the_program_says_so(home, monkeypatch, tmp_path
     monkeypatch.setattr(desktop.sysconfig, "get_path", lambda _: str(tmp_path / "nowhere"))
     with pytest.raises(SystemExit):
         main(["desktop", "--install"])
-    assert "install Lissom again" in capsys.readouterr().err
+    assert REINSTALL in capsys.readouterr().err
     assert everything(home) == before
 
 

@@ -16,6 +16,8 @@ from PIL import Image, ImageSequence
 from app.cli.main import main
 from app.document.settings import ExportSettings, FrameRange
 from app.export_formats import EXPORT_FORMATS
+from app.storage import IS_FOLDER, NO_FOLDER
+from app.storage.project import NO_PROJECT
 from app.storage.project_file import save_project
 from engine.arrays import Bytes
 
@@ -172,7 +174,7 @@ def test_frames_go_where_one_is_and_files_have_a_name(project, tmp_path, monkeyp
         with pytest.raises(SystemExit) as leaving:
             main(["export", str(project), "--out", here, "--format", name])
         assert leaving.value.code == 2
-        assert "it is a folder; name a file" in capsys.readouterr().err
+        assert IS_FOLDER in capsys.readouterr().err
 
 
 def test_a_model_needs_no_graphics_and_tells_how_good_it_is(project, tmp_path, capsys, monkeypatch):
@@ -233,7 +235,7 @@ def test_notices_tell_what_the_person_should_know(project, tmp_path, capsys):
         (["--out", "frames", "--format", "avi"], "spritesheet"),
         (["--out", "frames", "--framing", "wide"], "canvas"),
         (["--out", "frames", "--variant", "cubic"], "metric"),
-        (["--out", "no/frames"], "does not exist"),
+        (["--out", "no/frames"], NO_FOLDER.format(folder="no")),
         (["--out", "walk.xyz"], "no format has names that end in .xyz"),
         (["--out", "walk.glb", "--size", "10x10"], "no use for --size"),
         (["--out", "walk.gif", "--no-trim"], "no use for --trim"),
@@ -264,7 +266,7 @@ def test_bad_usage_is_one_line_and_writes_nothing(project, capsys, monkeypatch, 
 
 def test_bad_projects_are_refused(tmp_path, capsys):
     (tmp_path / "text.lissom").write_text("no project")
-    for name, reason in (("text.lissom", "not a Lissom project"), ("none.lissom", "No such file")):
+    for name, reason in (("text.lissom", NO_PROJECT), ("none.lissom", "No such file")):
         assert reason in error_of(capsys, tmp_path / name, "--out", tmp_path / "frames")
     assert not (tmp_path / "frames").exists()
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from app.cli.commands.window import DISPLAY_GONE, WORK_KEPT
 from app.storage.autosave import find_leftovers, load_leftover
 from tests.campaigns.windows import lost_displays, screen
 
@@ -72,8 +73,8 @@ def test_unsaved_work_is_kept_when_the_display_goes(tmp_path):
         shown.server.wait()
         told, said = looks.communicate("\n")
     assert (told, looks.returncode) == ("", 1), said
-    assert "the display is gone" in said
-    assert "your unsaved work was kept" in said
+    assert DISPLAY_GONE in said
+    assert WORK_KEPT in said
     (kept,) = find_leftovers(tmp_path / "lissom")
     assert load_leftover(kept)[0].markers[0].name == "unsaved"
 

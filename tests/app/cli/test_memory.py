@@ -45,11 +45,8 @@ def budget(tmp_path, monkeypatch):
 
     def set_to(megabytes):
         save_preferences(folder, Preferences(memory=megabytes))
-        cores._budget.cache_clear()
 
-    cores._budget.cache_clear()
-    yield set_to
-    cores._budget.cache_clear()
+    return set_to
 
 
 def test_pictures_beyond_the_budget_are_refused_before_they_are_decoded(
@@ -88,9 +85,9 @@ def test_the_layers_of_a_file_share_one_budget(tmp_path, budget):
 
 def test_a_quarter_of_the_machine_is_usual(budget, monkeypatch):
     monkeypatch.setattr("os.sysconf", {"SC_PAGE_SIZE": 4096, "SC_PHYS_PAGES": 10_000}.get)
-    assert cores._budget() == 10_240_000
+    assert cores.memory_budget() == 10_240_000
     budget(None)
-    assert cores._budget() == 10_240_000
+    assert cores.memory_budget() == 10_240_000
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ import pytest
 from animations import moving_document
 from refusals import refusal
 
+from app.storage import SAME_FILE
 from app.storage.project_file import save_project
 
 # Of each command, how it is called with an input and an output in places of its own.
@@ -74,12 +75,12 @@ def test_the_files_beside_an_output_are_looked_at_too(here, project, capsys):
     given = here / "walk.json"
     given.write_bytes(project)
     words = ["export", given, "--format", "spritesheet", "--out", here / "walk.png"]
-    assert "is the same file as" in refusal(capsys, *words)
+    assert SAME_FILE in refusal(capsys, *words)
     frames = here / "frames"
     frames.mkdir()
     (frames / "frame_0003.png").symlink_to(given)
     words = ["export", given, "--format", "png", "--out", frames]
-    assert "is the same file as" in refusal(capsys, *words)
+    assert SAME_FILE in refusal(capsys, *words)
     assert given.read_bytes() == project
 
 
@@ -91,7 +92,7 @@ def test_two_outputs_are_two_files(here, capsys, is_there):
     (here / "link").symlink_to(out)
     for preview in (out, here / "link"):
         words = ["domain", "other", "--out", out, "--preview", preview]
-        assert "is the same file as" in refusal(capsys, *words)
+        assert SAME_FILE in refusal(capsys, *words)
 
 
 @pytest.mark.parametrize("kind", ["pipe", "socket", "device", "link to a device"])

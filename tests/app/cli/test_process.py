@@ -181,7 +181,7 @@ def test_what_was_not_saved_is_kept_however_the_window_ends(
     assert main(["window"]) == status
     assert ended == [1] * (error is not None)
     said = capfd.readouterr().err
-    assert "your unsaved work was kept" in said
+    assert window.WORK_KEPT in said
     assert error is None or f"{error}" in said
     (kept,) = tmp_path.rglob("unsaved-*.lissom")
     assert load_leftover(kept)[0].markers[0].name == "unsaved"

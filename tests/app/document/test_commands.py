@@ -22,6 +22,7 @@ from app.document import (
     pose_commands as poses,
     scene_commands as settings,
 )
+from app.document.commands.keys_in_time import TWO_KEYS
 from app.document.figure import PictureFile
 from app.document.keyframe import MOST_TURNS, Handle, Keyframe, Target
 from app.document.model import Document
@@ -330,21 +331,21 @@ OTHER_CAGE = random_pose(np.random.default_rng(0), DOCUMENT, disc_domain(13))
         (keys.pose_key(0, 5, POSE), "no key at frame 5"),
         (keys.pose_key(0, 0, replace(POSE, targets={})), "one target for each handle"),
         (keys.pose_key(0, 0, OTHER_CAGE), "cage of 13 vertices, not of 12"),
-        (keys.insert_key(0, 10, POSE), "Two keys would be at frame 10"),
+        (keys.insert_key(0, 10, POSE), TWO_KEYS.format(frame=10)),
         (keys.insert_key(0, -1, POSE), "not a range"),
         (keys.insert_key(0, 1_000_000, POSE), "not a range"),
-        (keys.move_keys(0, {0, 10}, 10), "Two keys would be at frame 20"),
+        (keys.move_keys(0, {0, 10}, 10), TWO_KEYS.format(frame=20)),
         (keys.move_keys(0, {0}, -1), "not a range"),
         (keys.move_keys(0, {3}, 1), "no key at frame 3"),
-        (keys.copy_keys(0, {0}, 0), "Two keys would be at frame 0"),
-        (keys.copy_keys(0, {0}, 20), "Two keys would be at frame 20"),
+        (keys.copy_keys(0, {0}, 0), TWO_KEYS.format(frame=0)),
+        (keys.copy_keys(0, {0}, 20), TWO_KEYS.format(frame=20)),
         (keys.delete_keys(0, {0, 10, 20}), "at least one key"),
         (keys.delete_keys(0, {0, 11}), "no key at frame 11"),
         (keys.reverse_keys(0, {0, 11}), "no key at frame 11"),
-        (keys.scale_keys(0, {0, 10}, 2.0), "Two keys would be at frame 20"),
+        (keys.scale_keys(0, {0, 10}, 2.0), TWO_KEYS.format(frame=20)),
         (keys.scale_keys(0, {0, 10}, 0.0), "scaled by more than 0"),
         (keys.scale_keys(0, {0, 10}, float("nan")), "scaled by more than 0"),
-        (settings.scale_time(0.01), "Two keys would be at frame 0"),
+        (settings.scale_time(0.01), TWO_KEYS.format(frame=0)),
         (settings.scale_time(-1.0), "scaled by more than 0"),
         (keys.match_ends(0), None),
         (keys.set_easing(0, {5}, LINEAR), "no key at frame 5"),

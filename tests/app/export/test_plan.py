@@ -11,6 +11,7 @@ from app.document.settings import ExportSettings, FrameRange, Marker
 from app.errors import LissomError
 from app.export.plan import ExportPlan, ExportRequest, check_request, plan_export
 from app.export.poses import KeptPoses, Poses
+from app.storage import NO_FOLDER
 
 SIZE = (BLOB.shape[1], BLOB.shape[0])
 
@@ -148,11 +149,11 @@ def test_a_pose_that_is_not_finite_is_refused_before_anything_is_written(documen
     ("out", "settings", "reason"),
     [
         ("file", {}, "is a file; name a folder"),
-        ("missing/frames", {}, "missing does not exist"),
+        ("missing/frames", {}, NO_FOLDER.format(folder=".*missing")),
         ("frames.gif", {}, "named like a file"),
         ("still.png", {}, "named like a file"),
         ("folder", {"format": "gif"}, "is a folder; name a file"),
-        ("missing/a.gif", {"format": "gif"}, "missing does not exist"),
+        ("missing/a.gif", {"format": "gif"}, NO_FOLDER.format(folder=".*missing")),
         ("a.png", {"format": "gif"}, "end in .gif"),
         ("a.gif", {"format": "apng"}, "end in .apng or .png"),
         ("a.mp4", {"format": "mp4"}, "background colour"),

@@ -6,7 +6,7 @@ from numpy.testing import assert_array_equal
 
 from app.document.queries.clips import clip_of
 from app.document.settings import FrameRange
-from app.errors import LissomError
+from app.errors import CANCELLED, LissomError
 from app.export.painting import Painter
 from app.export.plan import ExportRequest, plan_export
 from app.export.poses import KeptPoses
@@ -89,6 +89,6 @@ def test_once_it_was_cancelled_an_export_works_out_no_more_poses(tmp_path):
 
     counted = Cancelled(animation)
     request = ExportRequest(out=tmp_path, settings=document.export, project="walk")
-    with pytest.raises(LissomError, match="cancelled"):
+    with pytest.raises(LissomError, match=CANCELLED):
         plan_export(document, request, {figure.id: KeptPoses(counted, cancellation)})
     assert counted.asked == [0, 1, 2]

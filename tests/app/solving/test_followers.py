@@ -5,7 +5,7 @@ from types import MappingProxyType
 
 import numpy as np
 import pytest
-from animations import still_document, within
+from animations import bar_document, bar_picture, still_document
 from numpy.testing import assert_allclose
 from sessions import session_of, settle
 
@@ -29,9 +29,7 @@ ASIDE = MappingProxyType({END: 210 + 90j, START: 30 + 40j})
 @pytest.fixture(scope="module")
 def bar():
     """A bar with three handles, the middle one of which follows."""
-    picture = np.zeros((120, 240, 4), np.uint8)
-    picture[60:100, 20:220] = 255
-    document = within(still_document(picture), np.array([18 + 18j, 222 + 18j, 222 + 62j, 18 + 62j]))
+    document = bar_document()
     for name, x in NAMES.items():
         document = handle_commands.add_handle(0, complex(x, 40), name=name)(document)
     return track_commands.put_spring(0, SPRING)(document)
@@ -150,10 +148,8 @@ SCRIPT = {
 
 
 def test_keys_of_a_script_do_not_hold_what_follows_and_say_so():
-    picture = np.zeros((120, 240, 4), np.uint8)
-    picture[60:100, 20:220] = 255
     document, notices = pose_document(
-        still_document(picture), parse_pose_script(SCRIPT), lambda _: None
+        still_document(bar_picture()), parse_pose_script(SCRIPT), lambda _: None
     )
     (figure,) = document.figures
     first, second, last = figure.keys
@@ -170,7 +166,7 @@ def test_keys_of_a_script_do_not_hold_what_follows_and_say_so():
 
 def test_springs_are_carried_by_drags_and_pose_when_dragged(bar, tmp_path):
     few = replace(bar, frames=FrameRange(0, 4))  # in each of which the spring is worked out
-    session = session_of(few, tmp_path, np.zeros((120, 240, 4), np.uint8))
+    session = session_of(few, tmp_path, bar_picture())
     project = session.project
 
     def drag(identity, way):

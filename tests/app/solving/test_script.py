@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from animations import still_document, within
+from animations import bar_document, bar_picture, still_document
 
 from app.document.timing import HOLD, LINEAR, PRESETS, Cycle, Passing, Spring, Track, TrackKey
 from app.errors import LissomError
@@ -357,9 +357,7 @@ def test_bad_files_are_refused_with_their_name(tmp_path, text, message):
 
 
 def test_a_key_on_request_pulls_with_bounded_force():
-    picture = np.zeros((80, 240, 4), np.uint8)
-    picture[20:60, 20:220] = 255
-    document = within(still_document(picture), np.array([18 + 18j, 222 + 18j, 222 + 62j, 18 + 62j]))
+    document = bar_document()
     handles = {"end": [210, 40], "middle": [120, 40], "start": [30, 40]}
     posed = {}
     for pull in ({}, {"pull": 10}):
@@ -383,8 +381,7 @@ def test_a_key_on_request_pulls_with_bounded_force():
 
 
 def test_a_script_gives_its_figure_tracks_springs_and_stillness():
-    picture = np.zeros((80, 240, 4), np.uint8)
-    picture[20:60, 20:220] = 255
+    opened = still_document(bar_picture())
     handles = {"end": [210, 40], "start": {"at": [30, 40], "still": False}}
     script = {
         **CLOCKED,
@@ -392,7 +389,7 @@ def test_a_script_gives_its_figure_tracks_springs_and_stillness():
         "tracks": [{"handle": "start", "keys": [{"frame": 40, "offset": [3, 4]}]}],
         "springs": [{"handle": "end", "preset": "tail"}],
     }
-    document, _ = pose_document(still_document(picture), parse_pose_script(script), lambda _: None)
+    document, _ = pose_document(opened, parse_pose_script(script), lambda _: None)
     figure = document.figures[0]
     end, start = figure.handles
     assert (document.frames.last, document.loop) == (40, True)
@@ -401,7 +398,7 @@ def test_a_script_gives_its_figure_tracks_springs_and_stillness():
     assert figure.track_of(start.id).keys == (TrackKey(frame=40, place=3 + 4j),)
     assert figure.spring_of(end.id).frequency == 1.6
     loose = parse_pose_script({**script, "still": False})
-    document, _ = pose_document(still_document(picture), loose, lambda _: None)
+    document, _ = pose_document(opened, loose, lambda _: None)
     assert not document.figures[0].stillness
 
 
@@ -464,14 +461,13 @@ ROUND["keys"] += [{"frame": f, "targets": {"end": [210, y]}} for f, y in ((8, 60
 
 
 def test_a_script_says_what_repeats():
-    picture = np.zeros((80, 240, 4), np.uint8)
-    picture[20:60, 20:220] = 255
+    opened = still_document(bar_picture())
     keys = [*ROUND["keys"], {"frame": 24, "targets": {"end": [210, 40]}}]
     cycles = [{"from": 48, "to": 60}, {"from": 0, "to": 24, "until": 48}]
     second = [{"frame": 48, "targets": {"end": [210, 40]}}, {"frame": 54, "targets": {}}]
     script = parse_pose_script({**ROUND, "keys": keys + second, "cycles": cycles})
     assert script.last == 60
-    document, _ = pose_document(still_document(picture), script, lambda _: None)
+    document, _ = pose_document(opened, script, lambda _: None)
     figure = document.figures[0]
     # The key at 24 is the first one again, and what comes at 48 is like it to the last digit.
     assert [key.frame for key in figure.keys] == [0, 8, 16, 48, 54]
@@ -480,7 +476,7 @@ def test_a_script_says_what_repeats():
     keys[-1] = {"frame": 24, "targets": {"end": [210, 50]}}
     script = parse_pose_script({**ROUND, "keys": keys, "cycles": cycles[1:]})
     with pytest.raises(LissomError, match="frame 24 is where frames 0 to 24 begin again, but it"):
-        pose_document(still_document(picture), script, lambda _: None)
+        pose_document(opened, script, lambda _: None)
 
 
 @pytest.mark.parametrize(

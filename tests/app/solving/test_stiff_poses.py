@@ -6,7 +6,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from animations import still_document
+from animations import bar_picture, still_document
 
 from app.document import (
     Meshing,
@@ -25,8 +25,7 @@ from app.solving.script import parse_pose_script
 from engine.deform import Hand
 from engine.domain import CutOut, Slit
 
-BAR = np.zeros((80, 480, 4), np.uint8)
-BAR[20:60, 20:460] = 255
+BAR = bar_picture(480)
 PLACES = (30 + 40j, 240 + 40j, 450 + 40j)
 
 

@@ -3,7 +3,7 @@ import io
 import pytest
 from PIL import Image
 
-from app.errors import LissomError
+from app.errors import REINSTALL, LissomError
 from app.storage import assets
 
 
@@ -25,7 +25,7 @@ def test_an_installed_package_uses_what_it_ships(tmp_path, monkeypatch):
 
 
 def test_a_damaged_installation_says_so(tmp_path, monkeypatch):
-    with pytest.raises(LissomError, match="install Lissom again"):
+    with pytest.raises(LissomError, match=REINSTALL):
         assets.shader_source("none.frag")
     monkeypatch.setattr(assets, "_APP", tmp_path / "app")
     with pytest.raises(LissomError, match="'sample_images' of Lissom is missing"):

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 import pytest
-from bars import bend_bar, bend_loosely, open_bar
+from bars import bend_bar, open_bar
 from harness import Harness
 
 from app.editor.project import Project
@@ -43,13 +43,13 @@ def bar(window: Harness) -> Project:
 @pytest.fixture
 def bent(window: Harness) -> Project:
     """The bar, bent at its right end: keys at frames 0 and 24, the second one is shown."""
-    return window.again(bend_bar)
+    return window.again(bend_bar, None, "auto-pins")
 
 
 @pytest.fixture
 def loose(window: Harness) -> Project:
     """The same bar, none of whose handles stays between its keys."""
-    return window.again(bend_loosely)
+    return window.again(bend_bar, None, "loose")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

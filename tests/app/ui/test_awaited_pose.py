@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from brief_bars import HALF, LAST, bend_briefly, bend_loosely_and_briefly
+from bars import HALF, LAST, bend_bar
 
 from app.document.commands import key_commands
 from app.editor.actions import editing, exporting, keys, playback, posing
@@ -16,14 +16,14 @@ WAY = 30 - 20j  # pixels of the picture
 
 def bend_by_nu(window):
     """Bend the bar loosely: which in-between it is that is awaited is not asked."""
-    window.again(bend_loosely_and_briefly)
+    window.again(bend_bar, LAST, "loose")
     keys.set_variant(window.session, "nu")
     window.settle()
 
 
 @pytest.fixture
 def bent(window, request):
-    return window.again(getattr(request, "param", bend_by_nu))
+    return window.again(*getattr(request, "param", (bend_by_nu,)))
 
 
 @pytest.fixture
@@ -66,7 +66,7 @@ def drag(robot, window, project):
 
 
 # Where another handle stays, too, so that the frame is corrected.
-@pytest.mark.parametrize("bent", [bend_briefly], indirect=True)
+@pytest.mark.parametrize("bent", [(bend_bar, LAST)], indirect=True)
 def test_a_handle_moves_as_far_as_the_pointer_did_meanwhile(window, bent, come):
     before = bent.document
     window.frames(2)

@@ -1,7 +1,7 @@
 """What repeats in the window: made of chosen keys, edited in one place, ended by its handle."""
 
 import pytest
-from bars import bend_loosely
+from bars import bend_bar
 from imgui_bundle import ImVec2
 
 from app.document import (
@@ -36,7 +36,7 @@ def cycling(window):
 
 
 def swing(window):
-    bent = bend_loosely(window)
+    bent = window.again(bend_bar, None, "loose")
     editing.edit(window.session, key_commands.copy_keys(bent.active, {0}, 48))
     editing.edit(window.session, scene_commands.set_frames(FrameRange(0, 150)))
     editing.choose_keys(window.session, frozenset({0, 24, 48}))

@@ -176,7 +176,7 @@ def test_the_status_bar_tells_how_far_an_export_is_whatever_tab_is_in_front(
         window.clock.cost = 0.0
     window.frames()
     assert session.export is None
-    assert any("was cancelled" in toast.text for toast in session.toasts)
+    assert any(toast.text == exporting.CANCELLED_MIDWAY for toast in session.toasts)
     written.clear()
     window.frames(2)
     assert not any("walk frames" in text for text in written)

@@ -4,7 +4,6 @@ from dataclasses import replace
 from types import MappingProxyType
 
 import pytest
-from gates import held_up
 from harness import Harness
 
 from app.document.commands import handle_commands
@@ -30,7 +29,7 @@ def drop(window):
     """Drops files on the window."""
 
     def take(*paths):
-        window._window._take_dropped(list(paths))
+        window.program.take_dropped(list(paths))
         window.frames(2)
         window.settle()
 
@@ -129,8 +128,8 @@ def test_changes_are_asked_about_before_a_dropped_file_opens(window, project, dr
     assert window.session.project.name == "ring"
 
 
-def test_changes_made_while_a_file_is_read_are_asked_about(window, project, monkeypatch):
-    with held_up(monkeypatch, "app.editor.actions.files.open_picture"):
+def test_changes_made_while_a_file_is_read_are_asked_about(window, project):
+    with window.session.jobs.held():
         window.act(files.open_file, RING)
         assert window.session.dialog is None
         window.act(posing.add_handle, complex(*project.document.canvas) / 2)
@@ -142,12 +141,10 @@ def test_changes_made_while_a_file_is_read_are_asked_about(window, project, monk
     assert window.session.project.name == "ring"
 
 
-def test_changes_made_while_unsaved_work_is_read_are_asked_about(
-    window, project, monkeypatch, tmp_path
-):
+def test_changes_made_while_unsaved_work_is_read_are_asked_about(window, project, tmp_path):
     path = tmp_path / "unsaved.lissom"
     save_project(path, project.document)
-    with held_up(monkeypatch, "app.editor.actions.files.load_leftover"):
+    with window.session.jobs.held():
         window.act(files.recover, path)
         window.act(posing.add_handle, complex(*project.document.canvas) / 2)
     window.settle()
@@ -158,14 +155,12 @@ def test_changes_made_while_unsaved_work_is_read_are_asked_about(
 
 
 @pytest.mark.parametrize("verb", [saving.quit_lissom, saving.close])
-def test_changes_made_while_the_project_is_saved_are_asked_about(
-    window, project, monkeypatch, tmp_path, verb
-):
+def test_changes_made_while_the_project_is_saved_are_asked_about(window, project, tmp_path, verb):
     saving.write(window.session, tmp_path / "bar.lissom", None)
     window.settle()
     change(window, project)
     window.act(verb)
-    with held_up(monkeypatch, "app.editor.actions.saving.save_project"):
+    with window.session.jobs.held(saving.SAVING):
         window.run(lambda robot: robot.item_click("//###dialog/Save"))
         window.act(posing.add_handle, complex(*project.document.canvas) / 3)
     window.settle()
@@ -225,12 +220,12 @@ def test_more_changes_are_kept_in_its_place(window, project, kept):
     assert kept() == 2
 
 
-def test_the_autosave_waits_for_the_hand_but_not_for_ever(window, project, kept, monkeypatch):
+def test_the_autosave_waits_for_the_hand_but_not_for_ever(window, project, kept):
     project.autosaved_at = window.clock.now
     change(window, project)
     place = complex(*project.document.canvas) / 2
     project.autosaved_at -= SECONDS
-    with held_up(monkeypatch, "app.editor.actions.posing.solving._take_steps"):
+    with window.session.jobs.held(posing.POSING):
         posing.pull(window.session, {0: Target(position=place)})
         window.clock.now += SECONDS / 2
         window.frames(20)
@@ -289,8 +284,8 @@ def test_the_autosave_goes_with_work_that_is_given_up(window, project, kept, ver
 
 
 @pytest.mark.parametrize("verb", [saving.give_up, editing.undo])
-def test_nothing_stays_of_work_that_is_given_up_meanwhile(window, project, monkeypatch, verb):
-    with held_up(monkeypatch, "app.storage.autosave.save_project"):
+def test_nothing_stays_of_work_that_is_given_up_meanwhile(window, project, verb):
+    with window.session.jobs.held(saving.AUTOSAVING):
         project.autosaved_at = window.clock.now
         change(window, project)
         pass_time(window, SECONDS)
@@ -308,16 +303,16 @@ def test_a_saved_project_is_known_by_its_picture_in_the_welcome_view(window, pro
     assert small.shape[1] / small.shape[0] == pytest.approx(
         project.document.canvas[0] / project.document.canvas[1], rel=0.05
     )
-    textures = window._window._thumbnails
-    assert path not in textures._textures
+    textures = window.program.thumbnails
+    assert path not in textures.files
     window.act(saving.close)
     window.frames(30)
     shown = textures.get(path)
     assert shown.size == small.shape[1::-1]
     window.open(BAR)
-    assert path not in textures._textures
+    assert path not in textures.files
     # Samples stay: nobody writes to them.
-    assert textures._textures
+    assert textures.files
 
 
 def test_a_drag_keeps_what_a_later_version_wrote_about_its_target(window, project, tmp_path):

@@ -108,7 +108,7 @@ def test_a_card_covers_nothing_that_it_points_at(seed):
 
 def words(window):
     """What the card tells."""
-    return window._window._shell._callout.told
+    return window.program.shell.callout.told
 
 
 def test_the_giraffe_bows(window):
@@ -247,8 +247,8 @@ def test_samples_have_stories_and_move_under_the_pointer(window):
         assert sample.story, f"{sample.name} has no story"
         assert sample.moving.exists() == (sample.what == "animated"), sample.name
     window.frames(20)
-    known = window._window._thumbnails._moments
-    assert known == {}, "nothing moves before it is pointed at"
+    thumbnails = window.program.thumbnails
+    assert not thumbnails.moving_files, "nothing moves before it is pointed at"
 
     def point(robot):
         robot.mouse_move("//Welcome/**/sample Ring")
@@ -256,4 +256,4 @@ def test_samples_have_stories_and_move_under_the_pointer(window):
             robot.yield_()
 
     window.run(point)
-    assert [path.stem for path in known] == ["ring"]
+    assert [path.stem for path in thumbnails.moving_files] == ["ring"]

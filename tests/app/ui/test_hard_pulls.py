@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from bars import open_bar
 
 from app.document import NATURAL, RUBBERY
-from app.editor.actions import editing, posing
-from app.storage.assets import sample_images
+from app.editor.actions import editing
 
 HAND, OUT = 0, 500 + 40j  # pixels of the picture
 
@@ -13,11 +13,7 @@ HAND, OUT = 0, 500 + 40j  # pixels of the picture
 @pytest.fixture
 def bar(window):
     """The bar, held at its left end and in its middle; its right end is the hand."""
-    project = window.open(sample_images() / "bar.png")
-    width, height = project.document.canvas
-    for share in (0.9, 0.5, 0.1):
-        posing.add_handle(window.session, complex(share * width, height / 2))
-        window.frames(2)
+    project = window.again(open_bar, 0.9, 0.5, 0.1)
     editing.select(window.session, frozenset())
     window.settle()
     assert project.figure.bounds == NATURAL.bounds

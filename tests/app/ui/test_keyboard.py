@@ -1,10 +1,11 @@
 """Questions answered by keys, menus closed by them, and keys in words."""
 
 import pytest
+from bars import open_bar
 from imgui_bundle import imgui
 
 from app.editor import Question, do
-from app.editor.actions import posing, show_dialog, viewing
+from app.editor.actions import show_dialog, viewing
 from app.storage.assets import sample_images
 from app.ui.panel import is_in_front
 from app.ui.shortcuts import BINDINGS, MENUS
@@ -69,10 +70,8 @@ def test_keys_lead_to_cancel_and_escape_is_cancel(window, asked):
 def test_after_a_question_arrows_nudge_again(window, asked):
     del asked
     press(window, imgui.Key.escape)
-    project = window.open(sample_images() / "bar.png")
+    project = window.again(open_bar, 0.5)
     place = complex(*project.puppet.picture.size) / 2
-    posing.add_handle(window.session, place)
-    window.settle()
     press(window, imgui.Key.up_arrow)
     window.settle()
     target = project.figure.keys[0].pose.targets[0].position

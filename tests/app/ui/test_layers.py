@@ -336,7 +336,7 @@ def test_pictures_that_are_dropped_on_a_scene(window, scene, listed, tmp_path, d
     def over(rows):
         rows.robot.mouse_move(f"**/###row {body}")
         window.session.dialog = None
-        window._window.ask(do(layering.drop, [cap]))
+        window.program.ask(do(layering.drop, [cap]))
         rows.robot.yield_(3)
 
     listed(over)
@@ -1032,22 +1032,22 @@ def test_blends_clipping_and_groups_are_set_in_the_panel(window, stranger):
 def test_figures_of_one_picture_share_it_on_the_graphics_card_until_one_is_cut(window, stranger):
     project = window.again(Harness.open, stranger)
     window.settle()
-    drawing = window._window._canvas._drawing
+    drawing = window.program.canvas.drawing
     arm, glow, shine = (identity(project, name) for name in ("arm", "glow", "shine"))
-    assert drawing._picture(arm) is drawing._picture(glow) is drawing._picture(shine)
+    assert drawing.picture(arm) is drawing.picture(glow) is drawing.picture(shine)
     window.act(layering.choose, glow)
     # Behind it are others with the same picture.
     project.solo = frozenset({glow})
     before = window.picture()
     window.act(editing.edit, figure_commands.brush(glow, brush_at(project, glow)))
     window.settle()
-    assert drawing._picture(arm) is drawing._picture(shine) is not drawing._picture(glow)
+    assert drawing.picture(arm) is drawing.picture(shine) is not drawing.picture(glow)
     cut = window.picture()
     assert cut.tobytes() != before.tobytes()
     window.act(editing.undo)
     window.settle()
-    assert drawing._picture(arm) is drawing._picture(glow)
-    assert len(drawing._pictures) == 3
+    assert drawing.picture(arm) is drawing.picture(glow)
+    assert drawing.picture_count == 3
 
 
 def brush_at(project, figure):
@@ -1072,14 +1072,14 @@ def test_what_prepares_layers_that_nobody_edits_is_let_go_and_comes_again(
     window.clock.now += 2 * memory.REST
     window.frames(3)
     # Of few layers all is kept.
-    assert body.store.sampler._extension is not None
+    assert body.store.sampler.extension_bytes
     monkeypatch.setattr("app.editor.project.MOST_PASSING", 0)
     window.act(playback.toggle_play)
     window.act(playback.halt)
     window.clock.now += 2 * memory.REST
     window.frames(3)
-    assert body.store.sampler._extension is None
-    assert arm.store.sampler._extension is not None
+    assert not body.store.sampler.extension_bytes
+    assert arm.store.sampler.extension_bytes
     # Series show what nobody edits; what they are made from is made again when the layer is chosen.
     assert body.store.prepared(clip_of(keyed.document, body_id)) is None
     assert arm.store.prepared(keyed.clip) is not None

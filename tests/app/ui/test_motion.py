@@ -71,7 +71,7 @@ def click(window, item):
 
 
 def test_a_dropped_picture_walks_after_few_clicks_and_drags(window, tmp_path):
-    window._window._take_dropped([paint(tmp_path, "walker", size=160)])
+    window.program.take_dropped([paint(tmp_path, "walker", size=160)])
     window.settle()
     project = window.session.project
     before = project.document

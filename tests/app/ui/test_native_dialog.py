@@ -261,7 +261,7 @@ def test_a_question_that_comes_up_takes_the_dialog_away(window, program, ask):
 def test_the_window_takes_the_dialog_with_it(window, program, ask):
     ask()
     program.asked()
-    window._window._shell.release()
+    window.program.shell.release()
     assert not is_running(program)
 
 

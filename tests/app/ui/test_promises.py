@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from bars import check_at_rest, drag_bar
-from gates import held_up
 from PIL import Image
 
 from app.document.commands import key_commands, scene_commands
@@ -23,6 +22,7 @@ from app.editor.actions import (
     saving,
     viewing,
 )
+from app.editor.actions.posing.inserting import INSERTING
 from app.editor.dialogs import Question
 from app.editor.poses import copying, library, pasting
 from app.storage import load_project
@@ -74,11 +74,11 @@ def test_drag_comes_to_rest_whatever_follows(window, bent, name):
 
 
 @pytest.mark.parametrize("is_seen", [True, False])
-def test_moved_and_copied_keys_come_to_rest_too(window, bent, is_seen, monkeypatch):
+def test_moved_and_copied_keys_come_to_rest_too(window, bent, is_seen):
     if is_seen:
         goal = drag_bar(window, bent)
     else:
-        with held_up(monkeypatch, "app.editor.actions.posing.solving._take_steps"):
+        with window.session.jobs.held(posing.POSING):
             goal = drag_bar(window, bent)
         assert bent.pulls[-1].kept is None
     editing.edit(window.session, key_commands.copy_keys(0, {24}, 24))
@@ -90,10 +90,10 @@ def test_moved_and_copied_keys_come_to_rest_too(window, bent, is_seen, monkeypat
 
 
 @pytest.mark.parametrize("auto_key", [True, False])
-def test_a_drag_is_in_a_key_as_was_wanted_when_it_began(window, bent, monkeypatch, auto_key):
+def test_a_drag_is_in_a_key_as_was_wanted_when_it_began(window, bent, auto_key):
     if not auto_key:
         viewing.toggle_auto_key(window.session)
-    with held_up(monkeypatch, "app.editor.actions.posing.solving._take_steps"):
+    with window.session.jobs.held(posing.POSING):
         goal = drag_bar(window, bent)
         viewing.toggle_auto_key(window.session)
     window.settle()
@@ -129,12 +129,12 @@ def test_layers_are_chosen_at_once_and_both_drags_come_to_rest(window, bent):
         check_at_rest(bent.document, goal, figure=identity)
 
 
-def test_a_save_has_a_drag_on_each_of_many_layers(window, bent, tmp_path, monkeypatch):
+def test_a_save_has_a_drag_on_each_of_many_layers(window, bent, tmp_path):
     for _ in range(3):
         layering.duplicate(window.session, 0)
         window.frames()
     path, goals = tmp_path / "a.lissom", {}
-    with held_up(monkeypatch, "app.editor.actions.posing.solving._take_steps"):
+    with window.session.jobs.held(posing.POSING):
         for figure in bent.document.figures:
             layering.choose(window.session, figure.id)
             goals[figure.id] = drag_bar(window, bent)
@@ -193,11 +193,11 @@ def test_copying_the_picture_leaves_an_export_alone_that_is_prepared(
     few = FrameRange(0, 2)
     export = replace(bent.document.export, format="gif", framing="canvas", frames=few)
     editing.edit(window.session, scene_commands.set_export(export))
-    with held_up(monkeypatch, "app.editor.actions.exporting.plan_export"):
+    with window.session.jobs.held(exporting.PREPARING):
         exporting.start(window.session, tmp_path / "a.gif")
         window.frames()
         exporting.copy_picture(window.session)
-        assert "An export is under way" in window.session.toasts[-1].text
+        assert window.session.toasts[-1].text == exporting.UNDER_WAY
     window.until(lambda: (tmp_path / "a.gif").exists() and window.session.export is None)
 
 
@@ -260,12 +260,12 @@ def test_closing_asks_about_what_is_on_its_way(window, bent, tmp_path, what):
     assert len(saved.figures[0].library) == len(bent.document.figures[0].library)
 
 
-def test_whoever_insists_is_asked_at_once(window, bent, tmp_path, monkeypatch):
+def test_whoever_insists_is_asked_at_once(window, bent, tmp_path):
     saving.write(window.session, tmp_path / "a.lissom", None)
     window.settle()
     playback.scrub(window.session, 7)
     window.settle()
-    with held_up(monkeypatch, "app.editor.actions.posing.inserting.pose_at"):
+    with window.session.jobs.held(INSERTING):
         posing.insert_key(window.session)
         saving.close(window.session)
         assert question(window) is None
@@ -299,10 +299,10 @@ def test_a_pose_without_a_key_is_asked_about_and_kept(window, bent, tmp_path):
     assert load_project(path).figures[0].key_frames == {0, 7, 24}
 
 
-def test_two_keys_that_are_inserted_at_once_both_come(window, bent, monkeypatch):
+def test_two_keys_that_are_inserted_at_once_both_come(window, bent):
     playback.scrub(window.session, 7)
     window.settle()
-    with held_up(monkeypatch, "app.editor.actions.posing.inserting.pose_at"):
+    with window.session.jobs.held(INSERTING):
         for frame in (7, 14):
             playback.scrub(window.session, frame)
             posing.insert_key(window.session)
@@ -318,8 +318,7 @@ def test_decoded_pictures_go_with_the_steps_that_have_them(window, bent, tmp_pat
         window.settle()
         window.act(editing.undo)
         window.settle()
-    steps = {figure.picture for step in bent.history._steps for figure in step.document.figures}
-    assert bent.pictures.keys() <= steps
+    assert bent.pictures.keys() <= bent.history.picture_files
 
 
 def test_within_a_job_the_clock_goes_on(window):
@@ -356,12 +355,10 @@ def test_mirroring_handles_is_one_step_also_while_a_pose_is_on_its_way(window, b
     assert bent.document is before
 
 
-def test_undo_takes_back_first_what_was_done_since_a_drag_that_is_not_seen_yet(
-    window, bent, monkeypatch
-):
+def test_undo_takes_back_first_what_was_done_since_a_drag_that_is_not_seen_yet(window, bent):
     added = beside_the_axis(window, bent)
     before, handles = bent.document, bent.figure.handles
-    with held_up(monkeypatch, "app.editor.actions.posing.solving._take_steps"):
+    with window.session.jobs.held(posing.POSING):
         drag_bar(window, bent)
         bent.selected = frozenset({added})
         posing.mirror_handles(window.session)
@@ -380,9 +377,9 @@ def test_undo_takes_back_first_what_was_done_since_a_drag_that_is_not_seen_yet(
     assert bent.document is before
 
 
-def test_a_drag_that_was_undone_before_anything_was_seen_is_done_again(window, bent, monkeypatch):
+def test_a_drag_that_was_undone_before_anything_was_seen_is_done_again(window, bent):
     before = bent.document
-    with held_up(monkeypatch, "app.editor.actions.posing.solving._take_steps"):
+    with window.session.jobs.held(posing.POSING):
         goal = drag_bar(window, bent)
         assert bent.pulls[-1].kept is None
         editing.undo(window.session)
@@ -394,11 +391,9 @@ def test_a_drag_that_was_undone_before_anything_was_seen_is_done_again(window, b
     assert bent.document is before
 
 
-def test_undo_takes_back_first_a_paste_that_still_waits_and_nothing_is_lost(
-    window, bent, monkeypatch
-):
+def test_undo_takes_back_first_a_paste_that_still_waits_and_nothing_is_lost(window, bent):
     before = bent.document
-    with held_up(monkeypatch, "app.editor.actions.posing.solving._take_steps"):
+    with window.session.jobs.held(posing.POSING):
         goal = drag_bar(window, bent)
         copying.copy(window.session)
         playback.scrub(window.session, 40)
@@ -417,9 +412,9 @@ def test_undo_takes_back_first_a_paste_that_still_waits_and_nothing_is_lost(
     assert bent.document is rested
 
 
-def test_a_save_that_waits_is_not_taken_back(window, bent, monkeypatch, tmp_path):
+def test_a_save_that_waits_is_not_taken_back(window, bent, tmp_path):
     bent.path = tmp_path / "bent.lissom"
-    with held_up(monkeypatch, "app.editor.actions.posing.solving._take_steps"):
+    with window.session.jobs.held(posing.POSING):
         drag_bar(window, bent)
         saving.save(window.session)
         editing.undo(window.session)
@@ -428,13 +423,11 @@ def test_a_save_that_waits_is_not_taken_back(window, bent, monkeypatch, tmp_path
     assert bent.path.exists()
 
 
-def test_handles_that_come_before_a_drag_knows_where_it_begins_are_held_by_it(
-    window, bent, monkeypatch
-):
+def test_handles_that_come_before_a_drag_knows_where_it_begins_are_held_by_it(window, bent):
     playback.scrub(window.session, 12)
     window.settle()
     places = bent.puppet.shown.handle_places
-    with held_up(monkeypatch, "app.editor.actions.posing.solving._take_steps"):
+    with window.session.jobs.held(posing.POSING):
         posing.wish(window.session, {0: Target(position=places[0] + 5j)})
         posing.let_go(window.session)
         posing.add_handle(window.session, complex(places.mean()))

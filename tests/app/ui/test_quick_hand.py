@@ -2,17 +2,16 @@
 
 import numpy as np
 import pytest
+from bars import open_bar
 from imgui_bundle import imgui
 
 from app.editor.actions import editing, posing
-from app.storage.assets import sample_images
 
 
 @pytest.fixture
 def project(window):
     """A bar with a handle near its left end, under the pointer."""
-    project = window.open(sample_images() / "bar.png")
-    posing.add_handle(window.session, place_of(project, 0.1))
+    project = window.again(open_bar, 0.1)
     point(window, project, 0.1)
     window.frames(3)
     assert window.session.hovered == 0

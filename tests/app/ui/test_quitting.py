@@ -1,12 +1,14 @@
 """Whoever quits while something goes on is asked, and nothing is lost by the answer."""
 
+from contextlib import ExitStack
+
 import pytest
-from gates import held_up
 from imgui_bundle import hello_imgui
 
 from app.document.keyframe import Target
 from app.editor.actions import posing, saving
 from app.editor.dialogs import Question
+from app.storage import NO_FOLDER
 from app.storage.project_file import load_project
 
 
@@ -23,9 +25,10 @@ def saved(window, bar, tmp_path):
 
 
 @pytest.fixture
-def gate(monkeypatch):
-    """Saves wait until it is set."""
-    with held_up(monkeypatch, "app.editor.actions.saving.save_project") as gate:
+def gate(window):
+    """Saves wait until it is closed."""
+    with ExitStack() as gate:
+        gate.enter_context(window.session.jobs.held(saving.SAVING))
         yield gate
 
 
@@ -65,7 +68,7 @@ def test_two_saves_at_a_time_are_one_after_the_other_and_nobody_elses(window, ba
         posing.add_handle(window.session, complex(50, 50) + step)
         window.frames(2)
         window.act(saving.save)
-    gate.set()
+    gate.close()
     window.settle()
     assert question(window) is None
     assert bar.history.is_saved
@@ -77,14 +80,14 @@ def test_quitting_waits_for_a_save_that_is_under_way_unless_the_person_insists(
 ):
     posing.add_handle(window.session, complex(50, 50))
     window.act(saving.save)
-    for title in (None, "Unsaved changes"):
+    for title in (None, saving.UNSAVED):
         quit_lissom(window)
         assert question(window) == title
         assert not window.session.quitting
     answer(window, "Cancel")
     quit_lissom(window)
     assert question(window) is None
-    gate.set()
+    gate.close()
     window.settle()
     assert window.session.quitting
     assert len(load_project(saved).figures[0].handles) == len(bar.figure.handles)
@@ -101,9 +104,11 @@ def test_a_save_that_fails_ends_nothing(window, saved):
     answer(window, "Save")
     window.settle()
     assert not window.session.quitting
-    assert any("does not exist" in toast.text for toast in window.session.toasts)
+    assert any(
+        NO_FOLDER.format(folder=saved.parent) in toast.text for toast in window.session.toasts
+    )
     quit_lissom(window)
-    assert question(window) == "Unsaved changes"
+    assert question(window) == saving.UNSAVED
 
 
 def test_a_drag_that_goes_on_while_the_window_is_to_close_is_kept(window, bar, saved):

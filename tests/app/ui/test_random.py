@@ -1,8 +1,7 @@
 """A random walk over all that a person can do, which nothing may break."""
 
-import math
-import threading
 from collections import deque
+from contextlib import ExitStack
 from pathlib import Path
 
 import numpy as np
@@ -32,7 +31,7 @@ from app.editor.actions import (
 )
 from app.editor.poses import copying, flipping, library, pasting
 from app.editor.timeline_view import Strip
-from app.editor.work import jobs
+from app.editor.work.jobs import Jobs
 from app.export_formats import EXPORT_FORMATS
 from app.storage.project_file import load_project, save_project
 from app.ui.shortcuts import ARROWS, BINDINGS, MODIFIERS
@@ -96,24 +95,16 @@ class Workers:
     They work beside the hands as always, but no walk waits for all that it leaves undone.
     """
 
-    def __init__(self, monkeypatch) -> None:
-        self._allowed = 0.0
-        self._condition = threading.Condition()
-        attempt = jobs._attempt
+    def __init__(self, jobs: Jobs) -> None:
+        self._jobs = jobs
+        self._hold = ExitStack()
 
-        def attempt_in_turn(job):
-            with self._condition:
-                self._condition.wait_for(lambda: self._allowed > 0)
-                self._allowed -= 1
-            return attempt(job)
-
-        monkeypatch.setattr(jobs, "_attempt", attempt_in_turn)
-
-    def allow(self, count: float) -> None:
-        """Let them begin this many jobs from now on."""
-        with self._condition:
-            self._allowed = count
-            self._condition.notify_all()
+    def allow(self, count: int | None) -> None:
+        """Let them begin this many jobs from now on; None for as many as there are."""
+        before, self._hold = self._hold, ExitStack()
+        if count is not None:
+            self._hold.enter_context(self._jobs.held(first=count))
+        before.close()
 
 
 class Walk:
@@ -160,7 +151,7 @@ class Walk:
 
     def catch_up(self) -> None:
         """Let the workers prepare what is to be shown."""
-        self.workers.allow(math.inf)
+        self.workers.allow(None)
         for _ in range(MOST_FRAMES):
             self.window.frames()
             if self.project.puppet.shown.is_current:
@@ -717,11 +708,10 @@ def small_window(window):
 
 
 @pytest.fixture
-def workers(monkeypatch):
-    workers = Workers(monkeypatch)
-    workers.allow(math.inf)
+def workers(small_window):
+    workers = Workers(small_window.session.jobs)
     yield workers
-    workers.allow(math.inf)
+    workers.allow(None)
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -742,7 +732,7 @@ def test_random_walk_ends_where_it_began(small_window, workers, tmp_path, seed, 
     walk.release()
     walk.act(posing.let_go)
     # What is still on its way, such as a rebuilt domain, would come where undo leads back to.
-    workers.allow(math.inf)
+    workers.allow(None)
     window.settle()
     # So would what waits for a mesh that waits for the brush to rest.
     project.afterwards.clear()

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from brief_bars import HALF, LAST, bend_loosely_and_briefly
+from bars import HALF, LAST, bend_bar
 from imgui_bundle import ImVec2
 
 from app.document import Baseline, Target, Variant
@@ -16,7 +16,7 @@ def between(window):
 
 
 def stop_half_way(window):
-    bent = window.again(bend_loosely_and_briefly)
+    bent = window.again(bend_bar, LAST, "loose")
     width, _ = bent.document.canvas
     wishes = dict(bent.puppet.shown.pose.targets)
     last = max(wishes)

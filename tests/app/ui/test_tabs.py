@@ -3,7 +3,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from documents import CENTRE, RADIUS, altered, disc_document
-from gates import held_up
 from imgui_bundle import ImVec2, imgui
 from PIL import Image
 from projects import project_of
@@ -13,8 +12,10 @@ from app.document.commands.scene_commands import set_export
 from app.document.keyframe import Handle, Keyframe, Pose, Target
 from app.document.settings import NATURAL, RUBBERY, STIFF, Meshing
 from app.editor.actions import editing, exporting, playback, posing, upkeep
+from app.editor.actions.body.rebuilding import RENEWING
 from app.export_formats import ShapeDetail, SheetLayout
 from app.motion.extent import extent_source
+from app.storage import NO_FOLDER
 from engine.maps.boundary import Boundary
 from engine.maps.certificate import certify
 from engine.maps.harmonic_map import HarmonicMap
@@ -200,7 +201,7 @@ def test_pose_that_no_handle_holds_is_brought_within_the_bounds(window, project,
     assert certificate.k <= bound + 1e-6
 
 
-def test_cancelled_solving_changes_nothing(project, window, monkeypatch):
+def test_cancelled_solving_changes_nothing(project, window):
     before = project.document
 
     def act(robot):
@@ -210,7 +211,7 @@ def test_cancelled_solving_changes_nothing(project, window, monkeypatch):
 
     window.show_tab("Deform")
     # A fast machine would be done before the button is found.
-    with held_up(monkeypatch, "app.solving.renewal._solved"):
+    with window.session.jobs.held(RENEWING):
         window.run(act)
     window.settle()
     assert project.document is before
@@ -465,7 +466,10 @@ def test_export_that_cannot_begin_is_told(window, project, tab, tmp_path):
     project.exports_to["png"] = tmp_path / "missing" / "frames"
     tab("Export", lambda robot: robot.item_click("**/###start"))
     assert window.session.export is None
-    assert any("does not exist" in toast.text for toast in window.session.toasts)
+    assert any(
+        NO_FOLDER.format(folder=tmp_path / "missing") in toast.text
+        for toast in window.session.toasts
+    )
 
 
 def test_the_export_tab_changes_nothing_by_itself(window, project):

@@ -4,8 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from bars import BENT
-from brief_bars import HALF, LAST, bend_briefly, bend_until
+from bars import BENT, HALF, LAST, bend_bar
 from harness import MOST_FRAMES
 from numpy.testing import assert_allclose
 
@@ -50,7 +49,7 @@ def drag(window, start, end, *, then=lambda robot: robot.mouse_up(0)):
 
 def key_end(window):
     """Key the handle at the bent bar's end alone, half way to its key, and choose that row."""
-    window.again(bend_briefly)
+    window.again(bend_bar, LAST)
     playback.scrub(window.session, HALF)
     window.settle()
     tracks.key_here(window.session, (END,))
@@ -60,13 +59,13 @@ def key_end(window):
 @pytest.fixture
 def bent(window):
     """The bent bar, and as much time as a hand takes for a circle."""
-    return window.again(bend_until, BENT)
+    return window.again(bend_bar, BENT)
 
 
 @pytest.fixture
 def brief(window):
     """The same in few frames."""
-    return window.again(bend_briefly)
+    return window.again(bend_bar, LAST)
 
 
 @pytest.fixture

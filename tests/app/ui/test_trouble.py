@@ -13,6 +13,8 @@ from app.document.keyframe import Target
 from app.editor.actions import exporting, files, posing, saving, upkeep
 from app.editor.dialogs import FileDialog, Question, Recovery
 from app.editor.work.jobs import Job, Kind
+from app.errors import CANCELLED
+from app.storage import NO_FOLDER
 from app.storage.assets import sample_images
 from app.storage.autosave import (
     SECONDS,
@@ -23,6 +25,7 @@ from app.storage.autosave import (
     remove_leftover,
 )
 from app.storage.files import Hold, HoldError
+from app.storage.project import NO_PROJECT
 from app.storage.project_file import load_project, save_project
 from app.ui.bars.status import ENDLESS
 from app.ui.timeline import timeline
@@ -51,7 +54,7 @@ def texts(window):
     ("name", "content", "reason"),
     [
         ("torn.png", b"\x89PNG\r\n\x1a\n and no more", "not a picture"),
-        ("torn.lissom", b"PK no zip at all", "not a Lissom project"),
+        ("torn.lissom", b"PK no zip at all", NO_PROJECT),
         ("missing.png", None, "cannot read"),
     ],
 )
@@ -330,7 +333,7 @@ def test_a_folder_that_was_removed_is_told_and_the_work_stays(window, project, s
     window.settle()
     window.act(saving.save)
     window.settle()
-    assert any("does not exist" in text for text in texts(window))
+    assert any(NO_FOLDER.format(folder=saved.parent) in text for text in texts(window))
     assert not project.history.is_saved
     saved.parent.mkdir()
     window.act(saving.save)
@@ -454,7 +457,7 @@ def test_a_save_does_not_wait_for_ever_for_a_pose_that_never_settles(
     window.act(upkeep.give_up, posing.POSING)
     end.set()
     window.settle()
-    assert any("cancelled" in text for text in texts(window))
+    assert any(CANCELLED in text for text in texts(window))
 
 
 @pytest.mark.parametrize("has_room", [True, False])

@@ -2,18 +2,15 @@
 
 import numpy as np
 import pytest
+from bars import open_bar
 
-from app.editor.actions import editing, posing
-from app.storage.assets import sample_images
+from app.editor.actions import editing
 
 
 @pytest.fixture
 def bar(window):
     """A bar with a handle in its middle, which is selected."""
-    project = window.open(sample_images() / "bar.png")
-    posing.add_handle(window.session, complex(*project.puppet.picture.size) / 2)
-    window.settle()
-    return project
+    return window.again(open_bar, 0.5)
 
 
 def target(window, project):

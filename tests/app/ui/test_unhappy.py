@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from gates import held_up
 from imgui_bundle import ImVec2, imgui
 
 from app.document.commands import handle_commands, key_commands
@@ -25,9 +24,10 @@ from app.editor.actions import (
     upkeep,
     viewing,
 )
+from app.editor.actions.posing.inserting import INSERTING
 from app.editor.timeline_view import KeyBox
 from app.editor.work.derived import Derived
-from app.errors import tell
+from app.errors import CANCELLED, tell
 from app.motion.extent import Box, extent_source
 from app.storage.assets import sample_images
 from app.storage.autosave import SECONDS
@@ -99,11 +99,9 @@ def test_undo_during_a_drag(window, bent):
     assert bent.document is first
 
 
-def test_undo_of_a_drag_that_is_not_to_be_seen_yet_takes_nothing_else_back(
-    window, bent, monkeypatch
-):
+def test_undo_of_a_drag_that_is_not_to_be_seen_yet_takes_nothing_else_back(window, bent):
     before = bent.document
-    with held_up(monkeypatch, "app.solving.drag.certify"):
+    with window.session.jobs.held(posing.POSING):
         posing.wish(window.session, {1: Target(position=900 + 50j)})
         window.act(editing.undo)
     window.settle()
@@ -404,14 +402,11 @@ def test_bound_that_bounds_nothing_is_refused_in_words(window, bent):
 # Work that takes long, or fails.
 
 
-INBETWEENS = (
-    "app.motion.interval_store.prepare_intervals",
-    "app.motion.interval_store.prepare_frame",
-)
+INBETWEENS = (upkeep.GLIMPSING, upkeep.SKETCHING, upkeep.REFINING, upkeep.STREAMING)
 
 
-def test_scrubbing_while_the_worker_builds(window, bent, monkeypatch):
-    with held_up(monkeypatch, *INBETWEENS):
+def test_scrubbing_while_the_worker_builds(window, bent):
+    with window.session.jobs.held(*INBETWEENS):
         keys.set_variant(window.session, "nu")
         for frame in (3, 17, 9, 24, 0, 12):
             window.act(playback.scrub, frame)
@@ -545,37 +540,25 @@ def test_work_that_tells_how_far_it_is_is_cancelled_at_once_and_ends(window, mon
     window.run(lambda robot: robot.item_click("//**/Cancel"))
     assert ended.wait(10)
     window.settle()
-    assert any("cancelled" in toast.text for toast in window.session.toasts)
+    assert any(CANCELLED in toast.text for toast in window.session.toasts)
 
 
 WAITING = {
-    "In-betweens": (
-        "app.motion.interval_store.prepare_intervals",
-        lambda session: keys.set_variant(session, "nu"),
+    upkeep.SKETCHING: lambda session: keys.set_variant(session, "nu"),
+    upkeep.SPANNING: lambda session: (
+        setattr(session.project, "extent", Derived(None)),
+        exporting.show_frame(session, Box(0j, 1 + 1j)),
+        upkeep.maintain(session),
     ),
-    "Measuring the motion": (
-        "app.editor.actions.upkeep.measure_extent",
-        lambda session: (
-            setattr(session.project, "extent", Derived(None)),
-            exporting.show_frame(session, Box(0j, 1 + 1j)),
-            upkeep.maintain(session),
-        ),
-    ),
-    "Solving the keys": ("app.editor.actions.body.rebuilding.go_on", rebuilding.solve_again),
-    "Posing": (
-        "app.editor.actions.posing.solving._take_steps",
-        lambda session: posing.wish(session, {1: Target(position=900 + 50j)}),
-    ),
-    "Inserting a key": (
-        "app.editor.actions.posing.inserting.pose_at",
-        lambda session: keys.insert_at(session, 12),
-    ),
+    rebuilding.RENEWING: rebuilding.solve_again,
+    posing.POSING: lambda session: posing.wish(session, {1: Target(position=900 + 50j)}),
+    INSERTING: lambda session: keys.insert_at(session, 12),
 }
 
 
-def test_a_new_key_stands_in_for_in_betweens_that_are_not_prepared(window, bent, monkeypatch):
+def test_a_new_key_stands_in_for_in_betweens_that_are_not_prepared(window, bent):
     """Never the pose of the key that was changed, however long in-betweens take."""
-    with held_up(monkeypatch, *INBETWEENS):
+    with window.session.jobs.held(*INBETWEENS):
         width, height = bent.document.canvas
         posing.wish(window.session, {1: Target(position=complex(0.85 * width, 0.1 * height))})
         window.until(lambda: posing.POSING not in window.session.jobs.kinds)
@@ -597,15 +580,14 @@ def test_a_new_key_stands_in_for_in_betweens_that_are_not_prepared(window, bent,
     assert frames_of(bent) == [0, 6, 24]
 
 
-@pytest.mark.parametrize("kind", WAITING)
+@pytest.mark.parametrize("kind", WAITING, ids=lambda kind: kind.label)
 @pytest.mark.usefixtures("everything")
-def test_results_for_a_closed_project_go_nowhere(window, bent, monkeypatch, kind):
-    where, begin = WAITING[kind]
+def test_results_for_a_closed_project_go_nowhere(window, bent, kind):
     before = bent.document
-    with held_up(monkeypatch, where):
-        begin(window.session)
+    with window.session.jobs.held(kind):
+        WAITING[kind](window.session)
         window.frames(2)
-        assert kind in [each.label for each in window.session.jobs.kinds]
+        assert kind in window.session.jobs.kinds
         closed = bent.document
         saving.give_up(window.session)
         files.open_file(window.session, sample_images() / "s.png")
@@ -624,8 +606,8 @@ def test_results_for_a_closed_project_go_nowhere(window, bent, monkeypatch, kind
 
 
 @pytest.mark.usefixtures("bent")
-def test_work_that_is_given_up_while_it_is_kept_does_not_come_back(window, monkeypatch):
-    with held_up(monkeypatch, "app.storage.autosave.save_project"):
+def test_work_that_is_given_up_while_it_is_kept_does_not_come_back(window):
+    with window.session.jobs.held(saving.AUTOSAVING):
         window.clock.now += 2 * SECONDS
         window.frames(2)
         assert saving.AUTOSAVING in window.session.jobs.kinds

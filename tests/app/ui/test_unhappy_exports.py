@@ -25,7 +25,9 @@ from app.export.writers.gif import GifWriter
 from app.export.writers.png import PngSequence
 from app.export.writers.video import VideoWriter
 from app.motion.inbetweens import pose_sampler
+from app.storage import SAME_FILE
 from app.storage.assets import sample_images
+from app.ui.dialogs.native_dialog import REPLACE
 from app.ui.window import exporter
 
 BAR = sample_images() / "bar.png"
@@ -148,7 +150,7 @@ def test_another_format_asks_before_it_replaces_a_file(window, project, tmp_path
     (tmp_path / "bar.webp").write_bytes(b"precious")
     exporting.set_export(window.session, ExportSettings(format="webp", size=SIZE))
     window.act(exporting.repeat)
-    assert question(window).title == "Replace the file?"
+    assert question(window).title == REPLACE
     answer(window, "Cancel")
     assert (tmp_path / "bar.webp").read_bytes() == b"precious"
     assert project.exports_to == {"gif": tmp_path / "bar.gif"}
@@ -174,7 +176,7 @@ def test_cancelled_frames_are_whole_and_the_next_export_works(window, project, t
     assert [path.name for path in written] == [f"frame_{i:04d}.png" for i in range(len(written))]
     assert 0 < len(written) < FRAMES
     assert all(map(is_whole, written))
-    assert any("cancelled" in text for text in texts(window))
+    assert exporting.CANCELLED_MIDWAY in texts(window)
     before = project.document
     posing.remove_handles(window.session, frozenset({0}))
     assert project.document is not before
@@ -196,7 +198,7 @@ def test_cancelled_file_is_not_there(window, tmp_path, name):
     window.act(exporting.cancel)
     window.settle()
     assert list(tmp_path.iterdir()) == []
-    assert "The export was cancelled. Nothing was written." in texts(window)
+    assert exporting.CANCELLED_UNWRITTEN in texts(window)
     window.act(exporting.start, tmp_path / name)
     window.settle()
     finish(window)
@@ -295,7 +297,7 @@ def test_cancel_is_answered_at_once_while_it_is_prepared(window, tmp_path, held,
     worker.end.set()
     assert not any(exporting.PREPARING.complaint in text for text in texts(window))
     window.until(lambda: left is None or is_gone(left))
-    window.until(lambda: not any(lane.thread.is_alive() for lane in session.jobs._left))
+    window.until(lambda: not session.jobs.given_up)
     assert {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*")} == made
 
 
@@ -348,8 +350,8 @@ def test_cancel_is_answered_at_once_whatever_frame_is_made(window, tmp_path, hel
         assert all(map(is_whole, written))
     else:
         assert written == []
-    stays = "Frames that were written stay" if written else "Nothing was written"
-    assert f"The export was cancelled. {stays}." in texts(window)
+    told = exporting.CANCELLED_MIDWAY if written else exporting.CANCELLED_UNWRITTEN
+    assert told in texts(window)
     window.act(exporting.start, out)
     window.until(lambda: any("Exported 9 frames" in text for text in texts(window)))
 
@@ -366,7 +368,7 @@ def test_a_late_cancel_says_what_is_so(window, tmp_path, held, name):
     window.until(worker.begun.is_set)
     window.act(exporting.cancel)
     assert not worker.has_waited_in_vain
-    assert "The export was cancelled. Nothing was written." in texts(window)
+    assert exporting.CANCELLED_UNWRITTEN in texts(window)
     assert list(tmp_path.iterdir()) == []
     worker.end.set()
     window.until(lambda: not export_threads())
@@ -417,7 +419,7 @@ def test_quitting_asks_about_an_export_that_runs(window, tmp_path, held):
     window.until(worker.begun.is_set)
     window.act(saving.quit_lissom)
     assert not session.quitting
-    assert question(window).title == "An export is running"
+    assert question(window).title == exporting.RUNNING
     answer(window, "Cancel")
     assert session.export is not None
     window.act(saving.quit_lissom)
@@ -550,7 +552,7 @@ def test_models_are_exported_and_cancelled_as_all_else(window, tmp_path, name):
     window.act(exporting.cancel)
     window.settle()
     assert list(tmp_path.iterdir()) == []
-    assert "The export was cancelled. Nothing was written." in texts(window)
+    assert exporting.CANCELLED_UNWRITTEN in texts(window)
     window.act(exporting.start, tmp_path / name)
     window.settle()
     finish(window)
@@ -595,7 +597,7 @@ def test_the_pose_that_is_shown_is_exported_and_copied(window, project, tmp_path
     shifted = exported()
     editing.undo(session)
     window.act(exporting.start, out)
-    assert question(window).title == "Replace the file?"
+    assert question(window).title == REPLACE
     answer(window, "Replace")
     pixels = exported()
     assert np.abs(pixels - shifted).max() > 50
@@ -635,7 +637,7 @@ def test_nothing_is_written_over_what_the_project_was_made_from(window, tmp_path
         window.act(action, *arguments)
         window.settle()
         assert session.export is None
-        assert any("is the same file as" in toast.text + toast.details for toast in session.toasts)
+        assert any(SAME_FILE in toast.text + toast.details for toast in session.toasts)
         assert {path: path.read_bytes() for path in before} == before
 
     exporting.set_export(session, ExportSettings(format="picture", size=SIZE))

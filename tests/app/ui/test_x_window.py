@@ -17,6 +17,7 @@ import numpy as np
 import pytest
 from PIL import ImageGrab
 
+from app.cli.commands.window import WORK_KEPT
 from app.editor.actions import saving, viewing
 from app.storage.assets import sample_images
 from app.storage.autosave import find_leftovers, load_leftover
@@ -281,7 +282,7 @@ def test_a_person_animates_a_drawing_and_finds_it_again(window, bar, person, tmp
         until(lambda: person.title() == "posed.lissom* – Lissom", "a marker")
         # As the system ends programs when a person logs out.
         process.terminate()
-        assert "unsaved work was kept" in process.stderr.readline()
+        assert WORK_KEPT in process.stderr.readline()
         process.wait()
     assert process.returncode == 128 + signal.SIGTERM
     (kept,) = find_leftovers(settings)

@@ -50,8 +50,8 @@ class Start:
         self._frames += 1
         if self._frames == 2:
             print(MARKS[0], flush=True)
-        thumbnails = self._window._thumbnails
-        read = 0 if thumbnails is None else len(thumbnails._textures)
+        thumbnails = self._window.thumbnails
+        read = 0 if thumbnails is None else len(thumbnails.files)
         if self._frames > 2 and read == len(files.samples()):
             print(MARKS[1], flush=True)
             saving.quit_lissom(session)

@@ -24,6 +24,7 @@ from app.editor import layering
 from app.editor.actions import editing, material, playback, posing
 from app.editor.actions.upkeep import maintain
 from app.editor.poses import copying, library, pasting, receiving
+from app.editor.poses.receiving import NOTHING_COPIED
 from app.editor.session import CopiedKeys
 from app.editor.timeline_view import TrackRow
 
@@ -230,7 +231,7 @@ def test_a_handle_whose_partner_takes_over_from_it_takes_nothing_over_from_itsel
 
 def test_why_nothing_can_be_pasted_is_said(session):
     project = session.project
-    assert pasting.why_not(session, project, PLAIN) == "Copy a pose or keys first."
+    assert pasting.why_not(session, project, PLAIN) == NOTHING_COPIED
     copying.copy(session)
     layering.choose(session, identity(session, "body"))
     before = project.document
