@@ -17,6 +17,7 @@ def job(kind, work, results, *, lane="display"):
     )
 
 
+HANGS = 300.0  # seconds after which a worker is taken to hang; no result depends on it
 HAND = {name: Kind(name, lane="hand") for name in ("stuck", "pose")}
 
 
@@ -31,10 +32,10 @@ def busy():
 
     def wait():
         begun.set()
-        gate.wait(10)
+        gate.wait(HANGS)
 
     jobs.put(job("gate", wait, []))
-    assert begun.wait(10)
+    assert begun.wait(HANGS)
     yield jobs, gate
     gate.set()
     assert jobs.settle()
@@ -101,11 +102,11 @@ def test_running_job_that_was_replaced_is_stale():
 
     def slow():
         begun.set()
-        gate.wait(10)
+        gate.wait(HANGS)
         return "old"
 
     jobs.put(job("pose", slow, results))
-    assert begun.wait(10)
+    assert begun.wait(HANGS)
     jobs.put(job("pose", lambda: "new", results))
     gate.set()
     assert jobs.settle()
@@ -197,7 +198,7 @@ def test_urgent_jobs_do_not_wait_for_others(busy, lane):
     results, ready = [], threading.Event()
     jobs.put(job("in-betweens", lambda: 1, results))
     jobs.put(job("pose", ready.set, results, lane=lane))
-    assert ready.wait(10)
+    assert ready.wait(HANGS)
     while "pose" in labels(jobs.kinds):
         jobs.deliver()
     assert results == [("pose", None)]
@@ -210,10 +211,10 @@ def test_urgent_jobs_come_one_after_the_other():
 
     def wait():
         begun.set()
-        gate.wait(10)
+        gate.wait(HANGS)
 
     jobs.put(job("pose", wait, results, lane="hand"))
-    assert begun.wait(10)
+    assert begun.wait(HANGS)
     jobs.put(job("save", lambda: 1, results, lane="hand"))
     assert labels(jobs.kinds) == ("pose", "save")
     gate.set()
@@ -228,10 +229,10 @@ def test_jobs_tell_how_long_they_run():
 
     def wait():
         begun.set()
-        gate.wait(10)
+        gate.wait(HANGS)
 
     jobs.put(job("factors", wait, []))
-    assert begun.wait(10)
+    assert begun.wait(HANGS)
     jobs.put(job("in-betweens", int, []))
     assert labels(jobs.running_for(0.3)) == ()
     now[0] = 10.4
@@ -333,9 +334,9 @@ def test_closing_does_not_wait_for_what_was_left(stuck):
     jobs.put(job("stuck", work, []))
     has_begun()
     jobs.leave(Kind("stuck"))
-    closing = threading.Thread(target=jobs.close, args=(60.0,), daemon=True)
+    closing = threading.Thread(target=jobs.close, args=(2 * HANGS,), daemon=True)
     closing.start()
-    closing.join(20)
+    closing.join(HANGS)
     assert not closing.is_alive()
 
 
@@ -345,20 +346,20 @@ def test_closing_waits_for_what_runs_and_drops_what_waits():
 
     def finish():
         begun.set()
-        gate.wait(10)
+        gate.wait(HANGS)
         results.append("ran")
 
     jobs.put(job("factors", finish, []))
     jobs.put(job("in-betweens", lambda: results.append("waited"), []))
     jobs.put(job("pose", int, [], lane="hand"))
-    assert begun.wait(10)
+    assert begun.wait(HANGS)
     closing = threading.Thread(target=jobs.close)
     closing.start()
     while not jobs.is_closed:
         pass
     assert closing.is_alive()
     gate.set()
-    closing.join(10)
+    closing.join(HANGS)
     assert results == ["ran"]
     assert labels(jobs.kinds) in {("factors",), ("pose", "factors"), ("factors", "pose")}
 
@@ -382,7 +383,7 @@ def factorise():
 
 jobs = Jobs()
 jobs.put(Job(kind=Kind("factors"), work=factorise, done=print, failed=print))
-begun.wait(10)
+begun.wait()
 # So that the end comes when the other thread is deep in its work.
 for _ in range(8):
     np.linalg.inv(matrix[:700, :700])
@@ -402,14 +403,14 @@ def test_a_job_that_tells_how_far_it_is_ends_when_it_is_given_up():
         try:
             tell(0.25)
             told.set()
-            left.wait(10)
+            left.wait(HANGS)
             tell(0.5)
             over.append("went on")
         finally:
             over.append("ended")
 
     jobs.put(job("slow", work, results))
-    assert told.wait(10)
+    assert told.wait(HANGS)
     assert jobs.share_of(Kind("slow")) == 0.25
     assert jobs.share_of(Kind("other")) is None
     jobs.leave(Kind("slow"))
@@ -433,5 +434,5 @@ def test_what_tells_how_far_it_is_does_not_hold_up_the_end_of_the_program():
             told.set()
 
     jobs.put(job("endless", work, []))
-    assert told.wait(10)
+    assert told.wait(HANGS)
     assert jobs.close()

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from harness import PATIENCE
 from imgui_bundle import ImVec2, imgui
 
 from app.document.commands import handle_commands, key_commands
@@ -538,7 +539,7 @@ def test_work_that_tells_how_far_it_is_is_cancelled_at_once_and_ends(window, mon
     window.clock.now += SLOW
     window.frames(3)
     window.run(lambda robot: robot.item_click("//**/Cancel"))
-    assert ended.wait(10)
+    assert ended.wait(PATIENCE)
     window.settle()
     assert any(CANCELLED in toast.text for toast in window.session.toasts)
 

@@ -507,6 +507,7 @@ def test_second_export_waits_for_the_first(window, tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["first"]
 
 
+@pytest.mark.usefixtures("everything")
 def test_export_and_in_betweens_of_the_window_do_not_wait_for_each_other(window, project, tmp_path):
     keys.set_variant(window.session, "nu")
     keys.insert_at(window.session, FRAMES - 1)
