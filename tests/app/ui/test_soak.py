@@ -94,7 +94,6 @@ def test_messages_that_are_gone_leave_nothing(window):
     assert tell_some() - first < 0.05
 
 
-@pytest.mark.usefixtures("everything")
 def test_what_is_free_is_given_back_once_after_work_has_come_to_rest(slow_window, bar, monkeypatch):
     window, given = slow_window, []
     monkeypatch.setattr(memory, "give_back", lambda: given.append(window.clock.now))
@@ -105,8 +104,10 @@ def test_what_is_free_is_given_back_once_after_work_has_come_to_rest(slow_window
         window.frames(2 * second)
         return len(given)
 
-    window.act(posing.add_handle, np.mean([handle.position for handle in bar.figure.handles]))
+    before = bar.document
+    window.act(posing.nudge, 20j)
     window.settle()
+    assert bar.document is not before
     ended = window.clock.now
     assert rest() == 1
     assert given[0] - ended <= memory.REST

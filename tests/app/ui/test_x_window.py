@@ -125,14 +125,22 @@ class Person:
         return around(place, ImageGrab.grab(xdisplay=self.display))
 
     def do(self, what, place, *words):
-        """Do something that changes what is around a place, and wait until that rests."""
-        before = last = self.see(place)
+        """Do something at a place that changes what is around it, and wait until that rests."""
+        last = self.see(place)
+
+        def rests():
+            nonlocal last
+            earlier, last = last, self.see(place)
+            return not differ(last, earlier)
+
+        self.tell("mousemove", *place)
+        # What comes of the pointer alone, or has not come yet, is nothing that was done.
+        until(rests, "the place")
+        before = last
         self.tell(*words)
 
         def is_there():
-            nonlocal last
-            earlier, last = last, self.see(place)
-            return differ(last, before) and not differ(last, earlier)
+            return rests() and differ(last, before)
 
         until(is_there, what)
 
@@ -247,8 +255,8 @@ def test_a_person_animates_a_drawing_and_finds_it_again(window, bar, person, tmp
     settings.mkdir(parents=True)
     (settings / "window.ini").write_bytes(b"[Window]\x00;;;<<<AppWindow>>>;;;\nWindowSize=")
     with person.starts(BAR, sign=middle) as process:
-        person.do("the first handle", left, "mousemove", *left, "click", 1)
-        person.do("the second handle", right, "mousemove", *right, "click", 1)
+        person.do("the first handle", left, "click", 1)
+        person.do("the second handle", right, "click", 1)
         person.drag(right, low)
         person.tell("key", "ctrl+Next")  # to the last frame
         person.drag(low, high)
