@@ -1,4 +1,5 @@
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -83,6 +84,13 @@ def test_what_does_not_fit_on_the_disk_is_refused(tmp_path):
     check_room(tmp_path / "a.gif", 1000)
     with pytest.raises(LissomError, match="MB left"):
         check_room(tmp_path / "a.gif", 10**18)
+
+
+def test_disk_has_room_for_exactly_what_is_free(tmp_path, monkeypatch):
+    monkeypatch.setattr("shutil.disk_usage", lambda _: SimpleNamespace(free=1000))
+    check_room(tmp_path / "a.gif", 1000)
+    with pytest.raises(LissomError, match="MB left"):
+        check_room(tmp_path / "a.gif", 1001)
 
 
 def test_a_folder_that_may_not_be_written_to_is_refused(tmp_path, monkeypatch):

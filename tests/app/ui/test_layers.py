@@ -833,8 +833,10 @@ def test_another_picture_keeps_handles_keys_and_joints(window, posed, tmp_path):
     window.act(layering.move, arm, 1)
     before = posed.document
     green = saved(tmp_path / "green.png", painted((85, 66, 205, 99), (30, 180, 60, 255)))
+    window.act(layering.choose, identity(posed, "body"))
     window.act(layering.replace_picture, arm, green)
     window.settle()
+    assert posed.active == arm
     figure, old = posed.document.figure(arm), before.figure(arm)
     assert posed.history.undo_label == "Replace picture"
     assert figure.picture is not old.picture

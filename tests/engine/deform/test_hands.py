@@ -241,3 +241,11 @@ def test_a_hand_of_unbounded_force_holds():
     assert not wishes[0].is_same(deformer.handles.wish(OUT, None, (Hand([1]),)))
     other = deformer.handles.wish(OUT, None, (Hand([2]),))
     assert not other.is_same(deformer.handles.wish(OUT, None, (Hand([1]),)))
+
+
+def test_hands_hold_all_where_each_handle_is_in_one():
+    def holds_all(*handles):
+        return HANDLES.wish(OUT, None, [Hand(each, FORCE) for each in handles]).hands.hold_all
+
+    assert holds_all([0, 1, 2], [3, 4, 5])
+    assert not holds_all([0, 1, 2], [3, 4])

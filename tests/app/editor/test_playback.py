@@ -1,0 +1,37 @@
+"""Where playback begins and ends, and when a hand on a track comes first."""
+
+from dataclasses import replace
+
+import pytest
+from documents import altered, disc_document
+from sessions import session_of
+
+from app.document import FrameRange
+from app.editor.actions import playback, tracking
+
+
+@pytest.fixture
+def session(tmp_path):
+    """A disc in a scene of 40 frames, of which 10 to 30 play."""
+    document = replace(
+        altered(disc_document(), frames=FrameRange(0, 40)), preview=FrameRange(10, 30)
+    )
+    return session_of(document, tmp_path)
+
+
+def test_playhead_goes_to_both_ends_of_what_plays(session):
+    playback.seek(session, 20)
+    playback.to_start(session)
+    assert session.project.playhead.frame == 10
+    playback.to_end(session)
+    assert session.project.playhead.frame == 30
+
+
+def test_hand_on_a_track_comes_first_only_while_it_drags(session, monkeypatch):
+    project = session.project
+    monkeypatch.setattr(type(project), "chosen_track", 0)
+    assert not tracking.is_under_way(session, project)
+    session.pointer = object()
+    assert tracking.is_under_way(session, project)
+    monkeypatch.setattr(type(project), "chosen_track", None)
+    assert not tracking.is_under_way(session, project)
