@@ -131,6 +131,7 @@ def check(bent):
     return look
 
 
+@pytest.mark.usefixtures("everything")
 def test_in_betweens_are_there_when_the_playhead_leaves_a_pose_on_its_way(window, bent, check):
     window.session.clock = count().__next__  # the solver takes one step at a time
     pull(window, bent, 80j)
