@@ -1,6 +1,7 @@
 """What the window prepares before anybody asks, and what it leaves in the tests."""
 
 import pytest
+from bars import bend_bar
 
 from app.editor import Session
 from app.editor.actions import playback
@@ -34,7 +35,10 @@ def test_window_prepares_everything_unasked(bent):
     assert all(prepared(bent).values()), prepared(bent)
 
 
-def test_window_of_tests_prepares_only_what_is_shown(window, bent):
+def test_window_of_tests_prepares_only_what_is_shown(window):
+    # The tab Export asks for the extent of the motion.
+    window.show_tab("Handle")
+    bent = window.again(bend_bar)
     assert not any(prepared(bent).values()), prepared(bent)
     playback.seek(window.session, HALFWAY)
     window.settle()
