@@ -22,7 +22,6 @@ from app.motion.inbetweens import (
     Carried as Carried,
     Ground as Ground,
     PoseSampler as PoseSampler,
-    still_handles as still_handles,
 )
 from app.motion.interval_store import IntervalPart as IntervalPart, IntervalStore as IntervalStore
 from app.motion.intervals import (

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import NamedTuple
 
-from app.document import Clip, Document, clip_of, resting_pose, time_of
+from app.document import Clip, Document, clip_of
 from app.motion.inbetweens import (
     Corrections,
     FrameCorrection,
@@ -17,7 +17,6 @@ from app.motion.joints import carried_in
 
 BATCH = 2  # frames that are solved before a worker looks for more urgent work
 GROUNDS = 6  # the same of frames of which only the ground is wanted
-MOST_ROUGH = 2_000  # frames of which the rigid motion is worked out ahead
 
 Found = Mapping[int, FrameCorrection | None]
 
@@ -27,15 +26,13 @@ class FoundCorrections(NamedTuple):
 
     corrections: Corrections
     exact: Found
-    rough: Found
     grounds: Mapping[int, Ground]
 
 
 class CorrectedFrames:
     """The corrections of a clip's whole frames; of the main thread alone.
 
-    Until a frame's own is there, its rigid motion stands in for it, or else what an earlier clip of
-    the figure had there.
+    Until a frame's own is there, what an earlier clip of the figure had there stands in for it.
 
     Attributes
     ----------
@@ -49,8 +46,7 @@ class CorrectedFrames:
         self._exact: dict[int, FrameCorrection | None] = {}
         self._rough: dict[int, FrameCorrection | None] = {}
         self._grounds: dict[int, Ground] = {}
-        # What tracks added to the frames of an earlier clip, and to the one that was watched last.
-        self._added: dict[int, FrameCorrection] = {}
+        # Of the frame that was watched last.
         self._latest: FrameCorrection | None = None
         if earlier is not None:
             self._take_over(earlier)
@@ -64,25 +60,12 @@ class CorrectedFrames:
         if not self._is_asked:
             return
         self._rough = {**earlier._rough, **earlier._exact}  # noqa: SLF001
-        if self.clip.figure.tracks:
-            added = {frame: earlier.own_at(frame) for frame in self._rough}
-            self._added = {frame: each for frame, each in added.items() if each is not None}
-        # A key is still by itself: of a frame that has become one, only what tracks add stays.
-        for frame in self.clip.figure.key_frames - earlier.clip.figure.key_frames:
-            self._rough[frame] = self._added.get(frame)
 
     def at(self, clip: Clip, frame: int) -> FrameCorrection | None:
         """Return the best that is known of a frame of a clip; of another one there is nothing."""
-        if clip != self.clip or not self._is_asked or self._is_resting(frame):
+        if clip != self.clip or not self._is_asked:
             return None
         return self._exact[frame] if frame in self._exact else self._rough.get(frame)
-
-    def own_at(self, frame: int) -> FrameCorrection | None:
-        """Return what tracks alone add to a frame, as far as that is known."""
-        found, ground = self.at(self.clip, frame), self._grounds.get(frame)
-        if found is None or ground is None:
-            return self._added.get(frame)
-        return found.beyond(ground.still)
 
     def corrects(self, clip: Clip) -> bool:
         """Tell whether frames of a clip may be corrected."""
@@ -92,15 +75,7 @@ class CorrectedFrames:
         """Tell whether that is what the frame has."""
         if clip != self.clip or not self._is_asked:
             return True
-        return frame in self._exact or self._is_resting(frame)
-
-    def _is_resting(self, frame: int) -> bool:
-        """Whether a frame shows a key's pose, to which neither tracks nor springs add anything."""
-        figure = self.clip.figure
-        enabled = [each.enabled for each in figure.tracks]
-        if any(enabled) or any(each.enabled for each in figure.springs):
-            return False
-        return resting_pose(self.clip, time_of(self.clip, frame)) is not None
+        return frame in self._exact
 
     def ground(self, frame: int) -> Ground | None:
         """Return what tracks are relative to at a frame, if that is known."""
@@ -117,10 +92,7 @@ class CorrectedFrames:
         return 0 if self._corrections is None else self._corrections.nbytes
 
     def rest(self) -> None:
-        """Let go of what frames are found with, where all are there; the next edit needs it again.
-
-        It is most of what is held of a figure whose handles stay.
-        """
+        """Let go of what frames are found with, where all are there, until the next edit."""
         if self.is_whole:
             self._corrections = None
 
@@ -145,9 +117,8 @@ class CorrectedFrames:
 
     def lead(self, frame: int) -> None:
         """Let what was found last of tracks stand in at a frame until its own is there."""
-        ground = self._grounds.get(frame)
-        if ground is not None and self._latest is not None and frame not in self._exact:
-            self._rough[frame] = self._latest.after(ground.still)
+        if self._latest is not None and frame not in self._exact:
+            self._rough[frame] = self._latest
 
     def missing(
         self, document: Document, frame: int, siblings: Mapping[int, PoseSampler]
@@ -155,11 +126,10 @@ class CorrectedFrames:
         """Return what finds the corrections that are wanted next, the nearest to a frame first."""
         if self.is_whole or not self._is_known(siblings):
             return None
-        if self._corrections is None:
-            return partial(_begin, document, self.clip, siblings)
         lacking = [each for each in self._frames if each not in self._exact]
         lacking.sort(key=lambda each: abs(each - frame))
-        return partial(_find, self._corrections, lacking[:BATCH])
+        begin = partial(_prepare, self._corrections, document, self.clip, siblings)
+        return lambda: _find(begin(), lacking[:BATCH])
 
     def missing_here(
         self, document: Document, frame: int, siblings: Mapping[int, PoseSampler]
@@ -200,12 +170,9 @@ class CorrectedFrames:
             self._corrections = found.corrections.with_tracks(self.clip)
         for frame, ground in found.grounds.items():
             self._grounds.setdefault(frame, ground)
-        for frame, rigid in found.rough.items():
-            added = self._added.get(frame)
-            self._rough[frame] = rigid if added is None else added.after(rigid)
         (self._exact if clip == self.clip else self._rough).update(found.exact)
-        for frame, each in found.exact.items() if is_newest else ():
-            self._latest = None if each is None else each.beyond(found.grounds[frame].still)
+        for each in found.exact.values() if is_newest else ():
+            self._latest = each
 
 
 def _prepare(
@@ -225,21 +192,13 @@ def _prepare(
     return Corrections(clip, clip.figure.variant, sibling, carried)
 
 
-def _begin(document: Document, clip: Clip, siblings: Mapping[int, PoseSampler]) -> FoundCorrections:
-    """Prepare a clip's corrections, and find the rigid motion of its frames."""
-    corrections = _prepare(None, document, clip, siblings)
-    frames = range(clip.frames.first, clip.frames.last + 1)[:MOST_ROUGH]
-    rough = {frame: corrections.rigid_at(frame) for frame in frames}
-    return FoundCorrections(corrections, {}, rough, {})
-
-
 def _find(
     corrections: Corrections, frames: Sequence[int], grounds: Sequence[int] = ()
 ) -> FoundCorrections:
     """Find the corrections of some frames with their grounds, and the grounds of others."""
     exact = {frame: corrections.at(frame) for frame in frames}
     known = {frame: corrections.ground_at(frame) for frame in (*frames, *grounds)}
-    return FoundCorrections(corrections, exact, {}, known)
+    return FoundCorrections(corrections, exact, known)
 
 
 def corrected_clip(

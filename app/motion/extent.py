@@ -8,7 +8,6 @@ import numpy as np
 from app.document import Document, FrameRange, clip_of, exported_frames, framed_frames
 from app.errors import LissomError
 from app.motion.corrected_frames import CorrectedFrames
-from app.motion.inbetweens import is_corrected
 from app.motion.interval_store import IntervalStore
 from app.motion.joints import Joints
 from engine.arrays import Complexes
@@ -49,8 +48,7 @@ def extent_source(document: Document) -> tuple[object, ...]:
             figure.joints,
             figure.movement,
             figure in document.exported,
-            is_corrected(clip_of(document, figure.id))
-            and (figure.stillness, figure.handles, figure.tracks, figure.springs),
+            (figure.stillness, figure.handles, figure.tracks, figure.springs),
         )
         for figure in document.figures
     ]

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from app.document import Clip, Pose, time_of, transits
 from app.motion.compared import RememberedFrames, prepare_compared
-from app.motion.inbetweens import Pair, PoseSampler, pair_of
+from app.motion.inbetweens import AutoPins, Pair, PoseSampler, pair_of, poses_of
 from app.motion.posable_mesh import PosableMesh
 from engine.arrays import Complexes
 from engine.interpolation import Inbetweens, Sites
@@ -105,7 +105,7 @@ def prepare_intervals(
             sampler=None,
             intervals={
                 pair_of(clip, number): KnownInterval(
-                    poses=tuple(key.pose for key in every[number].keys),
+                    poses=poses_of(clip, number),
                     inbetweens=prepare_compared(clip, clip.baseline, number, mesh.domain),
                 )
                 for number in wanted
@@ -115,10 +115,11 @@ def prepare_intervals(
         is_sibling = sampler is not None and sampler.domain.cage is mesh.domain.cage
         sibling = sampler if is_sibling else None
         sampler = PoseSampler(mesh.domain, anchor=figure.anchor, sibling=sibling)
+    pins = AutoPins(clip, figure.variant, sampler)
     intervals = {
         pair_of(clip, number): KnownInterval(
-            poses=tuple(key.pose for key in every[number].keys),
-            inbetweens=sampler.inbetweens_of(every[number], figure.bounds, figure.variant),
+            poses=poses_of(clip, number),
+            inbetweens=pins.inbetweens(number, sampler),
             kept=sampler.kept(every[number], figure.bounds, figure.variant),
             sites=sampler.sites,
         )
@@ -144,12 +145,10 @@ def prepare_frame(
     moment, figure = time_of(clip, frame), clip.figure
     if not sampler.makes_single_frames(figure.variant):
         return prepare_intervals(clip, [moment.interval], mesh, sampler, keep=keep)
-    transit, pair = transits(clip)[moment.interval], pair_of(clip, moment.interval)
-    alone = sampler.frame_of(transit, figure.bounds, figure.variant, moment.weight)
+    pair, pins = pair_of(clip, moment.interval), AutoPins(clip, figure.variant, sampler)
+    alone = pins.frame(moment.interval, sampler, moment.weight)
     one = OneFrame(pair, moment.weight, alone.positions)
-    return FoundIntervals(
-        sampler, {pair: KnownInterval(tuple(key.pose for key in transit.keys), one=one)}
-    )
+    return FoundIntervals(sampler, {pair: KnownInterval(poses_of(clip, moment.interval), one=one)})
 
 
 class Build:

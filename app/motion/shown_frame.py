@@ -41,7 +41,7 @@ class Shown:
     # What is shown instead until the in-between is there: one of its two keys, or another of their
     # in-betweens; or what was drawn of another domain.
     stand_in: Pose | OneFrame | Domain | None = None
-    correction: FrameCorrection | None = None  # what is added to the motion from key to key
+    correction: FrameCorrection | None = None  # what tracks and springs add
     is_rough: bool = False  # whether that only stands in for the frame's own
     # Where the figure is in the scene; all else is where it is by itself.
     placement: RigidMotion = HERE
@@ -114,7 +114,7 @@ def show(
     domain, moment = clip.figure.domain, time_of(clip, frame)
     correction, is_rough = None, False
     if corrected is not None and pose is not None:
-        correction = corrected.own_at(frame)
+        correction = corrected.at(corrected.clip, frame)
     elif corrected is not None:
         correction, is_rough = corrected.at(clip, frame), not corrected.is_exact(clip, frame)
     pose = pose or resting_pose(clip, moment)

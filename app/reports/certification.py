@@ -193,15 +193,15 @@ def _interval_report(
         for key in ((start, start) if held else (start, end, *transit.keys))
     ]
     bound = ends[0].joined(ends[1])
-    limits = bound
-    if transit.is_joined:
-        bounds = figure.bounds
-        limits = reduce(Extremes.joined, ends, Extremes(bounds.k, bounds.sigma_a, bounds.sigma_b))
     inbetweens = (
         animation.sampler.inbetweens(start.pose, start.pose, animation.variant)
         if held
-        else animation.sampler.inbetweens_of(transit, figure.bounds, animation.variant)
+        else animation.base.inbetweens(number)
     )
+    limits = bound
+    if transit.is_joined or inbetweens.pins is not None:
+        bounds = figure.bounds
+        limits = reduce(Extremes.joined, ends, Extremes(bounds.k, bounds.sigma_a, bounds.sigma_b))
     proof = prove(inbetweens)
     return IntervalReport(
         first=span.start,

@@ -96,7 +96,7 @@ def report_corrected(
     frames = range(clip.frames.first, clip.frames.last + 1)
     corrections = {frame: animation.corrections.at(frame) for frame in frames}
     found = {frame: each for frame, each in corrections.items() if each is not None}
-    solved = [frame for frame, each in found.items() if each.phi is not None]
+    solved = list(found)
     # Repeats of a cycle have the very same corrections; each is looked at once.
     same = {frame: (id(found[frame]), time_of(clip, frame)) for frame in solved}
     once = {each: frame for frame, each in reversed(same.items())}
@@ -123,18 +123,18 @@ def _proven(
     """Return what is proven of a solved frame; None of a variant that allows no proof."""
     clip, corrections = animation.clip, animation.corrections
     correction = None if corrections is None else corrections.at(frame)
-    if correction is None or correction.phi is None or correction.psi is None:
+    if correction is None:
         return None
     bounds = Bounds(**limits._asdict()) if limits.k < 1 else clip.figure.bounds
     added = np.column_stack([correction.phi, correction.psi]).astype(np.complex128)
-    factor, moment = correction.motion.factor, time_of(clip, frame)
+    moment = time_of(clip, frame)
     resting = resting_pose(clip, moment)
     if resting is not None:
-        f = clip.figure.map_of(resting).moved(factor, 0.0).changed(*added.T)
+        f = clip.figure.map_of(resting).changed(*added.T)
         proof: Certificate | None = certify(f, boundary, bounds)
     else:
         inbetweens = animation.base.inbetweens(moment.interval)
-        proof = prove_frame(inbetweens, moment.weight, added, bounds, factor=factor)
+        proof = prove_frame(inbetweens, moment.weight, added, bounds)
     return None if proof is None else Extremes(proof.k, proof.sigma_a, proof.sigma_b)
 
 

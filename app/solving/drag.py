@@ -284,7 +284,7 @@ def pose_at(rig: Rig, clip: Clip, frame: float, sibling: PoseSampler | None = No
     sampler = PoseSampler(
         figure.domain, anchor=figure.anchor, points=boundary.points, sibling=sibling
     )
-    blended = Animation(clip, points=boundary.points, sampler=sampler).still_frame(frame)
+    blended = Animation(clip, points=boundary.points, sampler=sampler).base.frame(frame)
     fitted = fit_map(boundary, blended.fz, blended.fzbar, blended.positions)
     for share in (1.0, 0.5, 0.25, 0.0):
         own = figure.map_of(near)

@@ -5,6 +5,7 @@ Out: samples, pieces, triangles, distances, areas, and whether something is insi
 Imports: `engine.arrays`, `engine.errors`.
 """
 
+from engine.geometry.best_rigid import best_rigid as best_rigid
 from engine.geometry.hole import Hole as Hole, require_cages_in_holes as require_cages_in_holes
 from engine.geometry.polygon import (
     ON_OUTLINE as ON_OUTLINE,

@@ -25,6 +25,12 @@ from engine.interpolation.passage import (
     Passage as Passage,
     sample_keyframes as sample_keyframes,
 )
+from engine.interpolation.pins import (
+    BaseAt as BaseAt,
+    Pins as Pins,
+    PinSeries as PinSeries,
+    pin as pin,
+)
 from engine.interpolation.preparation import (
     Prepared as Prepared,
     interval_at as interval_at,

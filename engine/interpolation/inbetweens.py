@@ -1,7 +1,8 @@
 """In-betweens of two keyframes by one variant, as functions of time from one to the other."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 
@@ -9,6 +10,7 @@ from engine.arrays import Complexes, Floats, Indices, held_bytes
 from engine.interpolation.blends import Blend
 from engine.interpolation.passage import Derivatives, Passage, weighted
 from engine.interpolation.periods import Closing
+from engine.interpolation.pins import FoldedPins, PinSeries
 from engine.interpolation.scaling import Scaling
 from engine.interpolation.series import Residual
 from engine.interpolation.sites import Sites
@@ -53,6 +55,8 @@ class Inbetweens:
     conformal_closing : Closing or None
         Around holes, where Ψ is scaled: of d, which leads on to closed periods without any Ψ
         (`engine.interpolation.scaling.pointwise`).
+    pins : FoldedPins or None
+        Of handles that stay; what they add comes last.
     """
 
     sites: Sites
@@ -60,6 +64,7 @@ class Inbetweens:
     scale: Scaling | None = None
     closing: Closing | None = None
     conformal_closing: Closing | None = None
+    pins: FoldedPins | None = None
 
     @property
     def passage(self) -> Passage:
@@ -95,71 +100,86 @@ class Inbetweens:
         """Return ρ; 1 where Ψ is not scaled."""
         return 1.0 if self.scale is None else self.scale(time)
 
+    def pinned(self, pins: PinSeries) -> Self:
+        """Return the same with handles that stay."""
+        sites = self.sites
+        return replace(self, pins=FoldedPins.of(pins, sites.boundary.span, sites.paths.nodes))
+
+    def anchor_position(self, time: float) -> complex:
+        """Return where the anchor is."""
+        return complex(self.anchor_positions(np.array([time]))[0])
+
+    def anchor_positions(self, times: Floats) -> Complexes:
+        """Return the same at times (t,)."""
+        positions = self.passage.anchor_positions(times)
+        return positions if self.pins is None else positions + self.pins.pins.shift(times)
+
     def derivatives_at(self, which: Indices) -> Callable[[Floats], tuple[Complexes, Complexes]]:
         """Return f_z and f_z̄ of some of the points (p,) as functions of times (t,), (t, p) each."""
         nodes = self.sites.paths.places[which]
         blend, conformal = self.blend.at(nodes), self._conformal and self._conformal.at(nodes)
+        pins = None if self.pins is None else self.pins.at(nodes)
 
         def derivatives(times: Floats) -> tuple[Complexes, Complexes]:
             fz, g = blend.values(times)
-            fzbar = np.conj(g, out=g)
             if self.scale is not None:
                 rho = self.scale.at(times)[:, None]
-                fzbar *= rho
+                g *= rho
                 if conformal is not None:
                     fz *= rho + (1.0 - rho) * np.exp(conformal.at_times(times))
-            return fz, fzbar
+            if pins is not None:
+                fz, g = pins.changed_values(fz, g, blend.passage, times)
+            return fz, np.conj(g, out=g)
 
         return derivatives
 
     def offsets(self, time: float) -> Complexes:
         """Return f − f(anchor) at the points, (m,)."""
-        rho = self.rho(time)
-        return self._offsets(self._blended(time, rho), time, rho)
+        return self._offsets(self._blended(time), time)
 
     def frame(self, time: float) -> Frame:
         """Return the in-between at a time in [0, 1]."""
-        rho = self.rho(time)
-        blended = self._blended(time, rho)
+        blended = self._blended(time)
         places = self.sites.paths.places
         return Frame(
-            positions=self.passage.anchor_position(time) + self._offsets(blended, time, rho),
+            positions=self.anchor_position(time) + self._offsets(blended, time),
             fz=blended.fz[places],
-            fzbar=rho * blended.g[places].conj(),
-            rho=None if self.scale is None else rho,
+            fzbar=blended.g[places].conj(),
+            rho=None if self.scale is None else self.rho(time),
         )
 
-    def _blended(self, time: float, rho: float) -> Derivatives:
-        """Return the derivatives of a frame, Ψ' and Ψ'' before their scaling by ρ.
+    def _blended(self, time: float) -> Derivatives:
+        """Return the derivatives of a frame.
 
         Around holes ρ scales Φ a little, too: Φ' is the mean of that for ρ = 0, F e^d, and that for
         ρ = 1, F (`engine.interpolation.scaling.pointwise`).
         """
         blended = self.blend.derivatives(time)
-        if self._conformal is None:
-            return blended
-        d, d_z = np.zeros_like(blended.fz), np.zeros_like(blended.fz)
-        self._conformal.add_to(d, d_z, time)
-        alone = (1.0 - rho) * np.exp(d)
-        share = rho + alone
-        return blended._replace(
-            fz=blended.fz * share, fzz=blended.fzz * share + blended.fz * alone * d_z
-        )
+        if self.scale is not None:
+            rho = self.rho(time)
+            blended = blended._replace(g=rho * blended.g, gz=rho * blended.gz)
+            if self._conformal is not None:
+                d, d_z = np.zeros_like(blended.fz), np.zeros_like(blended.fz)
+                self._conformal.add_to(d, d_z, time)
+                alone = (1.0 - rho) * np.exp(d)
+                share = rho + alone
+                blended = blended._replace(
+                    fz=blended.fz * share, fzz=blended.fzz * share + blended.fz * alone * d_z
+                )
+        return blended if self.pins is None else self.pins.changed(blended, self.passage, time)
 
-    def _offsets(self, blended: Derivatives, time: float, rho: float) -> Complexes:
-        """Return Φ + ρ conj(Ψ), both 0 at the anchor; one sum along the paths serves both."""
+    def _offsets(self, blended: Derivatives, time: float) -> Complexes:
+        """Return Φ + conj(Ψ), both 0 at the anchor; one sum along the paths serves both."""
         keyframes, weights = self.passage.keyframes, self.passage.course(time)
         paths = self.sites.paths
         steps = paths.step_integrals(blended.fz, blended.fzz)
         conj_psi = paths.step_integrals(blended.g, blended.gz)
-        np.conj(conj_psi, out=conj_psi)
-        conj_psi *= rho
-        steps += conj_psi
+        steps += np.conj(conj_psi, out=conj_psi)
         # What the quadrature lacks of the keyframes is known, and blended like them: the keyframes
         # come out exactly, without a jump in time.
         errors = weighted([key.psi_error for key in keyframes], weights)
         np.conj(errors, out=errors)
-        errors *= rho
+        errors *= self.rho(time)
         errors += weighted([key.phi_error for key in keyframes], weights)
         errors += paths.integrals(steps)
         return errors

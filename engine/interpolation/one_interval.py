@@ -8,6 +8,7 @@ from engine.interpolation.blends import BLENDS, Blend
 from engine.interpolation.inbetweens import Frame, Inbetweens
 from engine.interpolation.passage import Interval
 from engine.interpolation.periods import Unclosed, close, to_conformal
+from engine.interpolation.pins import PinSeries
 from engine.interpolation.scaling import Scaling
 from engine.interpolation.sites import Sites
 from engine.variant import Variant
@@ -27,7 +28,9 @@ def prepare_inbetweens(variant: Variant, interval: Interval) -> Inbetweens:
     return _closed(BLENDS[variant].of(interval), interval.sites)
 
 
-def frame_at(time: float, variant: Variant, interval: Interval) -> Frame:
+def frame_at(
+    time: float, variant: Variant, interval: Interval, pins: PinSeries | None = None
+) -> Frame:
     """Return one in-between, where no other is wanted yet: what `prepare_inbetweens` gives then.
 
     Of the metric variant it costs less, since one Dirichlet problem is solved and not one for each
@@ -42,8 +45,10 @@ def frame_at(time: float, variant: Variant, interval: Interval) -> Frame:
     if not 0.0 <= time <= 1.0:
         raise EngineError(f"An interval runs from time 0 to 1; {time:g} is outside.")
     if interval.sites.period_basis is not None:
-        return prepare_inbetweens(variant, interval).frame(time)
-    return _closed(BLENDS[variant].only_at(time, interval), interval.sites).frame(time)
+        found = prepare_inbetweens(variant, interval)
+    else:
+        found = _closed(BLENDS[variant].only_at(time, interval), interval.sites)
+    return (found if pins is None else found.pinned(pins)).frame(time)
 
 
 def _closed(blend: Blend, sites: Sites) -> Inbetweens:

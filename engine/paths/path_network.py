@@ -105,7 +105,7 @@ def mesh_network(
     is_simple = not holes and areas.min(initial=1.0) > 0
     first, second = (along - against if is_simple else along + against).nonzero()
     ends = np.column_stack([first, second])[first < second]
-    crossing = _crosses(loops, vertices[ends[:, 0]], vertices[ends[:, 1]])
+    crossing = leave_region(loops, vertices[ends[:, 0]], vertices[ends[:, 1]])
     if crossing.any():
         first, second = ends[np.flatnonzero(crossing)[0]]
         raise EngineError(
@@ -113,7 +113,7 @@ def mesh_network(
             "triangles of the inside only, or none."
         )
     nearest = np.argsort(np.abs(vertices - anchor), kind="stable")[:NEIGHBOURS]
-    seen = nearest[~_crosses(loops, np.repeat(anchor, len(nearest)), vertices[nearest])]
+    seen = nearest[~leave_region(loops, np.repeat(anchor, len(nearest)), vertices[nearest])]
     if not len(seen):
         raise EngineError(
             f"No point of the mesh near the anchor {anchor[0]:.6g} can be reached straight; choose "
@@ -179,7 +179,7 @@ def with_loops(
             distance = np.abs(network.nodes[reached] - along[begin])
             nearest = reached[np.argsort(distance, kind="stable")[:NEIGHBOURS]]
             from_loop = np.repeat(along[begin], len(nearest))
-            seen = nearest[~_crosses((outline, *holes), from_loop, network.nodes[nearest])]
+            seen = nearest[~leave_region((outline, *holes), from_loop, network.nodes[nearest])]
             if len(seen):
                 break
         else:
@@ -202,7 +202,7 @@ def _directed(triangles: Integers, count: int) -> tuple[csr_array, csr_array]:
     return along, along.T.tocsr()
 
 
-def _crosses(loops: Sequence[Complexes], starts: Complexes, ends: Complexes) -> Booleans:
+def leave_region(loops: Sequence[Complexes], starts: Complexes, ends: Complexes) -> Booleans:
     """Tell for each segment whether it leaves the region by more than rounding."""
     tolerance = 2 * ON_OUTLINE * box_diagonal(loops[0])
     # Nearly all segments stay away from the boundary; only the others need the exact test.

@@ -59,15 +59,14 @@ class Positions:
 
     def sample(self, time: float) -> Floats:
         """Integrate along the paths; the keyframes are returned as they are."""
-        passage = self.inbetweens.passage
         if time in (0.0, 1.0):
-            return _reals(passage.ends[int(time)].positions)
-        return _reals(passage.anchor_position(time) + self.inbetweens.offsets(time))
+            return _reals(self.inbetweens.passage.ends[int(time)].positions)
+        return _reals(self.inbetweens.anchor_position(time) + self.inbetweens.offsets(time))
 
     def probe(self, times: Floats) -> Floats:
         """Return f_z and f_z̄ of some points, in units of length, and the anchor."""
         fz, fzbar = self.derivatives(times)
-        anchor = self.inbetweens.passage.anchor_positions(times)[:, None]
+        anchor = self.inbetweens.anchor_positions(times)[:, None]
         return _reals(np.hstack([self.length * fz, self.length * fzbar, anchor]))
 
 

@@ -5,6 +5,11 @@ Out: answers; nothing is changed.
 Imports: the values of `app.document`.
 """
 
+from app.document.queries.auto_pins import (
+    PinnedSegment as PinnedSegment,
+    pinned_handles as pinned_handles,
+    pinned_segments as pinned_segments,
+)
 from app.document.queries.clips import (
     Clip as Clip,
     clip_of as clip_of,

@@ -6,6 +6,7 @@ Imports: `app.document`, `app.errors`.
 """
 
 from app.motion.inbetweens.animation import Animation as Animation
+from app.motion.inbetweens.auto_pins import AutoPins as AutoPins
 from app.motion.inbetweens.correction import FrameCorrection as FrameCorrection
 from app.motion.inbetweens.corrections import (
     Corrections as Corrections,
@@ -14,6 +15,5 @@ from app.motion.inbetweens.corrections import (
     is_corrected as is_corrected,
 )
 from app.motion.inbetweens.own_clocks import Carried as Carried
-from app.motion.inbetweens.pairs import Pair as Pair, pair_of as pair_of
+from app.motion.inbetweens.pairs import Pair as Pair, pair_of as pair_of, poses_of as poses_of
 from app.motion.inbetweens.pose_sampler import PoseSampler as PoseSampler
-from app.motion.inbetweens.stillness import still_handles as still_handles

@@ -2,7 +2,6 @@
 
 from app.document import Clip, Variant
 from app.motion.inbetweens.base_motion import BaseMotion
-from app.motion.inbetweens.correction import FrameCorrection
 from app.motion.inbetweens.corrections import Corrections, is_corrected
 from app.motion.inbetweens.own_clocks import Carried
 from app.motion.inbetweens.pose_sampler import PoseSampler
@@ -27,7 +26,7 @@ class Animation:
     Attributes
     ----------
     base : BaseMotion
-        The closed-form motion from key to key.
+        The motion from key to key, with handles that stay, and without tracks and springs.
     carried : callable, optional
         Where the figure hangs, at a frame, for what is planted in the scene; by itself without.
     """
@@ -69,16 +68,8 @@ class Animation:
 
     def frame(self, frame: float) -> Frame:
         """Return positions and derivatives of the points at a frame."""
-        corrections = self.corrections
-        return self._corrected(frame, corrections.at(frame) if corrections else None)
-
-    def still_frame(self, frame: float) -> Frame:
-        """Return the same without tracks and springs."""
-        corrections = self.corrections
-        return self._corrected(frame, corrections.still_at(frame) if corrections else None)
-
-    def _corrected(self, frame: float, correction: FrameCorrection | None) -> Frame:
-        base = self.base.frame(frame)
+        base, corrections = self.base.frame(frame), self.corrections
+        correction = None if corrections is None else corrections.at(frame)
         if correction is None:
             return base
         domain = self.clip.figure.domain

@@ -1,4 +1,4 @@
-"""The corrections of a clip's frames: stillness first, then springs and tracks over it.
+"""The corrections of a clip's frames: springs and tracks over the motion from key to key.
 
 Each frame is worked out by itself, and known by all that it follows from, so that undo, a copied
 key and another window onto the same figure find what was made before.
@@ -11,19 +11,24 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.document import Clip, Extremes, Variant, resting_pose, stiffened, time_of, transits
+from app.document import (
+    Clip,
+    Extremes,
+    Variant,
+    pinned_segments,
+    resting_pose,
+    stiffened,
+    time_of,
+)
 from app.motion.inbetweens.base_motion import BaseMotion
 from app.motion.inbetweens.correction import FrameCorrection
 from app.motion.inbetweens.own_clocks import Carried, OwnClocks, Wanted
-from app.motion.inbetweens.pairs import pair_of
+from app.motion.inbetweens.pairs import pair_of, poses_of
 from app.motion.inbetweens.pose_sampler import PoseSampler
-from app.motion.inbetweens.stillness import Lack, Stillness, still_handles
 from engine.arrays import Complexes, Floats, Indices
 from engine.deform.model import Jet
-from engine.deform.relative import Corrected, Corrector, Pins, best_rigid
-from engine.geometry import RigidMotion
+from engine.deform.relative import Corrected, Corrector, Pins
 
-LEFT_OVER = 0.02  # pixels that handles may lack after the rigid motion without being solved for
 BESIDE = 0.03  # of the diagonal: handles nearer to an anchor, or to one that goes, give way
 KEPT = 2**26  # bytes of corrections of one outline that are kept
 
@@ -35,13 +40,10 @@ class Ground(NamedTuple):
     ----------
     places, turns : complex128, shape (h,)
         Where the handles are without them, and by what factor the shape is turned there.
-    still : FrameCorrection or None
-        By which they are still.
     """
 
     places: Complexes
     turns: Complexes
-    still: FrameCorrection | None
 
 
 def have_one_ground(clip: Clip, other: Clip) -> bool:
@@ -60,12 +62,10 @@ def have_one_ground(clip: Clip, other: Clip) -> bool:
 
 
 def is_corrected(clip: Clip) -> bool:
-    """Tell whether some frame of a clip may be other than its closed-form motion."""
-    if clip.baseline is not None:
-        return False
+    """Tell whether tracks or springs may change frames of a clip."""
     figure = clip.figure
     own = [each.enabled for each in figure.tracks] + [each.enabled for each in figure.springs]
-    return any(own) or bool(still_handles(clip).any())
+    return clip.baseline is None and any(own)
 
 
 class Corrections:
@@ -109,25 +109,19 @@ class Corrections:
             sibling=sampler,
         )
         self._motion = BaseMotion(clip, variant, own)
-        self._stillness = Stillness(self._motion, self._handles)
         self._own = OwnClocks(clip, carried)
 
     def at(self, frame: float) -> FrameCorrection | None:
-        """Return what is added to the base motion at a frame; None where that is nothing."""
+        """Return what is added to the motion at a frame; None where that is nothing."""
         with self._lock:
-            base = self._base(frame)
-            lack = self._lack(frame, base)
-            still = self._still(frame, base, lack)
             if not self._own.acts(frame):
-                return still
-            moved = self._with(base, still)
-            places, fz = moved.positions[self._handles], moved.fz[self._handles]
+                return None
+            base = self._base(frame)
+            places, fz = base.positions[self._handles], base.fz[self._handles]
             # Told only now: if it were kept, nothing of this would go away with the last one who
             # has it.
-            wanted = self._own.wanted(frame, places, fz, self._still_places)
-            if wanted is None:
-                return still
-            return self._gone(frame, moved, lack, still or FrameCorrection(), wanted)
+            wanted = self._own.wanted(frame, places, fz, self._places)
+            return None if wanted is None else self._gone(frame, base, wanted)
 
     @property
     def nbytes(self) -> int:
@@ -145,31 +139,12 @@ class Corrections:
         """Return what tracks are relative to at a frame."""
         with self._lock:
             base = self._base(frame)
-            still = self._still(frame, base, self._lack(frame, base))
-            moved = self._with(base, still)
-            places, fz = moved.positions[self._handles], moved.fz[self._handles]
-            return Ground(places, fz / np.abs(fz), still)
+            fz = base.fz[self._handles]
+            return Ground(base.positions[self._handles], fz / np.abs(fz))
 
-    def still_at(self, frame: float) -> FrameCorrection | None:
-        """Return the same without tracks and springs."""
-        with self._lock:
-            base = self._base(frame)
-            return self._still(frame, base, self._lack(frame, base))
-
-    def rigid_at(self, frame: float) -> FrameCorrection | None:
-        """Return the rigid motion of a frame, which takes next to no time."""
-        with self._lock:
-            base = self._base(frame)
-            lack = self._lack(frame, base)
-            if lack is None or not lack.offsets.any():
-                return None
-            return FrameCorrection(motion=self._rigid(base, lack))
-
-    def _still_places(self, frame: float) -> Complexes:
+    def _places(self, frame: float) -> Complexes:
         """Return where the handles are at a frame before springs and tracks, (h,)."""
-        base = self._base(frame)
-        still = self._still(frame, base, self._lack(frame, base))
-        return self._with(base, still).positions[self._handles]
+        return self._base(frame).positions[self._handles]
 
     def _base(self, frame: float) -> Jet:
         found, count = self._motion.frame(frame), len(self._points)
@@ -180,56 +155,10 @@ class Corrections:
             fz=found.fz[:count],
         )
 
-    def _with(self, base: Jet, correction: FrameCorrection | None) -> Jet:
-        """Return a base corrected."""
-        if correction is None:
-            return base
-        moved = base.moved(correction.motion)
-        if correction.phi is None or correction.psi is None:
-            return moved
-        return moved.advanced(1.0, self._corrector.measured(correction.phi, correction.psi))
-
-    def _lack(self, frame: float, base: Jet) -> Lack | None:
-        return self._stillness.lack(frame, base.positions[self._handles])
-
-    def _rigid(self, base: Jet, lack: Lack) -> RigidMotion:
-        pivot = complex(base.positions[-1]) if self._is_hung else None
-        places = base.positions[self._handles]
-        return best_rigid(places, lack.offsets, lack.weights, pivot)
-
-    def _still(self, frame: float, base: Jet, lack: Lack | None) -> FrameCorrection | None:
-        """Return the correction by which handles stay."""
-        if lack is None or not lack.offsets.any():
-            return None
-        motion = self._rigid(base, lack)
-        moved = base.moved(motion)
-        places = moved.positions.copy()
-        wanted = base.positions[self._handles] + lack.offsets
-        places[self._handles] += lack.weights * (wanted - places[self._handles])
-        if np.abs(places - moved.positions).max() < LEFT_OVER:
-            return FrameCorrection(motion=motion)
-        pins = self._pins(places, lack.weights, np.full(len(wanted), np.nan), 1.0)
-
-        def solve() -> FrameCorrection:
-            found = self._corrector.correct(moved, pins, self.clip.figure.bounds)
-            phi, psi = self._anchored(found)
-            return FrameCorrection(
-                motion=motion,
-                phi=phi,
-                psi=psi,
-                limits=self._limits(moved, found),
-                steps=found.steps,
-            )
-
-        return self._remembered((*self._whose(frame), *_content(lack)), solve)
-
-    def _gone(
-        self, frame: float, base: Jet, lack: Lack | None, still: FrameCorrection, wanted: Wanted
-    ) -> FrameCorrection:
-        """Return the correction by which handles also go their own ways."""
+    def _gone(self, frame: float, base: Jet, wanted: Wanted) -> FrameCorrection:
+        """Return the correction by which handles go their own ways."""
         # Those beside one that goes its own way give way: held as firmly, they tear at it.
-        away = self._away_from(np.flatnonzero(wanted.firmness))
-        held = 0.0 if lack is None else lack.weights
+        away, held = self._away_from(np.flatnonzero(wanted.firmness)), self._held(frame)
         firmness = np.where(wanted.firmness > 0, wanted.firmness, away * (1.0 + held) - 1.0)
         places = base.positions.copy()
         places[self._handles] = wanted.places
@@ -241,17 +170,23 @@ class Corrections:
             handles = self.clip.figure.handles
             tracked = [i for i, handle in enumerate(handles) if handle.id in wanted.tracked]
             return FrameCorrection(
-                motion=still.motion,
-                phi=phi if still.phi is None else phi + still.phi,
-                psi=psi if still.psi is None else psi + still.psi,
+                phi=phi,
+                psi=psi,
                 misses={handles[i].id: float(found.misses[i]) for i in tracked},
                 wishes={handles[i].id: complex(wanted.places[i]) for i in tracked},
                 limits=self._limits(base, found),
-                steps=still.steps + found.steps,
+                steps=found.steps,
             )
 
-        key = (*self._whose(frame), *_content(lack or ()), *_content(wanted))
-        return self._remembered(key, solve)
+        return self._remembered((*self._whose(frame), *_content(wanted)), solve)
+
+    def _held(self, frame: float) -> Floats:
+        """Return how much auto-pins hold the handles at a frame, from 0 to 1, (h,)."""
+        moment = time_of(self.clip, frame)
+        segments = pinned_segments(self.clip)
+        segment = segments[moment.interval] if segments else None
+        count = len(self.clip.figure.handles)
+        return np.zeros(count) if segment is None else segment.weights(moment.weight)
 
     def _limits(self, base: Jet, found: Corrected) -> tuple[str, ...]:
         """Return what the bounds hold back of a correction that is found of a base."""
@@ -310,9 +245,8 @@ class Corrections:
         resting = resting_pose(clip, moment)
         if resting is not None:
             return resting, *self._of_what
-        poses = tuple(key.pose for key in transits(clip)[moment.interval].keys)
         pair = pair_of(clip, moment.interval, self._variant)
-        return poses, pair, moment.weight, *self._of_what
+        return poses_of(clip, moment.interval), pair, moment.weight, *self._of_what
 
 
 def _content(parts: Iterable[object]) -> tuple[object, ...]:

@@ -1,6 +1,6 @@
 """By what the in-betweens of two keys are known, whichever clip they are in."""
 
-from app.document import Clip, Variant, transits
+from app.document import Clip, Pose, Variant, pinned_segments, transits
 
 # The maps, their own and those of the keys around that the motion passes through, since handles may
 # come and go; turns, joints, bounds, anchor and variant.
@@ -15,6 +15,15 @@ def pair_of(clip: Clip, interval: int, variant: Variant | None = None) -> Pair:
     maps = [identity for key in transit.keys for identity in (id(key.pose.phi), id(key.pose.psi))]
     joined = (transit.start, transit.end, transit.apart, bounds) if transit.is_joined else ()
     if clip.baseline is None:
-        return *maps, *transit.turns, *joined, figure.anchor, variant or figure.variant
+        pinned = pinned_segments(clip)[interval]
+        pins = () if pinned is None else (pinned.content,)
+        return *maps, *transit.turns, *joined, figure.anchor, variant or figure.variant, *pins
     rest = (bounds, tuple(handle.position for handle in figure.handles), clip.frames)
     return *maps, *transit.turns, *joined, figure.anchor, clip.baseline, *rest
+
+
+def poses_of(clip: Clip, interval: int) -> tuple[Pose, ...]:
+    """Return the poses by whose identities these are known: they must be kept alive."""
+    pinned = pinned_segments(clip)[interval]
+    poses = tuple(key.pose for key in transits(clip)[interval].keys)
+    return poses if pinned is None else pinned.poses

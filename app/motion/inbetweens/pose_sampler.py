@@ -1,7 +1,7 @@
 """Points of a domain at which in-betweens are wanted, and the samples of poses there."""
 
 import threading
-from collections.abc import Sequence, Set as AbstractSet
+from collections.abc import Callable, Sequence, Set as AbstractSet
 from functools import partial
 
 import numpy as np
@@ -10,7 +10,9 @@ from app.document import Pose, Transit, Variant
 from app.errors import tell
 from app.motion.inbetweens.content_cache import ContentCache, digest
 from app.motion.inbetweens.correction import FrameCorrection
+from app.motion.inbetweens.pairs import Pair
 from engine.arrays import Complexes, freeze
+from engine.correction import Corrector, corrector_of
 from engine.dirichlet import Extension, HilbertTransform
 from engine.domain import Domain
 from engine.interpolation import (
@@ -23,6 +25,7 @@ from engine.interpolation import (
     Joint,
     KeyframeSamples,
     Passage,
+    PinSeries,
     Sites,
     Tangent,
     frame_at,
@@ -30,7 +33,7 @@ from engine.interpolation import (
     prepare_sites,
     sample_keyframes,
 )
-from engine.maps import Bounds, HarmonicMap
+from engine.maps import Boundary, Bounds, HarmonicMap
 from engine.paths import root_sheets
 
 # Outlines, transforms and keyframes that were sampled last, in bytes; what layers hold themselves
@@ -38,8 +41,18 @@ from engine.paths import root_sheets
 _SAMPLED = ContentCache(64 * 2**20)
 
 
-def _nbytes(value: Sites | HilbertTransform | Extension | KeyframeSamples) -> int:
+MOST_PINNED = 512  # segments of one outline whose pins are kept
+
+
+def _nbytes(value: Sites | HilbertTransform | Extension | KeyframeSamples | Corrector) -> int:
     return value.nbytes
+
+
+def corrector_for(boundary: Boundary, anchor: complex, points: Complexes) -> Corrector:
+    """Return what corrects frames of a domain with targets for points (m,)."""
+    content = digest(*boundary.loops, *boundary.span.cages, boundary.weights, points)
+    make = partial(corrector_of, boundary, anchor, points)
+    return _SAMPLED.find(("corrector", content, anchor), make, _nbytes)
 
 
 class OutlineKnowledge:
@@ -63,6 +76,22 @@ class OutlineKnowledge:
         self.nbytes = 0
         self.corrections: dict[object, FrameCorrection] = {}
         self.guard = threading.Lock()
+        # With the poses that keep the identities in their keys.
+        self._pins: dict[Pair, tuple[PinSeries, tuple[Pose, ...]]] = {}
+
+    def pins_of(
+        self, pair: Pair, poses: tuple[Pose, ...], solve: Callable[[], PinSeries]
+    ) -> PinSeries:
+        """Return the pins of a segment, solved where they are not known."""
+        with self.guard:
+            known = self._pins.pop(pair, None)
+        if known is None:
+            known = solve(), poses
+        with self.guard:
+            self._pins[pair] = known
+            while len(self._pins) > MOST_PINNED:
+                del self._pins[next(iter(self._pins))]
+        return known[0]
 
     @property
     def transform(self) -> HilbertTransform:
@@ -204,7 +233,14 @@ class PoseSampler:
         """Tell whether one in-between alone takes less time than all of its interval."""
         return variant.needs_transform and self.sites.period_basis is None
 
-    def frame_of(self, transit: Transit, bounds: Bounds, variant: Variant, weight: float) -> Frame:
+    def frame_of(
+        self,
+        transit: Transit,
+        bounds: Bounds,
+        variant: Variant,
+        weight: float,
+        pins: PinSeries | None = None,
+    ) -> Frame:
         """Return one of these in-betweens; a variant that `makes_single_frames` says so.
 
         Parameters
@@ -213,8 +249,10 @@ class PoseSampler:
             As in `inbetweens_of`.
         weight : float
             Its time from one key to the other, in [0, 1].
+        pins : PinSeries, optional
+            Of handles that stay.
         """
-        return frame_at(weight, variant, self._interval_of(transit, bounds, variant))
+        return frame_at(weight, variant, self._interval_of(transit, bounds, variant), pins)
 
     def kept(self, transit: Transit, bounds: Bounds, variant: Variant) -> tuple[float, float]:
         """Return how much of its velocity the bounds leave to the motion at both keys.

@@ -5,9 +5,9 @@ from functools import lru_cache
 import numpy as np
 from imgui_bundle import ImVec4
 
-from app.document import Clip, Track, falls_short, time_of, track_at
+from app.document import Clip, Track, falls_short, pinned_handles, time_of, track_at
 from app.editor import Project, Session
-from app.motion import AttachedPoints, Box, MotionPaths, PosableMesh, Shown, still_handles
+from app.motion import AttachedPoints, Box, MotionPaths, PosableMesh, Shown
 from app.render import Colour, Disc, HandleMark, Line, mark_anchor, mark_handles
 from app.ui.style import Palette, density, interface_scale
 from app.ui.viewport.paths import mark_path
@@ -144,7 +144,7 @@ def _located(mesh: PosableMesh, place: complex) -> AttachedPoints:
 
 @lru_cache(maxsize=4)
 def _still(clip: Clip) -> Booleans:
-    return still_handles(clip)
+    return pinned_handles(clip)
 
 
 def staying(shown: Shown) -> frozenset[int]:

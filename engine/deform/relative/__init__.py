@@ -11,4 +11,3 @@ from engine.deform.relative.corrector import (
     Corrector as Corrector,
 )
 from engine.deform.relative.pins import Pins as Pins
-from engine.deform.relative.rigid import best_rigid as best_rigid

@@ -22,3 +22,7 @@ from engine.interpolation.enclosing.pieces import (
     Subdivision as Subdivision,
     followed as followed,
 )
+from engine.interpolation.enclosing.sheets import (
+    Sheet as Sheet,
+    log_modulus_of_metric as log_modulus_of_metric,
+)

@@ -5,7 +5,8 @@ With L̃ the chord of L, which is off by ε, e^L is off its own chord by at most
     max |e^L̃| (|ΔL|² / 8 + e^ε − 1),
 
 as |e^L̃| is largest at an end and an eighth of the second derivative bounds what a chord lacks; and
-the product of two chords is off the chord of the products by |ΔA| |ΔB| / 4.
+the product of two chords is off the chord of the products by |ΔA| |ΔB| / 4. The reciprocal of L̃
+is off its own chord by |ΔL|² / (4 m³), where |L̃| ≥ m, and changes by ε / (m (m − ε)) at most.
 """
 
 from typing import Any, NamedTuple, Self
@@ -60,6 +61,15 @@ class Chord(NamedTuple):
         bend = np.abs(self.last - self.first) * np.abs(other.last - other.first) / 4
         error = self.size * other.error + other.size * self.error + self.error * other.error
         return type(self)(self.first * other.first, self.last * other.last, bend + error)
+
+    def reciprocal(self) -> Self:
+        """Return the reciprocal; nothing is known of it where it may be infinite."""
+        change = np.abs(self.last - self.first)
+        least = self.size - change
+        clear = least > self.error
+        m = np.where(clear, least, 1.0)
+        error = change**2 / (4 * m**3) + self.error / (m * np.where(clear, m - self.error, 1.0))
+        return type(self)(1 / self.first, 1 / self.last, np.where(clear, error, np.inf))
 
     def exponential(self) -> Self:
         """Return the exponential."""

@@ -104,21 +104,30 @@ class Passage:
 
         Residuals are included.
         """
-        weights = self.course(time)
-        logarithm = weighted([key.log_fz for key in self.keyframes], weights)
-        logarithm.imag += 2 * np.pi * float(weights @ self.sheets)
-        logarithm_z = weighted([key.log_fz_z for key in self.keyframes], weights)
+        logarithm, logarithm_z = self.plain_log_fz(time)
         for residual in self.residuals:
             residual.add_to(logarithm, logarithm_z, time)
         return logarithm, logarithm_z
 
+    def plain_log_fz(self, time: float) -> tuple[Complexes, Complexes]:
+        """Return the same without residuals."""
+        weights = self.course(time)
+        logarithm = weighted([key.log_fz for key in self.keyframes], weights)
+        logarithm.imag += 2 * np.pi * float(weights @ self.sheets)
+        return logarithm, weighted([key.log_fz_z for key in self.keyframes], weights)
+
     def log_fz_at(self, times: Floats) -> Complexes:
         """Return the former at times (t,), (t, s)."""
+        logarithms = self.plain_log_fz_at(times)
+        for residual in self.residuals:
+            logarithms += residual.at_times(times)
+        return logarithms
+
+    def plain_log_fz_at(self, times: Floats) -> Complexes:
+        """Return the same without residuals."""
         weights = self.course.at(times).T
         logarithms = combined(weights, np.array([key.log_fz for key in self.keyframes]))
         logarithms.imag += 2 * np.pi * (weights @ self.sheets)[:, None]
-        for residual in self.residuals:
-            logarithms += residual.at_times(times)
         return logarithms
 
 

@@ -18,6 +18,7 @@ from engine.arrays import Booleans
 from engine.interpolation.enclosing import Subdivision
 from engine.interpolation.inbetweens import Inbetweens
 from engine.interpolation.proof.enclosing_cells import CellEnclosures, Cells
+from engine.interpolation.proof.pinned_cells import PinnedCellEnclosures
 from engine.maps import Enclosures
 
 # Cells are cut until the enclosure is this close to what is attained: of k, and as a share of σ_a
@@ -62,7 +63,9 @@ def prove(inbetweens: Inbetweens) -> Proof:
     keyframes = inbetweens.passage.keyframes
     pieces = Subdivision.of([key.map.coefficients for key in keyframes], inbetweens.boundary)
     with np.errstate(over="ignore", invalid="ignore"):
-        return _bisect(pieces, CellEnclosures(inbetweens, pieces))
+        if inbetweens.pins is None:
+            return _bisect(pieces, CellEnclosures(inbetweens, pieces))
+        return _bisect(pieces, PinnedCellEnclosures(inbetweens, pieces, inbetweens.pins))
 
 
 def _bisect(pieces: Subdivision, enclosures: CellEnclosures) -> Proof:

@@ -1,4 +1,4 @@
-"""What closes the periods around holes, on cells: h, with the constants that it makes good, and d.
+"""Holomorphic functions that are added to a blend, on cells: what closes periods, and pins.
 
 Along a piece of the boundary a function of the span differs from its linear interpolant by at most
 h² max|H''| / 2, with |H''| ≤ Σ |dS_j| / (2π d_j) as in `engine.maps.certificate`; in time a series
@@ -16,7 +16,7 @@ from engine.interpolation.periods import Closing
 from engine.interpolation.series import HoleConstants, PiecewiseSeries
 from engine.maps import Boundary
 
-LEFT_OUT = 1e-9  # of h: its smallest modes
+LEFT_OUT = 1e-9  # of what closes periods: its smallest modes
 
 
 class Chords(NamedTuple):
@@ -55,7 +55,10 @@ class Correction:
 
     Parameters
     ----------
-    closing : Closing
+    functions : complex128, shape (n, j)
+        Of the span.
+    series : PiecewiseSeries
+        Of their coefficients.
     boundary : Boundary
     pieces : Subdivision
         At the beginning, when its pieces are the boundary's segments.
@@ -65,12 +68,13 @@ class Correction:
 
     def __init__(
         self,
-        closing: Closing,
+        functions: Complexes,
+        series: PiecewiseSeries,
         boundary: Boundary,
         pieces: Subdivision,
         constants: HoleConstants | None = None,
     ) -> None:
-        self._functions, series = closing.leading(LEFT_OUT)
+        self._functions = functions
         self._series = TimeSeries(series)
         self._pieces, self._span = pieces, boundary.span
         count = len(boundary.span.vertices)
@@ -127,3 +131,13 @@ class Correction:
     def _values(self, points: Complexes) -> Complexes:
         (values,) = self._span.evaluate(self._functions, points, orders=(0,))
         return values
+
+
+def closing_on(
+    closing: Closing,
+    boundary: Boundary,
+    pieces: Subdivision,
+    constants: HoleConstants | None = None,
+) -> Correction:
+    """Return what closes periods around holes, but for its smallest modes."""
+    return Correction(*closing.leading(LEFT_OUT), boundary, pieces, constants)

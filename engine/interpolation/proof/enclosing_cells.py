@@ -5,9 +5,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from engine.arrays import Booleans, Floats, Indices
-from engine.interpolation.enclosing import Changes, EdgeCurves, Patch, Subdivision
+from engine.interpolation.enclosing import Changes, EdgeCurves, Patch, Sheet, Subdivision
 from engine.interpolation.inbetweens import Inbetweens
-from engine.interpolation.proof.correction import Correction
+from engine.interpolation.proof.correction import closing_on
 from engine.maps import Enclosures
 
 PARTS = 4  # into which time is cut at first
@@ -51,7 +51,7 @@ class CellEnclosures:
         self._rho = None if inbetweens.scale is None else inbetweens.scale.enclosures()
         constants = self._blend.constants
         self._h, self._d = (
-            None if closing is None else Correction(closing, inbetweens.boundary, pieces, lost)
+            None if closing is None else closing_on(closing, inbetweens.boundary, pieces, lost)
             for closing, lost in (
                 (inbetweens.closing, constants),
                 (inbetweens.conformal_closing, None),
@@ -69,10 +69,7 @@ class CellEnclosures:
     def of(self, chosen: Cells) -> CellResults:
         """Enclose cells."""
         self._catch_up()
-        first, second = (
-            _patch(curves.at(chosen.piece), course.controls_on(chosen.start, chosen.end))
-            for curves, course in zip(self._curves, self._blend.courses, strict=True)
-        )
+        first, second = self._blended(chosen)
         changes, off_in_time = self._changes(chosen)
         enclose = self._blend.enclose
         return CellResults(
@@ -80,8 +77,35 @@ class CellEnclosures:
             enclose(
                 first.corners(), second.corners(), None if changes is None else changes.corners()
             ),
-            _varies_more_in_time(off_in_time, first, second, *(changes or ())),
+            self._by_time(off_in_time, first, second, *(changes or ())),
         )
+
+    def _blended(self, chosen: Cells) -> tuple[Patch[Any], Patch[Any]]:
+        """Return the two quantities that are blended."""
+        first, second = (
+            patch_of(curves.at(chosen.piece), course.controls_on(chosen.start, chosen.end))
+            for curves, course in zip(self._curves, self._blend.courses, strict=True)
+        )
+        return first, second
+
+    def _closing(self, chosen: Cells) -> Sheet | None:
+        """Return h, which closes periods, less the constants that it makes good."""
+        return None if self._h is None else Sheet.of(self._h.on(*chosen)[0])
+
+    def _scaled(self, chosen: Cells, eta: Sheet, log_fz: Sheet) -> tuple[Sheet, Sheet]:
+        """Return conj(η) and ln |f_z| after Ψ was scaled by ρ."""
+        if self._rho is None:
+            return eta, log_fz
+        values, errors = self._rho.chords(chosen.start, chosen.end)
+        log_rho = Patch(np.repeat(values[:, :, None], 2, axis=2), errors)
+        rho = Sheet.of(log_rho).exponential()
+        eta = eta.product(rho)
+        if self._d is not None:
+            d, _ = self._d.on(*chosen)
+            log_fz = log_fz.plus(Sheet.of(_factor(d, log_rho)))
+            rest = Sheet(1.0 - rho.corners, rho.error)
+            eta = eta.product(rho.plus(rest.product(Sheet.of(d).exponential())))
+        return eta, log_fz
 
     def _changes(self, chosen: Cells) -> tuple[Changes | None, Floats]:
         """Return what the corrections around holes and the scaling of Ψ do to cells.
@@ -103,6 +127,18 @@ class CellEnclosures:
             d, _ = self._d.on(*chosen)
             factor = _factor(d, rho)
         return Changes(h, rho, factor), off
+
+    @staticmethod
+    def _by_time(off_in_time: Floats, *patches: Patch[Any]) -> Booleans:
+        """Tell along which side cells are to be cut."""
+        in_time, in_place = off_in_time.copy(), -off_in_time
+        for patch in patches:
+            size = np.maximum(np.abs(patch.controls).max(axis=(1, 2)), LEAST)
+            in_time += np.abs(np.diff(patch.controls, axis=1)).max(axis=(1, 2), initial=0.0) / size
+            along = np.abs(np.diff(patch.controls, axis=2)).max(axis=(1, 2), initial=0.0)
+            in_place += (along + patch.error) / size
+        more: Booleans = in_time > in_place
+        return more
 
     def _catch_up(self) -> None:
         """Learn the pieces that were added since."""
@@ -136,24 +172,12 @@ def _factor(d: Patch[np.complex128], log_rho: Patch[np.float64]) -> Patch[np.flo
     return Patch(np.log(np.abs(rho + (1.0 - rho) * np.exp(d.controls))), error)
 
 
-def _patch(curves: EdgeCurves[Any], weights: Floats) -> Patch[Any]:
+def patch_of(curves: EdgeCurves[Any], weights: Floats) -> Patch[Any]:
     """Blend curves (c, q, b) by weights (c, d, q)."""
     return Patch(
         weights @ curves.controls,
         (np.abs(weights) @ curves.errors[..., None])[..., 0].max(axis=1),
     )
-
-
-def _varies_more_in_time(off_in_time: Floats, *patches: Patch[Any]) -> Booleans:
-    """Tell along which side cells are to be cut."""
-    in_time, in_place = off_in_time.copy(), -off_in_time
-    for patch in patches:
-        size = np.maximum(np.abs(patch.controls).max(axis=(1, 2)), LEAST)
-        in_time += np.abs(np.diff(patch.controls, axis=1)).max(axis=(1, 2), initial=0.0) / size
-        along = np.abs(np.diff(patch.controls, axis=2)).max(axis=(1, 2), initial=0.0)
-        in_place += (along + patch.error) / size
-    more: Booleans = in_time > in_place
-    return more
 
 
 def _joined(one: EdgeCurves[Any], other: EdgeCurves[Any]) -> EdgeCurves[Any]:

@@ -18,7 +18,7 @@ from engine.arrays import Booleans, Complexes, Floats, Indices
 from engine.errors import EngineError
 from engine.interpolation.enclosing import Chord, Subdivision
 from engine.interpolation.inbetweens import Inbetweens
-from engine.interpolation.proof.correction import Correction
+from engine.interpolation.proof.correction import Correction, closing_on
 from engine.maps import Certificate, Limits, certify_pieces
 
 
@@ -27,10 +27,8 @@ def prove_frame(
     time: float,
     added: Complexes,
     limits: Limits,
-    *,
-    factor: complex = 1.0,
 ) -> Certificate | None:
-    """Bound the distortion of factor · f + g in the whole domain, f an in-between and g a map.
+    """Bound the distortion of f + g in the whole domain, f an in-between and g a map.
 
     Parameters
     ----------
@@ -42,8 +40,6 @@ def prove_frame(
         The coefficients of g, as `HarmonicMap.coefficients` has them.
     limits : Limits
         What it is tested for.
-    factor : complex
-        Of modulus 1.
 
     Returns
     -------
@@ -55,15 +51,16 @@ def prove_frame(
     EngineError
         If the points do not begin with the samples.
     """
-    if not inbetweens.blend.is_closed_form:
+    blend = inbetweens.blend
+    if not blend.is_closed_form or (inbetweens.pins is not None and not blend.sign):
         return None
     boundary, sites = inbetweens.boundary, inbetweens.sites
     count = len(boundary.points)
     if not np.array_equal(sites.points[:count], boundary.points):
         raise EngineError("A frame is proven with the in-betweens of its boundary's samples.")
     with np.errstate(all="ignore"):
-        own = inbetweens.blend.at(sites.paths.places[:count]).derivatives(time)
-        motion = _Motion.of(inbetweens, time, added, factor)
+        own = blend.at(sites.paths.places[:count]).derivatives(time)
+        motion = _Motion.of(inbetweens, time, added)
         pieces = _FramePieces.of(motion, np.arange(count), own.fz, np.arange(count))
         return certify_pieces(pieces, boundary, limits)
 
@@ -76,34 +73,44 @@ class _Motion:
     ----------
     inbetweens : Inbetweens
     time : float
-    factor : complex
     pieces : Subdivision
         Of the keyframes and, last, of what is added.
     h, d : Correction or None
         What closes periods around holes.
+    pins : tuple of Correction
+        h and q of handles that stay; none where there are none.
     """
 
     inbetweens: Inbetweens
     time: float
-    factor: complex
     pieces: Subdivision
     h: Correction | None
     d: Correction | None
+    pins: tuple[Correction, ...]
 
     @classmethod
-    def of(cls, inbetweens: Inbetweens, time: float, added: Complexes, factor: complex) -> Self:
+    def of(cls, inbetweens: Inbetweens, time: float, added: Complexes) -> Self:
         """Begin with the segments of the boundary."""
         blend, boundary = inbetweens.blend, inbetweens.boundary
         coefficients = [key.map.coefficients for key in blend.passage.keyframes]
         pieces = Subdivision.of([*coefficients, added], boundary)
         h, d = (
-            None if closing is None else Correction(closing, boundary, pieces, lost)
+            None if closing is None else closing_on(closing, boundary, pieces, lost)
             for closing, lost in (
                 (inbetweens.closing, blend.constants),
                 (inbetweens.conformal_closing, None),
             )
         )
-        return cls(inbetweens=inbetweens, time=time, factor=factor, pieces=pieces, h=h, d=d)
+        known = None if inbetweens.pins is None else inbetweens.pins.pins
+        pins = () if known is None else (known.h, known.q)
+        return cls(
+            inbetweens=inbetweens,
+            time=time,
+            pieces=pieces,
+            h=h,
+            d=d,
+            pins=tuple(Correction(each, known.series, boundary, pieces) for each in pins if known),
+        )
 
     def along(self, which: Indices, start: Complexes) -> tuple[Chord, Chord, Complexes]:
         """Return f_z and conj(f_z̄) along pieces, and f_z of the blend alone at their ends.
@@ -113,26 +120,36 @@ class _Motion:
         blend, values = self.inbetweens.blend, self.pieces.derivatives(0)
         keyframes = values.of(which, slice(None, -1))
         change = Chord.of(keyframes.log_change(), blend.passage.course(self.time))
-        h = self._corrected(self.h, which)
-        if h is not None:
+        closing = self._corrected(self.h, which)
+        if closing is not None:
             # What is blended is known where pieces begin: there the change is none.
-            change = change.plus(h._replace(first=0 * h.first, last=h.last - h.first))
+            first = closing.first
+            change = change.plus(closing._replace(first=0 * first, last=closing.last - first))
         fz, g = blend.chords(keyframes, self.time, start, change)
         end, rho = fz.last, self.inbetweens.rho(self.time)
-        d = self._corrected(self.d, which)
+        # K = L² / F, L the exponential of the keyframes' blended logarithms.
+        k = fz if closing is None else fz.product(closing.times(-2.0).exponential())
+        g, d = g.times(rho), self._corrected(self.d, which)
         if d is not None:
             share = d.exponential().times(1.0 - rho)
-            fz = fz.product(share._replace(first=rho + share.first, last=rho + share.last))
+            share = share._replace(first=rho + share.first, last=rho + share.last)
+            fz, k = fz.product(share), k.product(share.reciprocal())
+        if self.pins:
+            h, q = (self._at_time(each, which) for each in self.pins)
+            grown = h.exponential()
+            own = grown if blend.sign > 0 else h.times(-1.0).exponential()
+            fz, g = fz.product(grown), g.product(own).plus(q.product(k).product(grown))
         added = values.of(which, slice(-1, None))
         return (
-            fz.times(self.factor).plus(Chord.of(added.conformal(), np.ones(1))),
-            g.times(rho * np.conj(self.factor)).plus(Chord.of(added.anticonformal(), np.ones(1))),
+            fz.plus(Chord.of(added.conformal(), np.ones(1))),
+            g.plus(Chord.of(added.anticonformal(), np.ones(1))),
             end,
         )
 
     def _corrected(self, correction: Correction | None, which: Indices) -> Chord | None:
-        if correction is None:
-            return None
+        return None if correction is None else self._at_time(correction, which)
+
+    def _at_time(self, correction: Correction, which: Indices) -> Chord:
         now = np.full(len(which), self.time)
         patch, _ = correction.on(which, now, now)
         return Chord(patch.controls[:, 0, 0], patch.controls[:, 0, -1], patch.error)

@@ -66,7 +66,7 @@ def test_tracked_handles_go_beside_the_pose_by_their_keys():
     document = tracked(wave)
     animation, clip = animated(document), clip_of(document, 0)
     for frame in (5.0, 7.3, 12.5, 19.0):
-        still, moved = animation.still_frame(frame), animation.frame(frame)
+        still, moved = animation.base.frame(frame), animation.frame(frame)
         offset = track_at(wave, clip, frame).place
         turn = still.fz[IDS["right"]] / abs(still.fz[IDS["right"]])
         assert abs(moved.positions[2] - still.positions[2] - offset * turn) < 0.1
@@ -128,12 +128,12 @@ def test_planted_handle_stays_in_the_scene_when_attached():
 def test_a_group_moves_together_and_a_handle_turns_where_that_is_asked():
     both = replace(track(), handles=(IDS["right"], IDS["top"]))
     animation = animate(tracked(both, stillness=False))
-    moved = animation.positions(10.0) - animation.still_frame(10.0).positions
+    moved = animation.positions(10.0) - animation.base.frame(10.0).positions
     assert abs(moved[IDS["top"]] - moved[IDS["right"]]) < 0.05
     keys = tuple(replace(key, place=0j, turn=0.3) for key in track().keys)
     turning = replace(track(keys=WAVE), keys=keys, turns=True)
     animation = animate(tracked(turning))
-    turned = animation.frame(12.0).fz[2] / animation.still_frame(12.0).fz[2]
+    turned = animation.frame(12.0).fz[2] / animation.base.frame(12.0).fz[2]
     assert np.angle(turned) == pytest.approx(0.3, abs=0.02)
 
 
@@ -141,7 +141,7 @@ def test_a_still_handle_beside_one_that_goes_gives_way():
     document = posed()
     beside = handle_commands.add_handle(0, PLACES["right"] - 1.5, name="beside")(document)
     animation = animate(with_figure(beside, tracks=(track(),)))
-    still = animation.still_frame(10.0)
+    still = animation.base.frame(10.0)
     turn = still.fz[IDS["right"]] / abs(still.fz[IDS["right"]])
     moved = animation.positions(10.0) - still.positions
     assert abs(moved[IDS["right"]] - (8 + 4j) * turn) < 0.3
@@ -196,7 +196,7 @@ def test_a_smaller_reach_moves_less_of_the_drawing():
     moved = []
     for reach in (1.0, 0.2):
         animation = animate(tracked(track(reach=reach), stillness=False))
-        moved.append(np.abs(animation.positions(10.0) - animation.still_frame(10.0).positions))
+        moved.append(np.abs(animation.positions(10.0) - animation.base.frame(10.0).positions))
     assert moved[1].mean() < moved[0].mean()
     assert abs(moved[1][2] - moved[0][2]) < 0.1
 
@@ -210,7 +210,7 @@ def test_spring_swings_about_its_place_and_closes_a_loop():
     document = springy(loop=True)
     animation = animate(document)
     swung = [
-        animation.positions(t)[IDS["top"]] - animation.still_frame(t).positions[IDS["top"]]
+        animation.positions(t)[IDS["top"]] - animation.base.frame(t).positions[IDS["top"]]
         for t in range(0, 16, 4)
     ]
     assert np.abs(swung).max() > 0.5
@@ -221,7 +221,7 @@ def test_spring_swings_about_its_place_and_closes_a_loop():
 
 def test_spring_moves_nothing_without_strength_or_under_a_track():
     still = animate(springy(strength=0.0))
-    assert_array_equal(still.positions(5.2), still.still_frame(5.2).positions)
+    assert_array_equal(still.positions(5.2), still.base.frame(5.2).positions)
     wave = (track("top", ((0, 0), (4, 6j), (12, 0))),)
     sprung = springy()
     alone, both = (
@@ -230,7 +230,7 @@ def test_spring_moves_nothing_without_strength_or_under_a_track():
     )
     # What follows is not still, so that the motion under the track is another one.
     offset = {
-        each: each.positions(4.8)[3] - each.still_frame(4.8).positions[3] for each in (alone, both)
+        each: each.positions(4.8)[3] - each.base.frame(4.8).positions[3] for each in (alone, both)
     }
     sizes = [abs(each) for each in offset.values()]
     assert sizes[0] == pytest.approx(sizes[1], abs=0.1)
@@ -251,13 +251,13 @@ def test_attached_spring_swings_with_its_parent():
     scene = replace(document, figures=(document.figures[0], child))
     points = np.array([handle.position for handle in child.handles])
     alone = Animation(clip_of(scene, 1), points=points)
-    assert_array_equal(alone.positions(5.0), alone.still_frame(5.0).positions)
+    assert_array_equal(alone.positions(5.0), alone.base.frame(5.0).positions)
     joints = Joints(scene)
     joints.tracked[1].at(5.0)
     hung = Animation(
         clip_of(scene, 1), points=points, carried=lambda frame: joints.carried(1, frame)
     )
-    swung = hung.positions(5.0) - hung.still_frame(5.0).positions
+    swung = hung.positions(5.0) - hung.base.frame(5.0).positions
     assert abs(swung[IDS["top"]]) > 0.1
     # What was found for another motion of what it hangs on does not stay.
     moved = with_figure(scene, keys=tuple(reversed_in_time(scene.figures[0].keys)))
@@ -284,9 +284,8 @@ def test_the_frames_of_a_window_are_those_of_an_export():
     siblings = {0: animation.sampler}
     assert not frames.is_exact(clip, 12)
     frames.take(frames.missing(document, 12, siblings)())
-    rough = frames.at(clip, 12)
-    assert rough.phi is None
-    assert not frames.is_exact(clip, 12)
+    assert frames.is_exact(clip, 12)
+    assert not frames.is_whole
     while (work := frames.missing(document, 12, siblings)) is not None:
         frames.rest()
         assert frames.is_begun

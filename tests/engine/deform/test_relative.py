@@ -12,7 +12,6 @@ from engine.deform.model import Barrier, Jet, Walls, factor_of, factor_shifted
 from engine.deform.relative import (
     Corrector,
     Pins,
-    best_rigid,
     energy as energy_module,
     rows as rows_module,
 )
@@ -21,7 +20,7 @@ from engine.deform.relative.corrector import LEAST_WEIGHT, MOST_STEPS, _walls
 from engine.deform.relative.energy import RelativeEnergy
 from engine.deform.relative.pulls import Pulls
 from engine.deform.relative.rows import Rows
-from engine.geometry import HERE, RigidMotion
+from engine.geometry import HERE, RigidMotion, best_rigid
 from engine.maps import Boundary, Bounds
 
 WIDE = Bounds(k=0.9, sigma_a=9.0, sigma_b=0.1)

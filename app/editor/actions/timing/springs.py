@@ -56,7 +56,7 @@ def _measure(
     frames = np.arange(document.frames.first, document.frames.last + 1)
     offsets = []
     for frame in frames.tolist():
-        still = resting.still_frame(frame)
+        still = resting.base.frame(frame)
         fz = complex(still.fz[0])
         offset = complex(swinging.positions(frame)[0] - still.positions[0])
         offsets.append(offset * fz.conjugate() / abs(fz))

@@ -148,7 +148,7 @@ def _beside(
     animation = animation_at(document, figure.id, point, siblings, carried)
     found = []
     for frame in frames:
-        still = animation.still_frame(frame)
+        still = animation.base.frame(frame)
         fz = complex(still.fz[0])
         hangs = HERE if carried is None else carried(frame)
         found.append(_Beside(complex(still.positions[0]), fz / abs(fz), hangs))

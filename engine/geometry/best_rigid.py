@@ -3,7 +3,7 @@
 import numpy as np
 
 from engine.arrays import Complexes, Floats
-from engine.geometry import HERE, RigidMotion
+from engine.geometry.rigid import HERE, RigidMotion
 
 TOWARDS_REST = 1e-6  # how strongly all points together pull towards no motion
 

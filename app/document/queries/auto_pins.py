@@ -1,0 +1,136 @@
+"""Auto-pins: handles with equal targets in two neighbouring keys stay there in between."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from app.document.figure import Figure
+from app.document.keyframe import Pose
+from app.document.queries.clips import Clip
+from app.document.queries.remembered import remembered
+from app.document.queries.spans import spans
+from app.document.queries.transits import passings_of, transits
+from app.document.settings import FrameRange
+from app.document.timing import HOLD
+from engine.arrays import Booleans, Floats, freeze
+from engine.variant import Baseline
+
+SAME = 0.5  # pixels between two targets that are at one place
+
+
+class PinnedSegment(NamedTuple):
+    """What is pinned from one key to the next.
+
+    Parameters
+    ----------
+    is_pinned : bool, shape (h,)
+        Which handles stay.
+    fading : bool, shape (2, h)
+        Which of the others stay in the segment before, and in the one after.
+    beyond : tuple of int or None
+        The numbers of these segments, where something fades.
+    content : tuple
+        Equal where the pins are, as long as the poses are there.
+    poses : tuple of Pose
+        All that the pins follow from.
+    """
+
+    is_pinned: Booleans
+    fading: Booleans
+    beyond: tuple[int | None, int | None]
+    content: tuple[object, ...]
+    poses: tuple[Pose, ...]
+
+    def weights(self, time: float) -> Floats:
+        """Return how much each handle is held at a time of the segment, from 0 to 1."""
+        rest = 1.0 - time
+        fading: Floats = rest**3 * self.fading[0] + time**3 * self.fading[1]
+        return np.where(self.is_pinned, 1.0, fading)
+
+
+def pinned_handles(clip: Clip) -> Booleans:
+    """Return which handles (k, h) stay in which of a clip's segments."""
+    return _pinned(clip.figure, clip.frames, clip.loop, clip.baseline)
+
+
+def pinned_segments(clip: Clip) -> tuple[PinnedSegment | None, ...]:
+    """Return what is pinned in each of a clip's segments; None where nothing is."""
+    return _segments(clip.figure, clip.frames, clip.loop, clip.baseline)
+
+
+@remembered
+def _pinned(
+    figure: Figure,
+    frames: FrameRange,
+    loop: bool,  # noqa: FBT001 - a field of the clip
+    baseline: Baseline | None,
+) -> Booleans:
+    clip = Clip(figure=figure, frames=frames, loop=loop, fps=1.0, baseline=baseline)
+    keys = clip.keys
+    following = {spring.handle for spring in figure.springs if spring.enabled}
+    pinned = np.zeros((len(spans(clip)), len(figure.handles)), dtype=bool)
+    if not figure.stillness or baseline is not None:
+        return freeze(pinned)
+    for number, span in enumerate(spans(clip)):
+        one, other = keys[span.first], keys[span.last]
+        # A whole turn between equal targets is meant: it would be unwound.
+        if one.easing == HOLD or one.turns:
+            continue
+        for index, handle in enumerate(figure.handles):
+            if handle.free or handle.id in following:
+                continue
+            first, second = (key.pose.targets[handle.id].position for key in (one, other))
+            pinned[number, index] = handle.locked or abs(first - second) < SAME
+    return freeze(pinned)
+
+
+@remembered
+def _segments(
+    figure: Figure,
+    frames: FrameRange,
+    loop: bool,  # noqa: FBT001 - a field of the clip
+    baseline: Baseline | None,
+) -> tuple[PinnedSegment | None, ...]:
+    clip = Clip(figure=figure, frames=frames, loop=loop, fps=1.0, baseline=baseline)
+    pinned = pinned_handles(clip)
+    if not pinned.any():
+        return (None,) * len(pinned)
+    found: list[PinnedSegment | None] = []
+    for number, (at_start, at_end) in enumerate(passings_of(clip)):
+        fading = np.zeros((2, pinned.shape[1]), dtype=bool)
+        for side, other in enumerate((at_start.before, at_end.after)):
+            if other is not None:
+                fading[side] = pinned[other] & ~pinned[number]
+        if not (pinned[number].any() or fading.any()):
+            found.append(None)
+            continue
+        before, after = (
+            other if fading[side].any() else None
+            for side, other in enumerate((at_start.before, at_end.after))
+        )
+        around = [each for each in (before, number, after) if each is not None]
+        keys = [key for each in around for key in transits(clip)[each].keys]
+        content = (
+            pinned[number].tobytes(),
+            fading.tobytes(),
+            tuple(handle.position for handle in figure.handles),
+            figure.hangs,
+            id(figure.stiffness),
+            tuple(_ways(clip, each) for each in around) if len(around) > 1 else (),
+            (figure.bounds.k, figure.bounds.sigma_a, figure.bounds.sigma_b),
+        )
+        poses = tuple(dict.fromkeys(key.pose for key in keys))
+        found.append(
+            PinnedSegment(
+                freeze(pinned[number].copy()), freeze(fading), (before, after), content, poses
+            )
+        )
+    return tuple(found)
+
+
+def _ways(clip: Clip, number: int) -> tuple[object, ...]:
+    """Return what the velocities of a segment follow from, beside its poses."""
+    transit, span = transits(clip)[number], spans(clip)[number]
+    maps = tuple((id(key.pose.phi), id(key.pose.psi)) for key in transit.keys)
+    easing = clip.keys[span.first].easing
+    return (maps, transit.turns, transit.start, transit.end, transit.apart, span.frames, easing)

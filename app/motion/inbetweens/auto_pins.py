@@ -1,0 +1,156 @@
+"""In-betweens of a clip's segments, with the handles that stay (`engine.interpolation.pins`)."""
+
+from functools import partial
+
+import numpy as np
+
+from app.document import (
+    Clip,
+    PinnedSegment,
+    Variant,
+    pinned_segments,
+    spans,
+    stiffened,
+    transits,
+)
+from app.motion.inbetweens.pairs import pair_of
+from app.motion.inbetweens.pose_sampler import PoseSampler, corrector_for
+from engine.arrays import Complexes, Floats
+from engine.correction import BaseFrame, Corrector
+from engine.geometry import box_diagonal
+from engine.interpolation import BaseAt, Frame, Inbetweens, Pins, PinSeries, pin
+
+BESIDE = 0.03  # of the diagonal: handles nearer to an anchor that stays give way
+FIRM = 1e-6  # of full firmness: what a handle far from the anchor may lack
+# The one-sided difference of fourth order: in time, in-betweens are analytic from key to key.
+STEP = 2e-3
+FORWARD = (-25 / 12, 4.0, -3.0, 4 / 3, -1 / 4)
+SLOWEST = 1e-9  # pace below which a segment begins at rest
+
+
+class AutoPins:
+    """The auto-pins of a clip.
+
+    Parameters
+    ----------
+    clip : Clip
+    variant : Variant
+    sampler : PoseSampler
+        Of the figure's domain, at any points; what it knows of the outline is used, and kept there.
+    """
+
+    def __init__(self, clip: Clip, variant: Variant, sampler: PoseSampler) -> None:
+        self.clip, self._variant, self._known = clip, variant, sampler
+        self._segments = pinned_segments(clip)
+        self._prepared: tuple[Corrector, PoseSampler] | None = None
+
+    def inbetweens(self, number: int, sampler: PoseSampler) -> Inbetweens:
+        """Return the in-betweens of a segment at the points of a sampler."""
+        base = self._base(number, sampler)
+        pins = self.series(number)
+        return base if pins is None else base.pinned(pins)
+
+    def frame(self, number: int, sampler: PoseSampler, time: float) -> Frame:
+        """Return one of these; of a variant that makes single frames."""
+        transit, bounds = transits(self.clip)[number], self.clip.figure.bounds
+        return sampler.frame_of(transit, bounds, self._variant, time, self.series(number))
+
+    def series(self, number: int) -> PinSeries | None:
+        """Return the corrections of a segment; None where nothing is pinned."""
+        segment = self._segments[number]
+        if segment is None:
+            return None
+        key = pair_of(self.clip, number, self._variant)
+        return self._known.known.pins_of(key, segment.poses, partial(self._solved, number, segment))
+
+    def _base(self, number: int, sampler: PoseSampler) -> Inbetweens:
+        bounds = self.clip.figure.bounds
+        return sampler.inbetweens_of(transits(self.clip)[number], bounds, self._variant)
+
+    def _solved(self, number: int, segment: PinnedSegment) -> PinSeries:
+        corrector, sampler = self._prepare()
+        base = self._base(number, sampler)
+        count, nodes = len(corrector.points), len(corrector.paths.nodes)
+        of_nodes, of_samples = slice(count, count + nodes), slice(count + nodes, None)
+        is_squared = base.blend.sign != 0
+        sign = base.blend.sign or -1
+
+        def base_at(time: float) -> BaseAt:
+            frame = base.frame(time)
+            logs = np.exp(base.passage.plain_log_fz(time)[0][sampler.sites.paths.places])
+            by = logs * logs / frame.fz if is_squared else logs
+            parts = [
+                BaseFrame(frame.fz[part], frame.fzbar[part].conj(), by[part], sign)
+                for part in (of_nodes, of_samples)
+            ]
+            return BaseAt(frame.positions[:count], base.anchor_position(time), parts[0], parts[1])
+
+        return pin(
+            corrector,
+            base_at,
+            self._pins(number, segment, sampler),
+            self.clip.figure.bounds,
+            sign=sign,
+            is_squared=is_squared,
+        )
+
+    def _prepare(self) -> tuple[Corrector, PoseSampler]:
+        """Return what corrects the handles, and a sampler of all points that this looks at."""
+        if self._prepared is None:
+            figure, sites = self.clip.figure, self._known.sites
+            handles = np.array([each.position for each in figure.handles], dtype=np.complex128)
+            boundary = stiffened(figure, sites.boundary)
+            corrector = corrector_for(boundary, sites.anchor, handles)
+            points = np.concatenate([handles, corrector.paths.nodes, boundary.points])
+            sampler = PoseSampler(
+                figure.domain, anchor=figure.anchor, points=points, sibling=self._known
+            )
+            self._prepared = corrector, sampler
+        return self._prepared
+
+    def _pins(self, number: int, segment: PinnedSegment, sampler: PoseSampler) -> Pins:
+        """Return where the handles are wanted during a segment."""
+        clip, figure = self.clip, self.clip.figure
+        count, own = len(figure.handles), spans(clip)[number]
+        keys = [clip.keys[index] for index in (own.first, own.last)]
+        ends = [sampler.samples(key.pose).positions[:count] for key in keys]
+        slopes = np.zeros((2, count), dtype=np.complex128)
+        for side, other in enumerate(segment.beyond):
+            pace = self._pace(number, side)
+            if other is not None and SLOWEST < pace < np.inf:
+                # Pixels a frame there, against the velocity of the motion that has to stay.
+                away = self._velocity(other, 1 - side, sampler)[:count]
+                slopes[side] = -self._pace(other, 1 - side) * away / pace
+        anchor = figure.anchor if figure.hangs else None
+        return Pins(
+            is_pinned=segment.is_pinned,
+            ends=np.array(ends),
+            slopes=np.where(segment.fading, slopes, 0.0),
+            weights=segment.fading.astype(np.float64),
+            firmness=np.ones(count) if anchor is None else self._firmness(anchor),
+            is_anchored=anchor is not None,
+        )
+
+    def _pace(self, number: int, side: int) -> float:
+        """Return how fast the time of a segment's in-betweens runs at one of its ends, a frame."""
+        span, transit = spans(self.clip)[number], transits(self.clip)[number]
+        easing = self.clip.keys[span.first].easing.paces
+        pace = transit.paces[side] * easing[side] / span.frames
+        return pace if np.isfinite(pace) else 0.0
+
+    def _velocity(self, number: int, side: int, sampler: PoseSampler) -> Complexes:
+        """Return how fast points leave a segment's first key, or reach its second one, by time."""
+        base, sign = self._base(number, sampler), -1.0 if side else 1.0
+        steps = [base.frame(side + sign * i * STEP).positions for i in range(len(FORWARD))]
+        weights = sign / STEP * np.array(FORWARD, dtype=np.complex128)
+        velocity: Complexes = weights @ np.array(steps)
+        return velocity
+
+    def _firmness(self, anchor: complex) -> Floats:
+        """Return how firmly handles are held beside an anchor that stays: 0 there, 1 if far."""
+        figure = self.clip.figure
+        places = np.array([each.position for each in figure.handles], dtype=np.complex128)
+        size = BESIDE * box_diagonal(figure.domain.outline)
+        far = -np.expm1(-((np.abs(places - anchor) / size) ** 2))
+        firmness: Floats = np.where(far > 1 - FIRM, 1.0, far)
+        return firmness

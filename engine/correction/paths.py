@@ -1,0 +1,143 @@
+"""Short quadrature along straight legs from an anchor to a few points (Section 7)."""
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+import scipy.linalg
+from scipy.spatial import cKDTree
+
+from engine.arrays import Booleans, Complexes, Floats, Indices, freeze
+from engine.geometry import Pieces, as_xy, bisect
+from engine.maps import Boundary
+from engine.paths import Loops, leave_region, scattered_network
+
+GAUSS = 5  # nodes of a piece
+# Longest piece, over the distance of its nearest place to a singularity, and the least distance
+# that is looked at, over the domain's diagonal: values then err by some 1e-6 of it.
+PIECE_PER_DISTANCE, LEAST_DISTANCE = 1.5, 2e-3
+LOOKED_AT = 9  # places of a leg that tell how many pieces it takes
+SPANS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96)  # corners from which to which legs are tried
+LARGEST_PRICE = 1e6  # of a leg that is inside
+SHARED = 0.05  # of its price: what a leg costs that leads to another point already
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PointPaths:
+    """Quadrature nodes on ways from an anchor to points, and on loops around holes.
+
+    Parameters
+    ----------
+    nodes : complex128, shape (s,)
+    weights : complex128, shape (m + holes, s)
+        dz at the nodes of the way to each point, then of the loop around each hole; 0 elsewhere.
+    """
+
+    nodes: Complexes
+    weights: Complexes
+
+    @classmethod
+    def of(cls, boundary: Boundary, anchor: complex, points: Complexes) -> Self:
+        """Lay ways of few pieces inside a domain."""
+        outline, *holes = boundary.loops
+        singular = np.concatenate([boundary.span.vertices, *boundary.loops])
+        near = cKDTree(as_xy(singular))
+        ways = _ways(boundary, anchor, points, near)
+        legs = list(dict.fromkeys(leg for way in ways for leg in way))
+        starts, ends = (np.array([leg[k] for leg in legs]) for k in (0, 1))
+        pieces = bisect(Pieces.whole(starts, ends), lambda p: _are_fine(p, near, boundary.size))
+        x, w = np.polynomial.legendre.leggauss(GAUSS)
+        spans = (pieces.ends - pieces.starts)[:, None]
+        nodes = (pieces.starts[:, None] + spans * (1 + x) / 2).ravel()
+        lengths = (spans * w / 2).ravel()
+        leg_of = np.repeat(pieces.segment, GAUSS)
+        number = {leg: i for i, leg in enumerate(legs)}
+        weights = np.array(
+            [np.where(np.isin(leg_of, [number[leg] for leg in way]), lengths, 0) for way in ways]
+        ).reshape(len(points), len(nodes))
+        around = Loops.around(outline, holes, singular)
+        if holes:
+            ends_of = around.starts + around.counts
+            rings = np.zeros((len(holes), len(around.nodes)), dtype=np.complex128)
+            for ring, start, end in zip(rings, around.starts, ends_of, strict=True):
+                ring[start:end] = around.differentials[start:end]
+            weights = scipy.linalg.block_diag(weights, rings)
+            nodes = np.concatenate([nodes, around.nodes])
+        return cls(nodes=freeze(nodes), weights=freeze(weights))
+
+
+Leg = tuple[complex, complex]
+
+
+def _are_fine(pieces: Pieces, near: cKDTree, size: float) -> Booleans:
+    """Tell which pieces are short beside their distance to the singularities."""
+    starts, ends = pieces.starts, pieces.ends
+    places = np.stack([starts, (starts + ends) / 2, ends])
+    room = _distances(places, near).min(axis=0)
+    room = np.maximum(room, LEAST_DISTANCE * size)
+    return np.asarray(pieces.lengths <= PIECE_PER_DISTANCE * room)
+
+
+def _distances(places: Complexes, near: cKDTree) -> Floats:
+    return np.asarray(near.query(as_xy(places.ravel()))[0]).reshape(places.shape)
+
+
+def _ways(boundary: Boundary, anchor: complex, points: Complexes, near: cKDTree) -> list[list[Leg]]:
+    """Return the legs of a way to each point: the cheapest chain of corners of a known way."""
+    outline, *holes = boundary.loops
+    network = scattered_network(outline, points, np.array([anchor]), holes=holes)
+    chains = []
+    for place in network.places:
+        way = [int(place)]
+        while way[-1]:
+            way.append(int(network.parents[way[-1]]))
+        chains.append(network.nodes[way[::-1]])
+    tried = [_legs_tried(len(chain)) for chain in chains]
+    starts, ends = (
+        np.concatenate([chain[legs[:, k]] for chain, legs in zip(chains, tried, strict=True)])
+        for k in (0, 1)
+    )
+    prices = _prices(starts, ends, near, boundary.size)
+    prices[leave_region(boundary.loops, starts, ends)] = np.inf
+    ways: list[list[Leg]] = []
+    used: set[Leg] = set()
+    parts = np.split(prices, np.cumsum([len(legs) for legs in tried])[:-1])
+    for chain, legs, own in zip(chains, tried, parts, strict=True):
+        # Legs of the known way are inside, whatever rounding says.
+        known = np.where(legs[:, 1] - legs[:, 0] == 1, np.minimum(own, LARGEST_PRICE), own)
+        ways.append(_cheapest(chain.tolist(), legs, known, used))
+        used.update(ways[-1])
+    return ways
+
+
+def _legs_tried(count: int) -> Indices:
+    """Return from which to which of the corners of a chain legs are tried, (t, 2), in order."""
+    first, last = np.triu_indices(count, 1)
+    tried = np.isin(last - first, SPANS) | (first == 0) | (last == count - 1)
+    order = np.lexsort((first[tried], last[tried]))
+    return np.column_stack([first[tried], last[tried]])[order]
+
+
+def _prices(starts: Complexes, ends: Complexes, near: cKDTree, size: float) -> Floats:
+    """Return about how many pieces legs take: their lengths over the distances along them."""
+    shares = (np.arange(LOOKED_AT) + 0.5) / LOOKED_AT
+    places = starts[:, None] + (ends - starts)[:, None] * shares
+    room = _distances(places, near)
+    room = np.maximum(room, LEAST_DISTANCE * size)
+    prices: Floats = np.abs(ends - starts) * (1.0 / room).mean(axis=1) / PIECE_PER_DISTANCE
+    return np.maximum(prices, 1.0)
+
+
+def _cheapest(chain: list[complex], tried: Indices, prices: Floats, used: set[Leg]) -> list[Leg]:
+    """Return the legs of the cheapest way along a chain."""
+    best, came = [0.0] + [np.inf] * (len(chain) - 1), [0] * len(chain)
+    for (i, j), price in zip(tried.tolist(), prices.tolist(), strict=True):
+        cost = best[i] + price * (SHARED if (chain[i], chain[j]) in used else 1.0)
+        if cost < best[j]:
+            best[j], came[j] = cost, i
+    legs: list[Leg] = []
+    j = len(chain) - 1
+    while j:
+        legs.append((chain[came[j]], chain[j]))
+        j = came[j]
+    return legs[::-1]

@@ -1,0 +1,94 @@
+"""The unknowns of corrections: h and q as sums of few functions, so that their size is |x|.
+
+    |x|² = mean over ∂Ω of (Re h)² + |q|² + ε |h|² + ε' L² (|h'|² + |q'|²).
+
+Four times it is, to second order, the symmetric Dirichlet energy of what a correction changes.
+"""
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+import scipy.linalg
+
+from engine.arrays import Complexes, Floats, freeze
+from engine.maps import Boundary
+
+OF_SIZE, OF_SLOPE = 1e-3, 1e-5  # ε and ε'
+# Directions of the coordinates smaller than this, over the largest, are rounding.
+RANK = 1e-6
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Variables:
+    """h = H x_h and q = Q x_q, of real x = (x_h, x_q); N unknowns each.
+
+    Build it with `Variables.of`.
+
+    Parameters
+    ----------
+    h, q : complex128, shape (n, N)
+        Coefficients of the functions in the domain's span.
+    h_at_nodes, q_at_nodes : complex128, shape (s, N)
+        Their values at the nodes of paths.
+    h_at_samples, q_at_samples : complex128, shape (p, N)
+        The same at the samples of the boundary.
+    """
+
+    h: Complexes
+    q: Complexes
+    h_at_nodes: Complexes
+    q_at_nodes: Complexes
+    h_at_samples: Complexes
+    q_at_samples: Complexes
+
+    @classmethod
+    def of(cls, boundary: Boundary, nodes: Complexes) -> Self:
+        """Make the functions of a domain orthonormal in the size of corrections."""
+        span, lengths = boundary.span, boundary.lengths
+        count = len(span.vertices)  # logarithms are not single-valued functions
+        samples = span.coordinates(boundary.points)[:, :count]
+        root = np.sqrt(lengths)[:, None]
+        _, sizes, directions = scipy.linalg.svd(root * samples, full_matrices=False)
+        kept = sizes > RANK * sizes[0]
+        own = directions[kept].conj().T / sizes[kept]
+        values = root * (samples @ own)
+        slopes = boundary.size * root * (boundary.derivatives[:, :count] @ own)
+        of_values, of_slopes = _gram(values), OF_SLOPE * _gram(slopes)
+        stretch = np.hstack([values.real, -values.imag])
+        to_h = _whitened(stretch.T @ stretch + OF_SIZE * of_values + of_slopes)
+        to_q = _whitened(of_values + of_slopes)
+        at_nodes = span.coordinates(nodes)[:, :count]
+        coefficients = [own @ to for to in (to_h, to_q)]
+        padded = [np.pad(each, ((0, len(span) - count), (0, 0))) for each in coefficients]
+        on = [
+            freeze(np.ascontiguousarray(rows @ each))
+            for rows in (at_nodes, samples)
+            for each in coefficients
+        ]
+        return cls(
+            h=freeze(padded[0]),
+            q=freeze(padded[1]),
+            h_at_nodes=on[0],
+            q_at_nodes=on[1],
+            h_at_samples=on[2],
+            q_at_samples=on[3],
+        )
+
+    @property
+    def count(self) -> int:
+        """N, of h and of q."""
+        return int(self.h.shape[1])
+
+
+def _gram(columns: Complexes) -> Floats:
+    """Return the form x ↦ |columns · (x + i y)|² of the real and imaginary parts (x, y)."""
+    product = columns.conj().T @ columns
+    return np.block([[product.real, -product.imag], [product.imag, product.real]])
+
+
+def _whitened(form: Floats) -> Complexes:
+    """Return combinations, one a real unknown, in which a form of (x, y) is a sum of squares."""
+    values, vectors = np.linalg.eigh(form)
+    real, imaginary = np.split(vectors / np.sqrt(values), 2)
+    return np.asarray(real + 1j * imaginary)

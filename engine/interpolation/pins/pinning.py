@@ -1,0 +1,133 @@
+"""The corrections of a segment, solved at few times and written as series."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from engine.arrays import Complexes, Floats, freeze
+from engine.correction import BaseFrame, Corrector, Found, Walls, solve
+from engine.interpolation.pins.targets import Pins
+from engine.interpolation.series import PiecewiseSeries, separate
+from engine.maps import Bounds
+
+# Of the series and of what they leave out, where unknowns are about |h| and places over the size
+# of the domain: some thousandths of a pixel of a thousand.
+TOLERANCE = LEFT_OUT = 1e-6
+SHORTEST = 2.0**-5  # pieces of time are not halved below this
+
+
+class BaseAt(NamedTuple):
+    """A segment's base at a time: at handles (m,), nodes (s,) and samples of the boundary (p,).
+
+    Parameters
+    ----------
+    places : complex128, shape (m,)
+    anchor : complex
+    nodes, samples : BaseFrame
+    """
+
+    places: Complexes
+    anchor: complex
+    nodes: BaseFrame
+    samples: BaseFrame
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PinSeries:
+    """h, q and a translation of a segment: few functions times series in time.
+
+    Parameters
+    ----------
+    series : PiecewiseSeries
+    h, q : complex128, shape (n, j)
+        The functions in the domain's span.
+    shifts : complex128, shape (j,)
+        Of the translation.
+    sign : {-1, 1}
+        Whether η or ν is kept where q = 0.
+    is_squared : bool
+        Whether K is L² / F, with L the exponential of the keyframes' blended logarithms; else L.
+    largest : float
+        The largest |h| or |q| on the boundary at the times that were looked at.
+    miss : float
+        The farthest that a handle is from where it is wanted, at these times.
+    is_held_back : bool
+        Whether a limit was reached.
+    """
+
+    series: PiecewiseSeries
+    h: Complexes
+    q: Complexes
+    shifts: Complexes
+    sign: int
+    is_squared: bool
+    largest: float
+    miss: float
+    is_held_back: bool
+
+    def shift(self, times: Floats) -> Complexes:
+        """Return the translation at times (t,)."""
+        moved: Complexes = self.series.at(times).T @ self.shifts
+        return moved
+
+
+def pin(
+    corrector: Corrector,
+    base_at: Callable[[float], BaseAt],
+    pins: Pins,
+    bounds: Bounds,
+    *,
+    sign: int,
+    is_squared: bool,
+) -> PinSeries:
+    """Find the corrections of a segment.
+
+    Parameters
+    ----------
+    corrector : Corrector
+        For the handles.
+    base_at : callable
+        Returns the base at a time in [0, 1].
+    pins : Pins
+    bounds : Bounds
+        Limits that are kept at the samples, as far as the base keeps them.
+    sign, is_squared
+        As in `PinSeries`.
+    """
+    known, size = corrector.variables, corrector.boundary.size
+    solved: dict[float, Found] = {}
+
+    def at(time: float) -> Floats:
+        base = base_at(time)
+        targets = pins.targets(time, base.places, base.anchor)
+        near = min(solved, key=lambda other: abs(other - time), default=None)
+        walls = Walls.of(corrector, base.samples, bounds)
+        found = solve(corrector, base.nodes, targets, walls, None if near is None else solved[near])
+        solved[time] = found
+        return np.append(found.x, [found.shift.real / size, found.shift.imag / size])
+
+    def values(times: Floats) -> Floats:
+        return np.array([at(time) for time in times.tolist()]).T
+
+    forms, series = separate(values, tolerance=TOLERANCE, left_out=LEFT_OUT, shortest=SHORTEST)
+    count = known.count
+    found = tuple(solved.values())
+    return PinSeries(
+        series=series,
+        h=freeze(known.h @ forms[:count]),
+        q=freeze(known.q @ forms[count:-2]),
+        shifts=freeze(size * (forms[-2] + 1j * forms[-1])),
+        sign=sign,
+        is_squared=is_squared,
+        largest=max(_largest(corrector, each.x) for each in found),
+        miss=max(float((each.misses * (pins.firmness == 1.0)).max(initial=0.0)) for each in found),
+        is_held_back=any(each.is_held_back for each in found),
+    )
+
+
+def _largest(corrector: Corrector, x: Floats) -> float:
+    known = corrector.variables
+    h, q = known.h_at_samples @ x[: known.count], known.q_at_samples @ x[known.count :]
+    return float(max(np.abs(h).max(), np.abs(q).max()))
