@@ -44,8 +44,8 @@ class Verdict(StrEnum):
 class IntervalReport:
     """One interval: what its in-betweens reach, beside what its two keys do.
 
-    `limits` is what they are to keep: the keys' own distortion, but where the motion passes through
-    a key, the figure's bounds, or what the keys around have beyond them. `proof` encloses the
+    `limits` is what they are to keep: the keys' own distortion, but where handles stay or the
+    motion passes through a key, the figure's bounds, or what the keys around have beyond them. `proof` encloses the
     in-betweens at all times. `unsettled` are the frames about which it cannot tell that they do not
     fold, `loose` others at which it is less tight.
     """
@@ -119,19 +119,19 @@ class Report:
         """The worst that is reached: of keys as proven, in between and in own ways as measured."""
         found = [Extremes(own.k, own.sigma_a, own.sigma_b) for _, own in self.keys]
         found += [each.reached for each in self.intervals]
-        if self.corrected is not None and self.corrected.solved:
+        if self.corrected is not None and self.corrected.frames:
             found += [self.corrected.reached, self.corrected.between]
         return reduce(Extremes.joined, found)
 
     @property
     def corrected_verdict(self) -> Verdict:
         """What is known of the frames that are corrected."""
-        if self.corrected is None or not self.corrected.solved:
+        if self.corrected is None or not self.corrected.frames:
             return Verdict.PROVEN
         corrected = self.corrected
         if not _are_within(corrected.reached.joined(corrected.between), corrected.limits):
             return Verdict.OVER
-        is_proven = corrected.proven == corrected.solved
+        is_proven = corrected.proven == corrected.frames
         return Verdict.PROVEN if is_proven else Verdict.MEASURED
 
 
@@ -157,9 +157,9 @@ def certify_clip(
     |ν| and log σ_a are subharmonic, so that the worst distortion of every in-between is on the
     outline; there it is measured at graded samples, some hundred an edge, the same for keys and
     in-betweens. The proof leaves nothing out between samples and times, and is of the in-betweens
-    as they are defined; what is measured is as they are worked out. Frames in which handles are
-    held still or go their own ways are solved one by one; each is proven but with the metric
-    variant, and what is between two of them is measured.
+    as they are defined, with the handles that stay; what is measured is as they are worked out.
+    Frames in which tracks and springs move handles are solved one by one; each is proven but with
+    the metric variant, and what is between two of them is measured.
     """
     figure, domain = clip.figure, clip.figure.domain
     boundary = Boundary.sample(domain.outline, domain.cage, domain.holes)

@@ -1,4 +1,4 @@
-"""Frames that are other than the closed-form motion: how far they distort, and what they miss."""
+"""Frames that tracks and springs change: how far they distort, and what handles miss."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -28,16 +28,14 @@ class Short:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CorrectedReport:
-    """The frames of a clip in which handles are held still or go their own ways.
+    """The frames of a clip that tracks and springs change.
 
     Parameters
     ----------
     frames : int
         How many.
-    solved : int
-        How many of them are more than moved as a whole, which distorts nothing.
     proven : int
-        How many of these are proven, over all of the domain; the others are measured.
+        How many of them are proven, over all of the domain; the others are measured.
     points : int
         On the outline, at which frames are measured.
     reached : Extremes
@@ -51,7 +49,6 @@ class CorrectedReport:
     """
 
     frames: int
-    solved: int
     proven: int
     points: int
     reached: Extremes
@@ -96,9 +93,8 @@ def report_corrected(
     frames = range(clip.frames.first, clip.frames.last + 1)
     corrections = {frame: animation.corrections.at(frame) for frame in frames}
     found = {frame: each for frame, each in corrections.items() if each is not None}
-    solved = list(found)
     # Repeats of a cycle have the very same corrections; each is looked at once.
-    same = {frame: (id(found[frame]), time_of(clip, frame)) for frame in solved}
+    same = {frame: (id(found[frame]), time_of(clip, frame)) for frame in found}
     once = {each: frame for frame, each in reversed(same.items())}
     proofs = {at: _proven(animation, boundary, frame, limits) for at, frame in once.items()}
     reached = [
@@ -107,7 +103,6 @@ def report_corrected(
     between = [frame + 0.5 for frame in once.values() if frame < clip.frames.last]
     return CorrectedReport(
         frames=len(found),
-        solved=len(solved),
         proven=sum(proofs[each] is not None for each in same.values()),
         points=len(points),
         reached=reduce(Extremes.joined, reached, NOTHING),

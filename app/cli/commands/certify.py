@@ -96,7 +96,7 @@ def _where(report: Report) -> list[str]:
         for each in report.intervals
         if each.verdict is report.verdict
     ]
-    return found + ["own ways"] * (report.corrected_verdict is report.verdict)
+    return found + ["tracks"] * (report.corrected_verdict is report.verdict)
 
 
 def _block(report: Report) -> dict[str, Any]:
@@ -118,7 +118,6 @@ def _corrected_block(report: Report) -> dict[str, Any] | None:
     return {
         "verdict": report.corrected_verdict,
         "frames": corrected.frames,
-        "solved": corrected.solved,
         "proven": corrected.proven,
         "points": corrected.points,
         **_named(corrected.reached),
@@ -184,7 +183,7 @@ def _as_table(report: Report) -> str:
     lines += _corrected_lines(report)
     lines.append(
         "In brackets: the worse of the two keyframes; of what is proven, how far that is beyond it"
-        " (or beyond the figure's bounds, where the motion passes through a key)."
+        " (or beyond the figure's bounds, where handles stay or the motion passes through a key)."
     )
     lines.append(f"All in all: {WORDS[report.verdict]}.")
     largest = max((interval.correction for interval in report.intervals), default=0.0)
@@ -198,23 +197,19 @@ def _as_table(report: Report) -> str:
 
 
 def _corrected_lines(report: Report) -> list[str]:
-    """Return what is known of frames in which handles stay or go their own ways."""
+    """Return what is known of frames in which tracks and springs move handles."""
     corrected = report.corrected
     if corrected is None or not corrected.frames:
         return []
-    lines = []
-    if corrected.solved:
-        reached = zip(_numbers(corrected.reached), ("+", "+", "-"), corrected.excess, strict=True)
-        cells = [f"{value:.4f} ({sign}{by:.4f})" for value, sign, by in reached]
-        lines.append(_line("own ways", cells, WORDS[report.corrected_verdict]))
-    lines.append(
-        f"In {corrected.frames} frames handles are held still or go their own ways: "
-        f"{corrected.frames - corrected.solved} of them are moved as a whole, which distorts "
-        f"nothing, {corrected.proven} are proven, and {corrected.solved - corrected.proven} are "
-        f"measured at {corrected.points:,} points of the outline each"
-        f"{BY_METRIC if corrected.proven < corrected.solved else ''}. So is what is halfway "
-        "between two of them."
-    )
+    reached = zip(_numbers(corrected.reached), ("+", "+", "-"), corrected.excess, strict=True)
+    cells = [f"{value:.4f} ({sign}{by:.4f})" for value, sign, by in reached]
+    measured = corrected.frames - corrected.proven
+    lines = [
+        _line("tracks", cells, WORDS[report.corrected_verdict]),
+        f"In {corrected.frames} frames tracks and springs move handles: {corrected.proven} are "
+        f"proven, and {measured} are measured at {corrected.points:,} points of the outline each"
+        f"{BY_METRIC if measured else ''}. Halfway between two of them the drawing is measured.",
+    ]
     lines += [
         f"{short.handle!r} is out of reach of its track by up to {short.lag:.1f} px in frame"
         f"{f's {short.first} to {short.last}' if short.last > short.first else f' {short.first}'}."

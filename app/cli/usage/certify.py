@@ -15,14 +15,14 @@ The true extremes lie between what is measured and what is proven ("error" in JS
 fold, or that cannot be proven not to, are named.
 
 Each interval, and the whole, has one verdict, about the keyframes' bounds, or the figure's where
-the motion passes through its keys:
+handles stay or the motion passes through its keys:
   proven    every moment is proven to be within; exit status 0
   measured  in-betweens never fold, but that they are within is measured only; exit status 3
   over      some are not within, or may fold, or a keyframe is not certified; exit status 1
-Frames in which handles are held still between keys, or go their own ways on tracks and springs, are
-solved one by one. Each is proven, with the metric variant only measured, at some thousand points of
-the outline; what is halfway between two of them is measured. Handles that cannot come where their
-tracks want them are named, with frames and pixels.
+In-betweens are proven with the handles that stay between keys. Frames in which tracks and springs
+move handles are solved one by one. Each is proven, with the metric variant only measured, at some
+thousand points of the outline; halfway between two of them the drawing is measured. Handles that
+cannot reach their tracks are named, with frames and pixels.
 Proven values are enclosures, and count as within up to .002 (k) or .2 % (both sigmas) beyond. Where
 a key is held, nothing but that key counts until the next one. Around holes the metric variant meets
 its Equation (13) by least squares only.

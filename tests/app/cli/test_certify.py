@@ -50,12 +50,11 @@ def certified(capsys, *words, project=SAMPLE):
 
 def test_in_betweens_are_proven_between_frames_too(still, capsys):
     status, said = certified(capsys, "--variant", "metric", "--json", project=still)
-    # Frames in which handles stay are measured, one by one.
-    assert status == 3
+    assert status == 0
     content = json.loads(said)
-    assert content["verdict"] == content["corrected"]["verdict"] == "measured"
-    assert content["corrected"]["excess"] == [0, 0, 0]
-    assert content["corrected"]["out_of_reach"] == []
+    assert content["verdict"] == "proven"
+    assert content["corrected"] is None
+    limits = load_project(still).figures[0].bounds
     for interval in content["intervals"]:
         assert interval["verdict"] == "proven"
         proven = interval["proven"]
@@ -67,17 +66,8 @@ def test_in_betweens_are_proven_between_frames_too(still, capsys):
         ):
             slack = 0.002 * (1 if name == "k" else interval[name])
             assert 0 <= sign * (proven[name] - interval[name]) <= slack
-            assert by == pytest.approx(sign * (proven[name] - interval[f"{name}_keys"]))
-
-
-def test_frames_in_which_handles_stay_are_proven_where_f_z_is_in_closed_form(still, capsys):
-    status, said = certified(capsys, "--variant", "nu", "--json", project=still)
-    assert status == 0
-    corrected = json.loads(said)["corrected"]
-    assert corrected["proven"] == corrected["solved"] > 5
-    assert corrected["between"]["k"] <= corrected["k"] + 0.02
-    _, said = certified(capsys, "--variant", "nu", project=still)
-    assert f"{corrected['proven']} are proven, and 0 are measured" in said
+            # Where handles stay, the limits are the figure's.
+            assert by == pytest.approx(max(sign * (proven[name] - getattr(limits, name)), 0))
 
 
 def test_frames_that_fold_are_named(giraffe, capsys):

@@ -169,7 +169,7 @@ def test_corrected_frames_are_proven_in_closed_variants(variant, wish):
     document = pulled(wish)
     report = certify_clip(clip_of(document, 0), variant)
     corrected = report.corrected
-    assert corrected.solved == corrected.proven > 4
+    assert corrected.frames == corrected.proven > 4
     assert report.corrected_verdict is Verdict.PROVEN
     clip = clip_of(document, 0)
     outline = clip.figure.domain.outline
