@@ -9,21 +9,22 @@ has none.
 """
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 
 from engine.arrays import Complexes, Floats
 from engine.correction.corrector import Corrector
+from engine.correction.variables import Values
 
 
 class BaseFrame(NamedTuple):
-    """A frame that is corrected, at the nodes of a corrector's paths and the boundary's samples.
+    """A frame that is corrected, at the nodes of a corrector's paths or the boundary's samples.
 
     Parameters
     ----------
     fz, g : complex128, shape (s,)
-        F and G at the nodes.
+        F and G.
     by : complex128, shape (s,)
         K, what q is multiplied by.
     sign : {-1, 1}
@@ -35,74 +36,80 @@ class BaseFrame(NamedTuple):
     by: Complexes
     sign: int
 
+    def corrected(self, values: Values, x: Floats) -> tuple[Complexes, Complexes, Complexes]:
+        """Return F e^h, G e^{σh} and K e^h of unknowns (2N,); beside them, q multiplies the last.
+
+        Parameters
+        ----------
+        values : Values
+            Of the unknowns' functions where the frame is given.
+        x : float64, shape (2N,)
+        """
+        grown = np.exp(values.h_of(x))
+        own = self.g * (grown if self.sign > 0 else 1.0 / grown)
+        return self.fz * grown, own, self.by * grown
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CorrectedFrame:
-    """A frame with h and q.
+    """A frame with h and q, at the nodes of paths.
 
     Parameters
     ----------
     corrector : Corrector
     base : BaseFrame
     x : float64, shape (2N,)
+    conformal, own, mixed, factor : complex128, shape (s,)
+        F e^h, G e^{σh}, q K e^h and K e^h.
     """
 
     corrector: Corrector
     base: BaseFrame
     x: Floats
+    conformal: Complexes
+    own: Complexes
+    mixed: Complexes
+    factor: Complexes
+
+    @classmethod
+    def of(cls, corrector: Corrector, base: BaseFrame, x: Floats) -> Self:
+        """Correct a frame."""
+        values = corrector.variables.at_nodes
+        conformal, own, factor = base.corrected(values, x)
+        return cls(corrector, base, x, conformal, own, values.q_of(x) * factor, factor)
 
     def places(self) -> Complexes:
         """Return the integrals from the anchor to each point, then around each hole."""
-        conformal, own, mixed = self._integrands()
         weights = self.corrector.paths.weights
-        return np.asarray(weights @ conformal + (weights @ (own + mixed)).conj())
+        both = weights @ np.column_stack([self.conformal, self.own + self.mixed])
+        return np.asarray(both[:, 0] + both[:, 1].conj())
 
     def rows(self) -> Floats:
         """Return the derivatives of these by the unknowns: real parts, then imaginary ones."""
-        known, weights = self.corrector.variables, self.corrector.paths.weights
-        conformal, own, mixed = self._integrands()
+        values, weights = self.corrector.variables.at_nodes, self.corrector.paths.weights
         count = len(weights)
-        both = np.vstack([weights * conformal, weights * (self.base.sign * own + mixed)])
-        by_h = both @ known.h_at_nodes
-        by_q = (weights * self._factor()) @ known.q_at_nodes
+        both = [weights * self.conformal, weights * (self.base.sign * self.own + self.mixed)]
+        by_h = np.vstack(both) @ values.h.T
+        by_q = (weights * self.factor) @ values.q.T
         rows = np.hstack([by_h[:count] + by_h[count:].conj(), by_q.conj()])
         return np.vstack([rows.real, rows.imag])
 
     def bending(self, pulls: Complexes) -> "Bending":
         """Return the second derivative of Re Σ conj(pull_i) place_i by the unknowns."""
-        conformal, own, mixed = self._integrands()
         weights = self.corrector.paths.weights
         back, through = pulls.conj() @ weights, pulls @ weights
-        by_q = through * self._factor()
-        return Bending(self.corrector, back * conformal + through * (own + mixed), by_q)
-
-    def _integrands(self) -> tuple[Complexes, Complexes, Complexes]:
-        """Return F e^h, G e^{σh} and q K e^h at the nodes."""
-        known, base = self.corrector.variables, self.base
-        h = known.h_at_nodes @ self.x[: known.count]
-        q = known.q_at_nodes @ self.x[known.count :]
-        grown = np.exp(h)
-        own = base.g * (grown if base.sign > 0 else 1.0 / grown)
-        return base.fz * grown, own, base.by * grown * q
-
-    def _factor(self) -> Complexes:
-        """Return K e^h."""
-        known = self.corrector.variables
-        h = known.h_at_nodes @ self.x[: known.count]
-        return np.asarray(self.base.by * np.exp(h))
+        twice = back * self.conformal + through * (self.own + self.mixed)
+        return Bending(self.corrector.variables.at_nodes, twice, through * self.factor)
 
 
 class Bending(NamedTuple):
     """A symmetric form of the unknowns: Re Σ twice · (δh)² + 2 both · δh δq over the nodes."""
 
-    corrector: Corrector
+    values: Values
     twice: Complexes
     both: Complexes
 
     def __call__(self, x: Floats) -> Floats:
         """Return the form's product with a vector."""
-        known = self.corrector.variables
-        h = known.h_at_nodes @ x[: known.count]
-        q = known.q_at_nodes @ x[known.count :]
-        of_h, of_q = self.twice * h + self.both * q, self.both * h
-        return np.concatenate([(of_h @ known.h_at_nodes).real, (of_q @ known.q_at_nodes).real])
+        h, q = self.values.h_of(x), self.values.q_of(x)
+        return self.values.against(self.twice * h + self.both * q, self.both * h)

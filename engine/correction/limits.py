@@ -87,24 +87,18 @@ class Walls:
         return Felt(np.vstack(rows), np.concatenate(pressed))
 
     def _moduli(self, x: Floats) -> "_Moduli":
-        known, base = self.corrector.variables, self.base
-        grown = np.exp(known.h_at_samples @ x[: known.count])
-        own = base.g * (grown if base.sign > 0 else 1.0 / grown)
-        by_q = base.by * grown
-        mixed = by_q * (known.q_at_samples @ x[known.count :])
+        values, sign = self.corrector.variables.at_samples, self.base.sign
+        conformal, own, factor = self.base.corrected(values, x)
+        mixed = values.q_of(x) * factor
         b = np.abs(own + mixed)
         towards = (own + mixed).conj() / np.maximum(b, np.finfo(np.float64).tiny)
-        return _Moduli(
-            a=np.abs(base.fz * grown),
-            b=b,
-            by_h=towards * (base.sign * own + mixed),
-            by_q=towards * by_q,
-        )
+        by_h = towards * (sign * own + mixed)
+        return _Moduli(a=np.abs(conformal), b=b, by_h=by_h, by_q=towards * factor)
 
     def _rows(self, kind: int, hot: Indices, at: "_Moduli") -> Floats:
         """Return the derivatives of one measure at some samples."""
-        known, (a, b, by_h, by_q) = self.corrector.variables, (each[hot] for each in at)
-        h, q = known.h_at_samples[hot], known.q_at_samples[hot]
+        values, (a, b, by_h, by_q) = self.corrector.variables.at_samples, (v[hot] for v in at)
+        h, q = values.h[:, hot].T, values.q[:, hot].T
         of_b, of_a = (
             (1 / (a + b), 1 / (a + b)),
             (1 / (a - b), -1 / (a - b)),

@@ -122,12 +122,20 @@ def solve(
 
 
 class _State(NamedTuple):
-    """Unknowns, and what the points lack there, complex128 (m + holes,), times their weights."""
+    """A corrected frame, and what the points lack there, complex128 (m + holes,), by their roots.
 
-    x: Floats
+    `pulls` are those of the step that led there.
+    """
+
+    frame: CorrectedFrame
     shift: complex
     lack: Complexes
     pulls: Complexes
+
+    @property
+    def x(self) -> Floats:
+        """The unknowns."""
+        return self.frame.x
 
 
 class _Problem:
@@ -140,8 +148,8 @@ class _Problem:
         self.weights = np.concatenate([targets.weights, np.ones(holes)])
         self.roots = np.sqrt(self.weights)
         self.of_points = np.concatenate([np.ones(self.count), np.zeros(holes)])
-        at_rest = CorrectedFrame(corrector, base, np.zeros(2 * corrector.variables.count))
-        places = at_rest.places()
+        at_rest = np.zeros(2 * corrector.variables.count)
+        places = CorrectedFrame.of(corrector, base, at_rest).places()
         # Points are moved from the base's places; periods are closed.
         self.wanted = places * self.of_points
         self.wanted[: self.count] += targets.moves
@@ -157,14 +165,13 @@ class _Problem:
 
     def state(self, x: Floats, shift: complex, pulls: Complexes | None = None) -> _State:
         """Work out what the points lack."""
-        places = CorrectedFrame(self.corrector, self.base, x).places()
-        lack = self.roots * (places + shift * self.of_points - self.wanted)
-        return _State(x, shift, lack, np.zeros_like(lack) if pulls is None else pulls)
+        frame = CorrectedFrame.of(self.corrector, self.base, x)
+        lack = self.roots * (frame.places() + shift * self.of_points - self.wanted)
+        return _State(frame, shift, lack, np.zeros_like(lack) if pulls is None else pulls)
 
     def found(self, at: _State, steps: int, *, is_held_back: bool) -> Found:
         """Pack the end of a search."""
-        places = CorrectedFrame(self.corrector, self.base, at.x).places()
-        misses = np.abs(places + at.shift - self.wanted)[: self.count]
+        misses = np.abs(at.frame.places() + at.shift - self.wanted)[: self.count]
         return Found(x=at.x, shift=at.shift, misses=misses, steps=steps, is_held_back=is_held_back)
 
     def solved(
@@ -178,14 +185,11 @@ class _Problem:
         gives: Floats | None = None
         for step in range(1, MOST_STEPS + 1):
             felt = None if walls is None else walls.felt(at.x, stiffness)
-            rows = CorrectedFrame(self.corrector, self.base, at.x).rows()
-            model = StepModel(at.x, at.lack, rows, self.rows, felt)
+            model = StepModel(at.x, at.lack, at.frame.rows(), self.rows, felt)
             gives = model.settle(limit, gives)
             change, shift = model.step()
             if self._size(change) > small:
-                bending = CorrectedFrame(self.corrector, self.base, at.x).bending(
-                    -self.roots * model.pulls
-                )
+                bending = at.frame.bending(-self.roots * model.pulls)
                 more, along = model.bent(bending, change)
                 change, shift = change + more, shift + along
             heavy = max(heavy, 1.5 * float(np.abs(model.pulls).max(initial=0.0)))
@@ -208,8 +212,7 @@ class _Problem:
         return at, step
 
     def _size(self, change: Floats) -> float:
-        known = self.corrector.variables
-        return float(np.abs(known.h_at_nodes @ change[: known.count]).max())
+        return float(np.abs(self.corrector.variables.at_nodes.h_of(change)).max())
 
     def _tried(
         self, at: _State, model: StepModel, change: Floats, shift: complex, length: float

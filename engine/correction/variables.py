@@ -6,7 +6,7 @@ Four times it is, to second order, the symmetric Dirichlet energy of what a corr
 """
 
 from dataclasses import dataclass
-from typing import Self
+from typing import NamedTuple, Self
 
 import numpy as np
 import scipy.linalg
@@ -19,6 +19,29 @@ OF_SIZE, OF_SLOPE = 1e-3, 1e-5  # ε and ε'
 RANK = 1e-6
 
 
+class Values(NamedTuple):
+    """The functions of the unknowns at some points: (N, p) each, of h and of q."""
+
+    h: Complexes
+    q: Complexes
+
+    def h_of(self, x: Floats) -> Complexes:
+        """Return h (p,) of unknowns (2N,)."""
+        return _combined(x[: len(self.h)], self.h)
+
+    def q_of(self, x: Floats) -> Complexes:
+        """Return q (p,) of unknowns (2N,)."""
+        return _combined(x[len(self.h) :], self.q)
+
+    def against(self, of_h: Complexes, of_q: Complexes) -> Floats:
+        """Return Re Σ over the points of numbers (p,) times the functions, float64 (2N,)."""
+        parts = [
+            each.view(np.float64) @ numbers.conj().view(np.float64)
+            for each, numbers in ((self.h, of_h), (self.q, of_q))
+        ]
+        return np.concatenate(parts)
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Variables:
     """h = H x_h and q = Q x_q, of real x = (x_h, x_q); N unknowns each.
@@ -29,18 +52,14 @@ class Variables:
     ----------
     h, q : complex128, shape (n, N)
         Coefficients of the functions in the domain's span.
-    h_at_nodes, q_at_nodes : complex128, shape (s, N)
-        Their values at the nodes of paths.
-    h_at_samples, q_at_samples : complex128, shape (p, N)
-        The same at the samples of the boundary.
+    at_nodes, at_samples : Values
+        At the nodes of paths, and at the samples of the boundary.
     """
 
     h: Complexes
     q: Complexes
-    h_at_nodes: Complexes
-    q_at_nodes: Complexes
-    h_at_samples: Complexes
-    q_at_samples: Complexes
+    at_nodes: Values
+    at_samples: Values
 
     @classmethod
     def of(cls, boundary: Boundary, nodes: Complexes) -> Self:
@@ -62,18 +81,10 @@ class Variables:
         coefficients = [own @ to for to in (to_h, to_q)]
         padded = [np.pad(each, ((0, len(span) - count), (0, 0))) for each in coefficients]
         on = [
-            freeze(np.ascontiguousarray(rows @ each))
+            Values(*(freeze(np.ascontiguousarray((rows @ each).T)) for each in coefficients))
             for rows in (at_nodes, samples)
-            for each in coefficients
         ]
-        return cls(
-            h=freeze(padded[0]),
-            q=freeze(padded[1]),
-            h_at_nodes=on[0],
-            q_at_nodes=on[1],
-            h_at_samples=on[2],
-            q_at_samples=on[3],
-        )
+        return cls(h=freeze(padded[0]), q=freeze(padded[1]), at_nodes=on[0], at_samples=on[1])
 
     @property
     def count(self) -> int:
@@ -92,3 +103,10 @@ def _whitened(form: Floats) -> Complexes:
     values, vectors = np.linalg.eigh(form)
     real, imaginary = np.split(vectors / np.sqrt(values), 2)
     return np.asarray(real + 1j * imaginary)
+
+
+def _combined(x: Floats, values: Complexes) -> Complexes:
+    """Return the sum (p,) of functions (N, p) with real weights."""
+    # As reals: a complex product with real weights would do half its work on zeros.
+    total: Complexes = (x @ values.view(np.float64)).view(np.complex128)
+    return total

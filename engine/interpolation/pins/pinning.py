@@ -128,6 +128,5 @@ def pin(
 
 
 def _largest(corrector: Corrector, x: Floats) -> float:
-    known = corrector.variables
-    h, q = known.h_at_samples @ x[: known.count], known.q_at_samples @ x[known.count :]
-    return float(max(np.abs(h).max(), np.abs(q).max()))
+    values = corrector.variables.at_samples
+    return float(max(np.abs(values.h_of(x)).max(), np.abs(values.q_of(x)).max()))

@@ -22,12 +22,12 @@ SAMPLE = Path(__file__).parents[3] / "sample_images/giraffe.lissom"
 
 @pytest.fixture(scope="module")
 def giraffe(tmp_path_factory):
-    """A project of the sample's first three keys."""
+    """A project of the sample's first three keys, between which no handle stays."""
     path = tmp_path_factory.mktemp("giraffe") / "giraffe.lissom"
     document = load_project(SAMPLE)
     (figure,) = document.figures
     frames = FrameRange(0, figure.keys[2].frame)
-    figures = (replace(figure, keys=figure.keys[:3]),)
+    figures = (replace(figure, keys=figure.keys[:3], stillness=False),)
     save_project(path, replace(document, figures=figures, frames=frames, preview=None, loop=False))
     return path
 

@@ -3,13 +3,16 @@
 import pytest
 from bars import bend_bar
 
+from app.document import track_commands
+from app.document.timing import Track, TrackKey
 from app.editor import Session
-from app.editor.actions import playback
+from app.editor.actions import editing, playback
 from app.editor.work import Jobs
 from app.motion import Streamed
 from app.motion.extent import extent_source
 
 HALFWAY = 12  # between the two keys
+TRACK = Track(handles=(1,), keys=tuple(TrackKey(frame=f, place=0j + f) for f in (0, 4, 8)))
 
 
 def prepared(project):
@@ -30,7 +33,9 @@ def test_session_prepares_ahead_by_itself(tmp_path):
 
 
 @pytest.mark.usefixtures("everything")
-def test_window_prepares_everything_unasked(bent):
+def test_window_prepares_everything_unasked(window, bent):
+    editing.edit(window.session, track_commands.put_track(bent.active, TRACK))
+    window.settle()
     assert bent.playhead.frame == bent.clip.keys[-1].frame
     assert all(prepared(bent).values()), prepared(bent)
 
@@ -39,6 +44,8 @@ def test_window_of_tests_prepares_only_what_is_shown(window):
     # The tab Export asks for the extent of the motion.
     window.show_tab("Handle")
     bent = window.again(bend_bar)
+    editing.edit(window.session, track_commands.put_track(bent.active, TRACK))
+    window.settle()
     assert not any(prepared(bent).values()), prepared(bent)
     playback.seek(window.session, HALFWAY)
     window.settle()
