@@ -26,6 +26,7 @@ from engine.interpolation.passage import (
     sample_keyframes as sample_keyframes,
 )
 from engine.interpolation.preparation import (
+    TWO_KEYFRAMES as TWO_KEYFRAMES,
     Prepared as Prepared,
     interval_at as interval_at,
     prepare as prepare,

@@ -45,6 +45,13 @@ PIECES: tuple[list[list[int]], ...] = (
     [[4, 2, 5], [1, 4, 5], [1, 5, 0]],
     [[0, 3, 5], [3, 1, 4], [4, 2, 5], [3, 4, 5]],
 )
+MESH_POINTS = (
+    "The triangles name points from {smallest} to {largest}, but there are only points 0 to {last}."
+)
+EDGE_LEAVES = (
+    "The triangles' edge from point {first} to point {second} leaves the outline; give triangles "
+    "of the inside only, or none."
+)
 
 
 def _none() -> Indices:
@@ -94,8 +101,9 @@ def mesh_network(
         raise EngineError("There are no triangles; leave them out and the engine finds its paths.")
     if triangles.min(initial=0) < 0 or triangles.max(initial=0) >= len(vertices):
         raise EngineError(
-            f"The triangles name points from {triangles.min()} to {triangles.max()}, but there are "
-            f"only points 0 to {len(vertices) - 1}."
+            MESH_POINTS.format(
+                smallest=triangles.min(), largest=triangles.max(), last=len(vertices) - 1
+            )
         )
     loops = (outline, *holes)
     along, against = _directed(triangles, len(vertices))
@@ -108,10 +116,7 @@ def mesh_network(
     crossing = _crosses(loops, vertices[ends[:, 0]], vertices[ends[:, 1]])
     if crossing.any():
         first, second = ends[np.flatnonzero(crossing)[0]]
-        raise EngineError(
-            f"The triangles' edge from point {first} to point {second} leaves the outline; give "
-            "triangles of the inside only, or none."
-        )
+        raise EngineError(EDGE_LEAVES.format(first=first, second=second))
     nearest = np.argsort(np.abs(vertices - anchor), kind="stable")[:NEIGHBOURS]
     seen = nearest[~_crosses(loops, np.repeat(anchor, len(nearest)), vertices[nearest])]
     if not len(seen):
