@@ -26,6 +26,7 @@ NOT_POINT = "{where} must be a point [x, y], not {content}"
 NOT_FINITE = "{where} must be finite, not {content}"
 NOT_JSON = "{path} is not JSON: {reason} in line {line}, column {column}"
 TOO_NESTED = "{path} is nested too deeply"
+LACKS_FIELD = "{where} lacks the field {name!r}"
 
 
 class JsonObject(dict[str, Any]):
@@ -36,7 +37,7 @@ class JsonObject(dict[str, Any]):
         self.where = where
 
     def __missing__(self, name: str) -> Any:
-        raise LissomError(f"{self.where} lacks the field {name!r}")
+        raise LissomError(LACKS_FIELD.format(where=self.where, name=name))
 
 
 def as_object(content: object, where: str) -> JsonObject:

@@ -52,6 +52,10 @@ EDGE_LEAVES = (
     "The triangles' edge from point {first} to point {second} leaves the outline; give triangles "
     "of the inside only, or none."
 )
+ANCHOR_UNREACHED = (
+    "No point of the mesh near the anchor {anchor:.6g} can be reached straight; choose an anchor "
+    "inside the triangles."
+)
 
 
 def _none() -> Indices:
@@ -120,10 +124,7 @@ def mesh_network(
     nearest = np.argsort(np.abs(vertices - anchor), kind="stable")[:NEIGHBOURS]
     seen = nearest[~_crosses(loops, np.repeat(anchor, len(nearest)), vertices[nearest])]
     if not len(seen):
-        raise EngineError(
-            f"No point of the mesh near the anchor {anchor[0]:.6g} can be reached straight; choose "
-            "an anchor inside the triangles."
-        )
+        raise EngineError(ANCHOR_UNREACHED.format(anchor=anchor[0]))
     reached = shortest_parents(along + against, int(seen[0]))
     if np.any(reached < 0):
         raise EngineError(

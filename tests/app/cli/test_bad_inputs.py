@@ -14,9 +14,11 @@ from messages import says
 from refusals import refusal
 
 from app.cli import process
+from app.cli.hole_arrays import HOLE_SIZES
 from app.cli.main import TOO_LITTLE_MEMORY
 from app.cli.process import LEAST_MEMORY
 from app.storage import NO_ARRAYS, sample_images
+from app.storage.files.reading import NOT_ORDINARY
 from engine.geometry.polygon import CAGE_FAR, CAGE_REPEATS, FEW_DIGITS
 
 SQUARE = np.array([0, 1, 1 + 1j, 1j])
@@ -77,7 +79,7 @@ def test_what_is_packed_in_rare_ways_is_refused(tmp_path, capsys, packing):
                     "hole_cage_sizes": np.array(sizes),
                     "hole_centres": np.full(len(sizes), 0.5 + 0.5j),
                 },
-                "whole numbers that add up",
+                says(HOLE_SIZES),
             )
             for sizes in ([-4, 12], [HUGE, HUGE, 14])  # the latter wrap around to 12
         ),
@@ -122,7 +124,7 @@ def test_what_is_no_plain_file_is_never_waited_for(tmp_path, capsys, suffix, kin
         ".json": ("pose", __file__, path, "--out", out),
     }
     said = refusal(capsys, *calls.get(suffix, ("domain", path, "--out", out)))
-    assert "not an ordinary file" in said or "it is a folder" in said
+    assert re.search(says(NOT_ORDINARY), said) or "it is a folder" in said
 
 
 FULL = "lissom: error: cannot use standard output: No space left on device"

@@ -6,6 +6,7 @@ from interpolation_shapes import inner_points, letter_l, random_map
 from messages import says
 from numpy.testing import assert_allclose, assert_array_equal
 
+from app.cli.keyframes import COEFFICIENT_SHAPE
 from app.cli.main import main
 from engine.domain.meshing.triangulation import triangulate
 from engine.geometry import polygon
@@ -142,8 +143,8 @@ FOLDED[1] = MAPS["phi"][1].conj() * 2
     ("changes", "message"),
     [
         ({"phi": MAPS["phi"][:1], "psi": MAPS["psi"][:1]}, says(TWO_KEYFRAMES)),
-        ({"phi": MAPS["phi"][:, :-1]}, r"phi and psi must both be of shape"),
-        ({"phi": MAPS["phi"][0]}, r"phi and psi must both be of shape"),
+        ({"phi": MAPS["phi"][:, :-1]}, says(COEFFICIENT_SHAPE)),
+        ({"phi": MAPS["phi"][0]}, says(COEFFICIENT_SHAPE)),
         ({"psi": FOLDED}, says(FOLDS, number=1)),
         (
             {"points": np.array([0.5 + 0.5j, 2 + 2j])},

@@ -8,6 +8,7 @@ import pytest
 from animations import moving_document
 from refusals import refusal
 
+from app.cli.options import NO_STANDARD_OUTPUT
 from app.storage import SAME_FILE
 from app.storage.project_file import save_project
 
@@ -118,12 +119,14 @@ def test_standard_output_is_not_offered(capsys, monkeypatch):
     monkeypatch.setattr("app.storage.files.outputs.STREAMS", (99,))
     os.dup2(os.open("redirected", os.O_WRONLY | os.O_CREAT), 99)
     try:
-        assert "standard output" in refusal(capsys, "domain", "other", "--out", "/dev/fd/99")
+        assert NO_STANDARD_OUTPUT in refusal(capsys, "domain", "other", "--out", "/dev/fd/99")
     finally:
         os.close(99)
     for words in (["domain", "other", "--out", "-"], ["export", "other", "--out", "-"]):
-        assert "standard output is not offered" in refusal(capsys, *words)
-    assert "not offered" in refusal(capsys, "domain", "other", "--out", "out", "--preview", "-")
+        assert NO_STANDARD_OUTPUT in refusal(capsys, *words)
+    assert NO_STANDARD_OUTPUT in refusal(
+        capsys, "domain", "other", "--out", "out", "--preview", "-"
+    )
 
 
 @pytest.mark.parametrize("name", ["n" * 256, "a/" * 3000 + "b", "nul\0"])

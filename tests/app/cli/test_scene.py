@@ -19,7 +19,7 @@ from app.solving import pose_document
 from app.solving.script import parse_pose_script
 from app.solving.script.fields import NOT_A_FRAME, OUT_OF_ORDER
 from app.storage import open_layered
-from app.storage.json_values import NOT_LIST, NOT_TRUE_OR_FALSE
+from app.storage.json_values import LACKS_FIELD, NOT_LIST, NOT_TRUE_OR_FALSE
 from app.storage.project_file import load_project, save_project
 from engine.errors import EngineError
 from engine.maps import Bounds
@@ -191,8 +191,8 @@ def test_export_draws_the_scene_or_one_figure_of_it(project):
             {"attach": {"to": "body", "at": [70, 40]}},
             r"layer 'arm': it is attached at \(70, 40\), which is on 'body' but not on itself",
         ),
-        ({"attach": {"to": "body"}}, r"figures\[0\]\.attach lacks the field 'at'"),
-        ({"attach": {"at": [1, 2]}}, r"figures\[0\]\.attach lacks the field 'to'"),
+        ({"attach": {"to": "body"}}, says(LACKS_FIELD, where="figures[0].attach", name="at")),
+        ({"attach": {"at": [1, 2]}}, says(LACKS_FIELD, where="figures[0].attach", name="to")),
         ({"attach": {"to": "wall", "at": [5, 5], "anchor": 1}}, "unknown field 'anchor'"),
         ({"anchor": [5, 5]}, r"layer 'arm': The anchor at \(5, 5\) lies outside"),
         ({"handles": {"hand": [5, 5]}}, "layer 'arm': "),
@@ -204,7 +204,10 @@ def test_export_draws_the_scene_or_one_figure_of_it(project):
             {"handles": {"hand": {"at": [190, 120], "extent": -3}}},
             "layer 'arm': ",
         ),
-        ({"handles": {"hand": {"front": 1}}}, r"figures\[0\]\.handle 'hand' lacks the field 'at'"),
+        (
+            {"handles": {"hand": {"front": 1}}},
+            says(LACKS_FIELD, where="figures[0].handle 'hand'", name="at"),
+        ),
         (
             {"keys": [{"frame": 0, "front": {"foot": 1}}]},
             r"figures\[0\]\.keys\[0\] names the handle 'foot', but the handles are hand",
@@ -237,7 +240,7 @@ def test_export_draws_the_scene_or_one_figure_of_it(project):
             r"figures\[0\]\.attach\[0\]\.frame must be a whole",
         ),
         ({"attach": [{"to": None, "at": [1, 2]}]}, "lets go, so that it has no at"),
-        ({"attach": [{"to": "body"}]}, r"figures\[0\]\.attach\[0\] lacks the field 'at'"),
+        ({"attach": [{"to": "body"}]}, says(LACKS_FIELD, where="figures[0].attach[0]", name="at")),
         ({"attach": [{"frame": 4, "to": "leg", "keep": True}]}, "there is no layer 'leg'"),
         (
             {"attach": [{"to": "body", "at": [95, 120]}, {"frame": 4, "to": "arm", "keep": True}]},
@@ -561,7 +564,7 @@ def test_choice_is_told_of_when_its_key_is_after_the_end(opened):
         ([{**CHOICE, "keys": [4]}], says(NOT_LIST, where="choices[0].keys[0]")),
         ([CHOICE, {**CHOICE, "name": "lips"}], "the layer 'closed' is in two choices"),
         ([CHOICE, {**CHOICE, "layers": ["head", "eh"], "keys": []}], "two choices are called"),
-        ([{"layers": ["ah", "oh"]}], r"choices\[0\] lacks the field 'name'"),
+        ([{"layers": ["ah", "oh"]}], says(LACKS_FIELD, where="choices[0]", name="name")),
         ([{**CHOICE, "shown": 1}], "unknown field 'shown'; it may have name, layers, keys"),
         ([{**CHOICE, "name": " "}], r"choices\[0\]\.name is empty, and a choice needs a name"),
         (

@@ -22,7 +22,7 @@ from app.solving.drag import Drag, Rig
 from app.solving.renewal import Renewal, go_on
 from app.solving.replacing import begin_replacing
 from app.solving.script import parse_pose_script
-from app.storage.json_values import NOT_LIST, NOT_NUMBER, NOT_OBJECT, NOT_POINT
+from app.storage.json_values import LACKS_FIELD, NOT_LIST, NOT_NUMBER, NOT_OBJECT, NOT_POINT
 from engine.deform import Hand
 from engine.domain import CutOut, Slit
 
@@ -162,8 +162,8 @@ def test_script_stiffens_what_it_says():
         ([7], says(NOT_OBJECT, where="stiff[0]")),
         ([{"from": "start", "to": "knee", "amount": 3}], r"stiff\[0\] names the handle 'knee'"),
         ([{"from": "start", "to": "start", "amount": 3}], "from 'start' to itself"),
-        ([{"from": "start", "to": "end"}], "lacks the field 'amount'"),
-        ([{"from": "start", "amount": 2}], "lacks the field 'to'"),
+        ([{"from": "start", "to": "end"}], says(LACKS_FIELD, name="amount")),
+        ([{"from": "start", "amount": 2}], says(LACKS_FIELD, name="to")),
         ([{"from": "start", "to": "end", "amount": 101}], "from 1/30 to 100, not 101"),
         (
             [{"from": "start", "to": "end", "amount": "hard"}],

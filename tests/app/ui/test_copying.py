@@ -7,6 +7,7 @@ from imgui_bundle import ImVec2, imgui
 from app.document import HOLD, key_commands
 from app.editor import layering
 from app.editor.actions import editing, playback, posing
+from app.editor.poses.copying import KEYS_COPIED
 from app.ui.shortcuts import BINDINGS
 
 CTRL = int(imgui.Key.mod_ctrl)
@@ -104,7 +105,7 @@ def test_in_the_timeline_the_chosen_keys_are_copied(window, loose, play):
         playback.scrub(window.session, 12)
         hand.press(COPY)
 
-    assert play(copy) == ["2 keys copied."]
+    assert play(copy) == [KEYS_COPIED.format(count=2)]
     assert loose.chosen == {0, 24}
     (copied,) = window.session.copied
     assert copied.keys == loose.figure.keys
@@ -174,7 +175,9 @@ def test_all_keys_of_all_layers_that_are_posed_are_chosen(window, loose, play):
     window.settle()
     layering.choose(window.session, 0)
     posed = {figure.id for figure in loose.document.figures} - {still}
-    assert play(lambda hand: (hand.to_timeline(), hand.press(ALL, COPY))) == ["4 keys copied."]
+    assert play(lambda hand: (hand.to_timeline(), hand.press(ALL, COPY))) == [
+        KEYS_COPIED.format(count=4)
+    ]
     assert loose.chosen_of == dict.fromkeys(posed, frozenset({0, 24}))
 
 

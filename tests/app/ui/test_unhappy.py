@@ -10,7 +10,7 @@ from imgui_bundle import ImVec2, imgui
 
 from app.document.commands import handle_commands, key_commands
 from app.document.keyframe import Passing, Target
-from app.document.queries.shortfall import find_shortfall
+from app.document.queries.shortfall import HELD_BY_LIMITS, find_shortfall
 from app.document.settings import FrameRange, Meshing
 from app.editor.actions import (
     editing,
@@ -369,7 +369,7 @@ def test_handle_out_of_reach_is_told_and_freed_again(window, loose, monkeypatch)
         editing.select(session, frozenset({1}))
         window.frames(3)
     assert wishes[-1] == pose.targets[1].position
-    assert any("held back by the limits" in words for words in written)
+    assert any(HELD_BY_LIMITS in words for words in written)
 
     window.run(lambda robot: pull(robot, start))
     window.settle()

@@ -21,6 +21,7 @@ from engine.interpolation import (
 )
 from engine.interpolation.blends.metric import RESOLVED
 from engine.interpolation.blends.outline import OutlineMetric
+from engine.interpolation.passage.derivatives import KEYFRAMES_OF_INTERVAL
 from engine.interpolation.passage.keyframe_samples import FOLDS, sample_keyframes
 from engine.interpolation.preparation import OTHER_CAGE, TIME_RANGE, TWO_KEYFRAMES
 from engine.interpolation.sites import ONE_ANCHOR, OTHER_OUTLINE
@@ -213,7 +214,9 @@ def test_what_a_variant_needs_is_asked_for():
     sites = prepare_sites(OUTLINE, CAGE, POINTS)
     keys = sample_keyframes(MAPS, sites)
     sheets = root_sheets(np.array([key.anchor_fz for key in keys]))
-    with pytest.raises(EngineError, match="two keyframes, not 3 with 3 sheets"):
+    with pytest.raises(
+        EngineError, match=says(KEYFRAMES_OF_INTERVAL, wanted="two", count=3, sheets=3)
+    ):
         Passage.of(keys, sheets)
     interval = Interval(sites, Passage.of(keys[:2], sheets[:2]), Bounds())
     for variant in Variant:

@@ -14,6 +14,7 @@ from engine.maps.cauchy import evaluate
 from engine.paths import integration_paths
 from engine.paths.integration_paths import lay_paths
 from engine.paths.path_network import (
+    ANCHOR_UNREACHED,
     EDGE_LEAVES,
     MESH_POINTS,
     Network,
@@ -183,7 +184,7 @@ def test_triangles_across_the_outside_are_refused_whichever_way_they_run():
 def test_an_anchor_far_from_a_partial_mesh_is_refused():
     outline, _ = narrow_u()
     vertices = np.array([-0.8 + 1.5j, -0.5 + 1.5j, -0.5 + 1.8j])
-    with pytest.raises(EngineError, match="anchor"):
+    with pytest.raises(EngineError, match=says(ANCHOR_UNREACHED)):
         mesh_network(outline, vertices, np.array([[0, 1, 2]], np.int32), np.array([0.5 + 1.5j]))
 
 
