@@ -17,6 +17,10 @@ from threadpoolctl import threadpool_limits
 
 from engine.errors import EngineError
 
+NOT_COMPLEX = "{name} must be complex numbers, not {dtype}."
+NOT_FINITE = "{name} must be finite, but entry {index} is {value}."
+FEW_ENTRIES = "{name} must have at least {at_least} entries, not {count}."
+
 threadpool_limits(limits=1, user_api="blas")
 
 type_ = TypeVar("type_", bound=np.generic)
@@ -112,13 +116,13 @@ def as_points(values: npt.ArrayLike, name: str, *, at_least: int = 0) -> Complex
     """
     array = np.asarray(values)
     if array.dtype.kind not in "biufc":
-        raise EngineError(f"{name} must be complex numbers, not {array.dtype}.")
+        raise EngineError(NOT_COMPLEX.format(name=name, dtype=array.dtype))
     if array.ndim != 1:
         raise EngineError(f"{name} must be one-dimensional, not of shape {array.shape}.")
     if len(array) < at_least:
-        raise EngineError(f"{name} must have at least {at_least} entries, not {len(array)}.")
+        raise EngineError(FEW_ENTRIES.format(name=name, at_least=at_least, count=len(array)))
     points = readonly(array.astype(np.complex128, copy=False))
     if not np.isfinite(points).all():
         bad = int(np.flatnonzero(~np.isfinite(points))[0])
-        raise EngineError(f"{name} must be finite, but entry {bad} is {points[bad]}.")
+        raise EngineError(NOT_FINITE.format(name=name, index=bad, value=points[bad]))
     return points

@@ -17,6 +17,7 @@ HOLE_ARRAYS = (
     "hole_cage_sizes",
     "hole_centres",
 )
+HOLE_SIZES = "{sizes} must be whole numbers that add up to the {count} vertices of {name}"
 
 
 def hole_arrays(holes: Sequence[Hole]) -> dict[str, npt.NDArray[Any]]:
@@ -69,8 +70,5 @@ def _cut(
         )
     whole = sizes.dtype.kind in "iu" or not count
     if not whole or (sizes < 0).any() or sum(sizes.tolist()) != len(vertices):
-        raise LissomError(
-            f"{sizes_name} must be whole numbers that add up to the {len(vertices)} vertices of "
-            f"{name}"
-        )
+        raise LissomError(HOLE_SIZES.format(sizes=sizes_name, count=len(vertices), name=name))
     return np.split(vertices, np.cumsum(sizes.astype(np.int64))[:-1]) if count else []

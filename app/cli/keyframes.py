@@ -19,6 +19,10 @@ from engine.maps import HarmonicMap
 
 OPTIONAL = ("anchor", "triangles", "turns", "handles")
 NEAR = 1e-4  # error of harmonic coordinates, over the size, that is not worth a word
+COEFFICIENT_SHAPE = (
+    "phi and psi must both be of shape (keyframes, cage vertices); they are of shape {phi} and "
+    "{psi}, with {count} vertices of the cage and those in holes"
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -84,10 +88,7 @@ def _from_coefficients(path: Path) -> Keyframes:
     phi, psi, holes = data["phi"], data["psi"], read_holes(data)
     count = data["cage"].size + sum(len(hole.cage) for hole in holes)
     if phi.ndim != 2 or phi.shape != psi.shape or phi.shape[1] != count:
-        raise LissomError(
-            "phi and psi must both be of shape (keyframes, cage vertices); they are of shape "
-            f"{phi.shape} and {psi.shape}, with {count} vertices of the cage and those in holes"
-        )
+        raise LissomError(COEFFICIENT_SHAPE.format(phi=phi.shape, psi=psi.shape, count=count))
     logs = data.get("logs", np.zeros((len(phi), len(holes))))
     if logs.shape != (len(phi), len(holes)):
         raise LissomError(

@@ -14,6 +14,7 @@ from engine.arrays import Complexes, Integers
 
 LARGEST = 64 * 1024 * 1024  # bytes; a mesh of a million triangles has as many
 FLAT = 1e-9  # spread of z, over that of x and y, up to which a mesh is plane
+NO_VERTEX = "a face of {path} names vertex {number}, and there are only {count}"
 
 
 class PlaneMesh(NamedTuple):
@@ -83,9 +84,7 @@ def _parsed(text: str, path: Path) -> PlaneMesh:
     across, up, deep = np.frombuffer(places, dtype=np.float64).reshape(-1, 3).T
     triangles = np.frombuffer(corners, dtype=np.int64).reshape(-1, 3)
     if triangles.max() >= len(up):
-        raise LissomError(
-            f"a face of {path} names vertex {triangles.max() + 1}, and there are only {len(up)}"
-        )
+        raise LissomError(NO_VERTEX.format(path=path, number=triangles.max() + 1, count=len(up)))
     if not np.isfinite(across + up + deep).all():
         raise LissomError(f"{path} has a vertex that is not finite")
     if np.ptp(deep) > FLAT * max(np.ptp(across), np.ptp(up)):

@@ -23,6 +23,7 @@ DEFAULT_TOLERANCE = 18
 VARIANTS = tuple(variant.value for variant in Variant)
 METHODS = (*VARIANTS, *(method.value for method in Baseline))
 FRAMINGS = ("canvas", "fit")
+NO_STANDARD_OUTPUT = "standard output is not offered; name a file instead of -"
 
 
 def input_file(text: str) -> Path:
@@ -50,7 +51,7 @@ def output(text: str) -> Path:
         If it is a dash, which stands for standard output elsewhere.
     """
     if text == "-":
-        raise LissomError("standard output is not offered; name a file instead of -")
+        raise LissomError(NO_STANDARD_OUTPUT)
     return Path(text)
 
 

@@ -42,6 +42,9 @@ from engine.maps import Bounds, Certificate, HarmonicMap, require_stiffness
 from engine.variant import Variant
 
 Posed = TypeVar("Posed", Keyframe, KeptPose)
+NO_KEY = "There is no key at frame {frame}."
+NO_HANDLE = "There is no handle with the id {identity}."
+POSE_COUNT = "The figure has {count} poses, not {given}."
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -221,7 +224,7 @@ class Figure:
         """Return the figure with others for its `poses`, in their order, and with other changes."""
         given = tuple(poses)
         if len(given) != len(self.poses):
-            raise LissomError(f"The figure has {len(self.poses)} poses, not {len(given)}.")
+            raise LissomError(POSE_COUNT.format(count=len(self.poses), given=len(given)))
         left = iter(given)
         keys = tuple(_with_pose(key, next(left)) for key in self.keys)
         library = tuple(_with_pose(kept, next(left)) for kept in self.library)
@@ -244,7 +247,7 @@ class Figure:
         for handle in self.handles:
             if handle.id == identity:
                 return handle
-        raise LissomError(f"There is no handle with the id {identity}.")
+        raise LissomError(NO_HANDLE.format(identity=identity))
 
     def together_with(self, identity: int) -> frozenset[int]:
         """Return the ids of the handles that are taken together with one, its own among them."""
@@ -300,7 +303,7 @@ class Figure:
         for key in self.keys:
             if key.frame == frame:
                 return key
-        raise LissomError(f"There is no key at frame {frame}.")
+        raise LissomError(NO_KEY.format(frame=frame))
 
     def nearest_key(self, frame: int) -> Keyframe:
         """Return the key that is nearest to a frame, of two the earlier one."""

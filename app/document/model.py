@@ -27,6 +27,9 @@ from app.document.layering import (
 from app.document.settings import FASTEST, ExportSettings, FrameRange, Marker
 from app.errors import NOTHING_TOLD, ImportSummary, LissomError
 
+NO_FIGURE = "There is no figure with the id {identity}."
+HANGS_ON_ITSELF = "{name!r} would hang on itself{when}: {links}; detach one of them first."
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Document:
@@ -121,7 +124,7 @@ class Document:
         for figure in self.figures:
             if figure.id == identity:
                 return figure
-        raise LissomError(f"There is no figure with the id {identity}.")
+        raise LissomError(NO_FIGURE.format(identity=identity))
 
     def choice(self, name: str) -> Choice:
         """Return the choice with this name."""
@@ -258,9 +261,7 @@ class Document:
         links = ", ".join(f"{one.name!r} on {other.name!r}" for one, other in pairwise(circle))
         changes = any(joint.frame > 0 for figure in circle for joint in figure.joints)
         when = f" at frame {frame:g}" if changes else ""
-        raise LissomError(
-            f"{circle[0].name!r} would hang on itself{when}: {links}; detach one of them first."
-        )
+        raise LissomError(HANGS_ON_ITSELF.format(name=circle[0].name, when=when, links=links))
 
     def _check_groups(self) -> None:
         known: set[str] = set()

@@ -17,6 +17,15 @@ FRAMES: Final = " frames"  # what the name of a folder for them ends in
 PROJECT: Final = "{name}"
 # A name's last dot is no ending where a number follows, as in v1.2.
 _ENDING: Final = re.compile(r"\.[a-z]\w*")
+NAMED_LIKE_FILE = (
+    "{label} go to a folder, but {out} is named like a file; name a folder, or choose the format "
+    "of the name"
+)
+FRAMES_TO_FILE = "cannot write frames to {out}: it is a file; name a folder"
+TOO_LITTLE_ROOM = (
+    "there are only {left:,.1f} MB left where {folder} is, and this export takes {needed:,.1f} MB "
+    "or more; make room or choose another folder"
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -83,12 +92,9 @@ def check_destination(
         check_writable(*there, sources=sources)
     else:
         if out.exists():
-            raise LissomError(f"cannot write frames to {out}: it is a file; name a folder")
+            raise LissomError(FRAMES_TO_FILE.format(out=out))
         if out.suffix.lower() in _all_suffixes():
-            raise LissomError(
-                f"{label} go to a folder, but {out} is named like a file; name a folder, or "
-                "choose the format of the name"
-            )
+            raise LissomError(NAMED_LIKE_FILE.format(label=label, out=out))
         if not out.parent.is_dir():
             raise LissomError(f"cannot write {out}: {NO_FOLDER.format(folder=out.parent)}")
     folder = out if out.is_dir() else out.parent
@@ -117,8 +123,7 @@ def check_room(out: Path, needed: int) -> None:
     free = shutil.disk_usage(folder).free
     if free < needed:
         raise LissomError(
-            f"there are only {free / 1e6:,.1f} MB left where {folder} is, and this export takes "
-            f"{needed / 1e6:,.1f} MB or more; make room or choose another folder"
+            TOO_LITTLE_ROOM.format(left=free / 1e6, folder=folder, needed=needed / 1e6)
         )
 
 

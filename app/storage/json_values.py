@@ -16,6 +16,17 @@ from app.storage.files import read_file
 Parsed = TypeVar("Parsed")
 
 MISSING: Any = object()  # in place of a value that there is not
+NOT_TRUE_OR_FALSE = "{where} must be true or false, not {content}"
+NOT_WHOLE = "{where} must be a whole number, not {content}"
+NOT_NUMBER = "{where} must be a number, not {content}"
+NOT_LIST = "{where} must be a list [...], not {content}"
+NOT_OBJECT = "{where} must be an object {{...}}, not {content}"
+NOT_TEXT = "{where} must be a text, not {content}"
+NOT_POINT = "{where} must be a point [x, y], not {content}"
+NOT_FINITE = "{where} must be finite, not {content}"
+NOT_JSON = "{path} is not JSON: {reason} in line {line}, column {column}"
+TOO_NESTED = "{path} is nested too deeply"
+LACKS_FIELD = "{where} lacks the field {name!r}"
 
 
 class JsonObject(dict[str, Any]):
@@ -26,61 +37,61 @@ class JsonObject(dict[str, Any]):
         self.where = where
 
     def __missing__(self, name: str) -> Any:
-        raise LissomError(f"{self.where} lacks the field {name!r}")
+        raise LissomError(LACKS_FIELD.format(where=self.where, name=name))
 
 
 def as_object(content: object, where: str) -> JsonObject:
     """Return an object."""
     if not isinstance(content, dict):
-        raise LissomError(f"{where} must be an object {{...}}, not {shown(content)}")
+        raise LissomError(NOT_OBJECT.format(where=where, content=shown(content)))
     return JsonObject(content, where)
 
 
 def as_list(content: object, where: str) -> list[Any]:
     """Return a list."""
     if not isinstance(content, list):
-        raise LissomError(f"{where} must be a list [...], not {shown(content)}")
+        raise LissomError(NOT_LIST.format(where=where, content=shown(content)))
     return content
 
 
 def as_text(content: object, where: str) -> str:
     """Return a text."""
     if not isinstance(content, str):
-        raise LissomError(f"{where} must be a text, not {shown(content)}")
+        raise LissomError(NOT_TEXT.format(where=where, content=shown(content)))
     return shown_name(content)
 
 
 def as_flag(content: object, where: str) -> bool:
     """Return true or false."""
     if not isinstance(content, bool):
-        raise LissomError(f"{where} must be true or false, not {shown(content)}")
+        raise LissomError(NOT_TRUE_OR_FALSE.format(where=where, content=shown(content)))
     return content
 
 
 def as_whole(content: object, where: str) -> int:
     """Return a whole number."""
     if not isinstance(content, int) or isinstance(content, bool):
-        raise LissomError(f"{where} must be a whole number, not {shown(content)}")
+        raise LissomError(NOT_WHOLE.format(where=where, content=shown(content)))
     return content
 
 
 def as_number(content: object, where: str) -> float:
     """Return a finite number."""
     if isinstance(content, bool) or not isinstance(content, (int, float)):
-        raise LissomError(f"{where} must be a number, not {shown(content)}")
+        raise LissomError(NOT_NUMBER.format(where=where, content=shown(content)))
     try:
         number = float(content)
     except OverflowError:
         number = math.inf
     if not math.isfinite(number):
-        raise LissomError(f"{where} must be finite, not {shown(content)}")
+        raise LissomError(NOT_FINITE.format(where=where, content=shown(content)))
     return number
 
 
 def as_point(content: object, where: str) -> complex:
     """Return a point x + iy, written [x, y]."""
     if not isinstance(content, list) or len(content) != 2:
-        raise LissomError(f"{where} must be a point [x, y], not {shown(content)}")
+        raise LissomError(NOT_POINT.format(where=where, content=shown(content)))
     return complex(as_number(content[0], f"{where}[0]"), as_number(content[1], f"{where}[1]"))
 
 
@@ -115,10 +126,10 @@ def load_json(path: Path, parse: Callable[[object], Parsed], *, largest: int) ->
         return parse(json.loads(text, object_pairs_hook=without_repeats))
     except json.JSONDecodeError as error:
         raise LissomError(
-            f"{path} is not JSON: {error.msg} in line {error.lineno}, column {error.colno}"
+            NOT_JSON.format(path=path, reason=error.msg, line=error.lineno, column=error.colno)
         ) from error
     except RecursionError as error:
-        raise LissomError(f"{path} is nested too deeply") from error
+        raise LissomError(TOO_NESTED.format(path=path)) from error
     except (LissomError, ValueError) as error:
         raise LissomError(f"{path}: {error}") from error
 

@@ -47,6 +47,10 @@ LARGEST_THUMBNAIL = 2 * MEBIBYTE
 THUMBNAIL = "thumbnail.png"
 # Of lists and objects in each other; fields that are not known are kept, and must be writable.
 DEEPEST = 40
+NEWER_LISSOM = (
+    "it was saved by a newer Lissom ({version}, schema {schema}); this version reads schema {own}. "
+    "Update Lissom to open it"
+)
 
 
 def save_project(
@@ -138,10 +142,7 @@ def _read(archive: Archive) -> Document:
     schema = as_whole(content["schema"], "schema")
     if schema > SCHEMA:
         app_version = as_text(content.get("app_version", "?"), "app_version")
-        raise LissomError(
-            f"it was saved by a newer Lissom ({app_version}, schema {schema}); this version reads "
-            f"schema {SCHEMA}. Update Lissom to open it"
-        )
+        raise LissomError(NEWER_LISSOM.format(version=app_version, schema=schema, own=SCHEMA))
     if schema < 1:
         raise LissomError(f"its schema {schema} does not exist")
     document = read_document(content, archive)

@@ -9,7 +9,13 @@ import numpy.typing as npt
 from engine.arrays import Complexes, Floats, as_points, freeze
 from engine.baselines.triangulated_domain import TriangulatedDomain
 from engine.errors import EngineError
+from engine.interpolation import TWO_KEYFRAMES
 from engine.paths import root_sheets
+
+WINDS = (
+    "Keyframe {number} winds around a hole: on the way around it, past ({x:.6g}, {y:.6g}), it "
+    "turns by {turns:.0f} whole turns more than the domain. Pose it so that it does not."
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -74,7 +80,7 @@ def mesh_keyframes(
     which is the same for the triangles on both sides. Around a hole the sum may be a whole turn.
     """
     if len(positions) < 2:
-        raise EngineError(f"In-betweens need at least two keyframes, not {len(positions)}.")
+        raise EngineError(TWO_KEYFRAMES.format(count=len(positions)))
     checked = [_checked(domain, each, number) for number, each in enumerate(positions)]
     derivatives = [domain.derivatives(each) for each in checked]
     for number, (each, (fz, fzbar)) in enumerate(zip(checked, derivatives, strict=True)):
@@ -123,9 +129,9 @@ def _require_unwound(
     if len(wound):
         at = domain.points[domain.corners[one[wound[0]]]].mean()
         raise EngineError(
-            f"Keyframe {number} winds around a hole: on the way around it, past ({at.real:.6g}, "
-            f"{at.imag:.6g}), it turns by {abs(rest[wound[0]]) / (2 * np.pi):.0f} whole turns more "
-            "than the domain. Pose it so that it does not."
+            WINDS.format(
+                number=number, x=at.real, y=at.imag, turns=abs(rest[wound[0]]) / (2 * np.pi)
+            )
         )
 
 

@@ -14,7 +14,7 @@ from engine.arrays import Booleans, Complexes, Floats, Indices, as_points, freez
 from engine.domain.meshing import Mesh, sides_of
 from engine.errors import EngineError
 from engine.geometry import as_xy
-from engine.paths import SpanningTree, breadth_first_parents, depth_first_numbering
+from engine.paths import MESH_POINTS, SpanningTree, breadth_first_parents, depth_first_numbering
 
 type_ = TypeVar("type_", Complexes, Floats)
 FLAT = 1e-12  # area of a triangle, over the square of its longest edge, that counts as none
@@ -205,8 +205,7 @@ def _as_corners(triangles: npt.ArrayLike, count: int) -> Indices:
         raise EngineError("A mesh needs at least one triangle; there is none.")
     if corners.min() < 0 or corners.max() >= count:
         raise EngineError(
-            f"The triangles name points from {corners.min()} to {corners.max()}, but there are "
-            f"only points 0 to {count - 1}."
+            MESH_POINTS.format(smallest=corners.min(), largest=corners.max(), last=count - 1)
         )
     return corners.astype(np.intp)
 

@@ -25,6 +25,10 @@ PATH_STEPS = 10
 PATH_REST = 1e-3
 # Steps without progress after which a drag is handed over to the search for the minimum.
 PATIENCE = 4
+UNCERTIFIED_START = (
+    "The start map is not certified within the bounds: it has k up to {k:.4g}, sigma_a up to "
+    "{sigma_a:.4g} and sigma_b down to {sigma_b:.4g}. Start from another map or widen the bounds."
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -48,9 +52,9 @@ class Deformer(HeldShape):
         certificate = certify(first, self.boundary, self.bounds)
         if not certificate.certified:
             raise EngineError(
-                "The start map is not certified within the bounds: it has k up to "
-                f"{certificate.k:.4g}, sigma_a up to {certificate.sigma_a:.4g} and sigma_b down to "
-                f"{certificate.sigma_b:.4g}. Start from another map or widen the bounds."
+                UNCERTIFIED_START.format(
+                    k=certificate.k, sigma_a=certificate.sigma_a, sigma_b=certificate.sigma_b
+                )
             )
         return State(map=first, certificate=certificate, limits=self.bounds, boundary=self.boundary)
 

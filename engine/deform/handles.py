@@ -26,6 +26,16 @@ MOST_VERTICES = 400
 # How far outside the outline, of L, a point may be by rounding.
 OUTSIDE = 1e-9
 MOST_HANDLES = 1_000
+TARGET_COUNT = "{count} handles need as many targets, not {given}."
+TARGET_FAR = (
+    "Handle {handle} is wanted at {place:.3g}, more than {farthest:.0e} times the size of the "
+    "shape away; give it a target near the shape."
+)
+WEIGHT_NOT_POSITIVE = "The weight of handle {handle} must be positive, not {weight:g}."
+MOST_CAGE = (
+    "The cages have {count} vertices, and more than {most} would take minutes to come to rest; "
+    "choose a coarser cage."
+)
 
 
 class Wish(NamedTuple):
@@ -195,15 +205,12 @@ class Handles:
         """
         targets = as_points(positions, "targets")
         if len(targets) != len(self.points):
-            raise EngineError(
-                f"{len(self.points)} handles need as many targets, not {len(targets)}."
-            )
+            raise EngineError(TARGET_COUNT.format(count=len(self.points), given=len(targets)))
         size = self.arm / ARM
         far = np.flatnonzero(np.abs(targets - self.points) > FARTHEST * size)
         if len(far):
             raise EngineError(
-                f"Handle {far[0]} is wanted at {targets[far[0]]:.3g}, more than {FARTHEST:.0e} "
-                "times the size of the shape away; give it a target near the shape."
+                TARGET_FAR.format(handle=far[0], place=targets[far[0]], farthest=FARTHEST)
             )
         for i, j in self.coincident:
             if abs(targets[i] - targets[j]) > APART * size:
@@ -247,10 +254,7 @@ def require_held(
         )
     count = len(cage) + sum(len(hole.cage) for hole in holes)
     if count > MOST_VERTICES:
-        raise EngineError(
-            f"The cages have {count} vertices, and more than {MOST_VERTICES} would take minutes to "
-            "come to rest; choose a coarser cage."
-        )
+        raise EngineError(MOST_CAGE.format(count=count, most=MOST_VERTICES))
     inner = [hole.outline for hole in holes]
     near = OUTSIDE * box_diagonal(outline)
     require_inside(outline, points, "handle", holes=inner, tolerance=near)
@@ -263,7 +267,7 @@ def _weights(weights: npt.ArrayLike | None, count: int) -> Floats:
         raise EngineError(f"{count} handles need as many weights, not {factors.shape}.")
     if not (np.isfinite(factors) & (factors > 0)).all():
         bad = int(np.flatnonzero(~(np.isfinite(factors) & (factors > 0)))[0])
-        raise EngineError(f"The weight of handle {bad} must be positive, not {factors[bad]:g}.")
+        raise EngineError(WEIGHT_NOT_POSITIVE.format(handle=bad, weight=factors[bad]))
     return factors
 
 

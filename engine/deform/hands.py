@@ -21,6 +21,10 @@ from engine.errors import EngineError
 # A hand pulls at most so strongly, per L. An arm needs 1 to 2 to straighten to its limits; measured
 # on 18 pulls within reach, none is lost with 10, and three are with 5.
 PULL = 10.0
+FORCE_NOT_POSITIVE = "A hand must pull with a positive force, not {pull:g}."
+LINK_ENDS = "A link between handles {first} and {second} is none."
+LINK_LENGTHS = "A link cannot be from {shortest:g} to {longest:g} long."
+HAND_HANDLES = "A hand pulls at handles {handles} of {count}."
 
 
 class Hand(NamedTuple):
@@ -76,11 +80,11 @@ class Hands(NamedTuple):
         weights = np.zeros((len(hands), len(stiffness)))
         for number, (handles, pull) in enumerate(hands):
             if not pull > 0:
-                raise EngineError(f"A hand must pull with a positive force, not {pull:g}.")
+                raise EngineError(FORCE_NOT_POSITIVE.format(pull=pull))
             if len(handles) == 0:
                 raise EngineError("A hand pulls at nothing; leave it out.")
             if not all(0 <= handle < len(stiffness) for handle in handles):
-                raise EngineError(f"A hand pulls at handles {list(handles)} of {len(stiffness)}.")
+                raise EngineError(HAND_HANDLES.format(handles=list(handles), count=len(stiffness)))
             weights[number, list(handles)] = stiffness[list(handles)]
         twice = np.flatnonzero(np.count_nonzero(weights, axis=0) > 1)
         if len(twice):
@@ -166,9 +170,9 @@ class Links(NamedTuple):
             return None
         for first, second, shortest, longest in links:
             if first == second or not all(0 <= end < len(stiffness) for end in (first, second)):
-                raise EngineError(f"A link between handles {first} and {second} is none.")
+                raise EngineError(LINK_ENDS.format(first=first, second=second))
             if not 0 <= shortest <= longest:
-                raise EngineError(f"A link cannot be from {shortest:g} to {longest:g} long.")
+                raise EngineError(LINK_LENGTHS.format(shortest=shortest, longest=longest))
         ends = np.array([(link.first, link.second) for link in links], np.intp).T
         return cls(
             ends=readonly(ends),

@@ -28,6 +28,14 @@ NEAREST = 1e-6
 FARTHEST_CLOSED = 0.01
 # Of the outline's area.
 SAME_AREA = 1e-9
+MESH_UNFILLED = "The mesh does not fill the inside of the outline exactly."
+MESH_CORNERS = "The mesh has triangles whose corners are none of its vertices."
+MESH_FLAT = "The mesh has triangles that are flat or run clockwise."
+MESH_UNUSED = "The mesh has vertices that belong to no triangle."
+MESH_OVERLAPS = "The mesh has edges on which triangles overlap."
+MESH_SIZE = "The mesh must have 1 to {most:,} triangles, not {count:,}."
+VERTEX_COUNT = "The {name} must have 3 to {most:,} vertices, not {count:,}."
+TOO_FAR = "The {name} lies farther from the origin than {farthest:,.0f} pixels."
 
 
 def require_domain(domain: Domain) -> None:
@@ -47,9 +55,7 @@ def require_domain(domain: Domain) -> None:
         count = sum(map(len, polygons))
         _require_near(np.concatenate(polygons), name)
         if min(map(len, polygons)) < 3 or count > LARGEST_OUTLINE:
-            raise EngineError(
-                f"The {name} must have 3 to {LARGEST_OUTLINE:,} vertices, not {count:,}."
-            )
+            raise EngineError(VERTEX_COUNT.format(name=name, most=LARGEST_OUTLINE, count=count))
     require_simple(domain.outline, "outline")
     require_cages_in_holes(domain.holes, domain.outline)
     require_around(domain.cage, domain.outline)
@@ -69,23 +75,21 @@ def require_domain(domain: Domain) -> None:
 
 def _require_near(points: Complexes, name: str) -> None:
     if not np.abs([points.real, points.imag]).max(initial=0.0) <= OUTERMOST:
-        raise EngineError(f"The {name} lies farther from the origin than {OUTERMOST:,.0f} pixels.")
+        raise EngineError(TOO_FAR.format(name=name, farthest=OUTERMOST))
 
 
 def _require_tiling(domain: Domain) -> None:
     mesh, outline, holes = domain.mesh, domain.outline, domain.loops[1:]
     vertices, triangles = mesh.vertices, mesh.triangles
     if not 1 <= len(triangles) <= MOST_MESH_TRIANGLES:
-        raise EngineError(
-            f"The mesh must have 1 to {MOST_MESH_TRIANGLES:,} triangles, not {len(triangles):,}."
-        )
+        raise EngineError(MESH_SIZE.format(most=MOST_MESH_TRIANGLES, count=len(triangles)))
     if triangles.min() < 0 or triangles.max() >= len(vertices):
-        raise EngineError("The mesh has triangles whose corners are none of its vertices.")
+        raise EngineError(MESH_CORNERS)
     if not np.bincount(triangles.ravel(), minlength=len(vertices)).all():
-        raise EngineError("The mesh has vertices that belong to no triangle.")
+        raise EngineError(MESH_UNUSED)
     areas = mesh.areas()
     if not (areas > 0).all():
-        raise EngineError("The mesh has triangles that are flat or run clockwise.")
+        raise EngineError(MESH_FLAT)
     first, last = (vertices[ends] for ends in _border(triangles))
     on_border = np.concatenate([first, last, (first + last) / 2])
     distances = distance_to_boundary(outline, on_border, holes)
@@ -96,7 +100,7 @@ def _require_tiling(domain: Domain) -> None:
         or abs(areas.sum() - area) > SAME_AREA * area
         or any(abs(np.angle(spoke).sum()) > 1.0 for spoke in spokes)
     ):
-        raise EngineError("The mesh does not fill the inside of the outline exactly.")
+        raise EngineError(MESH_UNFILLED)
 
 
 def _border(triangles: Integers) -> tuple[Integers, Integers]:
@@ -104,6 +108,6 @@ def _border(triangles: Integers) -> tuple[Integers, Integers]:
     _, numbers, _ = sides_of(triangles)
     ends = np.roll(triangles, -1, axis=1)
     if np.bincount((2 * numbers + (triangles < ends)).ravel()).max() > 1:
-        raise EngineError("The mesh has edges on which triangles overlap.")
+        raise EngineError(MESH_OVERLAPS)
     alone = np.bincount(numbers.ravel())[numbers] == 1
     return triangles[alone], ends[alone]

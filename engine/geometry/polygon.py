@@ -20,6 +20,19 @@ SIZES = (1e-60, 1e60)  # of polygons; the fourth powers of smaller and larger on
 FARTHEST = 1e9  # from the origin, over a polygon's size: beyond, its shape is lost in rounding
 SHORTEST_EDGE = 1e-12  # of a cage, over the outline's size: the coordinates divide by it
 FARTHEST_CAGE = 1e6  # from the outline, over its size: beyond, the coordinates are all the same
+OUTSIDE_OUTLINE = (
+    "The {name}{number} at ({x:.6g}, {y:.6g}) is outside the outline{holes}; place it on the shape."
+)
+CAGE_ORDER = "The cage does not run once counter-clockwise around the outline; check its order."
+CAGE_TOUCHES = "The cage touches or crosses the outline; the outline must lie strictly inside it."
+CAGE_REPEATS = "The cage repeats a vertex, or nearly; give each vertex once."
+CAGE_FAR = "The cage lies too far from the outline; let it follow the outline."
+HOLE_LEAVES = "Hole {number} leaves the outline, or meets another hole; holes lie apart inside."
+FEW_VERTICES = "The {name} needs at least 3 vertices, not {count}."
+FEW_DIGITS = (
+    "The {name} is {size:.3g} large and lies {distance:.3g} from the origin, of which numbers keep "
+    "too few digits; move or scale it."
+)
 
 
 def edges(polygon: Complexes) -> Complexes:
@@ -71,15 +84,12 @@ def is_simple(polygon: Complexes) -> bool:
 def require_simple(polygon: Complexes, name: str, *, clockwise: bool = False) -> None:
     """Raise `EngineError` unless the polygon is simple, has an area and runs the right way."""
     if len(polygon) < 3:
-        raise EngineError(f"The {name} needs at least 3 vertices, not {len(polygon)}.")
+        raise EngineError(FEW_VERTICES.format(name=name, count=len(polygon)))
     if np.any(edges(polygon) == 0):
         raise EngineError(f"The {name} repeats a vertex; give each vertex once.")
     size = box_diagonal(polygon)
     if not SIZES[0] < size < SIZES[1] or np.abs(polygon).max() > FARTHEST * size:
-        raise EngineError(
-            f"The {name} is {size:.3g} large and lies {np.abs(polygon).max():.3g} from the origin, "
-            "of which numbers keep too few digits; move or scale it."
-        )
+        raise EngineError(FEW_DIGITS.format(name=name, size=size, distance=np.abs(polygon).max()))
     if not is_simple(polygon):
         raise EngineError(f"The {name} crosses or touches itself; it must be a simple polygon.")
     ways = ("counter-clockwise", "clockwise")
@@ -94,9 +104,7 @@ def require_holes(holes: Sequence[Complexes], outline: Complexes) -> None:
     for number, hole in enumerate(holes):
         require_simple(hole, f"outline of hole {number}", clockwise=True)
         if not lies_within(hole, outline, holes[:number]):
-            raise EngineError(
-                f"Hole {number} leaves the outline, or meets another hole; holes lie apart inside."
-            )
+            raise EngineError(HOLE_LEAVES.format(number=number))
 
 
 def lies_within(inner: Complexes, polygon: Complexes, holes: Sequence[Complexes] = ()) -> bool:
@@ -163,8 +171,7 @@ def require_inside(
         count = f" ({len(outside)} of {len(points)} are)" if len(outside) > 1 else ""
         z = points[outside[0]]
         raise EngineError(
-            f"The {name}{number} at ({z.real:.6g}, {z.imag:.6g}) is outside the outline{count}; "
-            "place it on the shape."
+            OUTSIDE_OUTLINE.format(name=name, number=number, x=z.real, y=z.imag, holes=count)
         )
 
 
@@ -175,17 +182,13 @@ def require_around(cage: Complexes, outline: Complexes) -> None:
     """
     size = box_diagonal(outline)
     if np.abs(edges(cage)).min() <= SHORTEST_EDGE * size:
-        raise EngineError("The cage repeats a vertex, or nearly; give each vertex once.")
+        raise EngineError(CAGE_REPEATS)
     if np.abs(cage - outline[0]).max() > FARTHEST_CAGE * size:
-        raise EngineError("The cage lies too far from the outline; let it follow the outline.")
+        raise EngineError(CAGE_FAR)
     if shapely.intersects(shapely.LinearRing(as_xy(cage)), shapely.Polygon(as_xy(outline))):
-        raise EngineError(
-            "The cage touches or crosses the outline; the outline must lie strictly inside it."
-        )
+        raise EngineError(CAGE_TOUCHES)
     if winding(cage, complex(outline[0])) != 1:
-        raise EngineError(
-            "The cage does not run once counter-clockwise around the outline; check its order."
-        )
+        raise EngineError(CAGE_ORDER)
 
 
 def winding(polygon: Complexes, point: complex) -> int:

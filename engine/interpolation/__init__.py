@@ -32,6 +32,7 @@ from engine.interpolation.pins import (
     pin as pin,
 )
 from engine.interpolation.preparation import (
+    TWO_KEYFRAMES as TWO_KEYFRAMES,
     Prepared as Prepared,
     interval_at as interval_at,
     prepare as prepare,

@@ -19,6 +19,10 @@ from engine.maps import Bounds, HarmonicMap
 from engine.paths import root_sheets
 from engine.variant import Variant
 
+TWO_KEYFRAMES = "In-betweens need at least two keyframes, not {count}."
+OTHER_CAGE = "Keyframe {number} has another cage than keyframe 0; they must share it."
+TIME_RANGE = "Time {time:g} is out of range: the keyframes span the times from 0 to {last}."
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Prepared:
@@ -71,9 +75,7 @@ def interval_at(time: float, count: int) -> tuple[int, float]:
         If the time is not from 0 to `count`.
     """
     if not 0.0 <= time <= count:
-        raise EngineError(
-            f"Time {time:g} is out of range: the keyframes span the times from 0 to {count}."
-        )
+        raise EngineError(TIME_RANGE.format(time=time, last=count))
     interval = min(int(time), count - 1)
     return interval, float(time) - interval
 
@@ -191,10 +193,10 @@ def require_keyframes(maps: Sequence[HarmonicMap]) -> None:
         If they do not do.
     """
     if len(maps) < 2:
-        raise EngineError(f"In-betweens need at least two keyframes, not {len(maps)}.")
+        raise EngineError(TWO_KEYFRAMES.format(count=len(maps)))
     for i, f in enumerate(maps):
         if not f.span.equals(maps[0].span):
-            raise EngineError(f"Keyframe {i} has another cage than keyframe 0; they must share it.")
+            raise EngineError(OTHER_CAGE.format(number=i))
 
 
 def _neighbourhoods(

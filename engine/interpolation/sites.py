@@ -22,6 +22,15 @@ from engine.paths import (
     with_loops,
 )
 
+ONE_ANCHOR = (
+    "One anchor is needed, not {count}: its pose fixes the in-betweens, and a second could not be "
+    "met. Leave it out, and the engine chooses one."
+)
+OTHER_OUTLINE = (
+    "The Hilbert transform is of another outline, of {others} vertices, than the points', of "
+    "{own}; build it anew for this one."
+)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Sites:
@@ -80,8 +89,7 @@ class Sites:
         own = self.boundary.loops
         if len(loops) != len(own) or not all(map(np.array_equal, loops, own)):
             raise EngineError(
-                f"The Hilbert transform is of another outline, of {sum(map(len, loops))} vertices, "
-                f"than the points', of {sum(map(len, own))}; build it anew for this one."
+                OTHER_OUTLINE.format(others=sum(map(len, loops)), own=sum(map(len, own)))
             )
 
     @property
@@ -168,10 +176,7 @@ def _arguments(paths: IntegrationPaths, centres: Complexes) -> Floats:
 
 def _single(anchor: npt.ArrayLike) -> Complexes:
     if np.size(anchor) != 1:
-        raise EngineError(
-            f"One anchor is needed, not {np.size(anchor)}: its pose fixes the in-betweens, and a "
-            "second could not be met. Leave it out, and the engine chooses one."
-        )
+        raise EngineError(ONE_ANCHOR.format(count=np.size(anchor)))
     return as_points(np.reshape(anchor, (1,)), "anchor")
 
 

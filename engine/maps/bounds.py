@@ -10,6 +10,8 @@ from engine.errors import EngineError
 from engine.geometry import next_on_loop
 from engine.maps.boundary import Boundary
 
+IMPOSSIBLE_BOUND = "The bound on {name} must be {allowed}, not {value:g}."
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limits:
@@ -114,10 +116,16 @@ class Bounds(Limits):
 
     def __post_init__(self) -> None:
         if not 0 < self.k < 1:
-            raise EngineError(f"The bound on k must be between 0 and 1, not {self.k:g}.")
+            raise EngineError(
+                IMPOSSIBLE_BOUND.format(name="k", allowed="between 0 and 1", value=self.k)
+            )
         if not (self.sigma_a > 1 and isfinite(self.sigma_a)):
-            raise EngineError(f"The bound on sigma_a must be above 1, not {self.sigma_a:g}.")
+            raise EngineError(
+                IMPOSSIBLE_BOUND.format(name="sigma_a", allowed="above 1", value=self.sigma_a)
+            )
         if not 0 < self.sigma_b < 1:
             raise EngineError(
-                f"The bound on sigma_b must be between 0 and 1, not {self.sigma_b:g}."
+                IMPOSSIBLE_BOUND.format(
+                    name="sigma_b", allowed="between 0 and 1", value=self.sigma_b
+                )
             )

@@ -43,6 +43,7 @@ MOST_BISECTED = 20_000
 # Fewer, counted with the functions of the span, are cut into four at once: their number costs less
 # than another round.
 FEW = 4096
+OTHER_SPAN = "The map is over another cage than the outline's samples."
 # Relative error of F and G themselves, from rounding; generous.
 ROUNDING = 1e-11
 
@@ -162,7 +163,7 @@ def _measure(harmonic_map: HarmonicMap, boundary: Boundary) -> "_Segments":
     """Return what is known of the map at the samples and between them."""
     span = boundary.span
     if not harmonic_map.span.equals(span):
-        raise EngineError("The map is over another cage than the outline's samples.")
+        raise EngineError(OTHER_SPAN)
     coefficients = harmonic_map.coefficients
     starts = np.empty((3, len(boundary.points)), np.complex128)
     starts[0] = boundary.points

@@ -11,6 +11,10 @@ from engine.errors import EngineError
 from engine.geometry import Hole
 from engine.maps.span import Span
 
+COEFFICIENT_COUNT = (
+    "A map over a cage of {count} vertices needs as many coefficients, not {phi} phi and {psi} psi."
+)
+
 
 def _none() -> Complexes:
     return freeze(np.empty(0, dtype=np.complex128))
@@ -53,8 +57,7 @@ class HarmonicMap:
         count = len(self.cage) + sum(len(hole.cage) for hole in self.holes)
         if not count == len(self.phi) == len(self.psi):
             raise EngineError(
-                f"A map over a cage of {count} vertices needs as many coefficients, not "
-                f"{len(self.phi)} phi and {len(self.psi)} psi."
+                COEFFICIENT_COUNT.format(count=count, phi=len(self.phi), psi=len(self.psi))
             )
         if len(self.logs) != len(self.holes):
             raise EngineError(

@@ -17,6 +17,14 @@ from engine.errors import EngineError
 SOFTEST, STIFFEST = 1 / 30, 100.0
 # By which numbers may miss the ends of the range, for rounding.
 ROUNDING = 1e-9
+STIFFNESS_RANGE = (
+    "stiffness must be from 1/30 to {stiffest:g}, and is {value:g} at vertex {vertex}; 1 is the "
+    "usual one."
+)
+STIFFNESS_SHAPE = (
+    "stiffness must be one number for each of the {count} vertices of the outline and of the "
+    "holes' outlines, not of shape {shape}, {dtype}."
+)
 
 
 def require_stiffness(stiffness: npt.ArrayLike, count: int) -> Floats:
@@ -30,16 +38,14 @@ def require_stiffness(stiffness: npt.ArrayLike, count: int) -> Floats:
     values = np.asarray(stiffness)
     if values.shape != (count,) or values.dtype.kind not in "biuf":
         raise EngineError(
-            f"stiffness must be one number for each of the {count} vertices of the outline and of "
-            f"the holes' outlines, not of shape {values.shape}, {values.dtype}."
+            STIFFNESS_SHAPE.format(count=count, shape=values.shape, dtype=values.dtype)
         )
     values = values.astype(np.float64)
     fits = (values >= SOFTEST * (1 - ROUNDING)) & (values <= STIFFEST * (1 + ROUNDING))
     if not fits.all():
         first = int(np.flatnonzero(~fits)[0])
         raise EngineError(
-            f"stiffness must be from 1/30 to {STIFFEST:g}, and is {values[first]:g} at vertex "
-            f"{first}; 1 is the usual one."
+            STIFFNESS_RANGE.format(stiffest=STIFFEST, value=values[first], vertex=first)
         )
     return values
 

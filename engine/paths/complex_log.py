@@ -12,6 +12,9 @@ from engine.paths.integration_paths import IntegrationPaths
 MOST_TURNS = 1_000_000  # at the anchor, in all: more leave less than nine digits of an angle
 LARGEST_TURN = 1.0  # radians by which f_z may turn along a step without a closer look
 MOST_BISECTIONS = 12
+TURN_COUNT = (
+    "The turns between {keyframes} keyframes are {count} integers, not {dtype} of shape {shape}."
+)
 
 
 def continue_logarithm(
@@ -80,8 +83,12 @@ def root_sheets(anchor_fz: Complexes, turns: npt.ArrayLike | None = None) -> Int
     extra = np.zeros(len(anchor_fz) - 1, np.int32) if turns is None else np.asarray(turns)
     if extra.shape != (len(anchor_fz) - 1,) or extra.dtype.kind not in "iu":
         raise EngineError(
-            f"The turns between {len(anchor_fz)} keyframes are {len(anchor_fz) - 1} integers, not "
-            f"{extra.dtype} of shape {extra.shape}."
+            TURN_COUNT.format(
+                keyframes=len(anchor_fz),
+                count=len(anchor_fz) - 1,
+                dtype=extra.dtype,
+                shape=extra.shape,
+            )
         )
     principal = np.angle(anchor_fz)
     shorter = np.angle(anchor_fz[1:] / anchor_fz[:-1])

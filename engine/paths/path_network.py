@@ -45,6 +45,17 @@ PIECES: tuple[list[list[int]], ...] = (
     [[4, 2, 5], [1, 4, 5], [1, 5, 0]],
     [[0, 3, 5], [3, 1, 4], [4, 2, 5], [3, 4, 5]],
 )
+MESH_POINTS = (
+    "The triangles name points from {smallest} to {largest}, but there are only points 0 to {last}."
+)
+EDGE_LEAVES = (
+    "The triangles' edge from point {first} to point {second} leaves the outline; give triangles "
+    "of the inside only, or none."
+)
+ANCHOR_UNREACHED = (
+    "No point of the mesh near the anchor {anchor:.6g} can be reached straight; choose an anchor "
+    "inside the triangles."
+)
 
 
 def _none() -> Indices:
@@ -94,8 +105,9 @@ def mesh_network(
         raise EngineError("There are no triangles; leave them out and the engine finds its paths.")
     if triangles.min(initial=0) < 0 or triangles.max(initial=0) >= len(vertices):
         raise EngineError(
-            f"The triangles name points from {triangles.min()} to {triangles.max()}, but there are "
-            f"only points 0 to {len(vertices) - 1}."
+            MESH_POINTS.format(
+                smallest=triangles.min(), largest=triangles.max(), last=len(vertices) - 1
+            )
         )
     loops = (outline, *holes)
     along, against = _directed(triangles, len(vertices))
@@ -108,17 +120,11 @@ def mesh_network(
     crossing = leave_region(loops, vertices[ends[:, 0]], vertices[ends[:, 1]])
     if crossing.any():
         first, second = ends[np.flatnonzero(crossing)[0]]
-        raise EngineError(
-            f"The triangles' edge from point {first} to point {second} leaves the outline; give "
-            "triangles of the inside only, or none."
-        )
+        raise EngineError(EDGE_LEAVES.format(first=first, second=second))
     nearest = np.argsort(np.abs(vertices - anchor), kind="stable")[:NEIGHBOURS]
     seen = nearest[~leave_region(loops, np.repeat(anchor, len(nearest)), vertices[nearest])]
     if not len(seen):
-        raise EngineError(
-            f"No point of the mesh near the anchor {anchor[0]:.6g} can be reached straight; choose "
-            "an anchor inside the triangles."
-        )
+        raise EngineError(ANCHOR_UNREACHED.format(anchor=anchor[0]))
     reached = shortest_parents(along + against, int(seen[0]))
     if np.any(reached < 0):
         raise EngineError(

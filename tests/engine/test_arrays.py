@@ -2,10 +2,19 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
+from messages import says
 from numpy.testing import assert_array_equal
 from scipy.sparse import csr_array
 
-from engine.arrays import as_points, freeze, held_bytes, readonly
+from engine.arrays import (
+    FEW_ENTRIES,
+    NOT_COMPLEX,
+    NOT_FINITE,
+    as_points,
+    freeze,
+    held_bytes,
+    readonly,
+)
 from engine.errors import EngineError
 
 
@@ -36,11 +45,11 @@ def test_a_frozen_array_is_not_copied_again() -> None:
 @pytest.mark.parametrize(
     ("values", "reason"),
     [
-        (["a"], "must be complex numbers"),
+        (["a"], says(NOT_COMPLEX)),
         ([[1, 2]], "one-dimensional"),
-        ([1, 2], "at least 3 entries, not 2"),
-        ([0, 1, np.nan], "must be finite, but entry 2 is"),
-        ([0, complex(0, np.inf), 1], "must be finite, but entry 1 is"),
+        ([1, 2], says(FEW_ENTRIES, at_least=3, count=2)),
+        ([0, 1, np.nan], says(NOT_FINITE, index=2)),
+        ([0, complex(0, np.inf), 1], says(NOT_FINITE, index=1)),
     ],
 )
 def test_points_that_cannot_be_used_are_refused_in_words(values: list, reason: str) -> None:

@@ -29,6 +29,8 @@ from app.render.gpu import create_context
 from app.storage import cut_picture, decode_picture, load_project
 from engine.arrays import Bytes
 
+NO_USE = "{name} has no use for --{flag}; leave it out"
+
 
 def run(arguments: argparse.Namespace) -> int:
     """Export a project."""
@@ -149,7 +151,7 @@ def _check_options(name: str, arguments: argparse.Namespace) -> None:
             useless |= {each: option.flag for each, option in asking.asked().items()}
     for each, flag in useless.items():
         if getattr(arguments, each) is not None:
-            raise LissomError(f"{name} has no use for --{flag}; leave it out")
+            raise LissomError(NO_USE.format(name=name, flag=flag))
 
 
 def _known(given: dict[str, Any]) -> dict[str, Any]:

@@ -16,6 +16,7 @@ from engine.interpolation import Variant, prepare
 from engine.maps import Bounds
 
 UNFINISHED = 1e-8  # angle defect, in radians, that is worth a word
+NO_PRINCIPAL = "--principal is for arap and mesh-eta; leave it out"
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -36,7 +37,7 @@ def _harmonic(arguments: argparse.Namespace, given: Keyframes) -> dict[str, npt.
     if arguments.bounds and not arguments.through:
         raise LissomError("--bounds is what --through keeps; say --through as well")
     if arguments.principal:
-        raise LissomError("--principal is for arap and mesh-eta; leave it out")
+        raise LissomError(NO_PRINCIPAL)
     outline = given.outline
     if outline is None:
         meshes = ", ".join(each for each in Baseline if not each.needs_maps)
@@ -81,7 +82,7 @@ def _compared(arguments: argparse.Namespace, given: Keyframes) -> dict[str, npt.
     if arguments.bounds and baseline is not Baseline.HANDLES:
         raise LissomError(f"{baseline} keeps no bounds; leave --bounds out")
     if arguments.principal and not baseline.unwraps:
-        raise LissomError("--principal is for arap and mesh-eta; leave it out")
+        raise LissomError(NO_PRINCIPAL)
     if baseline is Baseline.HANDLES and given.handles is None:
         raise LissomError(
             "handles needs the array 'handles', the points that are led straight from key to key"

@@ -65,6 +65,7 @@ examples:
   lissom interpolate maps.npz --variant metric --through --loop --times 0,0.5,1,1.5 --out frames.npz
   lissom interpolate first.obj second.obj --variant arap --times 0.25,0.5,0.75 --out frames.npz
 """
+NOT_NUMBERS = "{text!r} is not a list of numbers separated by commas"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -118,9 +119,7 @@ def _numbers(text: str) -> tuple[float, ...]:
     try:
         return tuple(float(word) for word in text.split(","))
     except ValueError:
-        raise argparse.ArgumentTypeError(
-            f"{text!r} is not a list of numbers separated by commas"
-        ) from None
+        raise argparse.ArgumentTypeError(NOT_NUMBERS.format(text=text)) from None
 
 
 def _bounds(text: str) -> tuple[float, ...]:

@@ -17,6 +17,10 @@ NEAR = 0.03
 SidePairs = tuple[tuple[str, str], ...]
 SIDES: SidePairs = (("L", "R"), ("left", "right"))
 PAIRS: SidePairs = (*SIDES, ("near", "far"))
+NO_PAIR = (
+    "“{words}” is no pair: write two words, or two whole names, with a slash between, as in "
+    "near/far, and commas between pairs."
+)
 
 
 @lru_cache(maxsize=4096)
@@ -90,10 +94,7 @@ def read_pairs(text: str) -> SidePairs:
     for part in filter(str.strip, text.split(",")):
         words = tuple(word.strip() for word in part.split("/"))
         if len(words) != 2:
-            raise LissomError(
-                f"“{part.strip()}” is no pair: write two words, or two whole names, with a slash "
-                "between, as in near/far, and commas between pairs."
-            )
+            raise LissomError(NO_PAIR.format(words=part.strip()))
         pairs.append((words[0], words[1]))
     require_pairs(tuple(pairs))
     return tuple(pairs)

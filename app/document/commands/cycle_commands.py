@@ -25,6 +25,10 @@ from app.errors import LissomError
 NOWHERE = 1e-6
 
 Moving = TypeVar("Moving", MoveKey, OpacityKey)
+TWO_POSES_SHOWN = (
+    "Frames {first} and {last} show two poses, but what repeats ends as it began; give the latter "
+    "the pose of the former, or choose other keys."
+)
 
 
 @figure_command("Repeat stretch")
@@ -43,10 +47,7 @@ def repeat(figure: Figure, first: int, last: int, until: int | None = None) -> F
     keys = figure.keys
     if until != last and {first, last} <= figure.key_frames:
         if not are_alike(figure.key(first), figure.key(last)):
-            raise LissomError(
-                f"Frames {first} and {last} show two poses, but what repeats ends as it began; "
-                "give the latter the pose of the former, or choose other keys."
-            )
+            raise LissomError(TWO_POSES_SHOWN.format(first=first, last=last))
         keys = tuple(key for key in keys if key.frame != last)
     others = (each for each in figure.cycles if each.first != first)
     return replace(figure, keys=keys, cycles=_ordered((*others, cycle)))

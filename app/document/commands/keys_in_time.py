@@ -9,6 +9,7 @@ from dataclasses import replace
 from itertools import chain, pairwise
 from typing import TypeVar
 
+from app.document.figure import NO_KEY
 from app.document.keyframe import Keyframe
 from app.document.layering import CameraKey, MoveKey, OpacityKey
 from app.document.timing import HOLD, LINEAR, Easing, Passing, TrackKey
@@ -17,6 +18,7 @@ from app.errors import LissomError
 Key = TypeVar("Key", Keyframe, TrackKey, CameraKey, MoveKey, OpacityKey)
 Row = tuple[Key, ...]
 TWO_KEYS = "Two keys would be at frame {frame}; move or delete the one there first."
+TIME_SCALE = "Time can be scaled by more than 0 and up to 1000, not by {factor:g}."
 
 
 def at_frames(keys: Row[Key], frames: Iterable[int]) -> list[Key]:
@@ -24,7 +26,7 @@ def at_frames(keys: Row[Key], frames: Iterable[int]) -> list[Key]:
     found = {key.frame: key for key in keys}
     for frame in frames:
         if frame not in found:
-            raise LissomError(f"There is no key at frame {frame}.")
+            raise LissomError(NO_KEY.format(frame=frame))
     return [found[frame] for frame in sorted(set(frames))]
 
 
@@ -146,4 +148,4 @@ def scaled(frame: int, first: int, factor: float) -> int:
 def require_factor(factor: float) -> None:
     """Refuse a factor by which time cannot be scaled."""
     if not 0 < factor <= 1000:
-        raise LissomError(f"Time can be scaled by more than 0 and up to 1000, not by {factor:g}.")
+        raise LissomError(TIME_SCALE.format(factor=factor))

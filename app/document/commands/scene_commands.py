@@ -13,6 +13,11 @@ from app.document.model import Document
 from app.document.settings import ExportSettings, FrameRange, Marker
 from app.errors import LissomError
 
+KEY_OUTSIDE = (
+    "The key at frame {frame} would lie outside frames {first} to {last}; move or delete it first, "
+    "or set a preview range instead."
+)
+
 
 @command("Set frames per second")
 def set_fps(document: Document, fps: float) -> Document:
@@ -29,10 +34,7 @@ def set_frames(document: Document, frames: FrameRange) -> Document:
     ends += [key.frame for key in document.camera]
     outside = next((frame for frame in ends if frame not in frames), None)
     if outside is not None:
-        raise LissomError(
-            f"The key at frame {outside} would lie outside frames {frames.first} to {frames.last}; "
-            "move or delete it first, or set a preview range instead."
-        )
+        raise LissomError(KEY_OUTSIDE.format(frame=outside, first=frames.first, last=frames.last))
     preview = document.preview
     if preview is not None:
         apart = preview.last < frames.first or preview.first > frames.last

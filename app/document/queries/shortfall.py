@@ -19,6 +19,7 @@ LAG = 0.005
 AT_LIMIT = 0.97  # of a limit: so much of it is used where a pose cannot go on
 WORDS = {"k": "shear", "σa": "stretch", "σb": "squeeze"}
 TINY = 1e-300  # in place of a stretch that is not proven to be above 0
+HELD_BY_LIMITS = "held back by the limits"
 
 
 class Use(NamedTuple):
@@ -109,7 +110,7 @@ class Shortfall:
     def reason(self) -> str:
         """What holds them back, in words."""
         if self.at_limits:
-            return "held back by the limits"
+            return HELD_BY_LIMITS
         return "held back by the other handles and the shape's stiffness"
 
 

@@ -19,6 +19,10 @@ from app.motion import (
 from engine.geometry import RigidMotion
 
 HANGING = Kind("Hanging a layer", "The layers cannot be joined")
+HANGS_IN_CIRCLE = (
+    "{name} hangs on {parent}, so that {other} cannot hang on it: that would be a circle. Let "
+    "{hung} hang on nothing first."
+)
 
 
 def hangs_on(project: Project, identity: int, carrier: int) -> bool:
@@ -50,8 +54,7 @@ def hang(
     if hangs_on(project, parent, child):
         names = [project.document.figure(identity).name for identity in (parent, child)]
         session.tell(
-            f"{names[0]} hangs on {names[1]}, so that {names[1]} cannot hang on it: that would be "
-            f"a circle. Let {names[0]} hang on nothing first.",
+            HANGS_IN_CIRCLE.format(name=names[0], parent=names[1], other=names[1], hung=names[0]),
             tone="error",
             topic="joint",
         )

@@ -15,6 +15,7 @@ from app.motion import PoseSampler
 from app.solving import Rig, pose_at
 
 COPYING = Kind("Copying a pose", "The pose could not be copied", "hand")
+KEYS_COPIED = "{count} keys copied."
 
 
 @with_project
@@ -110,4 +111,6 @@ def _take(
     poses = [key.frame for each in copied for key in each.keys]
     first, *more = poses + [key.frame for each in tracks for key in each.keys]
     single = f"Pose at frame {first}" if poses else f"Key of the track at frame {first}"
-    session.tell(f"{1 + len(more)} keys copied." if more else f"{single} copied.", topic="copy")
+    session.tell(
+        KEYS_COPIED.format(count=1 + len(more)) if more else f"{single} copied.", topic="copy"
+    )

@@ -34,6 +34,7 @@ from app.solving import Rig, flip_poses, flipped_targets, pose_at
 LABELS: Mapping[PasteWay, str] = {"swapped": "Paste swapped", "flipped": "Paste flipped"}
 CARRYING = Kind("Pasting", "The poses could not be pasted", "hand")
 FLIPPING = Kind("Flipping", "The pose could not be flipped", "hand")
+NOT_PASTED = "The pose was not pasted: a layer, its shape or its handles changed. Paste again."
 
 
 def why_not(session: Session, project: Project, way: PasteWay) -> str:
@@ -133,9 +134,7 @@ def bring(
 
     def done(solved: Mapping[int, Sequence[Keyframe]]) -> None:
         if not all(_is_as_it_was(project, each) for each in found):
-            session.tell(
-                "The pose was not pasted: a layer, its shape or its handles changed. Paste again."
-            )
+            session.tell(NOT_PASTED)
             return
         put(solved)
         if playback.current_frame(session, project) != frame:

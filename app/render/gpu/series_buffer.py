@@ -12,6 +12,9 @@ from engine.domain import Seam
 from engine.streaming import Series, SeriesPiece
 
 _RESERVED: Final = 2  # attributes of a mesh that are not the series'
+SERIES_PIECE = (
+    "a piece of {rows} rows and {values} values does not fit {own_rows} rows of {own_values} values"
+)
 
 
 class SeriesBuffer(VertexSource):
@@ -68,8 +71,12 @@ class SeriesBuffer(VertexSource):
         count, rows = self._count, len(piece.rows)
         if piece.rows.shape[1] != 2 * count or rows > 2 * self._pairs:
             raise LissomError(
-                f"a piece of {rows} rows and {piece.rows.shape[1]} values does not fit "
-                f"{2 * self._pairs} rows of {2 * count} values"
+                SERIES_PIECE.format(
+                    rows=rows,
+                    values=piece.rows.shape[1],
+                    own_rows=2 * self._pairs,
+                    own_values=2 * count,
+                )
             )
         # The rows of a vertex side by side: one place in memory for each.
         interleaved = np.zeros((count, 2 * self._pairs, 2), dtype=np.float32)

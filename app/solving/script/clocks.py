@@ -32,6 +32,13 @@ SPRING_FIELDS = ("handle", "preset", "frequency", "damping", "lag", "strength")
 CYCLE_FIELDS = ("from", "to", "until")
 # What the places of a track's keys are called, by what it goes with.
 PLACES = {"pose": "offset", "picture": "at"}
+NEEDLESS_VELOCITY = (
+    '{where} has a velocity, which is of keys that are passed through; give it "passing": '
+    '"through", or leave the velocity out'
+)
+NO_PRESET = "{where} needs a preset, one of {presets}, or a frequency and a damping"
+HANDLE_OR_HANDLES = "{where} must have either a handle or handles, which move together"
+NO_BASIS = "{where}.with must be pose or picture, not {content}"
 
 
 def parse_tracks(content: object, where: str, handles: Sequence[str]) -> tuple[Track, ...]:
@@ -94,10 +101,10 @@ def require_rounds(
 def _track(content: object, where: str, handles: Mapping[str, int]) -> Track:
     track = fields_in(content, where, TRACK_FIELDS)
     if ("handle" in track) == ("handles" in track):
-        raise LissomError(f"{where} must have either a handle or handles, which move together")
+        raise LissomError(HANDLE_OR_HANDLES.format(where=where))
     goes_with = track.get("with", "pose")
     if goes_with not in list(PLACES):
-        raise LissomError(f"{where}.with must be pose or picture, not {json.dumps(goes_with)}")
+        raise LissomError(NO_BASIS.format(where=where, content=json.dumps(goes_with)))
     keys = as_list(track["keys"], f"{where}.keys")
     parsed = tuple(
         _track_key(key, f"{where}.keys[{index}]", PLACES[goes_with])
@@ -134,10 +141,7 @@ def _track_key(content: object, where: str, place: str) -> TrackKey:
     easing, passing = passage_of(key, where)
     velocity = as_point(key["velocity"], f"{where}.velocity") if "velocity" in key else None
     if velocity is not None and (easing == HOLD or passing is not Passing.THROUGH):
-        raise LissomError(
-            f'{where} has a velocity, which is of keys that are passed through; give it "passing": '
-            '"through", or leave the velocity out'
-        )
+        raise LissomError(NEEDLESS_VELOCITY.format(where=where))
     return made_of(
         TrackKey,
         where,
@@ -163,9 +167,7 @@ def _spring(content: object, where: str, handles: Mapping[str, int]) -> Spring:
             raise LissomError(f"{where}.preset must be one of {', '.join(SPRINGS)}, not {preset!r}")
         given = dict(zip(("frequency", "damping"), SPRINGS[preset], strict=True)) | given
     elif not {"frequency", "damping"} <= given.keys():
-        raise LissomError(
-            f"{where} needs a preset, one of {', '.join(SPRINGS)}, or a frequency and a damping"
-        )
+        raise LissomError(NO_PRESET.format(where=where, presets=", ".join(SPRINGS)))
     return made_of(
         Spring, where, handle=_number(spring["handle"], f"{where}.handle", handles), **given
     )

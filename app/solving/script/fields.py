@@ -10,6 +10,8 @@ from app.errors import LissomError
 from app.storage import JsonObject, as_object
 
 Made = TypeVar("Made")
+NOT_A_FRAME = "{where}.{name} must be a whole number from 0 to {last}, not {content}"
+OUT_OF_ORDER = "{what} out of order: frame {after} after {before}"
 
 
 def fields_in(content: object, where: str, fields: tuple[str, ...]) -> JsonObject:
@@ -28,7 +30,7 @@ def frame_of(key: Mapping[str, object], where: str, name: str = "frame") -> int:
     frame = key.get(name)
     if not isinstance(frame, int) or isinstance(frame, bool) or not 0 <= frame <= LAST_FRAME:
         raise LissomError(
-            f"{where}.{name} must be a whole number from 0 to {LAST_FRAME}, not {json.dumps(frame)}"
+            NOT_A_FRAME.format(where=where, name=name, last=LAST_FRAME, content=json.dumps(frame))
         )
     return frame
 
@@ -56,7 +58,7 @@ def require_order(frames: Sequence[int], what: str) -> None:
     """Refuse frames of which one does not come after the one before."""
     for before, after in pairwise(frames):
         if after <= before:
-            raise LissomError(f"{what} out of order: frame {after} after {before}")
+            raise LissomError(OUT_OF_ORDER.format(what=what, after=after, before=before))
 
 
 def require_handle(name: str, handles: Collection[str], where: str) -> None:

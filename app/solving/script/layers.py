@@ -33,6 +33,8 @@ MOVE_FIELDS = (*WAY_FIELDS, "shift", "turn")
 SIDES = {"in_front_of": True, "behind": False}
 
 Key = TypeVar("Key", CameraKey, MoveKey)
+ZOOM_NOT_POSITIVE = "{where}.zoom must be above 0, not {zoom:g}"
+NO_KEYS = "{where}.keys must be a list of at least one key"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -156,7 +158,7 @@ def parse_camera(content: object) -> tuple[CameraKey, ...]:
     def key(read: JsonObject, where: str, **way: Any) -> CameraKey:
         zoom = as_number(read.get("zoom", 1.0), f"{where}.zoom")
         if not zoom > 0:
-            raise LissomError(f"{where}.zoom must be above 0, not {zoom:g}")
+            raise LissomError(ZOOM_NOT_POSITIVE.format(where=where, zoom=zoom))
         return made_of(
             CameraKey,
             where,
@@ -189,7 +191,7 @@ def _moving_keys(
 ) -> tuple[Key, ...]:
     entries = as_list(fields_in(content, where, ("keys",))["keys"], f"{where}.keys")
     if not entries:
-        raise LissomError(f"{where}.keys must be a list of at least one key")
+        raise LissomError(NO_KEYS.format(where=where))
     keys = []
     for index, entry in enumerate(entries):
         at = f"{where}.keys[{index}]"

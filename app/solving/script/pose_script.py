@@ -68,6 +68,8 @@ FIGURE_FIELDS = ("layer", "variant", "bounds", "still", *OWN_FIELDS, "attach", "
 HANDLE_FIELDS = ("at", "front", "extent", "still")
 KEY_FIELDS = ("frame", "targets", "turn", "pull", "ease", "passing", "front")
 BOUND_FIELDS = ("k", "sigma_a", "sigma_b")
+NO_VARIANT = "{where}variant must be one of {variants}, not {content}"
+WRONG_SCHEMA = "schema must be {own}, not {content}"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -178,7 +180,7 @@ def parse_pose_script(content: object) -> PoseScript:
     script = fields_in(content, "the script", (*SCENE_FIELDS, *own))
     schema = script.get("schema")
     if schema != SCHEMA or isinstance(schema, bool):
-        raise LissomError(f"schema must be {SCHEMA}, not {json.dumps(schema)}")
+        raise LissomError(WRONG_SCHEMA.format(own=SCHEMA, content=json.dumps(schema)))
     usual = _options(script, "")
     figures = [] if "figures" in script else [_figure(script, "", usual)]
     for index, entry in enumerate(as_list(script.get("figures", []), "figures")):
@@ -260,8 +262,9 @@ def _options(script: Mapping[str, Any], where: str) -> dict[str, Any]:
     if "variant" in script:
         if script["variant"] not in VARIANTS:
             raise LissomError(
-                f"{where}variant must be one of {', '.join(VARIANTS)}, not "
-                f"{json.dumps(script['variant'])}"
+                NO_VARIANT.format(
+                    where=where, variants=", ".join(VARIANTS), content=json.dumps(script["variant"])
+                )
             )
         options["variant"] = Variant(script["variant"])
     if "bounds" in script:

@@ -19,6 +19,10 @@ PIXEL = 4  # bytes
 # Of the machine's memory, for pictures, where the person has chosen nothing; where the system does
 # not tell, the machine is taken to have so many bytes.
 SHARE, USUAL = 0.25, 8_000_000_000
+MEMORY_OF_PICTURES = (
+    "decoded it takes {needed:,.0f} MB of memory, and pictures may take {budget:,.0f} MB; scale it "
+    'down, or change "memory" in {preferences}'
+)
 
 
 def require_memory(sizes: Iterable[tuple[int, int]]) -> None:
@@ -26,9 +30,11 @@ def require_memory(sizes: Iterable[tuple[int, int]]) -> None:
     needed, budget = sum(PIXEL * width * height for width, height in sizes), memory_budget()
     if needed > budget:
         raise LissomError(
-            f"decoded it takes {needed / 1e6:,.0f} MB of memory, and pictures may take "
-            f'{budget / 1e6:,.0f} MB; scale it down, or change "memory" in '
-            f"{settings_folder() / 'preferences.json'}"
+            MEMORY_OF_PICTURES.format(
+                needed=needed / 1e6,
+                budget=budget / 1e6,
+                preferences=settings_folder() / "preferences.json",
+            )
         )
 
 

@@ -21,6 +21,7 @@ EMPTY = "left out, since it is empty"
 # Of a layer's pixels: where no more of them are within the box of what is drawn, the rest is cut
 # off. Decoded, and on the graphics card, every pixel takes memory.
 CUT_OFF = 0.8
+GROUPS_DEEP = "its groups lie more than {most} deep in each other"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -95,7 +96,7 @@ class Groups:
             If it lies too deep in others.
         """
         if around.count("/") + bool(around) >= DEEPEST:
-            raise LissomError(f"its groups lie more than {DEEPEST} deep in each other")
+            raise LissomError(GROUPS_DEEP.format(most=DEEPEST))
         # A slash stands between groups.
         name = shown_name(group.name).replace("/", "-").strip() or "group"
         path = layer_commands.numbered_name(f"{around}/{name}" if around else name, self._found)

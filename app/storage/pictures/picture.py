@@ -52,6 +52,8 @@ EXIF_ORIENTATION = 0x0112
 BAND = 64  # rows of pixels that are copied at once
 OPAQUE = 255
 HALF = 128  # levels: of a mask, what is lighter is kept
+NO_PICTURE = "{name} is not a picture that Lissom reads ({formats})"
+DAMAGED_PICTURE = "{name} is damaged or cut short ({error})"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -157,11 +159,9 @@ def _told(name: str) -> Iterator[None]:
             f"{name} has more than {Image.MAX_IMAGE_PIXELS or 0:,} pixels; scale it down first"
         ) from error
     except UnidentifiedImageError as error:
-        raise LissomError(
-            f"{name} is not a picture that Lissom reads ({FORMATS_IN_WORDS})"
-        ) from error
+        raise LissomError(NO_PICTURE.format(name=name, formats=FORMATS_IN_WORDS)) from error
     except DECODER_ERRORS as error:
-        raise LissomError(f"{name} is damaged or cut short ({error})") from error
+        raise LissomError(DAMAGED_PICTURE.format(name=name, error=error)) from error
 
 
 def _decode(data: bytes, name: str) -> Picture:

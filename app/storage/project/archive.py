@@ -23,6 +23,9 @@ PACKED = (".json", ".npy")
 DATE = (1980, 1, 1, 0, 0, 0)
 NPY_MAGIC = b"\x93NUMPY\x01\x00"
 LARGEST_NPY_HEADER = 1024
+NOT_ARRAY = "its {name} is not an array {dtype} (n{shape})"
+MEMBER_CUT_SHORT = "its {name} is cut short"
+MEMBER_TOO_LARGE = "its {name} is too large: {size:,} bytes"
 
 
 def write_archive(file: IO[bytes], members: Mapping[str, bytes]) -> None:
@@ -102,13 +105,13 @@ class Archive:
         self._read.add(name)
         member = self._members[name]
         if largest is not None and member.file_size > largest:
-            raise LissomError(f"its {name} is too large: {member.file_size:,} bytes")
+            raise LissomError(MEMBER_TOO_LARGE.format(name=name, size=member.file_size))
         # With the size given, no more than that is ever unpacked, whatever the data would grow to;
         # a checksum that differs is an error.
         with self._file.open(member) as packed:
             content = packed.read(member.file_size)
         if len(content) < member.file_size:
-            raise LissomError(f"its {name} is cut short")
+            raise LissomError(MEMBER_CUT_SHORT.format(name=name))
         return content
 
     def points(self, name: str, *, most: int) -> Complexes:
@@ -143,7 +146,7 @@ class Archive:
         pattern = rf"{{'descr': '{kind}', 'fortran_order': False, 'shape': \((\d+){shape}\), }} *\n"
         match = re.fullmatch(pattern.encode(), content[10:start])
         if not content.startswith(NPY_MAGIC) or match is None:
-            raise LissomError(f"its {name} is not an array {dtype.name} (n{shape})")
+            raise LissomError(NOT_ARRAY.format(name=name, dtype=dtype.name, shape=shape))
         if len(content) - start != int(match[1]) * row:
-            raise LissomError(f"its {name} is cut short")
+            raise LissomError(MEMBER_CUT_SHORT.format(name=name))
         return np.frombuffer(content, dtype, offset=start)

@@ -27,6 +27,7 @@ from engine.maps import HarmonicMap
 
 CENTRES, CLOSED = "hole_centres.npy", "closed.npy"
 STIFFNESS = "stiffness.npy"
+OTHER_CHECKSUM = "its picture is not the one that was saved: the checksums differ"
 
 
 def figure_members(figure: Figure) -> dict[str, bytes]:
@@ -77,7 +78,7 @@ class FigureMembers:
         data = self._archive.read(f"{self._folder}/source{suffix}")
         picture = PictureFile(data=data, suffix=suffix, size=size)
         if picture.sha256 != sha256:
-            raise LissomError("its picture is not the one that was saved: the checksums differ")
+            raise LissomError(OTHER_CHECKSUM)
         # A camera's note on its orientation may have turned it by a quarter.
         width, height = stored_size(picture.data, "its picture")
         if size not in {(width, height), (height, width)}:

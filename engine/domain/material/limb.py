@@ -22,6 +22,10 @@ USUAL, THICKEST, BEYOND = 0.4, 1.35, 1.8
 # A joint is at each end, so many times as long as the limb is wide on one side, but at most such a
 # part of it. Measured: with 1 an arm turns at its shoulder by less than half as far.
 JOINT, LONGEST_JOINT = 1.6, 0.42
+BONE_STAYS = (
+    "A bone must stay on the drawing, and this one leaves it or crosses a hole; put a handle "
+    "between its ends, and a bone to either side of that."
+)
 
 
 def limb_around(
@@ -51,10 +55,7 @@ def limb_around(
         raise EngineError("A bone leads from one point to another one.")
     bone = shapely.LineString([(start.real, start.imag), (end.real, end.imag)])
     if not area.covers(bone):
-        raise EngineError(
-            "A bone must stay on the drawing, and this one leaves it or crosses a hole; put a "
-            "handle between its ends, and a bone to either side of that."
-        )
+        raise EngineError(BONE_STAYS)
     local = (points - start) * np.conj(end - start) / length
     along, across = local.real / length, local.imag
     widths = _widths(loops, start, end)

@@ -16,6 +16,10 @@ LEAST_ALONG = 0.1  # cosine between an edge of the cage and of the outline
 SLOPE = 0.5  # by which the offset may change per length of an edge
 SHRINKING = 0.8
 MOST_ROUNDS = 60
+CLOSE_OUTLINE = (
+    "The outline comes too close to itself for a cage around its {count} vertices; choose a "
+    "coarser detail, or widen the gap in the picture."
+)
 
 
 def offset_cage(outline: Complexes, offset: float, *, hole: bool = False) -> Complexes:
@@ -60,10 +64,7 @@ def offset_cage(outline: Complexes, offset: float, *, hole: bool = False) -> Com
     # Two polygons that do not cross are closest at a vertex of one of them.
     ways = distance_to_boundary(outline, cage), distance_to_boundary(cage, outline)
     if faulty.any() or np.min(ways) < LEAST_DISTANCE * box_diagonal(outline):
-        raise EngineError(
-            f"The outline comes too close to itself for a cage around its {len(outline)} vertices; "
-            "choose a coarser detail, or widen the gap in the picture."
-        )
+        raise EngineError(CLOSE_OUTLINE.format(count=len(outline)))
     return readonly(cage)
 
 

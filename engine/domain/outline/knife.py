@@ -32,6 +32,10 @@ AT_END, GROWTH, LONGEST = 0.006, 0.5, 0.06
 SHORTEST = 0.35  # slit widths: ends of shorter edges are one
 SHARP = 110.0  # degrees: turn at a corner that is blunted
 STRAIGHT = 0.2  # sine of the angle of two lines that hardly cross
+CUTS_OFF = (
+    "The knife cuts off a part of the drawing, {cut_off:.1%} of it, and a figure is one piece; end "
+    "the line inside, or move the part to a layer of its own."
+)
 
 
 class Parted(NamedTuple):
@@ -83,10 +87,7 @@ def part(
     others = (part for part in parts if not shapely.equals(part, piece))
     cut_off = sum(_drawn_area(part, mask) for part in others) / np.count_nonzero(mask)
     if cut_off > SPECK:
-        raise EngineError(
-            f"The knife cuts off a part of the drawing, {cut_off:.1%} of it, and a figure is one "
-            "piece; end the line inside, or move the part to a layer of its own."
-        )
+        raise EngineError(CUTS_OFF.format(cut_off=cut_off))
     piece = _without_strips(piece, whole, mask, width)
     tips = np.concatenate([way[[0, -1]] for way in ways])
     new = [piece.exterior, *piece.interiors]

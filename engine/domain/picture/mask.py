@@ -23,6 +23,13 @@ LEAST_AGREEMENT = 0.80  # of the border with the background's colour
 SUBJECT_SHARES = (0.01, 0.97)  # of the picture, between which a removed background is believed
 MOST_ENCLOSED = 0.8  # of the subject: lines on coloured paper enclose more of it
 TOLD_ENCLOSED = 0.012  # radius of a disc, of the picture's diagonal: what is larger is told
+PICTURE_TYPE = "A picture must be uint8 (h, w, 4), not {dtype} {shape}."
+TRANSPARENT = "The picture is fully transparent; give one with a visible drawing."
+ALL_REMOVED = "The brush has removed all of the picture; keep a part of it."
+SMALL_SUBJECT = (
+    "The subject is only {width} × {height} pixels; give a picture in which it is at least "
+    "{smallest} pixels across."
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -78,12 +85,12 @@ def subject_mask(rgba: Bytes, cut_out: CutOut | None = None) -> Subject:
     """
     cut_out = cut_out or CutOut()
     if rgba.ndim != 3 or rgba.shape[2] != 4 or rgba.dtype != np.uint8:
-        raise EngineError(f"A picture must be uint8 (h, w, 4), not {rgba.dtype} {rgba.shape}.")
+        raise EngineError(PICTURE_TYPE.format(dtype=rgba.dtype, shape=rgba.shape))
     if rgba.size == 0:
         raise EngineError("The picture has no pixels; give one with a drawing.")
     seen = int(np.count_nonzero(_of_alpha(rgba, VISIBLE_ALPHA)))
     if not seen:
-        raise EngineError("The picture is fully transparent; give one with a visible drawing.")
+        raise EngineError(TRANSPARENT)
     notices: tuple[str, ...] = ()
     background: Background | None = None
     # A mask takes a quarter of a picture's memory: none is held that can be had again.
@@ -183,7 +190,7 @@ def _brushed(subject: Booleans, strokes: Sequence[Stroke]) -> Booleans:
     for stroke in strokes:
         paint(kept, stroke)
     if not kept.any():
-        raise EngineError("The brush has removed all of the picture; keep a part of it.")
+        raise EngineError(ALL_REMOVED)
     return kept
 
 
@@ -273,7 +280,4 @@ def _require_size(mask: Booleans) -> None:
     rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
     height, width = int(np.ptp(rows)) + 1, int(np.ptp(columns)) + 1
     if max(height, width) < SMALLEST_SIDE:
-        raise EngineError(
-            f"The subject is only {width} × {height} pixels; give a picture in which it is at "
-            f"least {SMALLEST_SIDE} pixels across."
-        )
+        raise EngineError(SMALL_SUBJECT.format(width=width, height=height, smallest=SMALLEST_SIDE))

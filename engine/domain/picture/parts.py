@@ -18,6 +18,10 @@ CLOUD = 6  # parts from which on gaps are closed as well as bridged
 CLOUD_GAP = 0.04  # of the diagonal: widest half gap that is closed in a cloud of parts
 BRIDGE_WIDTHS = (0.012, 0.05)  # of the diagonal
 WITH_CORNERS = ((1, 1, 1), (1, 1, 1), (1, 1, 1))  # which neighbours of a pixel are one with it
+FRAGMENTED = (
+    "The subject is too fragmented: {count:,} parts, of which {dropped:.0%} of the area are "
+    "specks; give a picture with at most {most} parts."
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -124,10 +128,7 @@ def _require_few_parts(areas: Floats, kept: Booleans) -> None:
     """Raise `EngineError` unless a few parts hold nearly all of the subject."""
     dropped = areas[~kept].sum() / areas.sum()
     if dropped > MOST_DROPPED or np.count_nonzero(kept) > MOST_PARTS:
-        raise EngineError(
-            f"The subject is too fragmented: {len(areas):,} parts, of which {dropped:.0%} of the "
-            f"area are specks; give a picture with at most {MOST_PARTS} parts."
-        )
+        raise EngineError(FRAGMENTED.format(count=len(areas), dropped=dropped, most=MOST_PARTS))
 
 
 def _bridged(mask: Booleans, labels: Integers, areas: Floats, diagonal: float) -> Booleans:

@@ -19,6 +19,7 @@ TIE = 1e-6
 APART = 8
 SLACK = 1.05  # by what factor more may be missed where the tolerance cannot be kept
 REACH = 3  # intervals on either side of a key that is dropped in which much changes
+TOLERANCE = "The tolerance of a recording is 0 pixels or more, not {tolerance:g}."
 
 
 class FittedKeys(NamedTuple):
@@ -80,7 +81,7 @@ def fit_keys(
     if (np.diff(when) < 0).any():
         raise EngineError("The times of a recording must not go back.")
     if not tolerance >= 0:
-        raise EngineError(f"The tolerance of a recording is 0 pixels or more, not {tolerance:g}.")
+        raise EngineError(TOLERANCE.format(tolerance=tolerance))
     is_last = np.append(np.diff(when) > 0, True)
     when, where = _filled(when[is_last], where[is_last])
     first, last = int(np.ceil(when[0] - EARLY)), int(np.floor(when[-1] + EARLY))

@@ -12,6 +12,10 @@ from engine.interpolation.courses import Course
 from engine.interpolation.passage.keyframe_samples import KeyframeSamples
 from engine.interpolation.series import Residual, combined
 
+KEYFRAMES_OF_INTERVAL = (
+    "An interval of this course has {wanted} keyframes, not {count} with {sheets} sheets."
+)
+
 
 class Derivatives(NamedTuple):
     """Φ', Φ'', Ψ' and Ψ'' of an in-between, each complex128 (s,).
@@ -66,8 +70,9 @@ class Passage:
         if not len(keyframes) == len(sheets) == course.count:
             wanted = ("two", "three", "four", "five", "six")[course.count - 2]
             raise EngineError(
-                f"An interval of this course has {wanted} keyframes, not {len(keyframes)} with "
-                f"{len(sheets)} sheets."
+                KEYFRAMES_OF_INTERVAL.format(
+                    wanted=wanted, count=len(keyframes), sheets=len(sheets)
+                )
             )
         return cls(keyframes=tuple(keyframes), sheets=sheets, course=course, eta_course=course)
 

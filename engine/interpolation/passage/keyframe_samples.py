@@ -12,6 +12,11 @@ from engine.interpolation.sites import Sites
 from engine.maps import HarmonicMap, Limits, certify, distortion
 from engine.paths import IntegrationPaths, continue_logarithm
 
+FOLDS = (
+    "Keyframe {number} folds: at ({x:.6g}, {y:.6g}) its smaller stretch sigma_b is {sigma_b:.3g}, "
+    "and must be clearly above 0. Pose it again within bounds."
+)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class KeyframeSamples:
@@ -140,10 +145,7 @@ def _require_unfolded(f: HarmonicMap, sites: Sites, number: int) -> None:
     worst = int(sigma_b.argmin())
     if sigma_b[worst] <= 0 or certificate.winding == 0:
         z = sites.boundary.points[worst]
-        raise EngineError(
-            f"Keyframe {number} folds: at ({z.real:.6g}, {z.imag:.6g}) its smaller stretch sigma_b "
-            f"is {sigma_b[worst]:.3g}, and must be clearly above 0. Pose it again within bounds."
-        )
+        raise EngineError(FOLDS.format(number=number, x=z.real, y=z.imag, sigma_b=sigma_b[worst]))
     for hole, turns in enumerate(_turns(fz, sites), start=1):
         if turns:
             raise EngineError(

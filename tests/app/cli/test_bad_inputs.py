@@ -2,6 +2,7 @@
 
 import io
 import os
+import re
 import resource
 import subprocess
 import sys
@@ -9,12 +10,16 @@ import zipfile
 
 import numpy as np
 import pytest
+from messages import says
 from refusals import refusal
 
 from app.cli import process
+from app.cli.hole_arrays import HOLE_SIZES
 from app.cli.main import TOO_LITTLE_MEMORY
 from app.cli.process import LEAST_MEMORY
 from app.storage import NO_ARRAYS, sample_images
+from app.storage.files.reading import NOT_ORDINARY
+from engine.geometry.polygon import CAGE_FAR, CAGE_REPEATS, FEW_DIGITS
 
 SQUARE = np.array([0, 1, 1 + 1j, 1j])
 CAGE = (SQUARE - 0.5 - 0.5j) * 1.4 + 0.5 + 0.5j
@@ -54,12 +59,12 @@ def test_what_is_packed_in_rare_ways_is_refused(tmp_path, capsys, packing):
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({**MAPS, "cage": 1e300 * CAGE}, "too far from the outline"),
-        ({**MAPS, "cage": 1e9 * CAGE}, "too far from the outline"),
-        ({**MAPS, "outline": 1e200 * SQUARE, "cage": 1e200 * CAGE}, "move or scale it"),
-        ({**MAPS, "outline": 1e-200 * SQUARE, "cage": 1e-200 * CAGE}, "move or scale it"),
-        ({**MAPS, "outline": SQUARE + 1e12, "cage": CAGE + 1e12}, "move or scale it"),
-        ({**MAPS, "cage": CAGE[[0, 1, 1, 2]]}, "cage repeats a vertex"),
+        ({**MAPS, "cage": 1e300 * CAGE}, says(CAGE_FAR)),
+        ({**MAPS, "cage": 1e9 * CAGE}, says(CAGE_FAR)),
+        ({**MAPS, "outline": 1e200 * SQUARE, "cage": 1e200 * CAGE}, says(FEW_DIGITS)),
+        ({**MAPS, "outline": 1e-200 * SQUARE, "cage": 1e-200 * CAGE}, says(FEW_DIGITS)),
+        ({**MAPS, "outline": SQUARE + 1e12, "cage": CAGE + 1e12}, says(FEW_DIGITS)),
+        ({**MAPS, "cage": CAGE[[0, 1, 1, 2]]}, says(CAGE_REPEATS)),
         ({**MAPS, "triangles": np.empty((0, 3), int)}, "no triangles"),
         ({**BY_BOUNDARY, "boundary": np.empty((0, 4))}, "must be of shape"),
         ({**BY_BOUNDARY, "boundary": np.zeros((2, 4))}, "more than one point"),
@@ -74,7 +79,7 @@ def test_what_is_packed_in_rare_ways_is_refused(tmp_path, capsys, packing):
                     "hole_cage_sizes": np.array(sizes),
                     "hole_centres": np.full(len(sizes), 0.5 + 0.5j),
                 },
-                "whole numbers that add up",
+                says(HOLE_SIZES),
             )
             for sizes in ([-4, 12], [HUGE, HUGE, 14])  # the latter wrap around to 12
         ),
@@ -83,7 +88,7 @@ def test_what_is_packed_in_rare_ways_is_refused(tmp_path, capsys, packing):
 def test_arrays_that_make_no_sense_are_refused(tmp_path, capsys, changes, words):
     path = tmp_path / "a.npz"
     np.savez(path, **changes)
-    assert words in interpolated(capsys, tmp_path, path)
+    assert re.search(words, interpolated(capsys, tmp_path, path))
 
 
 @pytest.mark.parametrize(
@@ -119,7 +124,7 @@ def test_what_is_no_plain_file_is_never_waited_for(tmp_path, capsys, suffix, kin
         ".json": ("pose", __file__, path, "--out", out),
     }
     said = refusal(capsys, *calls.get(suffix, ("domain", path, "--out", out)))
-    assert "not an ordinary file" in said or "it is a folder" in said
+    assert re.search(says(NOT_ORDINARY), said) or "it is a folder" in said
 
 
 FULL = "lissom: error: cannot use standard output: No space left on device"

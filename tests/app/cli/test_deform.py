@@ -4,12 +4,17 @@ import numpy as np
 import pytest
 from deform_shapes import STAR_POINTS, star_boundary
 from interpolation_shapes import subdivided
+from messages import says
 from numpy.testing import assert_allclose
 from refusals import refusal
 
 from app.cli.main import main
-from engine.geometry.polygon import is_simple
-from engine.maps.harmonic_map import HarmonicMap
+from engine.deform.deformer import UNCERTIFIED_START
+from engine.deform.handles import MOST_CAGE, TARGET_COUNT
+from engine.deform.hands import FORCE_NOT_POSITIVE
+from engine.geometry.polygon import CAGE_ORDER, OUTSIDE_OUTLINE, is_simple
+from engine.maps.bounds import IMPOSSIBLE_BOUND
+from engine.maps.harmonic_map import COEFFICIENT_COUNT, HarmonicMap
 
 OUTLINE, CAGE = star_boundary().outline, star_boundary().cage
 CASE = {
@@ -130,27 +135,27 @@ DOUBLE = np.array([0.0, 0.0])
     ("changes", "message"),
     [
         ({"handles": None}, "lacks the array 'handles'"),
-        ({"handles": STAR_POINTS + 5}, "outside the outline"),
-        ({"handles": STAR_POINTS + 1e-3 + 5, "cage": CAGE[::-1]}, "outside the outline"),
-        ({"cage": subdivided(CAGE, 0.01)}, "vertices, and more than 400 .* coarser cage"),
+        ({"handles": STAR_POINTS + 5}, says(OUTSIDE_OUTLINE)),
+        ({"handles": STAR_POINTS + 1e-3 + 5, "cage": CAGE[::-1]}, says(OUTSIDE_OUTLINE)),
+        ({"cage": subdivided(CAGE, 0.01)}, says(MOST_CAGE, most=400)),
         ({"targets": np.full(6, np.nan)}, "finite"),
-        ({"targets": STAR_POINTS[:3]}, "as many targets"),
+        ({"targets": STAR_POINTS[:3]}, says(TARGET_COUNT)),
         ({"handles": DOUBLE, "targets": np.array([0, 1.0])}, "same point"),
-        ({"cage": CAGE + 9}, "once counter-clockwise around"),
+        ({"cage": CAGE + 9}, says(CAGE_ORDER)),
         ({"outline": CAGE, "cage": OUTLINE}, "strictly inside|cage"),
-        ({"k_max": 1.0}, "bound on k"),
+        ({"k_max": 1.0}, says(IMPOSSIBLE_BOUND, name="k")),
         ({"sigma_a_max": 0.9}, "bound on sigma_a"),
         ({"sigma_b_min": 1.0}, "bound on sigma_b"),
         ({"k_max": np.array([0.5, 0.6])}, "k_max must be one number"),
         ({"k_max": "high"}, "'k_max' holds text"),
         ({"phi": CAGE}, "both phi and psi"),
-        ({"phi": CAGE, "psi": 0.95 * CAGE}, "start map is not certified"),
-        ({"phi": CAGE[:4], "psi": CAGE[:4]}, "as many coefficients"),
+        ({"phi": CAGE, "psi": 0.95 * CAGE}, says(UNCERTIFIED_START)),
+        ({"phi": CAGE[:4], "psi": CAGE[:4]}, says(COEFFICIENT_COUNT)),
         ({"path": np.zeros((3, 2))}, "path must have one column"),
         ({"path": np.full((3, 6), np.inf)}, "finite"),
         ({"pull": np.ones(5)}, "pull must be one number, or one for each of 6 handles"),
-        ({"pull": 0.0}, "positive force, not 0"),
-        ({"pull": np.array([1, 1, 1, 1, np.nan, 1])}, "positive force, not nan"),
+        ({"pull": 0.0}, says(FORCE_NOT_POSITIVE, pull=0)),
+        ({"pull": np.array([1, 1, 1, 1, np.nan, 1])}, says(FORCE_NOT_POSITIVE, pull=float("nan"))),
     ],
 )
 def test_bad_input_is_one_line(write, tmp_path, capsys, changes, message):

@@ -3,11 +3,18 @@ import re
 import numpy as np
 import pytest
 from interpolation_shapes import inner_points, letter_l, random_map
+from messages import says
 from numpy.testing import assert_allclose, assert_array_equal
 
+from app.cli.keyframes import COEFFICIENT_SHAPE
 from app.cli.main import main
 from engine.domain.meshing.triangulation import triangulate
 from engine.geometry import polygon
+from engine.geometry.polygon import CAGE_ORDER, CAGE_TOUCHES, OUTSIDE_OUTLINE
+from engine.interpolation.passage.keyframe_samples import FOLDS
+from engine.interpolation.preparation import TWO_KEYFRAMES
+from engine.paths.complex_log import TURN_COUNT
+from engine.paths.path_network import MESH_POINTS
 
 OUTLINE, CAGE = letter_l()
 KEYFRAMES = [random_map((OUTLINE, CAGE), seed) for seed in (1, 2, 5)]
@@ -135,11 +142,14 @@ FOLDED[1] = MAPS["phi"][1].conj() * 2
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"phi": MAPS["phi"][:1], "psi": MAPS["psi"][:1]}, "at least two keyframes"),
-        ({"phi": MAPS["phi"][:, :-1]}, r"phi and psi must both be of shape"),
-        ({"phi": MAPS["phi"][0]}, r"phi and psi must both be of shape"),
-        ({"psi": FOLDED}, r"Keyframe 1 folds: at \(.*sigma_b is -"),
-        ({"points": np.array([0.5 + 0.5j, 2 + 2j])}, r"point 1 at \(2, 2\) is outside"),
+        ({"phi": MAPS["phi"][:1], "psi": MAPS["psi"][:1]}, says(TWO_KEYFRAMES)),
+        ({"phi": MAPS["phi"][:, :-1]}, says(COEFFICIENT_SHAPE)),
+        ({"phi": MAPS["phi"][0]}, says(COEFFICIENT_SHAPE)),
+        ({"psi": FOLDED}, says(FOLDS, number=1)),
+        (
+            {"points": np.array([0.5 + 0.5j, 2 + 2j])},
+            says(OUTSIDE_OUTLINE, name="point", number=" 1", x=2, y=2),
+        ),
         ({"points": np.array([])}, "at least 1"),
         ({"points": np.array([np.nan])}, "finite"),
         ({"anchor": 9.0}, "anchor at .* is outside"),
@@ -147,14 +157,14 @@ FOLDED[1] = MAPS["phi"][1].conj() * 2
         ({"anchor": np.array([])}, "One anchor is needed, not 0"),
         ({"outline": OUTLINE[::-1]}, "clockwise"),
         ({"outline": OUTLINE[[0, 12, 1, *range(2, 12)]]}, "crosses or touches itself"),
-        ({"outline": 1.2 * OUTLINE}, "touches or crosses"),
-        ({"cage": CAGE[::-1]}, "once counter-clockwise"),
-        ({"triangles": np.array([[0, 1, 99]])}, "points 0 to"),
+        ({"outline": 1.2 * OUTLINE}, says(CAGE_TOUCHES)),
+        ({"cage": CAGE[::-1]}, says(CAGE_ORDER)),
+        ({"triangles": np.array([[0, 1, 99]])}, says(MESH_POINTS)),
         ({"triangles": np.array([[0.0, 1, 2]])}, "integers"),
         ({"triangles": np.array([[0, 1, 2]])}, "not joined|leaves the outline"),
         ({"psi": None}, "'psi'"),
-        ({"turns": np.array([1])}, "turns between 3 keyframes are 2 integers"),
-        ({"turns": np.array([0.5, 1])}, "2 integers, not float64"),
+        ({"turns": np.array([1])}, says(TURN_COUNT, keyframes=3, count=2)),
+        ({"turns": np.array([0.5, 1])}, says(TURN_COUNT, count=2, dtype="float64")),
     ],
 )
 def test_bad_files_are_refused(write, tmp_path, capsys, changes, message):

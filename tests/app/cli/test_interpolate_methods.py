@@ -5,11 +5,16 @@ import re
 import numpy as np
 import pytest
 from interpolation_shapes import bar, bent
+from messages import says
 from numpy.testing import assert_allclose, assert_array_equal
 
 from app.cli.main import main
 from engine.domain.meshing.triangulation import triangulate
+from engine.geometry.polygon import OUTSIDE_OUTLINE
+from engine.interpolation.preparation import TWO_KEYFRAMES
 from engine.maps.harmonic_map import HarmonicMap
+from engine.paths.complex_log import TURN_COUNT
+from engine.paths.path_network import MESH_POINTS
 
 OUTLINE, CAGE = bar()
 MESH = triangulate(OUTLINE, 200)
@@ -190,16 +195,16 @@ TWICE = np.concatenate([MESH.triangles, MESH.triangles[:1], MESH.triangles[:1]])
             "handles",
             maps_of(STRETCHED),
             {"handles": np.array([9.0])},
-            r"handle at \(9, 0\) is outside",
+            says(OUTSIDE_OUTLINE, name="handle", number="", x=9, y=0),
         ),
         ("conformal", maps_of(STRETCHED), {}, "Keyframe 1 is not holomorphic: .* k is 0"),
         ("conformal", POSES, {}, "for keyframes that are harmonic maps"),
         ("metric", POSES, {}, "these are poses of a mesh; choose one of arap, ffmp, sig13, mesh"),
         ("arap", POSES, {"positions": FOLDED}, "Keyframe 1 folds: triangle .* is turned over"),
-        ("arap", POSES, {"positions": POSES["positions"][:, :-1]}, "name points from 0 to"),
+        ("arap", POSES, {"positions": POSES["positions"][:, :-1]}, says(MESH_POINTS, smallest=0)),
         ("arap", POSES, {"positions": POSES["positions"][0]}, "must be of shape"),
-        ("arap", POSES, {"positions": POSES["positions"][:1]}, "at least two keyframes, not 1"),
-        ("arap", POSES, {"points": MESH.vertices[:-1]}, "name points from 0 to"),
+        ("arap", POSES, {"positions": POSES["positions"][:1]}, says(TWO_KEYFRAMES, count=1)),
+        ("arap", POSES, {"points": MESH.vertices[:-1]}, says(MESH_POINTS, smallest=0)),
         ("arap", POSES, {"points": np.append(MESH.vertices, 5)}, "is in no triangle"),
         ("arap", POSES, {"triangles": FLIPPED}, "Triangle 3 of the domain is turned over"),
         ("arap", POSES, {"triangles": TWICE}, "is in . triangles; an edge of a plane mesh"),
@@ -207,7 +212,7 @@ TWICE = np.concatenate([MESH.triangles, MESH.triangles[:1], MESH.triangles[:1]])
         ("arap", POSES, {"triangles": MESH.triangles + 0.5}, "integers"),
         ("arap", POSES, {"triangles": None}, "'triangles'"),
         ("arap", POSES, {"anchor": np.array([0.1, 0.2])}, "One anchor is needed, not 2"),
-        ("arap", POSES, {"turns": np.array([1, 1])}, "turns between 2 keyframes are 1 integers"),
+        ("arap", POSES, {"turns": np.array([1, 1])}, says(TURN_COUNT, keyframes=2, count=1)),
         ("arap", {"boundary": np.zeros((2, 4))}, {}, "'outline'"),
     ],
 )

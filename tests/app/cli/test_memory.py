@@ -1,6 +1,7 @@
 """Small files take little memory, and large ones no more than what is in them and a share."""
 
 import json
+import re
 import subprocess
 import sys
 import tracemalloc
@@ -10,6 +11,7 @@ import numpy as np
 import pytest
 from animations import moving_document
 from layered import blob, openraster
+from messages import says
 from PIL import Image
 from refusals import refusal
 
@@ -17,6 +19,7 @@ from app.cli.main import main
 from app.errors import LissomError
 from app.storage import Preferences, load_project, save_preferences, save_project
 from app.storage.pictures import cores, decode_pictures, read_openraster
+from app.storage.pictures.cores import MEMORY_OF_PICTURES
 from engine.deform import MOST_HANDLES
 
 MEGABYTE = 1_000_000
@@ -62,9 +65,9 @@ def test_pictures_beyond_the_budget_are_refused_before_they_are_decoded(
     with monkeypatch.context() as decoding:
         decoding.setattr("app.storage.pictures.picture._decoded", never)
         said = refusal(capsys, "domain", path, "--out", out)
-        with pytest.raises(LissomError, match="6 MB of memory"):
+        with pytest.raises(LissomError, match=says(MEMORY_OF_PICTURES, needed=6)):
             decode_pictures([(path.read_bytes(), "it")] * 2)
-    assert "decoded it takes 3 MB of memory, and pictures may take 3 MB" in said
+    assert re.search(says(MEMORY_OF_PICTURES, needed=3, budget=3), said)
     assert "preferences.json" in said
     budget(4)
     assert main(["domain", str(path), "--out", str(out)]) == 0
@@ -74,7 +77,7 @@ def test_the_layers_of_a_file_share_one_budget(tmp_path, budget):
     stack = '<layer name="a" src="data/0.png"/><layer name="b" src="data/1.png"/>'
     data = openraster((600, 600), stack, [blob(600, 600), blob(600, 600)])
     budget(2)
-    with pytest.raises(LissomError, match="takes 3 MB of memory"):
+    with pytest.raises(LissomError, match=says(MEMORY_OF_PICTURES, needed=3)):
         read_openraster(data)
     budget(3)
     assert len(read_openraster(data).layers) == 2

@@ -8,6 +8,7 @@ import pytest
 from animations import moving_document
 from refusals import refusal
 
+from app.cli.options import NO_STANDARD_OUTPUT
 from app.storage import SAME_FILE
 from app.storage.project_file import save_project
 
@@ -122,8 +123,10 @@ def test_standard_output_is_not_offered(capsys, monkeypatch):
     finally:
         os.close(99)
     for words in (["domain", "other", "--out", "-"], ["export", "other", "--out", "-"]):
-        assert "standard output is not offered" in refusal(capsys, *words)
-    assert "not offered" in refusal(capsys, "domain", "other", "--out", "out", "--preview", "-")
+        assert NO_STANDARD_OUTPUT in refusal(capsys, *words)
+    assert NO_STANDARD_OUTPUT in refusal(
+        capsys, "domain", "other", "--out", "out", "--preview", "-"
+    )
 
 
 @pytest.mark.parametrize("name", ["n" * 256, "a/" * 3000 + "b", "nul\0"])

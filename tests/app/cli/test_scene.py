@@ -1,20 +1,25 @@
 """A drawing on layers, from its script to frames, as a person does it in a shell."""
 
 import json
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from layered import openraster
+from messages import says
 from PIL import Image, ImageDraw
 
 from app.cli.main import main
 from app.document import Meshing, is_visible
+from app.document.model import HANGS_ON_ITSELF
 from app.errors import LissomError
 from app.motion import Joints
 from app.solving import pose_document
 from app.solving.script import parse_pose_script
+from app.solving.script.fields import NOT_A_FRAME, OUT_OF_ORDER
 from app.storage import open_layered
+from app.storage.json_values import LACKS_FIELD, NOT_LIST, NOT_TRUE_OR_FALSE
 from app.storage.project_file import load_project, save_project
 from engine.errors import EngineError
 from engine.maps import Bounds
@@ -181,15 +186,15 @@ def test_export_draws_the_scene_or_one_figure_of_it(project):
         ({"layer": "wall"}, "'wall' stands still"),
         ({"attach": {"to": "leg", "at": [1, 2]}}, "there is no layer 'leg'"),
         ({"attach": {"to": "body", "at": [1, 2]}}, "which is not on 'body'"),
-        ({"attach": {"to": "arm", "at": [180, 120]}}, "would hang on itself"),
+        ({"attach": {"to": "arm", "at": [180, 120]}}, says(HANGS_ON_ITSELF)),
         (
             {"attach": {"to": "body", "at": [70, 40]}},
-            "layer 'arm': it is attached at (70, 40), which is on 'body' but not on itself; give",
+            r"layer 'arm': it is attached at \(70, 40\), which is on 'body' but not on itself",
         ),
-        ({"attach": {"to": "body"}}, "figures[0].attach lacks the field 'at'"),
-        ({"attach": {"at": [1, 2]}}, "figures[0].attach lacks the field 'to'"),
+        ({"attach": {"to": "body"}}, says(LACKS_FIELD, where="figures[0].attach", name="at")),
+        ({"attach": {"at": [1, 2]}}, says(LACKS_FIELD, where="figures[0].attach", name="to")),
         ({"attach": {"to": "wall", "at": [5, 5], "anchor": 1}}, "unknown field 'anchor'"),
-        ({"anchor": [5, 5]}, "layer 'arm': The anchor at (5, 5) lies outside"),
+        ({"anchor": [5, 5]}, r"layer 'arm': The anchor at \(5, 5\) lies outside"),
         ({"handles": {"hand": [5, 5]}}, "layer 'arm': "),
         (
             {"handles": {"hand": {"at": [190, 120], "front": 2}}},
@@ -199,34 +204,43 @@ def test_export_draws_the_scene_or_one_figure_of_it(project):
             {"handles": {"hand": {"at": [190, 120], "extent": -3}}},
             "layer 'arm': ",
         ),
-        ({"handles": {"hand": {"front": 1}}}, "figures[0].handle 'hand' lacks the field 'at'"),
+        (
+            {"handles": {"hand": {"front": 1}}},
+            says(LACKS_FIELD, where="figures[0].handle 'hand'", name="at"),
+        ),
         (
             {"keys": [{"frame": 0, "front": {"foot": 1}}]},
-            "figures[0].keys[0] names the handle 'foot', but the handles are hand",
+            r"figures\[0\]\.keys\[0\] names the handle 'foot', but the handles are hand",
         ),
-        ({"keys": [{"frame": 0, "front": {"hand": "high"}}]}, "figures[0].keys[0].front.hand"),
+        (
+            {"keys": [{"frame": 0, "front": {"hand": "high"}}]},
+            r"figures\[0\]\.keys\[0\]\.front\.hand",
+        ),
         (
             {"visible": [[4, True], [2, False]]},
-            "figures[0].visible is out of order: frame 2 after 4",
+            says(OUT_OF_ORDER, what="figures[0].visible is", after=2, before=4),
         ),
-        ({"visible": [[4, 1]]}, "figures[0].visible[0]"),
-        ({"visible": True}, "figures[0].visible"),
+        ({"visible": [[4, 1]]}, r"figures\[0\]\.visible\[0\]"),
+        ({"visible": True}, r"figures\[0\]\.visible"),
         (
             {"tracks": [{"handle": "thumb", "keys": [{"frame": 0, "offset": [1, 2]}]}]},
-            "figures[0].tracks[0].handle names the handle 'thumb', but the handles are hand",
+            r"figures\[0\]\.tracks\[0\]\.handle names the handle 'thumb', but the handles are hand",
         ),
         (
             {"springs": [{"handle": "thumb", "preset": "ear"}]},
-            "figures[0].springs[0].handle names the handle 'thumb'",
+            r"figures\[0\]\.springs\[0\]\.handle names the handle 'thumb'",
         ),
-        ({"still": "no"}, "figures[0].still must be true or false"),
+        ({"still": "no"}, says(NOT_TRUE_OR_FALSE, where="figures[0].still")),
         (
             {"attach": [{"to": "body", "at": [95, 120]}, {"to": "body", "keep": True}]},
-            "figures[0].attach is out of order: frame 0 after 0",
+            says(OUT_OF_ORDER, what="figures[0].attach is", after=0, before=0),
         ),
-        ({"attach": [{"frame": -1, "to": None}]}, "figures[0].attach[0].frame must be a whole"),
+        (
+            {"attach": [{"frame": -1, "to": None}]},
+            r"figures\[0\]\.attach\[0\]\.frame must be a whole",
+        ),
         ({"attach": [{"to": None, "at": [1, 2]}]}, "lets go, so that it has no at"),
-        ({"attach": [{"to": "body"}]}, "figures[0].attach[0] lacks the field 'at'"),
+        ({"attach": [{"to": "body"}]}, says(LACKS_FIELD, where="figures[0].attach[0]", name="at")),
         ({"attach": [{"frame": 4, "to": "leg", "keep": True}]}, "there is no layer 'leg'"),
         (
             {"attach": [{"to": "body", "at": [95, 120]}, {"frame": 4, "to": "arm", "keep": True}]},
@@ -236,7 +250,7 @@ def test_export_draws_the_scene_or_one_figure_of_it(project):
 )
 def test_script_is_refused_when_drawing_lacks_what_it_names(drawing, change, words):
     script = {**SCRIPT, "figures": [{**SCRIPT["figures"][1], **change}]}
-    assert words in refused(drawing, script)
+    assert re.search(words, refused(drawing, script))
 
 
 def test_pose_writes_nothing_when_the_script_is_refused(folder, capsys):
@@ -537,22 +551,31 @@ def test_choice_is_told_of_when_its_key_is_after_the_end(opened):
     ("stage", "words"),
     [
         ([{**CHOICE, "layers": ["closed", "eh"], "keys": []}], "'mouth': there is no layer 'eh'"),
-        ([{**CHOICE, "layers": ["closed"], "keys": []}], "choices[0].layers must be two layers"),
-        ([{**CHOICE, "layers": ["ah", "ah"], "keys": []}], "choices[0].layers has 'ah' twice"),
-        ([{**CHOICE, "keys": [[0, "head"]]}], "choices[0].keys[0] shows 'head', which is not"),
-        ([{**CHOICE, "keys": [[4, "ah"], [2, "oh"]]}], "choices[0].keys are out of order"),
-        ([{**CHOICE, "keys": [4]}], "choices[0].keys[0] must be a list"),
+        (
+            [{**CHOICE, "layers": ["closed"], "keys": []}],
+            r"choices\[0\]\.layers must be two layers",
+        ),
+        ([{**CHOICE, "layers": ["ah", "ah"], "keys": []}], r"choices\[0\]\.layers has 'ah' twice"),
+        (
+            [{**CHOICE, "keys": [[0, "head"]]}],
+            r"choices\[0\]\.keys\[0\] shows 'head', which is not",
+        ),
+        ([{**CHOICE, "keys": [[4, "ah"], [2, "oh"]]}], r"choices\[0\]\.keys are out of order"),
+        ([{**CHOICE, "keys": [4]}], says(NOT_LIST, where="choices[0].keys[0]")),
         ([CHOICE, {**CHOICE, "name": "lips"}], "the layer 'closed' is in two choices"),
         ([CHOICE, {**CHOICE, "layers": ["head", "eh"], "keys": []}], "two choices are called"),
-        ([{"layers": ["ah", "oh"]}], "choices[0] lacks the field 'name'"),
+        ([{"layers": ["ah", "oh"]}], says(LACKS_FIELD, where="choices[0]", name="name")),
         ([{**CHOICE, "shown": 1}], "unknown field 'shown'; it may have name, layers, keys"),
-        ([{**CHOICE, "name": " "}], "choices[0].name is empty, and a choice needs a name"),
-        ([{**CHOICE, "keys": [[-4, "ah"]]}], "choices[0].keys[0].frame must be a whole number"),
-        ({"mouth": []}, "choices must be a list"),
+        ([{**CHOICE, "name": " "}], r"choices\[0\]\.name is empty, and a choice needs a name"),
+        (
+            [{**CHOICE, "keys": [[-4, "ah"]]}],
+            says(NOT_A_FRAME, where="choices[0].keys[0]", name="frame"),
+        ),
+        ({"mouth": []}, says(NOT_LIST, where="choices")),
     ],
 )
 def test_choice_is_refused_when_it_cannot_be(opened, stage, words):
-    assert words in refused(opened, face_script(choices=stage))
+    assert re.search(words, refused(opened, face_script(choices=stage)))
 
 
 def test_layer_of_a_choice_is_refused_when_it_has_visible(opened):

@@ -1,11 +1,15 @@
 """The small picture of a project, as file managers ask for it."""
 
+import re
+
 import numpy as np
 import pytest
 from documents import disc_document
+from messages import says
 from PIL import Image
 from refusals import refusal
 
+from app.cli.commands.thumbnail import NO_SMALL_PICTURE
 from app.cli.main import main
 from app.storage import draw_thumbnail, sample_images, save_project
 from app.storage.thumbnail import SIDE
@@ -34,10 +38,10 @@ def test_the_samples_have_small_pictures(tmp_path):
 def test_what_cannot_be_done_is_said(tmp_path, capsys):
     project, out = tmp_path / "bare.lissom", tmp_path / "out.png"
     save_project(project, disc_document())
-    assert "holds no small picture" in refusal(capsys, "thumbnail", project, "--out", out)
+    assert re.search(says(NO_SMALL_PICTURE), refusal(capsys, "thumbnail", project, "--out", out))
     assert "is a folder" in refusal(capsys, "thumbnail", project, "--out", tmp_path)
     project.write_bytes(b"PK")
-    assert "holds no small picture" in refusal(capsys, "thumbnail", project, "--out", out)
+    assert re.search(says(NO_SMALL_PICTURE), refusal(capsys, "thumbnail", project, "--out", out))
     assert "at least 1, not 'large'" in refusal(
         capsys, "thumbnail", project, "--out", out, "--size", "large"
     )

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from documents import disc_document, disc_domain, random_command
+from messages import says
 
 from app.document.commands import (
     choice_commands as choices,
@@ -14,6 +15,7 @@ from app.document.commands import (
     scene_commands,
 )
 from app.document.layering import Choice, Switch, Turn
+from app.document.model import NO_FIGURE
 from app.document.queries import alternates, is_visible, whole_groups
 from app.document.settings import FrameRange
 from app.document.timing import Cycle
@@ -112,7 +114,7 @@ def test_time_that_is_scaled_takes_turns_along(mouths):
     ("make", "words"),
     [
         (choices.form_choice("eyes", (1, 2)), "'ah' is in two choices, 'mouth' and 'eyes'"),
-        (choices.form_choice("mouth", (2, 3)), "no figure with the id 3"),
+        (choices.form_choice("mouth", (2, 3)), says(NO_FIGURE, identity=3)),
         (choices.form_choice("mouth", (2, 2)), "has the layer 2 twice"),
         (choices.form_choice(" ", (2, 1)), "needs a name"),
         (choices.form_choice("eyes", (2,)), "two layers or more"),

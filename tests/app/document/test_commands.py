@@ -13,6 +13,7 @@ from documents import (
     inside,
     random_pose,
 )
+from messages import says
 from numpy.testing import assert_allclose
 
 from app.document import (
@@ -22,13 +23,15 @@ from app.document import (
     pose_commands as poses,
     scene_commands as settings,
 )
-from app.document.commands.keys_in_time import TWO_KEYS
-from app.document.figure import PictureFile
+from app.document.commands.keys_in_time import TIME_SCALE, TWO_KEYS
+from app.document.commands.scene_commands import KEY_OUTSIDE
+from app.document.figure import NO_HANDLE, NO_KEY, POSE_COUNT, PictureFile
 from app.document.keyframe import MOST_TURNS, Handle, Keyframe, Target
 from app.document.model import Document
 from app.document.settings import NATURAL, VARIANTS, ExportSettings, FrameRange, Marker, Meshing
 from app.document.timing import HOLD, LINEAR, PRESETS
 from app.errors import LissomError
+from engine.arrays import NOT_FINITE
 from engine.errors import EngineError
 from engine.maps.bounds import Bounds
 from engine.maps.certificate import Certificate
@@ -321,14 +324,14 @@ OTHER_CAGE = random_pose(np.random.default_rng(0), DOCUMENT, disc_domain(13))
             "Two handles have the place",
         ),
         (handles.move_handle(0, 0, CENTRE - 2 * RADIUS), "outside the shape"),
-        (handles.move_handle(0, 7, CENTRE), "no handle with the id 7"),
-        (handles.remove_handles(0, {0, 7}), "no handle with the id 7"),
-        (handles.rename_handle(0, 7, "x"), "no handle with the id 7"),
+        (handles.move_handle(0, 7, CENTRE), says(NO_HANDLE, identity=7)),
+        (handles.remove_handles(0, {0, 7}), says(NO_HANDLE, identity=7)),
+        (handles.rename_handle(0, 7, "x"), says(NO_HANDLE, identity=7)),
         (handles.rename_handle(0, 0, "handle 2"), "name 'handle 2'"),
         (handles.rename_handle(0, 0, ""), "needs a name"),
         (handles.weigh_handles(0, {0}, float("inf")), "weight"),
         (handles.weigh_handles(0, {0}, float("nan")), "weight"),
-        (keys.pose_key(0, 5, POSE), "no key at frame 5"),
+        (keys.pose_key(0, 5, POSE), says(NO_KEY, frame=5)),
         (keys.pose_key(0, 0, replace(POSE, targets={})), "one target for each handle"),
         (keys.pose_key(0, 0, OTHER_CAGE), "cage of 13 vertices, not of 12"),
         (keys.insert_key(0, 10, POSE), TWO_KEYS.format(frame=10)),
@@ -336,22 +339,22 @@ OTHER_CAGE = random_pose(np.random.default_rng(0), DOCUMENT, disc_domain(13))
         (keys.insert_key(0, 1_000_000, POSE), "not a range"),
         (keys.move_keys(0, {0, 10}, 10), TWO_KEYS.format(frame=20)),
         (keys.move_keys(0, {0}, -1), "not a range"),
-        (keys.move_keys(0, {3}, 1), "no key at frame 3"),
+        (keys.move_keys(0, {3}, 1), says(NO_KEY, frame=3)),
         (keys.copy_keys(0, {0}, 0), TWO_KEYS.format(frame=0)),
         (keys.copy_keys(0, {0}, 20), TWO_KEYS.format(frame=20)),
         (keys.delete_keys(0, {0, 10, 20}), "at least one key"),
-        (keys.delete_keys(0, {0, 11}), "no key at frame 11"),
-        (keys.reverse_keys(0, {0, 11}), "no key at frame 11"),
+        (keys.delete_keys(0, {0, 11}), says(NO_KEY, frame=11)),
+        (keys.reverse_keys(0, {0, 11}), says(NO_KEY, frame=11)),
         (keys.scale_keys(0, {0, 10}, 2.0), TWO_KEYS.format(frame=20)),
-        (keys.scale_keys(0, {0, 10}, 0.0), "scaled by more than 0"),
-        (keys.scale_keys(0, {0, 10}, float("nan")), "scaled by more than 0"),
+        (keys.scale_keys(0, {0, 10}, 0.0), says(TIME_SCALE)),
+        (keys.scale_keys(0, {0, 10}, float("nan")), says(TIME_SCALE)),
         (settings.scale_time(0.01), TWO_KEYS.format(frame=0)),
-        (settings.scale_time(-1.0), "scaled by more than 0"),
+        (settings.scale_time(-1.0), says(TIME_SCALE)),
         (keys.match_ends(0), None),
-        (keys.set_easing(0, {5}, LINEAR), "no key at frame 5"),
+        (keys.set_easing(0, {5}, LINEAR), says(NO_KEY, frame=5)),
         (settings.set_fps(0.0), "frames per second"),
         (settings.set_fps(float("nan")), "frames per second"),
-        (settings.set_frames(FrameRange(0, 15)), "key at frame 20 would lie outside"),
+        (settings.set_frames(FrameRange(0, 15)), says(KEY_OUTSIDE, frame=20)),
         (settings.set_preview(FrameRange(3, 49)), "preview range"),
         (figures.set_variant(0, "arap"), "variant"),
         (figures.set_anchor(0, CENTRE + 2 * RADIUS), "The anchor"),
@@ -361,9 +364,12 @@ OTHER_CAGE = random_pose(np.random.default_rng(0), DOCUMENT, disc_domain(13))
         (poses.delete_pose(0, "bow"), "no pose 'bow'"),
         (poses.keep_pose(0, POSE, "  "), "needs a name"),
         (poses.keep_pose(0, OTHER_CAGE, "bow"), "cage of 13"),
-        (figures.set_bounds(0, Bounds(), [POSE]), "3 poses, not 1"),
+        (figures.set_bounds(0, Bounds(), [POSE]), says(POSE_COUNT, count=3, given=1)),
         (figures.replace_domain(0, disc_domain(13), Meshing(), [POSE] * 3), "cage of 12"),
-        (figures.replace_domain(0, disc_domain(13), Meshing(), [OTHER_CAGE]), "3 poses, not 1"),
+        (
+            figures.replace_domain(0, disc_domain(13), Meshing(), [OTHER_CAGE]),
+            says(POSE_COUNT, count=3, given=1),
+        ),
     ],
 )
 def test_what_is_not_possible_says_why(command, message):
@@ -433,7 +439,7 @@ def test_values_that_make_no_sense_are_refused(make, message):
 def test_coefficients_must_be_finite():
     broken = np.array(POSE.phi)
     broken[3] = np.nan
-    with pytest.raises(EngineError, match="phi must be finite"):
+    with pytest.raises(EngineError, match=says(NOT_FINITE, name="phi")):
         replace(POSE, phi=broken)
 
 

@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 from documents import altered
 from key_rows import row
+from messages import says
 from numpy.testing import assert_allclose
 
 from app.document.commands import cycle_commands, key_commands, scene_commands, track_commands
+from app.document.commands.cycle_commands import TWO_POSES_SHOWN
 from app.document.keyframe import Handle, Target
 from app.document.layering import Switch
 from app.document.queries.clips import clip_of
@@ -51,7 +53,7 @@ def test_a_stretch_repeats_and_its_last_key_is_its_first():
     assert frames_of(cycling) == [4, 20, 28, 36, 110]
     again = cycle_commands.repeat(0, 20, 44, 68)(cycling)
     assert again.figures[0].cycles == (Cycle(first=20, last=44, until=68),)
-    with pytest.raises(LissomError, match="Frames 4 and 28 show two poses"):
+    with pytest.raises(LissomError, match=says(TWO_POSES_SHOWN, first=4, last=28)):
         cycle_commands.repeat(0, 4, 28)(document)
     with pytest.raises(LissomError, match="no room for frames 4 to 15 to repeat before frame 20"):
         cycle_commands.end_of_repeats(figure, 4, 15)

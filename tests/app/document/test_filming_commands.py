@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from documents import altered, disc_document
+from messages import says
 
 from app.document import (
     HOLD,
@@ -18,6 +19,7 @@ from app.document import (
     movement_at,
     opacity_at,
 )
+from app.document.figure import NO_KEY
 from app.errors import LissomError
 
 EMPTY = replace(disc_document(), frames=FrameRange(0, 48))
@@ -40,7 +42,7 @@ def test_a_camera_key_is_moved_and_deleted():
     assert [key.frame for key in moved.camera] == [20, 30]
     with pytest.raises(LissomError, match="Two keys would be at frame 20"):
         filming.move_camera_key(10, 20)(document)
-    with pytest.raises(LissomError, match="no key at frame 7"):
+    with pytest.raises(LissomError, match=says(NO_KEY, frame=7)):
         filming.delete_camera_key(7)(document)
     gone = filming.delete_camera_key(20)(filming.delete_camera_key(10)(document))
     assert camera_at(gone, 10) is None
@@ -53,7 +55,7 @@ def test_opacity_is_keyed_and_the_last_key_leaves_what_it_said():
     left = filming.delete_opacity_key(0, 0)(faded)
     none = filming.delete_opacity_key(0, 10)(left)
     assert (none.figures[0].opacities, none.figures[0].opacity) == ((), 0.5)
-    with pytest.raises(LissomError, match="no key at frame 3"):
+    with pytest.raises(LissomError, match=says(NO_KEY, frame=3)):
         filming.delete_opacity_key(0, 3)(altered(faded))
 
 

@@ -3,6 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from documents import CENTRE, disc_document, inside
+from messages import says
 from numpy.testing import assert_allclose
 
 from app.document import (
@@ -10,7 +11,9 @@ from app.document import (
     layer_commands as layers,
     scene_commands as scenes,
 )
+from app.document.commands.staging.layer_commands import LAST_LAYER
 from app.document.layering import Attachment, Switch
+from app.document.model import HANGS_ON_ITSELF, NO_FIGURE
 from app.document.queries.clips import clip_of
 from app.document.queries.fronts import fronts_at
 from app.document.queries.stage.sight import is_visible
@@ -43,7 +46,7 @@ def test_layers_are_added_moved_duplicated_and_deleted():
     assert copied.figures[2].id == 3
     assert order(layers.duplicate_figure(1)(copied))[2] == "arm copy 2"
     assert order(layers.remove_figure(1)(document)) == ["body", "head"]
-    with pytest.raises(LissomError, match="at least one layer"):
+    with pytest.raises(LissomError, match=says(LAST_LAYER)):
         layers.remove_figure(0)(disc_document())
     with pytest.raises(LissomError, match="none can be number 4"):
         layers.move_figure(1, 3)(document)
@@ -71,11 +74,11 @@ def test_nothing_hangs_on_itself_and_what_it_hung_on_may_go():
     document = layers.attach(2, CENTRE, Attachment(to=1, at=CENTRE))(document)
     assert [figure.name for figure in document.carriers(2, 0)] == ["hand", "arm", "body"]
     for child, parent in ((0, 2), (0, 1), (1, 1)):
-        with pytest.raises(LissomError, match="would hang on itself"):
+        with pytest.raises(LissomError, match=says(HANGS_ON_ITSELF)):
             layers.attach(child, CENTRE, Attachment(to=parent, at=CENTRE))(document)
     loose = layers.remove_figure(1)(document)
     assert loose.figure(2).joints == ()
-    with pytest.raises(LissomError, match="no figure with the id 9"):
+    with pytest.raises(LissomError, match=says(NO_FIGURE, identity=9)):
         layers.attach(1, CENTRE, Attachment(to=9, at=CENTRE))(document)
 
 

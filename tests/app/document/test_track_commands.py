@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from documents import CENTRE, altered, disc_document, random_pose
+from messages import says
 from numpy.testing import assert_allclose
 
 from app.document import (
@@ -16,6 +17,8 @@ from app.document import (
     track_commands as tracks,
 )
 from app.document.commands.keys_in_time import TWO_KEYS
+from app.document.commands.scene_commands import KEY_OUTSIDE
+from app.document.figure import NO_HANDLE, NO_KEY
 from app.document.history import History
 from app.document.keyframe import Keyframe
 from app.document.queries.timeline import changed_stretches, exported_frames
@@ -89,7 +92,7 @@ def test_keys_of_a_track_are_moved_about_in_time_as_those_of_poses_are():
     ):
         with pytest.raises(LissomError, match=TWO_KEYS.format(frame=r"\d+")):
             command(document)
-    with pytest.raises(LissomError, match="no key at frame 5"):
+    with pytest.raises(LissomError, match=says(NO_KEY, frame=5)):
         tracks.move_track_keys(0, 0, {4, 5}, 1)(document)
     with pytest.raises(LissomError, match="'tail' has no track"):
         tracks.move_track_keys(0, 2, {4}, 1)(document)
@@ -218,7 +221,7 @@ def test_what_a_track_is_like_is_set():
         tracks.plant_track(0, 0, [1], planted=True)(document)
     with pytest.raises(LissomError, match="at least one handle"):
         tracks.set_track_handles(0, 0, [])(document)
-    with pytest.raises(LissomError, match="no handle with the id 9"):
+    with pytest.raises(LissomError, match=says(NO_HANDLE, identity=9)):
         tracks.set_track_handles(0, 0, [9])(document)
 
 
@@ -355,7 +358,7 @@ def test_the_animation_grows_for_keys_of_tracks_and_is_not_cut_under_them():
     document = tracked(row(4, 10))
     grown = tracks.move_track_keys(0, 0, {10}, 60)(document)
     assert grown.frames == FrameRange(0, 70)
-    with pytest.raises(LissomError, match="key at frame 70 would lie outside frames 0 to 48"):
+    with pytest.raises(LissomError, match=says(KEY_OUTSIDE, frame=70, first=0, last=48)):
         scene_commands.set_frames(FrameRange(0, 48))(grown)
     with pytest.raises(LissomError):
         tracks.move_track_keys(0, 0, {4}, -5)(document)

@@ -2,9 +2,11 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from messages import says
 
 from app.errors import LissomError
 from app.export.destination import (
+    TOO_LITTLE_ROOM,
     FrameNames,
     check_destination,
     check_room,
@@ -82,14 +84,14 @@ def test_names_of_frames_are_found_again():
 
 def test_what_does_not_fit_on_the_disk_is_refused(tmp_path):
     check_room(tmp_path / "a.gif", 1000)
-    with pytest.raises(LissomError, match="MB left"):
+    with pytest.raises(LissomError, match=says(TOO_LITTLE_ROOM)):
         check_room(tmp_path / "a.gif", 10**18)
 
 
 def test_disk_has_room_for_exactly_what_is_free(tmp_path, monkeypatch):
     monkeypatch.setattr("shutil.disk_usage", lambda _: SimpleNamespace(free=1000))
     check_room(tmp_path / "a.gif", 1000)
-    with pytest.raises(LissomError, match="MB left"):
+    with pytest.raises(LissomError, match=says(TOO_LITTLE_ROOM)):
         check_room(tmp_path / "a.gif", 1001)
 
 

@@ -4,11 +4,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from animations import BLOB, Sliding, still_document
+from messages import says
 from numpy.testing import assert_allclose
 
 from app.document.model import Document
 from app.document.settings import ExportSettings, FrameRange, Marker
 from app.errors import LissomError
+from app.export.destination import FRAMES_TO_FILE, NAMED_LIKE_FILE
 from app.export.plan import ExportPlan, ExportRequest, check_request, plan_export
 from app.export.poses import KeptPoses, Poses
 from app.storage import NO_FOLDER
@@ -148,10 +150,10 @@ def test_a_pose_that_is_not_finite_is_refused_before_anything_is_written(documen
 @pytest.mark.parametrize(
     ("out", "settings", "reason"),
     [
-        ("file", {}, "is a file; name a folder"),
+        ("file", {}, says(FRAMES_TO_FILE)),
         ("missing/frames", {}, NO_FOLDER.format(folder=".*missing")),
-        ("frames.gif", {}, "named like a file"),
-        ("still.png", {}, "named like a file"),
+        ("frames.gif", {}, says(NAMED_LIKE_FILE)),
+        ("still.png", {}, says(NAMED_LIKE_FILE)),
         ("folder", {"format": "gif"}, "is a folder; name a file"),
         ("missing/a.gif", {"format": "gif"}, NO_FOLDER.format(folder=".*missing")),
         ("a.png", {"format": "gif"}, "end in .gif"),

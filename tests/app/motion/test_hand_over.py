@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from chains import bent, chain, exactly, seen
 from documents import CENTRE
+from messages import says
 from numpy.testing import assert_allclose
 
 from app.document import (
@@ -20,6 +21,7 @@ from app.document import (
 )
 from app.document.keyframe import Handle, Target
 from app.document.layering import Attachment
+from app.document.model import HANGS_ON_ITSELF
 from app.errors import LissomError
 from app.motion import Animation, Joints, hand_over, hung_animations
 from engine.geometry import HERE
@@ -281,7 +283,7 @@ def test_circles_in_repeats_are_refused(hands):
     anchor = hands.figure(2).anchor
     document = cycling(layers.attach(2, anchor, Attachment(to=None, frame=20, keeps=True))(hands))
     joint = Attachment(to=2, at=CENTRE, frame=30)
-    with pytest.raises(LissomError, match="'0' would hang on itself at frame 48"):
+    with pytest.raises(LissomError, match=says(HANGS_ON_ITSELF, name="0", when=" at frame 48")):
         layers.attach(0, CENTRE, joint)(
             document.with_figure(replace(document.figure(0), cycles=(), keys=hands.figure(0).keys))
         )

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from drawings import Easel, grid_mesh, soft_blob
+from messages import says
 from numpy.testing import assert_allclose, assert_array_equal
 
 from app.errors import LissomError
@@ -10,7 +11,7 @@ from app.motion.vertices import Placed, Streamed
 from app.render.drawn_mesh import DrawnMesh, shader_is_faster
 from app.render.gpu.mesh import GpuMesh, PosedMesh
 from app.render.gpu.programs import set_uniforms
-from app.render.gpu.series_buffer import SeriesBuffer, most_rows
+from app.render.gpu.series_buffer import SERIES_PIECE, SeriesBuffer, most_rows
 from app.render.gpu.target import RenderTarget
 from app.render.scene import Backdrop, Ghost, Heat, Scene, Wireframe
 from app.render.view import View
@@ -144,9 +145,9 @@ def test_what_does_not_fit_is_refused(easel):
         SeriesBuffer(easel.gl, len(rest), 99)
     assert most_rows(easel.gl) >= MOST_ROWS
     source = SeriesBuffer(easel.gl, len(rest), 4)
-    with pytest.raises(LissomError, match="a piece of 7 rows"):
+    with pytest.raises(LissomError, match=says(SERIES_PIECE, rows=7)):
         source.place(bending(rest), 0.1)
-    with pytest.raises(LissomError, match="does not fit"):
+    with pytest.raises(LissomError, match=says(SERIES_PIECE)):
         source.place(bending(rest[1:], rows=4), 0.1)
     source.release()
 

@@ -5,12 +5,30 @@ import re
 import numpy as np
 import pytest
 from animations import bar_document, bar_picture, still_document
+from messages import says
 
 from app.document.timing import HOLD, LINEAR, PRESETS, Cycle, Passing, Spring, Track, TrackKey
 from app.errors import LissomError
 from app.solving import pose_document
 from app.solving.script import ScriptHandle, ScriptJoint, load_pose_script, parse_pose_script
-from engine.maps.bounds import Bounds
+from app.solving.script.clocks import HANDLE_OR_HANDLES, NEEDLESS_VELOCITY, NO_BASIS, NO_PRESET
+from app.solving.script.fields import NOT_A_FRAME, OUT_OF_ORDER
+from app.solving.script.layers import NO_KEYS, ZOOM_NOT_POSITIVE
+from app.solving.script.pose_script import NO_VARIANT, WRONG_SCHEMA
+from app.storage.json_values import (
+    LACKS_FIELD,
+    NOT_FINITE,
+    NOT_JSON,
+    NOT_LIST,
+    NOT_NUMBER,
+    NOT_OBJECT,
+    NOT_POINT,
+    NOT_TEXT,
+    NOT_TRUE_OR_FALSE,
+    NOT_WHOLE,
+    TOO_NESTED,
+)
+from engine.maps.bounds import IMPOSSIBLE_BOUND, Bounds
 
 WHOLE = {
     "schema": 1,
@@ -72,28 +90,28 @@ def test_what_is_left_out_has_its_documented_default():
 @pytest.mark.parametrize(
     ("path", "value", "message"),
     [
-        (["schema"], 2, "schema must be 1, not 2"),
-        (["schema"], True, "schema must be 1"),
-        (["schema"], None, "schema must be 1, not null"),
-        (["handles"], None, "the script lacks the field 'handles'"),
-        (["keys"], None, "the script lacks the field 'keys'"),
+        (["schema"], 2, says(WRONG_SCHEMA, own=1, content=2)),
+        (["schema"], True, says(WRONG_SCHEMA, own=1)),
+        (["schema"], None, says(WRONG_SCHEMA, own=1, content="null")),
+        (["handles"], None, says(LACKS_FIELD, where="the script", name="handles")),
+        (["keys"], None, says(LACKS_FIELD, where="the script", name="keys")),
         (["keys"], [], "at least one key"),
         (["colour"], "red", "unknown field 'colour'"),
-        (["fps"], "fast", "fps must be a number"),
-        (["fps"], float("inf"), "fps must be finite"),
-        (["loop"], 1, "loop must be true or false"),
-        (["variant"], "cubic", "variant must be one of metric, nu"),
-        (["variant"], ["nu"], "variant must be one of"),
-        (["bounds", "k"], 1.5, "bound on k"),
+        (["fps"], "fast", says(NOT_NUMBER, where="fps")),
+        (["fps"], float("inf"), says(NOT_FINITE, where="fps")),
+        (["loop"], 1, says(NOT_TRUE_OR_FALSE, where="loop")),
+        (["variant"], "cubic", says(NO_VARIANT, where="", content='"cubic"')),
+        (["variant"], ["nu"], says(NO_VARIANT)),
+        (["bounds", "k"], 1.5, says(IMPOSSIBLE_BOUND, name="k")),
         (["bounds", "tau"], 1.5, "unknown field 'tau'"),
-        (["anchor"], [1], r"anchor must be a point \[x, y\]"),
-        (["handles", "nose"], [1, "2"], r"handle 'nose'\[1\] must be a number"),
-        (["handles"], [[1, 2]], "handles must be an object"),
-        (["keys", 0, "frame"], None, r"keys\[0\].frame must be a whole number"),
+        (["anchor"], [1], says(NOT_POINT, where="anchor")),
+        (["handles", "nose"], [1, "2"], says(NOT_NUMBER, where="handle 'nose'[1]")),
+        (["handles"], [[1, 2]], says(NOT_OBJECT, where="handles")),
+        (["keys", 0, "frame"], None, says(NOT_A_FRAME, where="keys[0]", name="frame")),
         (["keys", 0, "frame"], 1.5, "whole number"),
         (["keys", 0, "frame"], -1, "whole number"),
-        (["keys", 1, "frame"], 0, "out of order: frame 0 after 0"),
-        (["keys", 1, "frame"], 31, "out of order: frame 30 after 31"),
+        (["keys", 1, "frame"], 0, says(OUT_OF_ORDER, after=0, before=0)),
+        (["keys", 1, "frame"], 31, says(OUT_OF_ORDER, after=30, before=31)),
         (["keys", 2, "turn", "hoof"], "far", r"keys\[2\].turn.hoof must be a number"),
         (["keys", 2, "turn", "ear"], 5, "ear"),
         (["keys", 1, "targets", "tail"], [1, 2], "names the handle 'tail'"),
@@ -106,12 +124,14 @@ def test_what_is_left_out_has_its_documented_default():
         (["keys", 1, "ease"], [10**400, 0, 1, 1], "four numbers from 0 to 1"),
         (["keys", 1, "ease"], [float("nan"), 0, 1, 1], "four numbers from 0 to 1"),
         (["keys", 1, "ease"], {"x": 1}, "a name or four numbers from 0 to 1"),
-        (["keys", 1, "frame"], 10**400, "a whole number from 0 to"),
-        (["keys", 1, "targets", "nose"], [10**400, 0], "must be finite"),
+        (["keys", 1, "frame"], 10**400, says(NOT_A_FRAME)),
+        (["keys", 1, "targets", "nose"], [10**400, 0], says(NOT_FINITE)),
     ],
 )
 def test_whatever_a_script_cannot_say_is_refused(path, value, message):
-    with pytest.raises(ValueError if "bound on" in message else LissomError, match=message):
+    with pytest.raises(
+        ValueError if message == says(IMPOSSIBLE_BOUND, name="k") else LissomError, match=message
+    ):
         parse_pose_script(changed(path, value))
 
 
@@ -193,80 +213,80 @@ def test_handles_stay_where_keys_have_them_unless_a_script_says_otherwise():
 @pytest.mark.parametrize(
     ("path", "value", "message"),
     [
-        (["still"], 0, "still must be true or false"),
-        (["handles", "hoof", "still"], "no", "handle 'hoof'.still must be true or false"),
-        (["tracks"], {}, "tracks must be a list"),
-        (["tracks", 0], [], r"tracks\[0\] must be an object"),
+        (["still"], 0, says(NOT_TRUE_OR_FALSE, where="still")),
+        (["handles", "hoof", "still"], "no", says(NOT_TRUE_OR_FALSE, where="handle 'hoof'.still")),
+        (["tracks"], {}, says(NOT_LIST, where="tracks")),
+        (["tracks", 0], [], says(NOT_OBJECT, where="tracks[0]")),
         (["tracks", 0, "handle"], "tial", r"tracks\[0\].handle names the handle 'tial', but the"),
-        (["tracks", 0, "handle"], 2, r"tracks\[0\].handle must be a text"),
-        (["tracks", 0, "handle"], None, r"tracks\[0\] must have either a handle or handles"),
-        (["tracks", 0, "handles"], ["hoof"], r"tracks\[0\] must have either a handle or handles"),
+        (["tracks", 0, "handle"], 2, says(NOT_TEXT, where="tracks[0].handle")),
+        (["tracks", 0, "handle"], None, says(HANDLE_OR_HANDLES, where="tracks[0]")),
+        (["tracks", 0, "handles"], ["hoof"], says(HANDLE_OR_HANDLES, where="tracks[0]")),
         (["tracks", 1, "handles"], [], r"tracks\[1\]: A track is of at least one handle"),
         (["tracks", 1, "handles"], ["hoof", "ear"], r"handles\[1\] names the handle 'ear'"),
         (["tracks", 1, "handles"], ["hoof", "hoof"], r"tracks\[1\].handles names 'hoof' twice"),
         (["tracks", 1, "handles"], ["tail"], r"tracks\[0\] and tracks\[1\] are both .* 'tail'"),
-        (["tracks", 0, "with"], "body", r'tracks\[0\].with must be pose or picture, not "body"'),
-        (["tracks", 0, "with"], ["pose"], "must be pose or picture"),
-        (["tracks", 0, "keys"], None, "lacks the field 'keys'"),
+        (["tracks", 0, "with"], "body", says(NO_BASIS, where="tracks[0]", content='"body"')),
+        (["tracks", 0, "with"], ["pose"], says(NO_BASIS)),
+        (["tracks", 0, "keys"], None, says(LACKS_FIELD, name="keys")),
         (["tracks", 0, "keys"], [], r"tracks\[0\]: A track has at least one key"),
         (
             ["tracks", 0, "keys", 1, "frame"],
             0,
-            r"tracks\[0\].keys are out of order: frame 0 after 0",
+            says(OUT_OF_ORDER, what="tracks[0].keys are", after=0, before=0),
         ),
-        (["tracks", 0, "keys", 1, "frame"], 99, "out of order: frame 11 after 99"),
-        (["tracks", 0, "keys", 1, "frame"], 1.5, r"keys\[1\].frame must be a whole number"),
-        (["tracks", 0, "keys", 1, "frame"], -1, "whole number from 0"),
-        (["tracks", 0, "keys", 3, "frame"], 10**9, "whole number from 0"),
-        (["tracks", 0, "keys", 1, "offset"], None, "lacks the field 'offset'"),
-        (["tracks", 0, "keys", 1, "offset"], [1], r"keys\[1\].offset must be a point"),
-        (["tracks", 0, "keys", 1, "offset"], [float("nan"), 0], "must be finite"),
+        (["tracks", 0, "keys", 1, "frame"], 99, says(OUT_OF_ORDER, after=11, before=99)),
+        (["tracks", 0, "keys", 1, "frame"], 1.5, says(NOT_A_FRAME, where="keys[1]", name="frame")),
+        (["tracks", 0, "keys", 1, "frame"], -1, says(NOT_A_FRAME)),
+        (["tracks", 0, "keys", 3, "frame"], 10**9, says(NOT_A_FRAME)),
+        (["tracks", 0, "keys", 1, "offset"], None, says(LACKS_FIELD, name="offset")),
+        (["tracks", 0, "keys", 1, "offset"], [1], says(NOT_POINT, where="keys[1].offset")),
+        (["tracks", 0, "keys", 1, "offset"], [float("nan"), 0], says(NOT_FINITE)),
         (["tracks", 0, "keys", 1, "offset"], [1e9, 0], r"keys\[1\]: A track's key must be within"),
         (["tracks", 0, "keys", 1, "at"], [1, 2], "has 'at', but its track is with the pose"),
         (["tracks", 1, "keys", 0, "offset"], [1, 2], "'offset', but its track is with the picture"),
-        (["tracks", 0, "keys", 0, "velocity"], 3, r"keys\[0\].velocity must be a point"),
-        (["tracks", 0, "keys", 0, "velocity"], [float("nan"), 0], "must be finite"),
+        (["tracks", 0, "keys", 0, "velocity"], 3, says(NOT_POINT, where="keys[0].velocity")),
+        (["tracks", 0, "keys", 0, "velocity"], [float("nan"), 0], says(NOT_FINITE)),
         (["tracks", 0, "keys", 0, "velocity"], [1e9, 0], "no more than 10,000,000 pixels"),
         (
             ["tracks", 0, "keys", 1, "velocity"],
             [1, 0],
-            "velocity, which is of keys that are passed",
+            says(NEEDLESS_VELOCITY),
         ),
         (
             ["tracks", 0, "keys", 3, "velocity"],
             [1, 0],
-            "velocity, which is of keys that are passed",
+            says(NEEDLESS_VELOCITY),
         ),
         (
             ["tracks", 0, "keys", 4, "velocity"],
             [1, 0],
-            "velocity, which is of keys that are passed",
+            says(NEEDLESS_VELOCITY),
         ),
-        (["tracks", 0, "keys", 1, "turn"], float("inf"), r"keys\[1\].turn must be finite"),
+        (["tracks", 0, "keys", 1, "turn"], float("inf"), says(NOT_FINITE, where="keys[1].turn")),
         (["tracks", 0, "keys", 1, "turn"], 7201, "by at most 20 whole turns, not by 20.0028"),
-        (["tracks", 0, "keys", 1, "turn"], True, r"keys\[1\].turn must be a number"),
+        (["tracks", 0, "keys", 1, "turn"], True, says(NOT_NUMBER, where="keys[1].turn")),
         (["tracks", 0, "keys", 1, "ease"], "bouncy", "no easing 'bouncy'"),
         (["tracks", 0, "keys", 1, "passing"], "over", "passing must be one of through"),
         (["tracks", 0, "keys", 1, "passing"], "hold", "nothing to ease"),
         (["tracks", 0, "keys", 1, "pull"], 3, "unknown field 'pull'"),
         (["tracks", 0, "delay"], -1, r"tracks\[0\]: The delay of a track is from 0"),
-        (["tracks", 0, "delay"], 2.5, r"tracks\[0\].delay must be a whole number"),
+        (["tracks", 0, "delay"], 2.5, says(NOT_WHOLE, where="tracks[0].delay")),
         (["tracks", 0, "delay"], 31, r"tracks\[0\].delay is 31 frames, longer than the loop"),
         (["tracks", 0, "reach"], 2, r"tracks\[0\]: The reach of a track is between 0 and 1"),
-        (["tracks", 0, "reach"], float("nan"), "reach must be finite"),
+        (["tracks", 0, "reach"], float("nan"), says(NOT_FINITE, where="reach")),
         (["tracks", 0, "color"], 2, "unknown field 'color'"),
         (["springs", 0, "handle"], "ear", r"springs\[0\].handle names the handle 'ear'"),
         (["springs", 0, "handle"], "tail", r"springs\[0\] and springs\[1\] are both .* 'tail'"),
-        (["springs", 0, "handle"], None, "lacks the field 'handle'"),
+        (["springs", 0, "handle"], None, says(LACKS_FIELD, name="handle")),
         (["springs", 0, "preset"], "leg", "preset must be one of tail, ear, .* not 'leg'"),
-        (["springs", 0, "preset"], None, "needs a preset, one of tail, ear"),
-        (["springs", 2, "damping"], None, "needs a preset, .* or a frequency and a damping"),
+        (["springs", 0, "preset"], None, says(NO_PRESET, presets="tail, ear, hair, cloth, jelly")),
+        (["springs", 2, "damping"], None, says(NO_PRESET)),
         (["springs", 2, "damping"], 0, r"springs\[2\].damping must be above 0 in a loop"),
         (["springs", 2, "damping"], -0.1, r"springs\[2\]: The damping of a spring is from 0"),
         (["springs", 2, "frequency"], 0, "frequency of a spring is above 0"),
-        (["springs", 2, "frequency"], float("nan"), "frequency must be finite"),
+        (["springs", 2, "frequency"], float("nan"), says(NOT_FINITE, where="frequency")),
         (["springs", 2, "lag"], -1, "lag of a spring is from 0"),
-        (["springs", 2, "strength"], "much", "strength must be a number"),
+        (["springs", 2, "strength"], "much", says(NOT_NUMBER, where="strength")),
         (["springs", 2, "mass"], 1, "unknown field 'mass'"),
     ],
 )
@@ -309,13 +329,13 @@ def test_a_script_of_several_figures():
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"layer": 5}, r"figures\[0\].layer must be a text"),
+        ({"layer": 5}, says(NOT_TEXT, where="figures[0].layer")),
         ({"colour": 1}, r"figures\[0\] has an unknown field 'colour'"),
-        ({"keys": []}, r"figures\[0\].keys must be a list of at least one"),
+        ({"keys": []}, says(NO_KEYS, where="figures[0]")),
         ({"keys": [{"frame": 0, "front": {"toe": 1}}]}, r"keys\[0\] names the handle 'toe'"),
-        ({"handles": {"hand": {"front": 1}}}, "lacks the field 'at'"),
+        ({"handles": {"hand": {"front": 1}}}, says(LACKS_FIELD, name="at")),
         ({"handles": {"hand": {"at": [1, 2], "depth": 1}}}, "unknown field 'depth'"),
-        ({"attach": {"to": "body"}}, "lacks the field 'at'"),
+        ({"attach": {"to": "body"}}, says(LACKS_FIELD, name="at")),
         ({"visible": [[0]]}, "a frame and true or false"),
         ({"visible": [[0.5, True]]}, "whole number"),
     ],
@@ -337,10 +357,10 @@ def test_figures_have_layers_of_their_own():
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("{", "is not JSON: .* in line 1"),
-        ("[]", "the script must be an object"),
+        ("{", says(NOT_JSON, line=1)),
+        ("[]", says(NOT_OBJECT, where="the script")),
         ('{"schema": 1, "schema": 1}', "'schema' is given twice"),
-        ("[" * 100_000, "nested too deeply"),
+        ("[" * 100_000, says(TOO_NESTED)),
     ],
 )
 def test_bad_files_are_refused_with_their_name(tmp_path, text, message):
@@ -424,28 +444,40 @@ def test_the_camera_and_movements_are_read():
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"camera": {"keys": []}}, "camera.keys must be a list of at least one key"),
+        ({"camera": {"keys": []}}, says(NO_KEYS, where="camera")),
         ({"camera": {"key": []}}, "unknown field 'key'"),
-        ({"camera": changed(("keys", 1, "zoom"), 0, CAMERA)}, "keys[1].zoom must be above 0"),
-        ({"camera": changed(("keys", 1, "zoom"), -2, CAMERA)}, "keys[1].zoom must be above 0"),
-        ({"camera": changed(("keys", 1, "zoom"), float("inf"), CAMERA)}, "zoom must be finite"),
-        ({"camera": changed(("keys", 1, "frame"), 0, CAMERA)}, "camera.keys are out of order"),
+        (
+            {"camera": changed(("keys", 1, "zoom"), 0, CAMERA)},
+            says(ZOOM_NOT_POSITIVE, where="keys[1]"),
+        ),
+        (
+            {"camera": changed(("keys", 1, "zoom"), -2, CAMERA)},
+            says(ZOOM_NOT_POSITIVE, where="keys[1]"),
+        ),
+        (
+            {"camera": changed(("keys", 1, "zoom"), float("inf"), CAMERA)},
+            says(NOT_FINITE, where="zoom"),
+        ),
+        ({"camera": changed(("keys", 1, "frame"), 0, CAMERA)}, r"camera\.keys are out of order"),
         ({"camera": changed(("keys", 1, "tilt"), 1, CAMERA)}, "unknown field 'tilt'"),
-        ({"camera": changed(("keys", 0, "centre"), None, CAMERA)}, "lacks the field 'centre'"),
-        ({"camera": changed(("keys", 0, "centre"), [1e9, 0], CAMERA)}, "keys[0]: The camera's"),
+        (
+            {"camera": changed(("keys", 0, "centre"), None, CAMERA)},
+            says(LACKS_FIELD, name="centre"),
+        ),
+        ({"camera": changed(("keys", 0, "centre"), [1e9, 0], CAMERA)}, r"keys\[0\]: The camera's"),
         ({"canvas": [640]}, "canvas must be width and height"),
         ({"canvas": [640, 1.5]}, "canvas must be a whole number"),
         ({"movement": {"keys": [{"frame": 0, "zoom": 2}]}}, "unknown field 'zoom'"),
-        ({"movement": {"keys": [{"frame": 3}, {"frame": 2}]}}, "movement.keys are out of order"),
+        ({"movement": {"keys": [{"frame": 3}, {"frame": 2}]}}, r"movement\.keys are out of order"),
         ({"opacity": 2}, "Opacity is between 0 and 1"),
-        ({"opacity": [[0, 1], [0, 0]]}, "opacity is out of order"),
-        ({"opacity": [[0]]}, "opacity[0] must be a frame and a number"),
+        ({"opacity": [[0, 1], [0, 0]]}, says(OUT_OF_ORDER, what="opacity is")),
+        ({"opacity": [[0]]}, r"opacity\[0\] must be a frame and a number"),
         ({"opacity": []}, "at least one key"),
         ({"order": [[0, None]]}, 'order needs "figures"'),
     ],
 )
 def test_a_camera_that_cannot_be_is_refused(change, words):
-    with pytest.raises(LissomError, match=re.escape(words)):
+    with pytest.raises(LissomError, match=words):
         parse_pose_script({**WHOLE, **change})
 
 
@@ -497,10 +529,10 @@ def test_a_script_says_what_repeats():
             [{"from": 0, "to": 12, "until": 13}],
             "At frame 13 the repeats .* nothing leads to the key at frame 16; .* frame 12 instead",
         ),
-        ([{"from": 0}], r"cycles\[0\].to must be a whole number"),
-        ([{"from": 0, "to": 24.5}], r"cycles\[0\].to must be a whole number"),
+        ([{"from": 0}], says(NOT_A_FRAME, where="cycles[0]", name="to")),
+        ([{"from": 0, "to": 24.5}], says(NOT_A_FRAME, where="cycles[0]", name="to")),
         ([{"from": 0, "to": 24, "til": 96}], "unknown field 'til'"),
-        ({"from": 0, "to": 24}, "cycles must be a list"),
+        ({"from": 0, "to": 24}, says(NOT_LIST, where="cycles")),
     ],
 )
 def test_what_cannot_repeat_is_refused(cycles, message):

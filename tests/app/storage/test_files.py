@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from documents import disc_document, full_document
 from full_disk import FullDisk
+from messages import says
 from numpy.testing import assert_array_equal
 
 from app.errors import CANCELLED, LissomError
@@ -32,7 +33,7 @@ from app.storage.files import (
 )
 from app.storage.files.hold import MOST_TOLD
 from app.storage.files.locks import beyond_content
-from app.storage.files.reading import LARGEST_FILE
+from app.storage.files.reading import LARGEST_FILE, NOT_ORDINARY
 from app.storage.project_file import load_project, save_project
 from app.storage.thumbnail import read_thumbnail
 
@@ -260,7 +261,7 @@ def test_what_never_ends_is_not_read(tmp_path):
     os.mkfifo(pipe)
     for read in (read_file, load_project, lambda path: read_arrays(path, required=())):
         for path in (pipe, Path("/dev/zero")):
-            with pytest.raises(LissomError, match="not an ordinary file"):
+            with pytest.raises(LissomError, match=says(NOT_ORDINARY)):
                 read(path)
     assert read_thumbnail(pipe) is None
 

@@ -36,12 +36,6 @@ SURFACES = ("desk", "panel", "raised", "hovered", "pressed")
 FILLED = (("on_accent", "accent"), ("on_accent", "warning"), ("on_accent", "text"))
 
 
-@pytest.fixture
-def bent(loose):
-    """What the motion is like in between is not asked here."""
-    return loose
-
-
 def show_in(window, theme):
     if window.session.preferences.theme != theme:
         viewing.toggle_theme(window.session)
@@ -120,23 +114,23 @@ def test_the_welcome_view(window, tmp_path, check):
     check("a recent file")
 
 
-def test_all_tabs_of_a_pose_that_falls_short(window, bent, check):
+def test_all_tabs_of_a_pose_that_falls_short(window, loose, check):
     session = window.session
-    width, height = bent.document.canvas
+    width, height = loose.document.canvas
     posing.wish(session, {1: Target(position=complex(2.4 * width, 0.5 * height))})
     window.settle()
     viewing.compare_with(session, Variant.LINEAR)
     for tab in TABS:
         window.show_tab(tab)
         check(tab)
-    solved = bent.figure.poses[:-1]
-    renewal = Renewal(before=bent.figure, bounds=bent.figure.bounds, poses=solved)
-    bent.pending.append(Promise(label="Solving the keys", renewal=renewal))
+    solved = loose.figure.poses[:-1]
+    renewal = Renewal(before=loose.figure, bounds=loose.figure.bounds, poses=solved)
+    loose.pending.append(Promise(label="Solving the keys", renewal=renewal))
     window.show_tab("Deform")
     check("progress")
 
 
-@pytest.mark.usefixtures("bent")
+@pytest.mark.usefixtures("loose")
 def test_rows_buttons_and_keys_under_the_pointer(window, check):
     window.show_tab("Deform")
 
@@ -155,13 +149,13 @@ def test_rows_buttons_and_keys_under_the_pointer(window, check):
     check("key")
 
 
-def test_a_pose_that_no_key_holds_and_a_cut_out(window, bent, check):
+def test_a_pose_that_no_key_holds_and_a_cut_out(window, loose, check):
     session = window.session
     viewing.toggle_auto_key(session)
-    bent.selected = frozenset({1})
+    loose.selected = frozenset({1})
     posing.nudge(session, 30j)
     window.settle()
-    assert bent.unkeyed is not None
+    assert loose.unkeyed is not None
     check("unkeyed")
     cutting.take_up(session, "remove")
     window.show_tab("Cut-out")
@@ -189,7 +183,7 @@ def test_layers_that_are_chosen_hidden_and_switched(window, tmp_path, check):
         check(identity)
 
 
-@pytest.mark.usefixtures("bent")
+@pytest.mark.usefixtures("loose")
 def test_menus_messages_and_dialogs(window, tmp_path, check):
     session = window.session
     for tone in ("info", "good", "error"):

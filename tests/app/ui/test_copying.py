@@ -7,17 +7,12 @@ from imgui_bundle import ImVec2, imgui
 from app.document import HOLD, key_commands
 from app.editor import layering
 from app.editor.actions import editing, playback, posing
+from app.editor.poses.copying import KEYS_COPIED
 from app.ui.shortcuts import BINDINGS
 
 CTRL = int(imgui.Key.mod_ctrl)
 ALL, COPY, PASTE = (CTRL | int(key) for key in (imgui.Key.a, imgui.Key.c, imgui.Key.v))
 ESCAPE = int(imgui.Key.escape)
-
-
-@pytest.fixture
-def bent(loose):
-    """What the motion is like in between is not asked here."""
-    return loose
 
 
 class Hand:
@@ -53,8 +48,8 @@ class Hand:
 
 
 @pytest.fixture
-def play(window, bent):
-    assert bent is window.session.project
+def play(window, loose):
+    assert loose is window.session.project
 
     def play(what):
         window.session.toasts = []
@@ -70,7 +65,7 @@ def poses_of(project):
 
 
 @pytest.mark.parametrize("frame", [0, 12])
-def test_over_the_drawing_the_pose_at_the_playhead_is_copied(window, bent, play, frame):
+def test_over_the_drawing_the_pose_at_the_playhead_is_copied(window, loose, play, frame):
     def copy(hand):
         hand.click_key(24)
         playback.scrub(window.session, frame)
@@ -78,19 +73,19 @@ def test_over_the_drawing_the_pose_at_the_playhead_is_copied(window, bent, play,
         hand.press(COPY)
 
     told = play(copy)
-    assert bent.chosen == {24}
+    assert loose.chosen == {24}
     assert told == [f"Pose at frame {frame} copied."]
     (copied,) = window.session.copied
     (key,) = copied.keys
-    f = bent.figure.map_of(key.pose)
-    places = np.array([handle.position for handle in bent.figure.handles])
-    np.testing.assert_allclose(f(places), bent.puppet.shown.handle_places, rtol=0, atol=0.5)
+    f = loose.figure.map_of(key.pose)
+    places = np.array([handle.position for handle in loose.figure.handles])
+    np.testing.assert_allclose(f(places), loose.puppet.shown.handle_places, rtol=0, atol=0.5)
     if frame == 0:
-        assert key.pose is bent.figure.key(0).pose
+        assert key.pose is loose.figure.key(0).pose
 
 
 def test_a_pose_that_is_copied_as_the_playhead_leaves_another_is_the_one_that_it_comes_to(
-    window, bent, play
+    window, loose, play
 ):
     def copy(hand):
         hand.to_drawing()
@@ -100,20 +95,20 @@ def test_a_pose_that_is_copied_as_the_playhead_leaves_another_is_the_one_that_it
         hand.press(COPY)
 
     play(copy)
-    assert window.session.copied[0].keys[0].pose is bent.figure.key(0).pose
+    assert window.session.copied[0].keys[0].pose is loose.figure.key(0).pose
 
 
-def test_in_the_timeline_the_chosen_keys_are_copied(window, bent, play):
+def test_in_the_timeline_the_chosen_keys_are_copied(window, loose, play):
     def copy(hand):
         hand.to_timeline()
         hand.press(ALL)
         playback.scrub(window.session, 12)
         hand.press(COPY)
 
-    assert play(copy) == ["2 keys copied."]
-    assert bent.chosen == {0, 24}
+    assert play(copy) == [KEYS_COPIED.format(count=2)]
+    assert loose.chosen == {0, 24}
     (copied,) = window.session.copied
-    assert copied.keys == bent.figure.keys
+    assert copied.keys == loose.figure.keys
 
     def one(hand):
         hand.click_key(0)
@@ -121,7 +116,7 @@ def test_in_the_timeline_the_chosen_keys_are_copied(window, bent, play):
         hand.press(COPY)
 
     assert play(one) == ["Pose at frame 0 copied."]
-    assert window.session.copied[0].keys == (bent.figure.key(0),)
+    assert window.session.copied[0].keys == (loose.figure.key(0),)
 
 
 def test_where_the_pointer_is_in_neither_the_focus_tells(window, play):
@@ -171,25 +166,27 @@ def test_the_menu_says_what_would_be_copied_and_selected(window, play):
     assert entries == ["Copy pose", "Select all handles"]
 
 
-def test_all_keys_of_all_layers_that_are_posed_are_chosen(window, bent, play):
+def test_all_keys_of_all_layers_that_are_posed_are_chosen(window, loose, play):
     layering.duplicate(window.session, 0)
     layering.duplicate(window.session, 0)
     window.settle()
-    still = bent.active
+    still = loose.active
     layering.stand_still(window.session, still)
     window.settle()
     layering.choose(window.session, 0)
-    posed = {figure.id for figure in bent.document.figures} - {still}
-    assert play(lambda hand: (hand.to_timeline(), hand.press(ALL, COPY))) == ["4 keys copied."]
-    assert bent.chosen_of == dict.fromkeys(posed, frozenset({0, 24}))
+    posed = {figure.id for figure in loose.document.figures} - {still}
+    assert play(lambda hand: (hand.to_timeline(), hand.press(ALL, COPY))) == [
+        KEYS_COPIED.format(count=4)
+    ]
+    assert loose.chosen_of == dict.fromkeys(posed, frozenset({0, 24}))
 
 
 @pytest.mark.parametrize("item", ["ruler", "ground"])
 def test_a_click_on_the_ruler_or_the_empty_timeline_clears_the_choice_of_keys(
-    window, bent, play, item
+    window, loose, play, item
 ):
     editing.select(window.session, frozenset({1}))
-    bent.chosen = frozenset({0, 24})
+    loose.chosen = frozenset({0, 24})
 
     def scrub(hand):
         hand.to_timeline(6, "ruler")
@@ -198,7 +195,7 @@ def test_a_click_on_the_ruler_or_the_empty_timeline_clears_the_choice_of_keys(
         hand.robot.mouse_up(0)
 
     play(scrub)
-    assert bent.chosen == {0, 24}, "to look at another frame lets go of nothing"
+    assert loose.chosen == {0, 24}, "to look at another frame lets go of nothing"
 
     def click(hand):
         # Beyond the last key there is nothing but the ground.
@@ -206,15 +203,15 @@ def test_a_click_on_the_ruler_or_the_empty_timeline_clears_the_choice_of_keys(
         hand.robot.mouse_click(0)
 
     play(click)
-    assert not bent.chosen_of
+    assert not loose.chosen_of
     if item == "ruler":
-        assert bent.selected == {1}
-        assert bent.playhead.frame == 30
+        assert loose.selected == {1}
+        assert loose.playhead.frame == 30
 
 
-def test_the_menu_of_a_key_copies_and_pastes_there(window, bent, play):
+def test_the_menu_of_a_key_copies_and_pastes_there(window, loose, play):
     editing.edit_figure(window.session, key_commands.set_easing, {24}, HOLD)
-    before = bent.document
+    before = loose.document
 
     def use(frame, *path):
         def use(hand):
@@ -225,19 +222,19 @@ def test_the_menu_of_a_key_copies_and_pastes_there(window, bent, play):
 
     assert use(24, "###Copy") == ["Pose at frame 24 copied."]
     use(0, "Paste")
-    poses = poses_of(bent)
+    poses = poses_of(loose)
     assert poses[0].phi is poses[24].phi
-    assert bent.playhead.frame == 0
+    assert loose.playhead.frame == 0
     editing.undo(window.session)
-    assert bent.document is before
+    assert loose.document is before
     use(0, "Paste flipped")
-    assert poses_of(bent)[0].phi is not poses[0].phi
+    assert poses_of(loose)[0].phi is not poses[0].phi
     editing.undo(window.session)
-    assert bent.document is before
+    assert loose.document is before
 
 
 @pytest.mark.parametrize("item", ["ground", "interval 0"])
-def test_the_menu_of_a_place_between_keys_pastes_there(window, bent, play, item):
+def test_the_menu_of_a_place_between_keys_pastes_there(window, loose, play, item):
     posing.insert_key_at(window.session, 0, 24)
     frame = 12 if item == "interval 0" else 36
 
@@ -249,34 +246,34 @@ def test_the_menu_of_a_place_between_keys_pastes_there(window, bent, play, item)
         hand.robot.item_click("//$FOCUSED/Paste")
 
     play(paste)
-    poses = poses_of(bent)
+    poses = poses_of(loose)
     assert poses.keys() == {0, frame, 24}
     assert poses[frame].phi is poses[24].phi
-    assert bent.playhead.frame == frame
+    assert loose.playhead.frame == frame
 
 
-def test_escape_deselects_after_it_has_ended_what_is_under_way(window, bent, play):
+def test_escape_deselects_after_it_has_ended_what_is_under_way(window, loose, play):
     editing.select(window.session, frozenset({0, 1}))
-    before = bent.document
+    before = loose.document
 
     def drag(hand):
-        place = window.point(complex(bent.puppet.shown.handle_places[1]))
+        place = window.point(complex(loose.puppet.shown.handle_places[1]))
         hand.robot.mouse_move_to_pos(place)
         hand.robot.mouse_down(0)
         hand.robot.mouse_move_to_pos(place + ImVec2(30, 30))
         hand.press(ESCAPE)
-        assert bent.selected == {0, 1}
+        assert loose.selected == {0, 1}
         hand.robot.mouse_up(0)
 
     play(drag)
-    assert bent.document is before
-    assert bent.selected == {0, 1}
+    assert loose.document is before
+    assert loose.selected == {0, 1}
     # A menu that is open is closed first.
     play(lambda hand: (hand.click_key(24, 1), hand.press(ESCAPE)))
-    assert bent.chosen == {24}
+    assert loose.chosen == {24}
     play(lambda hand: hand.press(ESCAPE))
-    assert not bent.chosen_of
+    assert not loose.chosen_of
     editing.select(window.session, frozenset({0, 1}))
     play(lambda hand: (hand.to_drawing(), hand.press(ESCAPE)))
-    assert not bent.selected
-    assert bent.document is before
+    assert not loose.selected
+    assert loose.document is before

@@ -1,5 +1,6 @@
 """Cutting out by hand in the window: brush, pipette, mask, holes, and how the mesh follows."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -7,6 +8,7 @@ import pictures
 import pytest
 from documents import differences
 from imgui_bundle import imgui
+from messages import says
 from PIL import Image
 
 from app.document import Target
@@ -14,6 +16,8 @@ from app.editor.actions import cutting, editing, posing, rebuilding
 from app.storage.project_file import load_project, save_project
 from app.ui.panel import is_in_front
 from app.ui.style import TOAST
+from engine.domain.outline.knife import CUTS_OFF
+from engine.domain.picture.mask import ALL_REMOVED
 
 SIZE = 120
 PAPER = (214, 205, 190)
@@ -249,7 +253,7 @@ def test_what_cannot_be_is_told_and_undone(window, drawing):
     rest(window)
     assert drawing.figure.is_stale
     assert drawing.figure.domain is domain
-    assert any("removed all" in toast.text for toast in window.session.toasts)
+    assert any(ALL_REMOVED in toast.text for toast in window.session.toasts)
     window.act(editing.undo)
     rest(window)
     assert not drawing.figure.is_stale
@@ -452,7 +456,7 @@ def test_a_line_of_the_knife_is_saved_taken_away_and_refused(window, boots, tmp_
     assert len(boots.figure.cut_out.slits) == 1
     stroke(window, 3 + 60j, 117 + 62j)
     rest(window)
-    assert any("cuts off a part" in toast.text for toast in window.session.toasts)
+    assert any(re.search(says(CUTS_OFF), toast.text) for toast in window.session.toasts)
     assert boots.figure.is_stale
     window.act(editing.undo)
     rest(window)

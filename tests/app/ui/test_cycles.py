@@ -3,6 +3,7 @@
 import pytest
 from bars import bend_bar
 from imgui_bundle import ImVec2
+from messages import says
 
 from app.document import (
     LINEAR,
@@ -15,6 +16,7 @@ from app.document import (
     scene_commands,
     track_commands,
 )
+from app.document.commands.cycle_commands import TWO_POSES_SHOWN
 from app.document.timing import Cycle, Track, TrackKey
 from app.editor import layering
 from app.editor.actions import cycles, editing, keys, playback, tracks
@@ -206,7 +208,7 @@ def test_chosen_layers_repeat_together_in_one_step(window, cycling):
     other = key_commands.put_pose(body, 48, cycling.document.figure(body).key(25).pose, LINEAR)
     editing.edit(window.session, other)
     before = cycling.document
-    with pytest.raises(LissomError, match="bar copy: Frames 0 and 48 show two poses"):
+    with pytest.raises(LissomError, match="bar copy: " + says(TWO_POSES_SHOWN, first=0, last=48)):
         cycles.repeat(window.session)
     assert cycling.document is before
 

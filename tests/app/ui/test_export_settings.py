@@ -16,13 +16,7 @@ SIZE = (60, 24)
 
 
 @pytest.fixture
-def bent(loose):
-    """What the motion is like in between is not asked here."""
-    return loose
-
-
-@pytest.fixture
-def choose(window, bent, monkeypatch):
+def choose(window, loose, monkeypatch):
     """Choose a format in the list of the tab, and return what is exported then."""
     begin_combo, found = imgui.begin_combo, []
 
@@ -44,13 +38,13 @@ def choose(window, bent, monkeypatch):
         window.show_tab("Export")
         window.run(click)
         window.frames(2)
-        assert bent.document.export.format == name
-        return bent.document.export
+        assert loose.document.export.format == name
+        return loose.document.export
 
     return choose
 
 
-def test_the_format_is_seen_before_a_place_is_asked_for(window, bent, tmp_path):
+def test_the_format_is_seen_before_a_place_is_asked_for(window, loose, tmp_path):
     session = window.session
     keys.set_last_frame(session, 24)
     exporting.set_export(session, ExportSettings(format="gif", size=SIZE))
@@ -78,17 +72,17 @@ def test_the_format_is_seen_before_a_place_is_asked_for(window, bent, tmp_path):
     window.run(lambda robot: robot.key_chars("other.gif"))
     window.run(lambda robot: robot.item_click("//###dialog/Choose"))
     window.settle()
-    assert bent.exports_to == {"gif": tmp_path / "other.gif"}
+    assert loose.exports_to == {"gif": tmp_path / "other.gif"}
     assert [path.name for path in tmp_path.iterdir()] == ["bar.gif"]
 
 
-def test_each_format_has_the_pictures_that_it_had_last(window, bent, tmp_path, choose):
-    settings = replace(bent.document.export, size=SIZE)
+def test_each_format_has_the_pictures_that_it_had_last(window, loose, tmp_path, choose):
+    settings = replace(loose.document.export, size=SIZE)
     exporting.set_export(window.session, settings)
     assert choose("mp4").background == "#ffffff"
     # Chosen for the first time: as large as what was chosen before.
-    assert bent.document.export.size == SIZE
-    film = replace(bent.document.export, size=(128, 64), background="#203040")
+    assert loose.document.export.size == SIZE
+    film = replace(loose.document.export, size=(128, 64), background="#203040")
     exporting.set_export(window.session, film)
     assert choose("webm").background == "transparent", "only MP4 needs one"
     for name, size, background in (
@@ -101,14 +95,14 @@ def test_each_format_has_the_pictures_that_it_had_last(window, bent, tmp_path, c
     saving.write(window.session, tmp_path / "a.lissom", None)
     window.settle()
     again = load_project(tmp_path / "a.lissom").export
-    assert again == bent.document.export
+    assert again == loose.document.export
     assert again.in_format("mp4").background == "#203040"
     # A background that was chosen where it need not be goes along.
-    exporting.set_export(window.session, replace(bent.document.export, background="#ff0000"))
+    exporting.set_export(window.session, replace(loose.document.export, background="#ff0000"))
     assert choose("mov").background == "#ff0000"
 
 
-def test_names_do_not_grow_from_format_to_format(window, bent, tmp_path, choose):
+def test_names_do_not_grow_from_format_to_format(window, loose, tmp_path, choose):
     exporting.set_export(window.session, ExportSettings(size=SIZE))
     exporting.export_to(window.session, tmp_path / "walk frames")
     for name, file in (
@@ -120,16 +114,16 @@ def test_names_do_not_grow_from_format_to_format(window, bent, tmp_path, choose)
         ("spritesheet", "walk.png"),
     ):
         choose(name)
-        out = exporting.destination(bent)
+        out = exporting.destination(loose)
         assert out == tmp_path / file
         exporting.export_to(window.session, out)
     # A name of one's own is that format's alone.
     choose("gif")
     exporting.export_to(window.session, tmp_path / "wave.gif")
     choose("mp4")
-    assert exporting.destination(bent) == tmp_path / "walk.mp4"
+    assert exporting.destination(loose) == tmp_path / "walk.mp4"
     choose("webp")
-    assert exporting.destination(bent) == tmp_path / "wave.webp", "beside the newest one"
+    assert exporting.destination(loose) == tmp_path / "wave.webp", "beside the newest one"
 
 
 def test_another_format_of_the_same_name_asks_before_it_replaces(window, tmp_path, choose):
@@ -148,7 +142,7 @@ def test_another_format_of_the_same_name_asks_before_it_replaces(window, tmp_pat
 
 
 def test_the_status_bar_tells_how_far_an_export_is_whatever_tab_is_in_front(
-    window, bent, tmp_path, monkeypatch
+    window, loose, tmp_path, monkeypatch
 ):
     session, written, heights = window.session, [], set()
     draw, draw_fact = imgui.text_unformatted, imgui.text_colored
@@ -180,5 +174,5 @@ def test_the_status_bar_tells_how_far_an_export_is_whatever_tab_is_in_front(
     written.clear()
     window.frames(2)
     assert not any("walk frames" in text for text in written)
-    assert bent.exports_to == {"png": tmp_path / "walk frames"}
+    assert loose.exports_to == {"png": tmp_path / "walk frames"}
     assert len(heights) == 1, "nothing moves up and down meanwhile"

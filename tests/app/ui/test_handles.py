@@ -12,12 +12,6 @@ from app.editor.actions import editing, playback, posing
 
 
 @pytest.fixture
-def bent(loose):
-    """What the motion is like in between is not asked here."""
-    return loose
-
-
-@pytest.fixture
 def play(window):
     """A function that lets the robot play in the tab of handles."""
 
@@ -156,18 +150,18 @@ def test_how_firmly_handles_hold_is_said_in_words(window, bar, play):
     assert [handle.weight for handle in bar.figure.handles] == [10.0, 0.1]
 
 
-def test_pinned_handles_are_wanted_where_they_are(window, bent, play):
-    width, height = bent.document.canvas
+def test_pinned_handles_are_wanted_where_they_are(window, loose, play):
+    width, height = loose.document.canvas
     posing.wish(window.session, {1: Target(position=complex(3 * width, 0.5 * height))})
     window.settle()
-    figure = bent.figure
+    figure = loose.figure
     assert max(figure.lags(figure.key(24).pose).values()) > 20
-    before = places(bent)
+    before = places(loose)
     editing.select_all(window.session)
     play(lambda robot: robot.item_click("**/###pin here"))
-    figure = bent.figure
+    figure = loose.figure
     assert max(figure.lags(figure.key(24).pose).values()) < 1.0
-    after = places(bent)
+    after = places(loose)
     assert_allclose([after[i] for i in (0, 1)], [before[i] for i in (0, 1)], rtol=0, atol=1.0)
 
 
@@ -189,48 +183,48 @@ def test_partners_are_made_and_found_by_their_names(window, bar, play):
     np.testing.assert_equal(len(bar.figure.handles), 2)
 
 
-def test_a_click_on_one_of_several_selected_leaves_it_alone_selected(window, bent):
-    before = bent.document
+def test_a_click_on_one_of_several_selected_leaves_it_alone_selected(window, loose):
+    before = loose.document
     editing.select(window.session, frozenset({0, 1}))
     seen = []
 
     def press(robot):
-        robot.mouse_move_to_pos(window.point(places(bent)[1]))
+        robot.mouse_move_to_pos(window.point(places(loose)[1]))
         robot.mouse_down(0)
         robot.yield_(2)
-        seen.append(bent.selected)
+        seen.append(loose.selected)
         robot.mouse_up(0)
 
     window.run(press)
     assert seen == [{0, 1}], "until it is let go both might be dragged"
-    assert bent.selected == {1}
-    assert bent.document is before
+    assert loose.selected == {1}
+    assert loose.document is before
     editing.select(window.session, frozenset({0, 1}))
-    start = places(bent)
+    start = places(loose)
     drag(window, start[1], start[1] + 20 + 10j)
-    assert bent.selected == {0, 1}
-    targets = bent.figure.key(24).pose.targets
+    assert loose.selected == {0, 1}
+    targets = loose.figure.key(24).pose.targets
     for identity in (0, 1):
         assert abs(targets[identity].position - start[identity] - 20 - 10j) < 1.5
 
 
-def test_a_click_on_one_of_several_selected_selects_its_group(window, bent):
+def test_a_click_on_one_of_several_selected_selects_its_group(window, loose):
     editing.select(window.session, frozenset({0, 1}))
     editing.group(window.session)
-    click(window, places(bent)[1])
-    assert bent.selected == {0, 1}
+    click(window, places(loose)[1])
+    assert loose.selected == {0, 1}
 
 
 @pytest.fixture
-def short(window, bent):
+def short(window, loose):
     """The bar with a handle that is wanted elsewhere, and has not arrived."""
-    place, pose = places(bent)[1], bent.figure.key(24).pose
+    place, pose = places(loose)[1], loose.figure.key(24).pose
     targets = {**pose.targets, 1: Target(position=place - 120 + 80j)}
     wished = key_commands.pose_key(0, 24, replace(pose, targets=targets))
     editing.edit(window.session, wished)
     window.settle()
-    assert abs(targets[1].position - place) > 4 * window.grip(bent)
-    return bent
+    assert abs(targets[1].position - place) > 4 * window.grip(loose)
+    return loose
 
 
 WAY = -15 + 12j

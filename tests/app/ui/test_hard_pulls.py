@@ -6,6 +6,7 @@ from bars import open_bar
 
 from app.document import NATURAL, RUBBERY
 from app.editor.actions import editing
+from app.editor.actions.posing.stopping import STOPPED_AT_LIMIT
 
 HAND, OUT = 0, 500 + 40j  # pixels of the picture
 
@@ -59,7 +60,7 @@ def test_the_rest_stays_and_loosen_lets_it_come_nearer(window, bar):
     wanted = bar.figure.keys[0].pose.targets[HAND].position
     assert abs(wanted - reached[HAND]) < 2
     (text,) = told(window)
-    assert text == f"{bar.figure.handles[HAND].name} stopped at its stretch limit."
+    assert text == STOPPED_AT_LIMIT.format(who=bar.figure.handles[HAND].name, its="its")
     window.run(lambda robot: robot.item_click("**/Loosen"))
     window.settle()
     assert bar.figure.bounds == RUBBERY.bounds

@@ -18,12 +18,6 @@ CTRL, SHIFT, ALT = (
 
 
 @pytest.fixture
-def bent(loose):
-    """What the motion is like in between is not asked here."""
-    return loose
-
-
-@pytest.fixture
 def asked(window):
     """A question with two answers and Cancel; returns which of them were given."""
     given = []
@@ -113,7 +107,7 @@ def test_escape_closes_a_menu_with_those_that_lead_to_it(window):
     window.run(play)
 
 
-@pytest.mark.usefixtures("bent")
+@pytest.mark.usefixtures("loose")
 def test_escape_in_a_field_of_a_popup_leaves_the_popup(window):
     def play(robot):
         robot.set_ref("Timeline")
@@ -161,7 +155,7 @@ def test_the_fonts_have_the_signs_of_all_keys(window):
         assert font.is_glyph_in_font(ord(sign)), sign
 
 
-@pytest.mark.usefixtures("bent")
+@pytest.mark.usefixtures("loose")
 def test_menus_are_made_from_the_table(window):
     """Each entry is in its menu."""
     found = []
@@ -248,7 +242,7 @@ def test_recent_files_that_are_gone_are_marked_and_taken_off_by_a_click(window, 
     assert window.session.project.name == "there"
 
 
-@pytest.mark.usefixtures("bent")
+@pytest.mark.usefixtures("loose")
 def test_no_frame_stays_around_a_button_when_a_question_is_gone(window):
     def press_a_button(robot):
         robot.set_ref("//Deform")

@@ -14,20 +14,14 @@ from app.ui.viewport.viewport import CANVAS
 RIGHT = 1
 
 
-@pytest.fixture
-def bent(loose):
-    """What the motion is like in between is not asked here."""
-    return loose
-
-
 def open_menu(robot, point):
     robot.mouse_move_to_pos(point)
     robot.mouse_click(RIGHT)
     robot.yield_(2)
 
 
-def on_handle(window, bent, *items):
-    place = window.point(bent.puppet.shown.handle_places[0])
+def on_handle(window, loose, *items):
+    place = window.point(loose.puppet.shown.handle_places[0])
 
     def play(robot):
         open_menu(robot, place)
@@ -37,36 +31,36 @@ def on_handle(window, bent, *items):
     window.settle()
 
 
-def test_a_handle_is_pinned_by_its_menu(window, bent):
-    assert bent.selected == {1}
-    place = complex(bent.puppet.shown.handle_places[0])
-    on_handle(window, bent, "Pin here")
-    assert bent.selected == {0}, "what the menu is of is selected"
-    assert bent.figure.key(BENT).pose.targets[0].position == pytest.approx(place, abs=0.1)
+def test_a_handle_is_pinned_by_its_menu(window, loose):
+    assert loose.selected == {1}
+    place = complex(loose.puppet.shown.handle_places[0])
+    on_handle(window, loose, "Pin here")
+    assert loose.selected == {0}, "what the menu is of is selected"
+    assert loose.figure.key(BENT).pose.targets[0].position == pytest.approx(place, abs=0.1)
 
 
-def test_how_firmly_a_handle_holds_is_in_its_menu(window, bent):
+def test_how_firmly_a_handle_holds_is_in_its_menu(window, loose):
     editing.select(window.session, frozenset({0, 1}))
-    on_handle(window, bent, "Hold", "Firm")
-    assert [handle.weight for handle in bent.figure.handles] == [10.0, 10.0]
+    on_handle(window, loose, "Hold", "Firm")
+    assert [handle.weight for handle in loose.figure.handles] == [10.0, 10.0]
 
 
-def test_the_depth_of_a_handle_is_in_its_menu(window, bent):
-    on_handle(window, bent, "Depth", "Behind")
-    assert [handle.front for handle in bent.figure.handles] == [-1.0, 0.0]
+def test_the_depth_of_a_handle_is_in_its_menu(window, loose):
+    on_handle(window, loose, "Depth", "Behind")
+    assert [handle.front for handle in loose.figure.handles] == [-1.0, 0.0]
     window.act(editing.edit_figure, editing.layer_commands.key_front, BENT, 0, 0.0)
-    on_handle(window, bent, "Depth", "In front")
-    assert dict(bent.figure.key(BENT).fronts) == {0: 1.0}
-    assert bent.figure.handle(0).front == -1.0
+    on_handle(window, loose, "Depth", "In front")
+    assert dict(loose.figure.key(BENT).fronts) == {0: 1.0}
+    assert loose.figure.handle(0).front == -1.0
 
 
-def test_a_handle_is_locked_by_its_menu(window, bent):
-    on_handle(window, bent, "Lock")
-    assert [handle.locked for handle in bent.figure.handles] == [True, False]
+def test_a_handle_is_locked_by_its_menu(window, loose):
+    on_handle(window, loose, "Lock")
+    assert [handle.locked for handle in loose.figure.handles] == [True, False]
 
 
-def test_the_canvas_has_a_menu(window, bent):
-    width, height = bent.document.canvas
+def test_the_canvas_has_a_menu(window, loose):
+    width, height = loose.document.canvas
     beside = window.point(complex(width / 4, -height / 3))
     found = []
 
@@ -83,8 +77,8 @@ def test_the_canvas_has_a_menu(window, bent):
     assert window.session.moves
 
 
-def test_a_right_click_in_a_drag_still_takes_it_back(window, bent):
-    document, place = bent.document, window.point(bent.puppet.shown.handle_places[1])
+def test_a_right_click_in_a_drag_still_takes_it_back(window, loose):
+    document, place = loose.document, window.point(loose.puppet.shown.handle_places[1])
 
     def play(robot):
         robot.mouse_move_to_pos(place)
@@ -96,11 +90,11 @@ def test_a_right_click_in_a_drag_still_takes_it_back(window, bent):
 
     window.run(play)
     window.settle()
-    assert bent.document is document
+    assert loose.document is document
     assert not imgui.get_current_context().open_popup_stack.size()
 
 
-@pytest.mark.usefixtures("bent")
+@pytest.mark.usefixtures("loose")
 def test_the_panel_stays_between_keys(window):
     """All that is below the target of a handle is where it was."""
     window.show_tab("Handle")
@@ -116,7 +110,7 @@ def test_the_panel_stays_between_keys(window):
     assert heights[0] == heights[1] == heights[2]
 
 
-def test_a_number_between_keys_makes_a_key_as_a_drag_does(window, bent):
+def test_a_number_between_keys_makes_a_key_as_a_drag_does(window, loose):
     window.show_tab("Handle")
     playback.seek(window.session, BENT // 2)
     window.settle()
@@ -126,7 +120,7 @@ def test_a_number_between_keys_makes_a_key_as_a_drag_does(window, bent):
 
     window.run(play)
     window.settle()
-    assert bent.figure.key(BENT // 2).pose.targets[1].position.real == pytest.approx(321.0)
+    assert loose.figure.key(BENT // 2).pose.targets[1].position.real == pytest.approx(321.0)
 
 
 def tooltip_at(window, place, seconds=0.5):

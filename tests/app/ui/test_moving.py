@@ -9,12 +9,6 @@ from app.editor.actions import editing, playback
 CTRL, SHIFT = int(imgui.Key.mod_ctrl), int(imgui.Key.mod_shift)
 
 
-@pytest.fixture
-def bent(loose):
-    """What the motion is like in between is not asked here."""
-    return loose
-
-
 def wanted(project, frame=BENT):
     return {i: each.position for i, each in project.figure.key(frame).pose.targets.items()}
 
@@ -54,50 +48,50 @@ def drag(window, start, way, *, keys=0):
     return told[0]
 
 
-def test_v_and_a_drag_and_escape(window, bent):
-    before, document, first = wanted(bent), bent.document, bent.figure.key(0)
+def test_v_and_a_drag_and_escape(window, loose):
+    before, document, first = wanted(loose), loose.document, loose.figure.key(0)
     press(window, imgui.Key.v)
-    hint = drag(window, bent.puppet.shown.handle_places[1], 40 - 25j)
-    assert hint.startswith(f"Drag to move all of {bent.figure.name}")
-    way = wanted(bent)[0] - before[0]
+    hint = drag(window, loose.puppet.shown.handle_places[1], 40 - 25j)
+    assert hint.startswith(f"Drag to move all of {loose.figure.name}")
+    way = wanted(loose)[0] - before[0]
     assert abs(way - (40 - 25j)) < 2, "pixels of the screen are whole"
-    assert moved(bent, before, way)
-    assert bent.figure.key(0) is first
+    assert moved(loose, before, way)
+    assert loose.figure.key(0) is first
     press(window, imgui.Key.escape)
     assert not window.session.moves
-    assert bent.selected, "Escape puts one thing away at a time"
+    assert loose.selected, "Escape puts one thing away at a time"
     editing.undo(window.session)
-    assert bent.document is document
+    assert loose.document is document
 
 
-def test_ctrl_and_shift_from_beside(window, bent):
-    before, width = wanted(bent), bent.document.canvas[0]
+def test_ctrl_and_shift_from_beside(window, loose):
+    before, width = wanted(loose), loose.document.canvas[0]
     assert "move all of it" in drag(window, width / 4 + 0j, 30j)
-    assert moved(bent, before, 0), "without them it selects"
+    assert moved(loose, before, 0), "without them it selects"
     drag(window, width / 4 + 0j, 30j, keys=CTRL | SHIFT)
-    assert moved(bent, before, wanted(bent)[0] - before[0])
-    assert abs(wanted(bent)[0] - before[0] - 30j) < 2
+    assert moved(loose, before, wanted(loose)[0] - before[0])
+    assert abs(wanted(loose)[0] - before[0] - 30j) < 2
 
 
-def test_arrows_move_all_of_it_only_with_the_tool(window, bent):
-    before, session = wanted(bent), window.session
-    bent.selected = frozenset()
+def test_arrows_move_all_of_it_only_with_the_tool(window, loose):
+    before, session = wanted(loose), window.session
+    loose.selected = frozenset()
     press(window, imgui.Key.v, imgui.Key.up_arrow, SHIFT | int(imgui.Key.left_arrow))
-    assert playback.current_frame(session, bent) == BENT
-    assert moved(bent, before, 1j - 10)
+    assert playback.current_frame(session, loose) == BENT
+    assert moved(loose, before, 1j - 10)
     press(window, imgui.Key.escape, imgui.Key.down_arrow)
-    assert playback.current_frame(session, bent) == 0
+    assert playback.current_frame(session, loose) == 0
 
 
-def test_it_is_one_tool_of_several(window, bent):
-    session, chosen = window.session, bent.selected
+def test_it_is_one_tool_of_several(window, loose):
+    session, chosen = window.session, loose.selected
     press(window, imgui.Key.v, imgui.Key.x)
     assert session.cutting == "remove"
     press(window, imgui.Key.v)
     assert (session.cutting, session.moves) == (None, True)
     press(window, imgui.Key.v)
     assert not session.moves
-    assert bent.selected == chosen
+    assert loose.selected == chosen
     press(window, imgui.Key.v)
     window.again(open_bar)
     assert not session.moves, "another project begins with posing"

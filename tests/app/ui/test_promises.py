@@ -29,12 +29,6 @@ from app.storage import load_project
 from engine.maps import Bounds
 
 
-@pytest.fixture
-def bent(loose):
-    """What the motion is like in between is not asked here."""
-    return loose
-
-
 def loosened(bounds):
     return Bounds(k=bounds.k, sigma_a=bounds.sigma_a + 1, sigma_b=bounds.sigma_b)
 
@@ -55,108 +49,108 @@ FOLLOWS = {
 
 
 @pytest.mark.parametrize("name", FOLLOWS)
-def test_drag_comes_to_rest_whatever_follows(window, bent, name):
-    start = bent.document
-    goal = drag_bar(window, bent)
-    assert bent.pulls
-    assert not bent.pulls[-1].is_at_rest, "it takes several pictures"
+def test_drag_comes_to_rest_whatever_follows(window, loose, name):
+    start = loose.document
+    goal = drag_bar(window, loose)
+    assert loose.pulls
+    assert not loose.pulls[-1].is_at_rest, "it takes several pictures"
     FOLLOWS[name](window.session)
     window.settle()
     playback.halt(window.session)
     window.settle()
-    assert not bent.pending
-    check_at_rest(bent.document, goal)
+    assert not loose.pending
+    check_at_rest(loose.document, goal)
     layering.choose(window.session, 0)
-    while bent.document is not start:
-        assert bent.history.undo_label is not None
+    while loose.document is not start:
+        assert loose.history.undo_label is not None
         editing.undo(window.session)
-    assert not bent.pulls
+    assert not loose.pulls
 
 
 @pytest.mark.parametrize("is_seen", [True, False])
-def test_moved_and_copied_keys_come_to_rest_too(window, bent, is_seen):
+def test_moved_and_copied_keys_come_to_rest_too(window, loose, is_seen):
     if is_seen:
-        goal = drag_bar(window, bent)
+        goal = drag_bar(window, loose)
     else:
         with window.session.jobs.held(posing.POSING):
-            goal = drag_bar(window, bent)
-        assert bent.pulls[-1].kept is None
+            goal = drag_bar(window, loose)
+        assert loose.pulls[-1].kept is None
     editing.edit(window.session, key_commands.copy_keys(0, {24}, 24))
     editing.edit(window.session, key_commands.move_keys(0, {24}, 6))
     window.settle()
     for frame in (30, 48):
-        check_at_rest(bent.document, goal, frame=frame)
-    assert bent.figure.key(30).pose.phi is bent.figure.key(48).pose.phi
+        check_at_rest(loose.document, goal, frame=frame)
+    assert loose.figure.key(30).pose.phi is loose.figure.key(48).pose.phi
 
 
 @pytest.mark.parametrize("auto_key", [True, False])
-def test_a_drag_is_in_a_key_as_was_wanted_when_it_began(window, bent, auto_key):
+def test_a_drag_is_in_a_key_as_was_wanted_when_it_began(window, loose, auto_key):
     if not auto_key:
         viewing.toggle_auto_key(window.session)
     with window.session.jobs.held(posing.POSING):
-        goal = drag_bar(window, bent)
+        goal = drag_bar(window, loose)
         viewing.toggle_auto_key(window.session)
     window.settle()
-    assert (bent.unkeyed is None) == auto_key
+    assert (loose.unkeyed is None) == auto_key
     if auto_key:
-        check_at_rest(bent.document, goal)
+        check_at_rest(loose.document, goal)
 
 
-def test_a_handle_that_comes_or_goes_meanwhile_keeps_its_place(window, bent):
-    goal = drag_bar(window, bent)
-    posing.add_handle(window.session, complex(bent.puppet.shown.handle_places.mean()))
-    (added,) = bent.selected
+def test_a_handle_that_comes_or_goes_meanwhile_keeps_its_place(window, loose):
+    goal = drag_bar(window, loose)
+    posing.add_handle(window.session, complex(loose.puppet.shown.handle_places.mean()))
+    (added,) = loose.selected
     posing.remove_handles(window.session, frozenset({0}))
     window.settle()
-    figure, pose = bent.figure, bent.figure.key(24).pose
+    figure, pose = loose.figure, loose.figure.key(24).pose
     assert pose.targets.keys() == {1, added}
-    check_at_rest(bent.document, goal)
+    check_at_rest(loose.document, goal)
     assert figure.lags(pose)[added] < 1e-6
 
 
-def test_layers_are_chosen_at_once_and_both_drags_come_to_rest(window, bent):
+def test_layers_are_chosen_at_once_and_both_drags_come_to_rest(window, loose):
     layering.duplicate(window.session, 0)
     window.settle()
-    (other,) = bent.puppets.keys() - {0}
+    (other,) = loose.puppets.keys() - {0}
     goals = {}
     for identity in (0, other):
         layering.choose(window.session, identity)
-        goals[identity] = drag_bar(window, bent)
-    assert bent.active == other
-    assert len(bent.pulls) == 2
+        goals[identity] = drag_bar(window, loose)
+    assert loose.active == other
+    assert len(loose.pulls) == 2
     window.settle()
     for identity, goal in goals.items():
-        check_at_rest(bent.document, goal, figure=identity)
+        check_at_rest(loose.document, goal, figure=identity)
 
 
-def test_a_save_has_a_drag_on_each_of_many_layers(window, bent, tmp_path):
+def test_a_save_has_a_drag_on_each_of_many_layers(window, loose, tmp_path):
     for _ in range(3):
         layering.duplicate(window.session, 0)
         window.frames()
     path, goals = tmp_path / "a.lissom", {}
     with window.session.jobs.held(posing.POSING):
-        for figure in bent.document.figures:
+        for figure in loose.document.figures:
             layering.choose(window.session, figure.id)
-            goals[figure.id] = drag_bar(window, bent)
-        assert len(bent.pulls) == len(goals) == 4
+            goals[figure.id] = drag_bar(window, loose)
+        assert len(loose.pulls) == len(goals) == 4
         saving.write(window.session, path, None)
         assert not path.exists()
-    window.until(lambda: not bent.pending)
+    window.until(lambda: not loose.pending)
     saved = load_project(path)
     for identity, goal in goals.items():
         check_at_rest(saved, goal, figure=identity)
 
 
-def test_a_picture_is_exported_as_it_comes_to_rest(window, bent, tmp_path):
-    goal = drag_bar(window, bent)
+def test_a_picture_is_exported_as_it_comes_to_rest(window, loose, tmp_path):
+    goal = drag_bar(window, loose)
     out = tmp_path / "last.png"
-    export = replace(bent.document.export, format="picture", framing="canvas")
+    export = replace(loose.document.export, format="picture", framing="canvas")
     editing.edit(window.session, scene_commands.set_export(export))
     exporting.start(window.session, out)
     assert window.session.export is None
     window.until(lambda: out.exists() and window.session.export is None)
-    assert not bent.pulls
-    check_at_rest(bent.document, goal)
+    assert not loose.pulls
+    check_at_rest(loose.document, goal)
     # Once more, of the pose at rest.
     again = tmp_path / "again.png"
     exporting.start(window.session, again)
@@ -164,16 +158,16 @@ def test_a_picture_is_exported_as_it_comes_to_rest(window, bent, tmp_path):
     np.testing.assert_array_equal(np.asarray(Image.open(out)), np.asarray(Image.open(again)))
 
 
-def test_an_export_that_waits_for_a_pose_is_asked_about_and_cancelled(window, bent, tmp_path):
+def test_an_export_that_waits_for_a_pose_is_asked_about_and_cancelled(window, loose, tmp_path):
     session = window.session
-    export = replace(bent.document.export, format="picture", framing="canvas")
+    export = replace(loose.document.export, format="picture", framing="canvas")
     editing.edit(session, scene_commands.set_export(export))
     # The one before, which has its file, is no part of it.
     exporting.start(session, tmp_path / "before.png")
     window.until(lambda: (tmp_path / "before.png").exists() and session.export is None)
-    goal = drag_bar(window, bent)
+    goal = drag_bar(window, loose)
     exporting.start(session, tmp_path / "a.png")
-    assert bent.afterwards
+    assert loose.afterwards
     exporting.start(session, tmp_path / "b.png")
     assert "An export is under way" in session.toasts[-1].text
     saving.quit_lissom(session)
@@ -183,15 +177,15 @@ def test_an_export_that_waits_for_a_pose_is_asked_about_and_cancelled(window, be
     assert session.toasts[-1].text == "The export was cancelled. Nothing was written."
     window.settle()
     assert [path.name for path in tmp_path.iterdir()] == ["before.png"]
-    check_at_rest(bent.document, goal)
+    check_at_rest(loose.document, goal)
 
 
 def test_copying_the_picture_leaves_an_export_alone_that_is_prepared(
-    window, bent, tmp_path, monkeypatch
+    window, loose, tmp_path, monkeypatch
 ):
     monkeypatch.setattr("app.editor.actions.exporting.clipboard_program", lambda: ())
     few = FrameRange(0, 2)
-    export = replace(bent.document.export, format="gif", framing="canvas", frames=few)
+    export = replace(loose.document.export, format="gif", framing="canvas", frames=few)
     editing.edit(window.session, scene_commands.set_export(export))
     with window.session.jobs.held(exporting.PREPARING):
         exporting.start(window.session, tmp_path / "a.gif")
@@ -243,24 +237,24 @@ def drawn(folder):
 
 
 @pytest.mark.parametrize("what", ON_ITS_WAY)
-def test_closing_asks_about_what_is_on_its_way(window, bent, tmp_path, what):
+def test_closing_asks_about_what_is_on_its_way(window, loose, tmp_path, what):
     path = tmp_path / "a.lissom"
     saving.write(window.session, path, None)
     window.settle()
-    assert bent.history.is_saved
+    assert loose.history.is_saved
     ON_ITS_WAY[what](window, tmp_path)
     saving.close(window.session)
     window.until(lambda: question(window) is not None or window.session.project is None)
-    assert window.session.project is bent, "it was closed without a question"
+    assert window.session.project is loose, "it was closed without a question"
     answer(window)
     window.until(lambda: window.session.project is None)
     saved = load_project(path)
-    assert len(saved.figures) == len(bent.document.figures)
-    assert [len(f.keys) for f in saved.figures] == [len(f.keys) for f in bent.document.figures]
-    assert len(saved.figures[0].library) == len(bent.document.figures[0].library)
+    assert len(saved.figures) == len(loose.document.figures)
+    assert [len(f.keys) for f in saved.figures] == [len(f.keys) for f in loose.document.figures]
+    assert len(saved.figures[0].library) == len(loose.document.figures[0].library)
 
 
-def test_whoever_insists_is_asked_at_once(window, bent, tmp_path):
+def test_whoever_insists_is_asked_at_once(window, loose, tmp_path):
     saving.write(window.session, tmp_path / "a.lissom", None)
     window.settle()
     playback.scrub(window.session, 7)
@@ -273,10 +267,10 @@ def test_whoever_insists_is_asked_at_once(window, bent, tmp_path):
         assert "Inserting a key is not finished" in question(window).text
     window.session.dialog = None
     window.settle()
-    assert window.session.project is bent
+    assert window.session.project is loose
 
 
-def test_a_pose_without_a_key_is_asked_about_and_kept(window, bent, tmp_path):
+def test_a_pose_without_a_key_is_asked_about_and_kept(window, loose, tmp_path):
     path = tmp_path / "a.lissom"
     saving.write(window.session, path, None)
     window.settle()
@@ -285,7 +279,7 @@ def test_a_pose_without_a_key_is_asked_about_and_kept(window, bent, tmp_path):
     window.settle()
     posing.wish(window.session, {1: Target(position=700 + 30j)})
     window.settle()
-    assert bent.unkeyed is not None
+    assert loose.unkeyed is not None
     # Also by the autosave.
     window.clock.now += 60
     window.settle()
@@ -299,7 +293,7 @@ def test_a_pose_without_a_key_is_asked_about_and_kept(window, bent, tmp_path):
     assert load_project(path).figures[0].key_frames == {0, 7, 24}
 
 
-def test_two_keys_that_are_inserted_at_once_both_come(window, bent):
+def test_two_keys_that_are_inserted_at_once_both_come(window, loose):
     playback.scrub(window.session, 7)
     window.settle()
     with window.session.jobs.held(INSERTING):
@@ -308,17 +302,17 @@ def test_two_keys_that_are_inserted_at_once_both_come(window, bent):
             posing.insert_key(window.session)
     window.settle()
     told = [toast.text for toast in window.session.toasts]
-    assert bent.figure.key_frames == {0, 7, 14, 24}, told
+    assert loose.figure.key_frames == {0, 7, 14, 24}, told
 
 
-def test_decoded_pictures_go_with_the_steps_that_have_them(window, bent, tmp_path):
+def test_decoded_pictures_go_with_the_steps_that_have_them(window, loose, tmp_path):
     for number in range(4):
         path = drawn(tmp_path)
         window.act(layering.add, [path.rename(tmp_path / f"{number}.png")])
         window.settle()
         window.act(editing.undo)
         window.settle()
-    assert bent.pictures.keys() <= bent.history.picture_files
+    assert loose.pictures.keys() <= loose.history.picture_files
 
 
 def test_within_a_job_the_clock_goes_on(window):
@@ -339,115 +333,115 @@ def beside_the_axis(window, project):
     return added
 
 
-def test_mirroring_handles_is_one_step_also_while_a_pose_is_on_its_way(window, bent):
-    added = beside_the_axis(window, bent)
-    drag_bar(window, bent)
-    (pull,) = bent.pulls
+def test_mirroring_handles_is_one_step_also_while_a_pose_is_on_its_way(window, loose):
+    added = beside_the_axis(window, loose)
+    drag_bar(window, loose)
+    (pull,) = loose.pulls
     window.until(lambda: pull.kept is not None)
     # Left while the solver is ahead of what the document has.
     playback.scrub(window.session, 7)
     window.frames()
-    before = bent.document
-    bent.selected = frozenset({added})
+    before = loose.document
+    loose.selected = frozenset({added})
     posing.mirror_handles(window.session)
-    assert len(bent.figure.handles) == 4, [toast.text for toast in window.session.toasts]
+    assert len(loose.figure.handles) == 4, [toast.text for toast in window.session.toasts]
     editing.undo(window.session)
-    assert bent.document is before
+    assert loose.document is before
 
 
-def test_undo_takes_back_first_what_was_done_since_a_drag_that_is_not_seen_yet(window, bent):
-    added = beside_the_axis(window, bent)
-    before, handles = bent.document, bent.figure.handles
+def test_undo_takes_back_first_what_was_done_since_a_drag_that_is_not_seen_yet(window, loose):
+    added = beside_the_axis(window, loose)
+    before, handles = loose.document, loose.figure.handles
     with window.session.jobs.held(posing.POSING):
-        drag_bar(window, bent)
-        bent.selected = frozenset({added})
+        drag_bar(window, loose)
+        loose.selected = frozenset({added})
         posing.mirror_handles(window.session)
-        (pull,) = bent.pulls
+        (pull,) = loose.pulls
         assert pull.kept is None
         editing.undo(window.session)
-        assert bent.figure.handles == handles
-        assert bent.pulls == [pull]
-        assert bent.document is before
+        assert loose.figure.handles == handles
+        assert loose.pulls == [pull]
+        assert loose.document is before
         posing.mirror_handles(window.session)
         editing.undo(window.session)
         editing.undo(window.session)
-        assert bent.document is before
+        assert loose.document is before
     window.settle()
-    assert not bent.pulls
-    assert bent.document is before
+    assert not loose.pulls
+    assert loose.document is before
 
 
-def test_a_drag_that_was_undone_before_anything_was_seen_is_done_again(window, bent):
-    before = bent.document
+def test_a_drag_that_was_undone_before_anything_was_seen_is_done_again(window, loose):
+    before = loose.document
     with window.session.jobs.held(posing.POSING):
-        goal = drag_bar(window, bent)
-        assert bent.pulls[-1].kept is None
+        goal = drag_bar(window, loose)
+        assert loose.pulls[-1].kept is None
         editing.undo(window.session)
-        assert bent.document is before
+        assert loose.document is before
         editing.redo(window.session)
     window.settle()
-    check_at_rest(bent.document, goal)
+    check_at_rest(loose.document, goal)
     editing.undo(window.session)
-    assert bent.document is before
+    assert loose.document is before
 
 
-def test_undo_takes_back_first_a_paste_that_still_waits_and_nothing_is_lost(window, bent):
-    before = bent.document
+def test_undo_takes_back_first_a_paste_that_still_waits_and_nothing_is_lost(window, loose):
+    before = loose.document
     with window.session.jobs.held(posing.POSING):
-        goal = drag_bar(window, bent)
+        goal = drag_bar(window, loose)
         copying.copy(window.session)
         playback.scrub(window.session, 40)
         pasting.paste(window.session, "flipped")
-        assert [each.what for each in bent.afterwards] == ["Paste flipped"]
+        assert [each.what for each in loose.afterwards] == ["Paste flipped"]
         editing.undo(window.session)
-        assert not bent.afterwards
-        assert bent.pulls, "the drag goes on"
+        assert not loose.afterwards
+        assert loose.pulls, "the drag goes on"
     window.settle()
-    check_at_rest(bent.document, goal)
-    assert bent.figure.key_frames == {0, 24}
-    rested = bent.document
+    check_at_rest(loose.document, goal)
+    assert loose.figure.key_frames == {0, 24}
+    rested = loose.document
     editing.undo(window.session)
-    assert bent.document is before
+    assert loose.document is before
     editing.redo(window.session)
-    assert bent.document is rested
+    assert loose.document is rested
 
 
-def test_a_save_that_waits_is_not_taken_back(window, bent, tmp_path):
-    bent.path = tmp_path / "bent.lissom"
+def test_a_save_that_waits_is_not_taken_back(window, loose, tmp_path):
+    loose.path = tmp_path / "bent.lissom"
     with window.session.jobs.held(posing.POSING):
-        drag_bar(window, bent)
+        drag_bar(window, loose)
         saving.save(window.session)
         editing.undo(window.session)
-        assert [each.what for each in bent.afterwards] == ["Save"]
+        assert [each.what for each in loose.afterwards] == ["Save"]
     window.settle()
-    assert bent.path.exists()
+    assert loose.path.exists()
 
 
-def test_handles_that_come_before_a_drag_knows_where_it_begins_are_held_by_it(window, bent):
+def test_handles_that_come_before_a_drag_knows_where_it_begins_are_held_by_it(window, loose):
     playback.scrub(window.session, 12)
     window.settle()
-    places = bent.puppet.shown.handle_places
+    places = loose.puppet.shown.handle_places
     with window.session.jobs.held(posing.POSING):
         posing.wish(window.session, {0: Target(position=places[0] + 5j)})
         posing.let_go(window.session)
         posing.add_handle(window.session, complex(places.mean()))
-        (added,) = bent.selected
+        (added,) = loose.selected
         # Of a document that is not shown yet, nobody knows where a drag begins.
         posing.wish(window.session, {1: Target(position=places[1] + 5j)})
         posing.let_go(window.session)
-        (pull,) = bent.pulls
+        (pull,) = loose.pulls
         assert pull.start is None
     window.settle()
-    assert bent.figure.key(12).pose.targets.keys() == {0, 1, added}
+    assert loose.figure.key(12).pose.targets.keys() == {0, 1, added}
 
 
-def test_a_drag_of_a_layer_that_stands_still_since_comes_to_rest(window, bent):
-    drag_bar(window, bent)
-    (pull,) = bent.pulls
+def test_a_drag_of_a_layer_that_stands_still_since_comes_to_rest(window, loose):
+    drag_bar(window, loose)
+    (pull,) = loose.pulls
     window.until(lambda: pull.kept is not None)
     playback.scrub(window.session, 7)
     window.frames(1)
     layering.stand_still(window.session, 0)
     copying.copy(window.session)
-    window.until(lambda: not bent.pending)
+    window.until(lambda: not loose.pending)
     assert pull.kept is pull.newest

@@ -18,19 +18,13 @@ from app.ui import bars
 from engine.maps import distortion
 
 
-@pytest.fixture
-def bent(loose):
-    """What the motion is like in between is not asked here."""
-    return loose
-
-
 def facts(window):
     return [fact.text for fact in bars.facts(window.session)]
 
 
-def test_frames_per_second_are_told_while_it_plays(window, bent):
+def test_frames_per_second_are_told_while_it_plays(window, loose):
     """Else nothing is drawn, and their number says nothing of the machine."""
-    del bent
+    del loose
     assert not any("fps" in fact for fact in facts(window))
     playback.toggle_play(window.session)
     window.frames(3)
@@ -42,11 +36,11 @@ def test_without_a_project_there_is_nothing_to_tell(window):
     assert facts(window) == []
 
 
-def test_a_pose_shows_its_distortion_the_handles_and_the_solver(window, bent):
+def test_a_pose_shows_its_distortion_the_handles_and_the_solver(window, loose):
     window.session.solver_seconds = 0.0064  # the clock of the tests stands still in a job
     shown, handles, solver = facts(window)
-    proven = bent.document.figures[0].keys[1].pose.certificate
-    uses = Extremes(proven.k, proven.sigma_a, proven.sigma_b).uses(bent.document.figures[0].bounds)
+    proven = loose.document.figures[0].keys[1].pose.certificate
+    uses = Extremes(proven.k, proven.sigma_a, proven.sigma_b).uses(loose.document.figures[0].bounds)
     most = max(uses, key=lambda use: use.share)
     word = {"k": "Shear", "σa": "Stretch", "σb": "Squeeze"}[most.name]
     assert shown == f"{word} {most.value:.2f}, limit {most.bound:.2f}"
@@ -56,12 +50,12 @@ def test_a_pose_shows_its_distortion_the_handles_and_the_solver(window, bent):
 
 
 @pytest.mark.usefixtures("everything")
-def test_inbetweens_show_what_was_measured(window, bent):
+def test_inbetweens_show_what_was_measured(window, loose):
     playback.seek(window.session, 12)
     window.settle()
     window.frames(2)
     shown, *_ = facts(window)
-    halfway = bent.puppet.store.prepared(bent.clip)[0].frame(0.5)
+    halfway = loose.puppet.store.prepared(loose.clip)[0].frame(0.5)
     fz, fzbar = halfway.fz, halfway.fzbar
     values = {
         "Shear": distortion.k(fz, fzbar).max(),
@@ -72,7 +66,7 @@ def test_inbetweens_show_what_was_measured(window, bent):
     assert float(value) == pytest.approx(values[name], abs=0.011)
 
 
-@pytest.mark.usefixtures("bent")
+@pytest.mark.usefixtures("loose")
 def test_a_bound_that_is_reached_warns(window):
     posing.wish(window.session, {1: Target(position=complex(9000, 0))})
     window.settle()
@@ -81,35 +75,35 @@ def test_a_bound_that_is_reached_warns(window):
     assert not bars.facts(window.session)[1].warns
 
 
-def test_a_pull_that_is_held_back_is_told_with_its_remedy(window, bent):
+def test_a_pull_that_is_held_back_is_told_with_its_remedy(window, loose):
     assert bars.limit_of_pose(window.session) == ""
-    width, height = bent.document.canvas
+    width, height = loose.document.canvas
     posing.wish(window.session, {1: Target(position=complex(2.4 * width, 0.5 * height))})
     window.settle()
-    figure = bent.figure
+    figure = loose.figure
     lag = figure.lags(figure.key(24).pose)[1]
     told = bars.limit_of_pose(window.session)
     assert re.fullmatch(
         r"Stretch limit reached – handle \d is \d+ px short(, 1 more too)?", told
     ), told
-    steps = bent.history.undo_label
+    steps = loose.history.undo_label
 
     def loosen(robot):
         robot.item_click("**/Loosen")
 
     window.run(loosen)
     window.settle()
-    assert bent.figure.bounds == RUBBERY.bounds
-    assert bent.figure.lags(bent.figure.key(24).pose)[1] < 0.5 * lag
-    assert bent.figure.is_proven(bent.figure.key(24).pose)
+    assert loose.figure.bounds == RUBBERY.bounds
+    assert loose.figure.lags(loose.figure.key(24).pose)[1] < 0.5 * lag
+    assert loose.figure.is_proven(loose.figure.key(24).pose)
     editing.undo(window.session)
-    assert bent.figure is figure, "looser limits and the pose within them are one step"
-    assert bent.history.undo_label == steps
+    assert loose.figure is figure, "looser limits and the pose within them are one step"
+    assert loose.history.undo_label == steps
 
 
 @pytest.mark.usefixtures("everything")
-def test_extremes_between_the_times_that_were_measured(bent):
-    curves = measure_curves(bent.clip, bent.puppet.store.prepared(bent.clip))
+def test_extremes_between_the_times_that_were_measured(loose):
+    curves = measure_curves(loose.clip, loose.puppet.store.prepared(loose.clip))
     assert curves.extremes.shape == (TIMES, 3)
     np.testing.assert_array_equal(curves.extremes_at(0), curves.extremes[0])
     np.testing.assert_allclose(curves.extremes_at(24), curves.extremes[-1], rtol=1e-12, atol=0)
@@ -118,15 +112,15 @@ def test_extremes_between_the_times_that_were_measured(bent):
     assert (low <= middle).all()
     assert (middle <= high).all()
     # In a loop the way back follows the last key, and leads up to the first.
-    last = bent.document.figures[0].keys[-1]
+    last = loose.document.figures[0].keys[-1]
     looped = altered(
-        bent.document,
+        loose.document,
         loop=True,
-        keys=(replace(bent.document.figures[0].keys[0], frame=10), last),
-        frames=replace(bent.document.frames, last=48),
+        keys=(replace(loose.document.figures[0].keys[0], frame=10), last),
+        frames=replace(loose.document.frames, last=48),
     )
     looped = clip_of(looped, 0)
-    store = IntervalStore(mesh=bent.puppet.store.mesh)
+    store = IntervalStore(mesh=loose.puppet.store.mesh)
     store.take(store.preparing(looped, store.missing(looped, 0))())
     again = measure_curves(looped, store.prepared(looped))
     assert again.extremes_at(5) == again.extremes_at(53)

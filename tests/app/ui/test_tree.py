@@ -1,10 +1,13 @@
 """The tree of layers in the window: groups, choices, several at once, joints that change hands."""
 
+import re
+
 import numpy as np
 import pytest
 from harness import Harness
 from imgui_bundle import ImVec2
 from layered import openraster
+from messages import says
 from PIL import Image, ImageDraw
 
 from app.document import (
@@ -17,6 +20,7 @@ from app.document import (
 )
 from app.editor import layering
 from app.editor.actions import editing, playback, posing
+from app.editor.layering.hanging import HANGS_IN_CIRCLE
 
 WIDTH, HEIGHT = 240, 200
 FACES = {
@@ -258,7 +262,7 @@ def test_a_row_that_is_dropped_on_another_one_hangs_there(window, scene, ids, us
     use(lambda robot: drop(robot, ids["head"], ids["hat"]))
     assert scene.document is before
     (toast,) = window.session.toasts
-    assert "hat hangs on head, so that head cannot hang on it" in toast.text
+    assert re.search(says(HANGS_IN_CIRCLE, name="hat", parent="head", other="head"), toast.text)
     # So it is where it hangs there by others, and where one of several would.
     window.act(layering.hang, ids["ah"], ids["hat"])
     window.settle()
@@ -267,7 +271,7 @@ def test_a_row_that_is_dropped_on_another_one_hangs_there(window, scene, ids, us
     use(lambda robot: drop(robot, ids["oh"], ids["ah"]))
     assert scene.document is before
     (toast,) = window.session.toasts
-    assert "ah hangs on head, so that head cannot hang on it" in toast.text
+    assert re.search(says(HANGS_IN_CIRCLE, name="ah", parent="head", other="head"), toast.text)
     window.session.toasts = []
 
 

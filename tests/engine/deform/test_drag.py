@@ -19,15 +19,19 @@ from deform_shapes import (
 )
 from hypothesis import given, settings, strategies as st
 from interpolation_shapes import subdivided
+from messages import says
 from numpy.testing import assert_allclose, assert_array_equal
 from pictures import stick_figure
 
 from engine.deform import Deformer, Handles, Status, following, require_held
 from engine.deform.certified_step import FARTHEST, add_samples
+from engine.deform.deformer import UNCERTIFIED_START
 from engine.deform.following import STRIDE
+from engine.deform.handles import MOST_CAGE, TARGET_COUNT, TARGET_FAR, WEIGHT_NOT_POSITIVE
 from engine.domain.build import build_domain
 from engine.domain.outline.cage import offset_cage
 from engine.errors import EngineError
+from engine.geometry.polygon import OUTSIDE_OUTLINE
 from engine.maps import Boundary, Bounds
 from engine.maps.harmonic_map import HarmonicMap
 from engine.maps.span import Span
@@ -337,7 +341,7 @@ def test_tightened_bounds_are_walked_into_through_certified_maps():
     tight = Bounds(k=0.5 * loose.k, sigma_a=1 + 0.6 * (loose.sigma_a - 1), sigma_b=0.6)
     deformer = bar(tight)
     wish = deformer.handles.wish(ARCHED)
-    with pytest.raises(EngineError, match="start map"):
+    with pytest.raises(EngineError, match=says(UNCERTIFIED_START)):
         deformer.start(state.map)
     for steps in range(200):  # noqa: B007 - the count is asserted
         at = deformer.positions(state)
@@ -409,8 +413,8 @@ def test_heavier_handles_win():
         ([5.0], None, "handle at .* outside"),
         ([0.0, np.nan], None, "finite"),
         ([0.0], [1, 2], "as many weights"),
-        ([0.0], [0.0], "must be positive"),
-        ([0.0], [np.nan], "must be positive"),
+        ([0.0], [0.0], says(WEIGHT_NOT_POSITIVE)),
+        ([0.0], [np.nan], says(WEIGHT_NOT_POSITIVE)),
     ],
 )
 def test_bad_handles_are_refused(points, weights, message):
@@ -421,9 +425,9 @@ def test_bad_handles_are_refused(points, weights, message):
 @pytest.mark.parametrize(
     ("targets", "rotations", "message"),
     [
-        ([0.0], None, "as many targets"),
+        ([0.0], None, says(TARGET_COUNT)),
         ([0.0, np.inf], None, "finite"),
-        ([0.0, 1e300], None, "Handle 1 is wanted at .* size of the shape away"),
+        ([0.0, 1e300], None, says(TARGET_FAR, handle=1)),
         ([0.0, 1.0], None, "same point .* different targets"),
         ([0.0, 0.0], [0.5, -0.5], "same point .* different rotations"),
         ([0.0, 0.0], [0.0], "angles"),
@@ -448,9 +452,9 @@ def test_handles_that_nobody_can_tell_apart_are_at_one_point():
 def test_a_cage_of_too_many_vertices_is_refused_in_words():
     outline = star_boundary().outline
     boundary = replace(star_boundary(), span=Span(cage=subdivided(star_boundary().cage, 0.01)))
-    with pytest.raises(EngineError, match="790 vertices, and more than 400"):
+    with pytest.raises(EngineError, match=says(MOST_CAGE, count=790, most=400)):
         Handles.place(boundary, [0.0])
-    with pytest.raises(EngineError, match="is outside the outline"):
+    with pytest.raises(EngineError, match=says(OUTSIDE_OUTLINE)):
         require_held([5.0], outline, outline, ())
 
 

@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 from deform_shapes import BAR_POINTS, STAR_POINTS, bar, star, star_boundary
 from holed_shapes import plate
+from messages import says
 from numpy.testing import assert_allclose, assert_array_equal
 
 from engine.deform import Deformer, Hand, Handles, Objective, Status, projected_hessian
+from engine.deform.hands import FORCE_NOT_POSITIVE, HAND_HANDLES
 from engine.deform.model.hessian import hessian_product
 from engine.errors import EngineError
 from engine.maps import Boundary, Bounds
@@ -221,10 +223,10 @@ def test_a_pull_of_everything_moves_the_whole_shape(far):
 @pytest.mark.parametrize(
     ("hands", "told"),
     [
-        ((Hand([1], 0.0),), "positive force, not 0"),
-        ((Hand([1], np.nan),), "positive force, not nan"),
-        ((Hand([9]),), r"pulls at handles \[9\] of 6"),
-        ((Hand([-1]),), r"pulls at handles \[-1\] of 6"),
+        ((Hand([1], 0.0),), says(FORCE_NOT_POSITIVE, pull=0)),
+        ((Hand([1], np.nan),), says(FORCE_NOT_POSITIVE, pull=float("nan"))),
+        ((Hand([9]),), says(HAND_HANDLES, handles="[9]", count=6)),
+        ((Hand([-1]),), says(HAND_HANDLES, handles="[-1]", count=6)),
         ((Hand([]),), "pulls at nothing"),
         ((Hand([1, 2]), Hand([2])), "Two hands pull at handle 2"),
     ],

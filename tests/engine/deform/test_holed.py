@@ -14,6 +14,7 @@ from holed_shapes import (
     random_map,
     ring,
 )
+from messages import says
 from numpy.testing import assert_allclose, assert_array_equal
 
 from engine.deform import Deformer, Handles, Status
@@ -21,6 +22,7 @@ from engine.deform.model.barrier import Barrier, Walls
 from engine.deform.model.hessian import projected_hessian
 from engine.deform.model.objective import Objective
 from engine.errors import EngineError
+from engine.geometry.polygon import OUTSIDE_OUTLINE
 from engine.maps import Boundary, Bounds, HarmonicMap, Limits, certify
 
 
@@ -158,7 +160,7 @@ def test_a_shape_elsewhere_deforms_alike():
 
 
 def test_handles_stand_on_the_shape_and_not_in_its_holes():
-    with pytest.raises(EngineError, match="is outside the outline"):
+    with pytest.raises(EngineError, match=says(OUTSIDE_OUTLINE)):
         Handles.place(boundary_of("ring"), np.array([0.1 + 0.1j]))
     assert len(Handles.place(boundary_of("ring"), np.array([0.5 + 0j])).points) == 1
 

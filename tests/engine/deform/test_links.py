@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 from deform_shapes import BAR_POINTS, bar_boundary
+from messages import says
 from numpy.testing import assert_allclose
 
 from engine.deform import Deformer, Hand, Handles, Link, Objective
+from engine.deform.hands import LINK_ENDS, LINK_LENGTHS
 from engine.deform.model.hessian import hessian_product
 from engine.errors import EngineError
 from engine.maps import Bounds
@@ -82,10 +84,10 @@ def test_a_link_stops_a_hand_that_pulls_too_far_and_the_pose_stays_when_it_lets_
 @pytest.mark.parametrize(
     ("link", "message"),
     [
-        ((0, 0, 1.0, 2.0), "between handles 0 and 0"),
-        ((0, 3, 1.0, 2.0), "between handles 0 and 3"),
-        ((0, 1, 2.0, 1.0), "from 2 to 1 long"),
-        ((0, 1, np.nan, 1.0), "from nan to 1 long"),
+        ((0, 0, 1.0, 2.0), says(LINK_ENDS, first=0, second=0)),
+        ((0, 3, 1.0, 2.0), says(LINK_ENDS, first=0, second=3)),
+        ((0, 1, 2.0, 1.0), says(LINK_LENGTHS, shortest=2, longest=1)),
+        ((0, 1, np.nan, 1.0), says(LINK_LENGTHS, shortest=float("nan"), longest=1)),
     ],
 )
 def test_links_that_are_none_are_refused(link, message):

@@ -4,13 +4,25 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from messages import says
 from pictures import blob, limbs, ring, star
 from shapes import regular_polygon
 
 from engine.domain import Domain, build_domain, require_domain
 from engine.domain.meshing import Mesh
 from engine.domain.picture.cut_out import CutOut
+from engine.domain.validity import (
+    MESH_CORNERS,
+    MESH_FLAT,
+    MESH_OVERLAPS,
+    MESH_SIZE,
+    MESH_UNFILLED,
+    MESH_UNUSED,
+    TOO_FAR,
+    VERTEX_COUNT,
+)
 from engine.errors import EngineError
+from engine.geometry.polygon import CAGE_ORDER, CAGE_TOUCHES
 
 # A pentagon with a hole in its fan: the L-shaped outline 0, 2, 2+i, 1+i, 1+2i, 2i.
 OUTLINE = np.array([0, 2, 2 + 1j, 1 + 1j, 1 + 2j, 2j]) * 50 + 20 + 30j
@@ -42,27 +54,27 @@ def test_every_domain_that_is_built_is_one(picture):
     [
         (domain(outline=OUTLINE[::-1]), "outline runs clockwise"),
         (domain(outline=OUTLINE[[0, 2, 1, 3, 4, 5]]), "outline crosses"),
-        (domain(outline=OUTLINE[:2]), "outline must have 3 to"),
-        (domain(cage=(CAGE * 50 + 20 + 30j)[::-1]), "cage does not run once counter-clockwise"),
-        (domain(cage=0.5 * (OUTLINE - OUTLINE[3]) + OUTLINE[3]), "cage touches or crosses"),
-        (domain(cage=CAGE * 50 + 500), "cage does not run once"),
-        (domain(cage=200 * regular_polygon(501)), "cage must have 3 to 500 vertices"),
+        (domain(outline=OUTLINE[:2]), says(VERTEX_COUNT, name="outline")),
+        (domain(cage=(CAGE * 50 + 20 + 30j)[::-1]), says(CAGE_ORDER)),
+        (domain(cage=0.5 * (OUTLINE - OUTLINE[3]) + OUTLINE[3]), says(CAGE_TOUCHES)),
+        (domain(cage=CAGE * 50 + 500), says(CAGE_ORDER)),
+        (domain(cage=200 * regular_polygon(501)), says(VERTEX_COUNT, name="cage", most=500)),
         (domain(cage=OUTLINE + 1e-6 * (CAGE * 50 + 20 + 30j - OUTLINE)), "cage comes too near"),
-        (domain(cage=1e200 * CAGE), "cage lies farther"),
-        (domain(vertices=OUTLINE * 1e150), "mesh lies farther"),
-        (domain(triangles=[]), "mesh must have 1 to"),
-        (domain(triangles=[*TRIANGLES[:3], [3, 4, 6]]), "none of its vertices"),
-        (domain(triangles=[*TRIANGLES[:3], [3, 4, -1]]), "none of its vertices"),
-        (domain(vertices=np.append(OUTLINE, 45 + 45j)), "belong to no triangle"),
-        (domain(triangles=TRIANGLES[:, ::-1]), "flat or run clockwise"),
-        (domain(triangles=[*TRIANGLES[:3], [3, 5, 4]]), "flat or run clockwise"),
-        (domain(triangles=[*TRIANGLES, [3, 4, 5]]), "triangles overlap"),
-        (domain(triangles=[*TRIANGLES, [1, 2, 3]]), "triangles overlap"),
-        (domain(triangles=TRIANGLES[[1, 2, 3]]), "does not fill"),
+        (domain(cage=1e200 * CAGE), says(TOO_FAR, name="cage")),
+        (domain(vertices=OUTLINE * 1e150), says(TOO_FAR, name="mesh")),
+        (domain(triangles=[]), says(MESH_SIZE)),
+        (domain(triangles=[*TRIANGLES[:3], [3, 4, 6]]), says(MESH_CORNERS)),
+        (domain(triangles=[*TRIANGLES[:3], [3, 4, -1]]), says(MESH_CORNERS)),
+        (domain(vertices=np.append(OUTLINE, 45 + 45j)), says(MESH_UNUSED)),
+        (domain(triangles=TRIANGLES[:, ::-1]), says(MESH_FLAT)),
+        (domain(triangles=[*TRIANGLES[:3], [3, 5, 4]]), says(MESH_FLAT)),
+        (domain(triangles=[*TRIANGLES, [3, 4, 5]]), says(MESH_OVERLAPS)),
+        (domain(triangles=[*TRIANGLES, [1, 2, 3]]), says(MESH_OVERLAPS)),
+        (domain(triangles=TRIANGLES[[1, 2, 3]]), says(MESH_UNFILLED)),
         # Across the notch: each corner lies on the outline, but not the edge between them.
-        (domain(triangles=[*TRIANGLES, [2, 4, 3]]), "does not fill"),
-        (domain(vertices=OUTLINE + 5), "does not fill"),
-        (domain(vertices=0.9 * OUTLINE), "does not fill"),
+        (domain(triangles=[*TRIANGLES, [2, 4, 3]]), says(MESH_UNFILLED)),
+        (domain(vertices=OUTLINE + 5), says(MESH_UNFILLED)),
+        (domain(vertices=0.9 * OUTLINE), says(MESH_UNFILLED)),
     ],
 )
 def test_what_is_wrong_is_told(broken, message):
@@ -77,7 +89,7 @@ def test_a_mesh_that_goes_twice_around_fills_nothing():
         vertices=np.concatenate([OUTLINE, OUTLINE]),
         triangles=np.concatenate([TRIANGLES, TRIANGLES + 6]),
     )
-    with pytest.raises(EngineError, match="does not fill"):
+    with pytest.raises(EngineError, match=says(MESH_UNFILLED)):
         require_domain(replace(domain(), mesh=turned))
 
 

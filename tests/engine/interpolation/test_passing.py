@@ -12,6 +12,7 @@ from interpolation_shapes import (
     random_map,
     scattered_on,
 )
+from messages import says
 from numpy.testing import assert_allclose, assert_array_equal
 
 from engine.dirichlet import HilbertTransform
@@ -31,6 +32,7 @@ from engine.interpolation import (
     prove,
     sample_keyframes,
 )
+from engine.interpolation.passage.derivatives import KEYFRAMES_OF_INTERVAL
 from engine.maps import Boundary, Bounds, HarmonicMap
 from engine.paths import root_sheets
 
@@ -312,7 +314,7 @@ def test_a_course_asks_for_its_keyframes():
     keys = sample_keyframes(MAPS[:2], sites)
     sheets = root_sheets(np.array([key.anchor_fz for key in keys]))
     course = Course.between(Tangent(Joint(1.0, 1.0), 1.0, 1.0), 1.0)
-    with pytest.raises(EngineError, match="three keyframes, not 2"):
+    with pytest.raises(EngineError, match=says(KEYFRAMES_OF_INTERVAL, wanted="three", count=2)):
         Passage.of(keys, sheets, course)
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from interpolation_shapes import bar, bent, inner_points, letter_l, narrow_u, random_map, stage_of
+from messages import says
 from numpy.testing import assert_allclose, assert_array_equal
 
 from engine.dirichlet.hilbert import HilbertTransform
@@ -20,7 +21,10 @@ from engine.interpolation import (
 )
 from engine.interpolation.blends.metric import RESOLVED
 from engine.interpolation.blends.outline import OutlineMetric
-from engine.interpolation.passage.keyframe_samples import sample_keyframes
+from engine.interpolation.passage.derivatives import KEYFRAMES_OF_INTERVAL
+from engine.interpolation.passage.keyframe_samples import FOLDS, sample_keyframes
+from engine.interpolation.preparation import OTHER_CAGE, TIME_RANGE, TWO_KEYFRAMES
+from engine.interpolation.sites import ONE_ANCHOR, OTHER_OUTLINE
 from engine.maps import Bounds
 from engine.maps.harmonic_map import HarmonicMap, derivatives_of
 from engine.paths.complex_log import root_sheets
@@ -127,7 +131,7 @@ def test_a_turn_only_rotates_eta_but_changes_the_shape_of_nu():
 
 @pytest.mark.parametrize("time", [-1e-9, 2.0001, float("nan"), float("inf")])
 def test_times_out_of_range_are_refused(time):
-    with pytest.raises(EngineError, match="out of range"):
+    with pytest.raises(EngineError, match=says(TIME_RANGE)):
         between().frame(time)
 
 
@@ -147,12 +151,12 @@ def test_folds_are_found_wherever_they_are():
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"maps": MAPS[:1]}, "at least two keyframes, not 1"),
-        ({"maps": []}, "at least two keyframes, not 0"),
-        ({"maps": [MAPS[0], HarmonicMap.identity(1.01 * CAGE)]}, "another cage"),
+        ({"maps": MAPS[:1]}, says(TWO_KEYFRAMES, count=1)),
+        ({"maps": []}, says(TWO_KEYFRAMES, count=0)),
+        ({"maps": [MAPS[0], HarmonicMap.identity(1.01 * CAGE)]}, says(OTHER_CAGE)),
         ({"variant": "wobbly"}, "no variant 'wobbly'; there are metric, nu"),
-        ({"anchor": [0.5, 0.6]}, "One anchor is needed, not 2"),
-        ({"anchor": []}, "One anchor is needed, not 0"),
+        ({"anchor": [0.5, 0.6]}, says(ONE_ANCHOR, count=2)),
+        ({"anchor": []}, says(ONE_ANCHOR, count=0)),
         ({"anchor": 2 + 2j}, "anchor at .* is outside"),
         ({"points": np.append(POINTS, 2 + 2j)}, "point 25 at .* is outside the outline"),
         ({"points": OUTLINE * (1 + 1e-7)}, "outside"),
@@ -192,17 +196,17 @@ def test_a_fold_between_the_samples_of_the_outline_is_found():
     # k grows in proportion: below 1 at all samples, above 1 between two of them.
     strength = 2 / (at_samples + between_them)
     folded = HarmonicMap(cage=CAGE, phi=f.phi, psi=strength * f.psi)
-    with pytest.raises(EngineError, match="Keyframe 1 folds: at"):
+    with pytest.raises(EngineError, match=says(FOLDS, number=1)):
         between([MAPS[0], folded])
 
 
 def test_a_transform_of_another_outline_is_refused():
     other = HilbertTransform.on(*bar())
-    with pytest.raises(EngineError, match="of another outline"):
+    with pytest.raises(EngineError, match=says(OTHER_OUTLINE)):
         between(variant="metric", transform=other)
     # As many vertices, but elsewhere.
     moved = HilbertTransform.on(OUTLINE * 1.01, CAGE * 1.01)
-    with pytest.raises(EngineError, match="of another outline"):
+    with pytest.raises(EngineError, match=says(OTHER_OUTLINE)):
         between(variant="metric", transform=moved)
 
 
@@ -210,7 +214,9 @@ def test_what_a_variant_needs_is_asked_for():
     sites = prepare_sites(OUTLINE, CAGE, POINTS)
     keys = sample_keyframes(MAPS, sites)
     sheets = root_sheets(np.array([key.anchor_fz for key in keys]))
-    with pytest.raises(EngineError, match="two keyframes, not 3 with 3 sheets"):
+    with pytest.raises(
+        EngineError, match=says(KEYFRAMES_OF_INTERVAL, wanted="two", count=3, sheets=3)
+    ):
         Passage.of(keys, sheets)
     interval = Interval(sites, Passage.of(keys[:2], sheets[:2]), Bounds())
     for variant in Variant:

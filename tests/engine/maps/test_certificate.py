@@ -2,10 +2,14 @@ import numpy as np
 import pytest
 from deform_shapes import STAR_POINTS, dense_outline, extremes, star, star_boundary
 from hypothesis import given, settings, strategies as st
+from messages import says
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.linalg import eigh
 
+from engine.arrays import FEW_ENTRIES
+from engine.deform.deformer import UNCERTIFIED_START
 from engine.errors import EngineError
+from engine.geometry.polygon import CAGE_ORDER, CAGE_TOUCHES
 from engine.maps import (
     Boundary,
     Bounds,
@@ -15,7 +19,9 @@ from engine.maps import (
     certify_segments,
     segment_enclosures,
 )
+from engine.maps.bounds import IMPOSSIBLE_BOUND
 from engine.maps.cauchy import cauchy_derivatives
+from engine.maps.certificate import OTHER_SPAN
 from engine.maps.harmonic_map import HarmonicMap
 
 BOUNDARY = star_boundary()
@@ -233,21 +239,21 @@ def test_refining_changes_no_result():
 
 def test_another_cage_is_refused():
     f = HarmonicMap(cage=CAGE + 1, phi=CAGE, psi=0 * CAGE)
-    with pytest.raises(EngineError, match="another cage"):
+    with pytest.raises(EngineError, match=says(OTHER_SPAN)):
         certify(f, BOUNDARY, Bounds())
 
 
 @pytest.mark.parametrize(
     ("outline", "cage", "message"),
     [
-        (BOUNDARY.outline, 0.9 * CAGE, "strictly inside"),
+        (BOUNDARY.outline, 0.9 * CAGE, says(CAGE_TOUCHES)),
         (BOUNDARY.outline, 0.2 * CAGE, "inside|contain"),
-        (BOUNDARY.outline, CAGE + 9, "once counter-clockwise around"),
-        (BOUNDARY.outline, CAGE[::-1], "counter-clockwise"),
+        (BOUNDARY.outline, CAGE + 9, says(CAGE_ORDER)),
+        (BOUNDARY.outline, CAGE[::-1], says(CAGE_ORDER)),
         (BOUNDARY.outline[::-1], CAGE, "clockwise"),
         (BOUNDARY.outline[[0, 2, 1, *range(3, len(CAGE))]], CAGE, "crosses"),
         (np.where(np.arange(len(CAGE)) == 2, np.nan, BOUNDARY.outline), CAGE, "finite"),
-        (BOUNDARY.outline, CAGE[:2], "at least 3"),
+        (BOUNDARY.outline, CAGE[:2], says(FEW_ENTRIES, at_least=3)),
     ],
 )
 def test_bad_shapes_are_refused(outline, cage, message):
@@ -264,13 +270,13 @@ def test_bad_shapes_are_refused(outline, cage, message):
     ],
 )
 def test_bounds_without_the_identity_are_refused(bounds):
-    with pytest.raises(EngineError, match="bound on"):
+    with pytest.raises(EngineError, match=says(IMPOSSIBLE_BOUND)):
         Bounds(**bounds)
 
 
 def test_a_start_map_must_be_certified():
     deformer = star()
-    with pytest.raises(EngineError, match="start map is not certified"):
+    with pytest.raises(EngineError, match=says(UNCERTIFIED_START)):
         deformer.start(over_cage(CAGE, 0.9 * CAGE))
     with pytest.raises(EngineError, match="folds"):
         deformer.resume(over_cage(CAGE, 1.1 * CAGE))

@@ -4,12 +4,14 @@ import numpy as np
 import pytest
 from holed_shapes import Holed, inner_points, plate, random_map as holed_map, ring
 from hypothesis import given, settings, strategies as st
+from messages import says
 from numpy.testing import assert_allclose
 from shapes import points_inside_disc, regular_polygon
 
+from engine.arrays import NOT_COMPLEX
 from engine.errors import EngineError
 from engine.maps import distortion
-from engine.maps.harmonic_map import HarmonicMap
+from engine.maps.harmonic_map import COEFFICIENT_COUNT, HarmonicMap
 
 CAGE = regular_polygon(20, 1.2)
 POINTS = points_inside_disc(1.0, 80, seed=5)
@@ -114,10 +116,10 @@ def test_distortions_agree_with_each_other(seed):
 @pytest.mark.parametrize(
     ("phi", "message"),
     [
-        (CAGE[:-1], "as many coefficients"),
+        (CAGE[:-1], says(COEFFICIENT_COUNT)),
         (np.full(20, np.nan), "finite"),
         (CAGE.reshape(4, 5), "one-dimensional"),
-        (["a"] * 20, "complex numbers"),
+        (["a"] * 20, says(NOT_COMPLEX)),
     ],
 )
 def test_bad_coefficients_are_refused(phi, message):

@@ -1,10 +1,11 @@
 import numpy as np
 import pytest
 from interpolation_shapes import inner_points, letter_l, spiral
+from messages import says
 from numpy.testing import assert_allclose, assert_array_equal
 
 from engine.errors import EngineError
-from engine.paths.complex_log import continue_logarithm, root_sheets
+from engine.paths.complex_log import TURN_COUNT, continue_logarithm, root_sheets
 from engine.paths.integration_paths import lay_paths
 from engine.paths.path_network import Network, scattered_network
 
@@ -89,5 +90,5 @@ def test_more_turns_than_an_angle_has_digits_for_are_refused(turns):
 
 @pytest.mark.parametrize("turns", [[1], [1.0, 0.0], [[0, 0]]])
 def test_turns_of_the_wrong_kind_are_refused(turns):
-    with pytest.raises(EngineError, match="2 integers"):
+    with pytest.raises(EngineError, match=says(TURN_COUNT, count=2)):
         root_sheets(np.ones(3, dtype=complex), turns)

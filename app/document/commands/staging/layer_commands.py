@@ -16,6 +16,8 @@ from app.document.layering import Attachment, BlendMode, Switch, paths_to, share
 from app.document.model import Document
 from app.errors import ImportSummary, LissomError
 
+LAST_LAYER = "A document has at least one layer; add another one first."
+
 
 @command("Add layer")
 def add_figure(document: Document, figure: Figure, index: int | None = None) -> Document:
@@ -87,7 +89,7 @@ def remove_figure(document: Document, identity: int) -> Document:
     """Remove a figure. What hung on it hangs as it did before that, else on nothing."""
     document.figure(identity)
     if len(document.figures) == 1:
-        raise LissomError("A document has at least one layer; add another one first.")
+        raise LissomError(LAST_LAYER)
     document = choice_commands.let_go(document, identity)
     figures = tuple(
         _without_ties(each, identity) for each in document.figures if each.id != identity

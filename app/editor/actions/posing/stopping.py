@@ -11,6 +11,7 @@ from app.editor.work import Pull
 
 # Lets the drawing stretch further, and pulls handles once more to where they were asked.
 Loosen = Callable[[Session, Mapping[int, Target]], None]
+STOPPED_AT_LIMIT = "{who} stopped at {its} stretch limit."
 
 
 def give_in(session: Session, project: Project, loosen: Loosen) -> None:
@@ -41,10 +42,10 @@ def _tell(
     if not find_shortfall(figure, pose).at_limits:
         session.tell(f"{who} stopped where the other handles hold the shape.", topic="stopped")
     elif loosened(figure.bounds) is None:
-        session.tell(f"{who} stopped at {its} stretch limit.", topic="stopped")
+        session.tell(STOPPED_AT_LIMIT.format(who=who, its=its), topic="stopped")
     else:
         session.tell(
-            f"{who} stopped at {its} stretch limit.",
+            STOPPED_AT_LIMIT.format(who=who, its=its),
             topic="stopped",
             label="Loosen",
             action=do(_loosen, pull.figure, pull.frame, asked, loosen),

@@ -6,6 +6,7 @@ from math import exp, log, pi
 import numpy as np
 import pytest
 from documents import CENTRE, altered, disc_document
+from messages import says
 from numpy.testing import assert_allclose
 
 from app.document import (
@@ -25,7 +26,9 @@ from app.document import (
     scene_commands,
     seen_alone,
 )
+from app.document.commands.scene_commands import KEY_OUTSIDE
 from app.document.layering import Group
+from app.document.model import NO_FIGURE
 from app.errors import LissomError
 
 EMPTY = replace(disc_document(), frames=FrameRange(0, 48))
@@ -210,11 +213,11 @@ def test_what_cannot_be_is_refused():
         filmed([KEYS[1], KEYS[0]])
     with pytest.raises(LissomError, match="key at frame 40 lies outside"):
         altered(EMPTY, frames=FrameRange(0, 39), camera=KEYS)
-    with pytest.raises(LissomError, match="key at frame 40 would lie outside"):
+    with pytest.raises(LissomError, match=says(KEY_OUTSIDE, frame=40)):
         scene_commands.set_frames(FrameRange(0, 39))(filmed())
     with pytest.raises(LissomError, match="in front of itself"):
         altered(EMPTY, placings=(Placing(0, 0),))
-    with pytest.raises(LissomError, match="no figure with the id 7"):
+    with pytest.raises(LissomError, match=says(NO_FIGURE, identity=7)):
         altered(EMPTY, placings=(Placing(0, 7),))
     with pytest.raises(LissomError, match="between 0 and 1"):
         OpacityKey(frame=0, opacity=1.5)

@@ -10,6 +10,7 @@ from sessions import session_of, settle
 from app.document import Keyframe, handle_commands
 from app.editor.actions import editing, playback
 from app.editor.poses import copying, flipping, pasting
+from app.editor.poses.pasting import NOT_PASTED
 
 
 @pytest.fixture
@@ -50,4 +51,4 @@ def test_a_flip_that_comes_too_late_is_told(session):
     before = session.project.document
     settle(session)
     assert session.project.document is before
-    assert "Paste again" in session.toasts[-1].text
+    assert NOT_PASTED in session.toasts[-1].text

@@ -24,6 +24,7 @@ from app.editor import layering
 from app.editor.actions import editing, material, playback, posing
 from app.editor.actions.upkeep import maintain
 from app.editor.poses import copying, library, pasting, receiving
+from app.editor.poses.pasting import NOT_PASTED
 from app.editor.poses.receiving import NOTHING_COPIED
 from app.editor.session import CopiedKeys
 from app.editor.timeline_view import TrackRow
@@ -327,7 +328,7 @@ def test_a_layer_that_changes_meanwhile_is_told(session):
     before = session.project.document
     settle(session)
     assert session.project.document is before
-    assert "Paste again" in session.toasts[-1].text
+    assert NOT_PASTED in session.toasts[-1].text
 
 
 def test_poses_of_a_library_are_offered_to_layers_with_the_same_names(session):

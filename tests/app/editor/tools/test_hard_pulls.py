@@ -9,6 +9,7 @@ from sessions import session_of, settle
 from app.document import NATURAL, RUBBERY
 from app.document.commands import figure_commands, handle_commands
 from app.editor.actions import editing, playback, posing
+from app.editor.actions.posing.stopping import STOPPED_AT_LIMIT
 from app.editor.actions.upkeep import maintain
 from app.editor.tools import Spot, pointing
 from engine.geometry import box_diagonal
@@ -132,7 +133,7 @@ def test_a_hand_beyond_reach_moves_a_limb_and_leaves_the_rest(session):
     assert ((wanted - after[hand]) / (asked - after[hand])).real > 0
     (toast,) = [toast for toast in session.toasts if "stopped" in toast.text]
     name = project.figure.handle(hand).name
-    assert toast.text == f"{name} stopped at its stretch limit."
+    assert toast.text == STOPPED_AT_LIMIT.format(who=name, its="its")
     # All of that is one step, and the pose is found again from its own wishes.
     posing.pull_again(session, {}, gesture=object())
     settle(session)

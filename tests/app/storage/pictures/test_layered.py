@@ -5,6 +5,7 @@ import zipfile
 import numpy as np
 import pytest
 from layered import blob, openraster
+from messages import says
 from numpy.testing import assert_array_equal
 from PIL import Image
 from psd_tools import PSDImage
@@ -13,6 +14,8 @@ from psd_tools.constants import BlendMode
 from app.document.layering import Group
 from app.errors import LissomError
 from app.storage.pictures import read_openraster, read_photoshop
+from app.storage.pictures.layered import GROUPS_DEEP
+from app.storage.project.archive import MEMBER_TOO_LARGE
 
 HEAD = '<layer name="head" src="data/0.png" x="10" y="20"/>'
 BODY = '<layer name="body" src="data/1.png" x="5" y="40" opacity="0.5" visibility="hidden"/>'
@@ -131,7 +134,7 @@ def test_what_cannot_be_kept_is_told():
         (drawing(HEAD.replace('x="10"', 'x="nan"')), "x='nan'"),
         (drawing(HEAD.replace("0.png", "7.png")), "lacks data/7.png"),
         (drawing(""), "no layer on which anything is drawn"),
-        (drawing("<stack>" * 60 + "</stack>" * 60), "more than 50 deep"),
+        (drawing("<stack>" * 60 + "</stack>" * 60), says(GROUPS_DEEP, most=50)),
         (drawing("<stack>"), "stack.xml is damaged"),
         (drawing(HEAD * 201), "up to 200: merge"),
     ],
@@ -158,7 +161,7 @@ def test_a_member_that_would_unpack_to_too_much_is_refused_before_it_is_unpacked
         archive.writestr("mimetype", "image/openraster")
         archive.writestr("stack.xml", f'<image w="9" h="9"><stack>{HEAD}</stack></image>')
         archive.writestr("data/0.png", bytes(10_000_000))
-    with pytest.raises(LissomError, match=r"data/0.png is too large"):
+    with pytest.raises(LissomError, match=says(MEMBER_TOO_LARGE, name="data/0.png")):
         read_openraster(file.getvalue())
 
 

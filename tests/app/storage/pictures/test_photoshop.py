@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from messages import says
 from numpy.testing import assert_allclose, assert_array_equal
 from photoshop_files import (
     MULTIPLY,
@@ -17,6 +18,7 @@ from photoshop_files import (
 from app.document.layering import Group
 from app.errors import ImportSummary, LissomError
 from app.storage.pictures import read_photoshop
+from app.storage.pictures.layered import GROUPS_DEEP
 
 SIZE = (100, 120)
 FULL = np.full((20, 30, 4), 255, np.uint8)
@@ -226,5 +228,5 @@ def test_groups_have_an_end():
     inner = drawn("arm")
     for depth in range(51):
         inner = Folder(name=str(depth), layers=[inner])
-    with pytest.raises(LissomError, match="more than 50 deep"):
+    with pytest.raises(LissomError, match=says(GROUPS_DEEP, most=50)):
         read(inner)

@@ -5,6 +5,7 @@ import zlib
 
 import numpy as np
 import pytest
+from messages import says
 from numpy.testing import assert_array_equal
 from PIL import Image, ImageCms
 from profiles import (
@@ -21,6 +22,7 @@ from profiles import (
 from app.errors import LissomError
 from app.storage.files import read_file
 from app.storage.pictures import decode_picture, decode_pictures
+from app.storage.pictures.picture import DAMAGED_PICTURE, NO_PICTURE
 
 GREY = np.arange(12, dtype=np.uint8).reshape(3, 4) * 20
 RGB = np.stack([GREY, GREY[::-1], 255 - GREY], axis=-1)
@@ -248,11 +250,11 @@ WHOLE = encode(
     ("data", "message"),
     [
         (b"", "is empty"),
-        (b"%PDF-1.4 no picture", "not a picture"),
-        (b"%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 9 9\n", "not a picture"),
-        (b"plain text", "not a picture"),
-        (WHOLE[: len(WHOLE) // 2], "damaged or cut short"),
-        (WHOLE[:2000] + bytes(64) + WHOLE[2064:], "damaged or cut short"),
+        (b"%PDF-1.4 no picture", says(NO_PICTURE)),
+        (b"%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 9 9\n", says(NO_PICTURE)),
+        (b"plain text", says(NO_PICTURE)),
+        (WHOLE[: len(WHOLE) // 2], says(DAMAGED_PICTURE)),
+        (WHOLE[:2000] + bytes(64) + WHOLE[2064:], says(DAMAGED_PICTURE)),
     ],
 )
 def test_what_is_no_picture_is_refused(data, message):
@@ -296,7 +298,7 @@ def test_several_pictures_are_decoded_side_by_side(monkeypatch):
         assert_array_equal(picture.rgba, wanted)
     # Each is still refused by its own name, and what is told elsewhere stays as it was.
     files[7] = (files[7][0][:200], "7.png")
-    with pytest.raises(LissomError, match=r"7\.png is damaged"):
+    with pytest.raises(LissomError, match=says(DAMAGED_PICTURE, name="7.png")):
         decode_pictures(files)
     monkeypatch.setattr(Image, "MAX_IMAGE_PIXELS", 130 * 45)
     with pytest.raises(LissomError, match=r"6\.png has more than 5,850 pixels"):

@@ -2,6 +2,7 @@ import numpy as np
 import pictures
 import pytest
 from hypothesis import given, settings, strategies as st
+from messages import says
 from numpy.testing import assert_allclose
 from outlines import check_outline, diagonal, interior_angles
 from scipy import ndimage
@@ -12,6 +13,7 @@ from engine.domain.outline import enclosure, fitting
 from engine.domain.outline.enclosure import LARGEST_OUTLINE, Detail, Enclosure, enclose
 from engine.domain.outline.fitting import Candidates
 from engine.domain.picture.mask import subject_mask
+from engine.domain.picture.parts import FRAGMENTED
 from engine.errors import EngineError
 from engine.geometry.polygon import as_xy, contains, signed_area
 
@@ -209,7 +211,7 @@ def test_an_intricate_drawing_keeps_to_few_vertices() -> None:
 
 @pytest.mark.parametrize("density", [0.01, 0.1, 0.3])
 def test_scattered_noise_is_too_fragmented(density: float) -> None:
-    with pytest.raises(EngineError, match="too fragmented"):
+    with pytest.raises(EngineError, match=says(FRAGMENTED)):
         outlined(pictures.noise(density))
 
 

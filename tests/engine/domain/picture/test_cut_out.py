@@ -5,10 +5,11 @@ import itertools
 import numpy as np
 import pictures
 import pytest
+from messages import says
 from numpy.testing import assert_array_equal
 
 from engine.domain.picture.cut_out import CutOut, Mask, Stroke, paint
-from engine.domain.picture.mask import subject_mask
+from engine.domain.picture.mask import ALL_REMOVED, subject_mask
 from engine.errors import EngineError
 
 SIZE = (90, 60)  # width, height
@@ -98,7 +99,7 @@ def test_what_is_fully_transparent_cannot_be_kept():
 
 def test_a_brush_that_removes_everything_is_told():
     everything = Stroke(points=np.array([60 + 60j]), radius=200.0, keeps=False)
-    with pytest.raises(EngineError, match="removed all"):
+    with pytest.raises(EngineError, match=says(ALL_REMOVED)):
         subject_mask(pictures.star(5, 120), CutOut(strokes=(everything,)))
 
 

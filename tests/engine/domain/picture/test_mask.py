@@ -3,13 +3,14 @@ import io
 import numpy as np
 import pictures
 import pytest
+from messages import says
 from numpy.testing import assert_array_equal
 from PIL import Image
 from scipy import ndimage
 
 from engine.arrays import Booleans, Bytes
 from engine.domain.picture.cut_out import BackgroundColour, CutOut, Enclosed, Mask, Stroke
-from engine.domain.picture.mask import subject_mask
+from engine.domain.picture.mask import PICTURE_TYPE, SMALL_SUBJECT, TRANSPARENT, subject_mask
 from engine.errors import EngineError
 
 WHITE = (255, 255, 255)
@@ -121,13 +122,13 @@ def test_the_tolerance_decides_what_belongs_to_the_background() -> None:
 @pytest.mark.parametrize(
     ("rgba", "message"),
     [
-        (np.zeros((20, 20, 4), dtype=np.uint8), "fully transparent"),
-        (np.full((20, 20, 4), 7, dtype=np.uint8), "fully transparent"),
+        (np.zeros((20, 20, 4), dtype=np.uint8), says(TRANSPARENT)),
+        (np.full((20, 20, 4), 7, dtype=np.uint8), says(TRANSPARENT)),
         (np.zeros((0, 20, 4), dtype=np.uint8), "no pixels"),
-        (pictures.painted(np.eye(20) * np.eye(20)[0] > 0), "only 1 × 1 pixels"),
-        (np.full((7, 7, 4), 255, dtype=np.uint8), "only 7 × 7 pixels"),
-        (np.zeros((20, 20, 3), dtype=np.uint8), "must be uint8"),
-        (np.zeros((20, 20, 4)), "must be uint8"),
+        (pictures.painted(np.eye(20) * np.eye(20)[0] > 0), says(SMALL_SUBJECT, width=1, height=1)),
+        (np.full((7, 7, 4), 255, dtype=np.uint8), says(SMALL_SUBJECT, width=7, height=7)),
+        (np.zeros((20, 20, 3), dtype=np.uint8), says(PICTURE_TYPE)),
+        (np.zeros((20, 20, 4)), says(PICTURE_TYPE)),
     ],
 )
 def test_unusable_pictures_are_refused(rgba: Bytes, message: str) -> None:

@@ -1,10 +1,11 @@
 import numpy as np
 import pytest
+from messages import says
 from numpy.testing import assert_array_equal
 from scipy import ndimage
 
 from engine.arrays import Booleans
-from engine.domain.picture.parts import join_parts
+from engine.domain.picture.parts import FRAGMENTED, join_parts
 from engine.errors import EngineError
 
 
@@ -125,5 +126,5 @@ def test_holes_that_bridges_enclose_are_filled() -> None:
 
 
 def test_a_mask_of_crumbs_is_refused() -> None:
-    with pytest.raises(EngineError, match="too fragmented"):
+    with pytest.raises(EngineError, match=says(FRAGMENTED)):
         join_parts(np.pad(np.random.default_rng(0).random((200, 200)) < 0.1, 1), 283.0)
