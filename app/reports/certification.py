@@ -45,9 +45,9 @@ class IntervalReport:
     """One interval: what its in-betweens reach, beside what its two keys do.
 
     `limits` is what they are to keep: the keys' own distortion, but where handles stay or the
-    motion passes through a key, the figure's bounds, or what the keys around have beyond them. `proof` encloses the
-    in-betweens at all times. `unsettled` are the frames about which it cannot tell that they do not
-    fold, `loose` others at which it is less tight.
+    motion passes through a key, the figure's bounds, or what the keys around have beyond them.
+    `proof` encloses the in-betweens at all times. `unsettled` are the frames about which it cannot
+    tell that they do not fold, `loose` others at which it is less tight.
     """
 
     first: int

@@ -25,12 +25,11 @@ from engine.interpolation.passage import (
     Passage as Passage,
     sample_keyframes as sample_keyframes,
 )
-from engine.interpolation.pins import (
-    BaseAt as BaseAt,
-    Pins as Pins,
-    PinSeries as PinSeries,
-    pin as pin,
+from engine.interpolation.pinned import (
+    points_for_pins as points_for_pins,
+    solve_pins as solve_pins,
 )
+from engine.interpolation.pins import Pins as Pins, PinSeries as PinSeries
 from engine.interpolation.preparation import (
     TWO_KEYFRAMES as TWO_KEYFRAMES,
     Prepared as Prepared,

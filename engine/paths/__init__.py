@@ -15,8 +15,8 @@ from engine.paths.integration_paths import (
 )
 from engine.paths.loops import Loops as Loops
 from engine.paths.path_network import (
-    leave_region as leave_region,
     MESH_POINTS as MESH_POINTS,
+    leave_region as leave_region,
     mesh_network as mesh_network,
     scattered_network as scattered_network,
     with_loops as with_loops,

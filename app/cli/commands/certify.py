@@ -204,12 +204,12 @@ def _corrected_lines(report: Report) -> list[str]:
     reached = zip(_numbers(corrected.reached), ("+", "+", "-"), corrected.excess, strict=True)
     cells = [f"{value:.4f} ({sign}{by:.4f})" for value, sign, by in reached]
     measured = corrected.frames - corrected.proven
-    lines = [
-        _line("tracks", cells, WORDS[report.corrected_verdict]),
+    lines = [_line("tracks", cells, WORDS[report.corrected_verdict])]
+    lines.append(
         f"In {corrected.frames} frames tracks and springs move handles: {corrected.proven} are "
         f"proven, and {measured} are measured at {corrected.points:,} points of the outline each"
-        f"{BY_METRIC if measured else ''}. Halfway between two of them the drawing is measured.",
-    ]
+        f"{BY_METRIC if measured else ''}. Halfway between two of them the drawing is measured."
+    )
     lines += [
         f"{short.handle!r} is out of reach of its track by up to {short.lag:.1f} px in frame"
         f"{f's {short.first} to {short.last}' if short.last > short.first else f' {short.first}'}."

@@ -16,9 +16,16 @@ from app.document import (
 from app.motion.inbetweens.pairs import pair_of
 from app.motion.inbetweens.pose_sampler import PoseSampler, corrector_for
 from engine.arrays import Complexes, Floats
-from engine.correction import BaseFrame, Corrector
+from engine.correction import Corrector
 from engine.geometry import box_diagonal
-from engine.interpolation import BaseAt, Frame, Inbetweens, Pins, PinSeries, pin
+from engine.interpolation import (
+    Frame,
+    Inbetweens,
+    Pins,
+    PinSeries,
+    points_for_pins,
+    solve_pins,
+)
 
 BESIDE = 0.03  # of the diagonal: handles nearer to an anchor that stays give way
 FIRM = 1e-6  # of full firmness: what a handle far from the anchor may lack
@@ -69,30 +76,8 @@ class AutoPins:
 
     def _solved(self, number: int, segment: PinnedSegment) -> PinSeries:
         corrector, sampler = self._prepare()
-        base = self._base(number, sampler)
-        count, nodes = len(corrector.points), len(corrector.paths.nodes)
-        of_nodes, of_samples = slice(count, count + nodes), slice(count + nodes, None)
-        is_squared = base.blend.sign != 0
-        sign = base.blend.sign or -1
-
-        def base_at(time: float) -> BaseAt:
-            frame = base.frame(time)
-            logs = np.exp(base.passage.plain_log_fz(time)[0][sampler.sites.paths.places])
-            by = logs * logs / frame.fz if is_squared else logs
-            parts = [
-                BaseFrame(frame.fz[part], frame.fzbar[part].conj(), by[part], sign)
-                for part in (of_nodes, of_samples)
-            ]
-            return BaseAt(frame.positions[:count], base.anchor_position(time), parts[0], parts[1])
-
-        return pin(
-            corrector,
-            base_at,
-            self._pins(number, segment, sampler),
-            self.clip.figure.bounds,
-            sign=sign,
-            is_squared=is_squared,
-        )
+        pins, bounds = self._pins(number, segment, sampler), self.clip.figure.bounds
+        return solve_pins(self._base(number, sampler), corrector, pins, bounds)
 
     def _prepare(self) -> tuple[Corrector, PoseSampler]:
         """Return what corrects the handles, and a sampler of all points that this looks at."""
@@ -101,7 +86,7 @@ class AutoPins:
             handles = np.array([each.position for each in figure.handles], dtype=np.complex128)
             boundary = stiffened(figure, sites.boundary)
             corrector = corrector_for(boundary, sites.anchor, handles)
-            points = np.concatenate([handles, corrector.paths.nodes, boundary.points])
+            points = points_for_pins(corrector)
             sampler = PoseSampler(
                 figure.domain, anchor=figure.anchor, points=points, sibling=self._known
             )

@@ -14,8 +14,9 @@ from engine.maps import Bounds
 
 # Of the series and of what they leave out, where unknowns are about |h| and places over the size
 # of the domain: some thousandths of a pixel of a thousand.
-TOLERANCE = LEFT_OUT = 1e-6
+TOLERANCE, LEFT_OUT = 5e-6, 1e-6
 SHORTEST = 2.0**-5  # pieces of time are not halved below this
+DEGREES = (8, 16)
 
 
 class BaseAt(NamedTuple):
@@ -111,7 +112,9 @@ def pin(
     def values(times: Floats) -> Floats:
         return np.array([at(time) for time in times.tolist()]).T
 
-    forms, series = separate(values, tolerance=TOLERANCE, left_out=LEFT_OUT, shortest=SHORTEST)
+    forms, series = separate(
+        values, tolerance=TOLERANCE, left_out=LEFT_OUT, shortest=SHORTEST, degrees=DEGREES
+    )
     count = known.count
     found = tuple(solved.values())
     return PinSeries(

@@ -196,12 +196,13 @@ def separate(
     shortest: float = SHORTEST,
     breaks: Sequence[float] = (0.0, 1.0),
     vanishing: bool = True,
+    degrees: tuple[int, ...] = DEGREES,
 ) -> tuple[Floats, PiecewiseSeries]:
     """Write functions of time as sums of few forms times series.
 
     Parameters
     ----------
-    values, tolerance, shortest, breaks
+    values, tolerance, shortest, breaks, degrees
         As in `resolve`.
     left_out : float
         The most that the forms which are left out add to the functions.
@@ -214,7 +215,9 @@ def separate(
     series : PiecewiseSeries
         Of the j coefficients; the functions are `forms @ series(t)`.
     """
-    pieces = finish(resolve(values, tolerance=tolerance, shortest=shortest, breaks=breaks))
+    pieces = finish(
+        resolve(values, tolerance=tolerance, degrees=degrees, breaks=breaks, shortest=shortest)
+    )
     forms, series = in_few_forms(pieces, left_out)
     if vanishing:
         coefficients = freeze(_vanishing_at_ends(series.breaks, series.coefficients))

@@ -1,0 +1,236 @@
+"""Corrections in the variables of the blend: points, periods, least size, limits, invariances."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from deform_shapes import BAR_POINTS, STAR_POINTS, bar_boundary, star_boundary
+from holed_shapes import ring
+from numpy.testing import assert_allclose
+from scipy.optimize import minimize
+
+from engine.correction import BaseFrame, Targets, Walls, corrector_of, solve
+from engine.correction.frame import CorrectedFrame
+from engine.correction.paths import PointPaths
+from engine.maps import Boundary, Bounds
+
+SHAPES = {"bar": (bar_boundary, BAR_POINTS), "star": (star_boundary, STAR_POINTS)}
+RNG = np.random.default_rng(5)
+
+
+@cache
+def corrector(name):
+    make, points = SHAPES[name]
+    return corrector_of(make(), 0.05 + 0.02j, points)
+
+
+@cache
+def holed():
+    shape = ring()
+    boundary = Boundary.sample(shape.outline, shape.cage, shape.holes)
+    return corrector_of(boundary, shape.anchor, np.array([0.75j, -0.75]))
+
+
+def bent(places, *, amount=0.15, sign=-1, is_squared=True):
+    """A frame with f_z = e^{i/3} (1 + a e^z / 2) and f_z̄ = conj(a z / 3), at some places."""
+    fz = np.exp(1j / 3) * (1 + amount / 2 * np.exp(places))
+    plain = np.exp(1j / 3) * (1 + amount * places / 4)
+    g = amount * places / 3
+    return BaseFrame(fz, g, plain**2 / fz if is_squared else plain, sign)
+
+
+def moves_of(places, by):
+    """Moves of points: all stay but the second one."""
+    moves = np.zeros(len(places), dtype=np.complex128)
+    moves[1] = by
+    return moves
+
+
+def lack_of(known, base, found, moves):
+    at_rest = CorrectedFrame.of(known, base, 0 * found.x).places()
+    there = CorrectedFrame.of(known, base, found.x).places()
+    return (there - at_rest + found.shift)[: len(moves)] - moves
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_paths_integrate_holomorphic_functions(name):
+    make, points = SHAPES[name]
+    boundary, anchor = make(), 0.05 + 0.02j
+    paths = PointPaths.of(boundary, anchor, points)
+    # As singular as coordinates are: around a vertex of the cage.
+    z0 = boundary.cage[3]
+    exact = [(p - z0) * (np.log((p - z0) / (anchor - z0)) - 1) + (anchor - z0) for p in points]
+    values = np.log((paths.nodes - z0) / (anchor - z0))
+    assert_allclose(paths.weights @ np.exp(paths.nodes), np.exp(points) - np.exp(anchor), atol=1e-6)
+    found = paths.weights @ values
+    assert_allclose(found, exact, atol=2e-5)
+
+
+def test_paths_lead_around_holes():
+    paths = holed().paths
+    around = paths.weights[2:] @ (1 / paths.nodes)
+    assert_allclose(around, [-2j * np.pi], atol=1e-9)
+
+
+@pytest.mark.parametrize(("name", "sign"), [("bar", -1), ("star", 1)])
+def test_points_come_to_their_targets(name, sign):
+    known = corrector(name)
+    base = bent(known.paths.nodes, sign=sign)
+    moves = moves_of(known.points, 0.1 + 0.08j)
+    found = solve(known, base, Targets(moves, np.ones(len(moves)), is_anchored=False))
+    assert np.abs(lack_of(known, base, found, moves)).max() < 1e-10 * known.boundary.size
+    assert found.misses.max() < 1e-10 * known.boundary.size
+    assert not found.is_held_back
+    assert found.steps <= 5
+
+
+def test_rows_and_bending_are_derivatives():
+    known = corrector("star")
+    base, size = bent(known.paths.nodes), 2 * known.variables.count
+    x, step = RNG.normal(size=(2, size)) * 0.05
+    pulls = RNG.normal(size=6) + 1j * RNG.normal(size=6)
+    e = 1e-5
+
+    def at(s):
+        return CorrectedFrame.of(known, base, x + s * step)
+
+    change = (at(e).places() - at(-e).places()) / (2 * e)
+    rows = at(0).rows() @ step
+    assert_allclose(rows, [*change.real, *change.imag], atol=1e-8)
+    weights = np.concatenate([pulls.real, pulls.imag])
+    bend = weights @ (at(e).rows() - at(-e).rows()) / (2 * e)
+    assert_allclose(at(0).bending(pulls)(step), bend, atol=1e-7)
+
+
+def test_corrections_are_the_least():
+    known = corrector("bar")
+    base = bent(known.paths.nodes)
+    moves = moves_of(known.points, 0.05 - 0.1j)
+    found = solve(known, base, Targets(moves, np.ones(3), is_anchored=True))
+    rest = CorrectedFrame.of(known, base, 0 * found.x).places()
+
+    def lack(x):
+        places = CorrectedFrame.of(known, base, x).places() - rest - moves
+        return np.concatenate([places.real, places.imag])
+
+    other = minimize(
+        lambda x: (0.5 * x @ x, x),
+        np.zeros(len(found.x)),
+        jac=True,
+        method="SLSQP",
+        constraints={
+            "type": "eq",
+            "fun": lack,
+            "jac": lambda x: CorrectedFrame.of(known, base, x).rows(),
+        },
+        options={"ftol": 1e-12, "maxiter": 200},
+    )
+    assert_allclose(found.x, other.x, atol=1e-5)
+
+
+def test_size_of_a_correction_is_its_dirichlet_energy():
+    """Four times |x|² is the symmetric Dirichlet energy beyond the base's, to second order."""
+    known = corrector("star")
+    count = known.variables.count
+    x = RNG.normal(size=2 * count) * 1e-3 / np.sqrt(count)
+    boundary, values = known.boundary, known.variables.at_samples
+    h, q = values.h_of(x), values.q_of(x)
+    a, b = np.abs(np.exp(h)), np.abs(q * np.exp(h))
+    stretched = ((a + b) ** 2 + (a - b) ** 2 + (a + b) ** -2.0 + (a - b) ** -2.0) - 4
+    energy = boundary.lengths @ stretched
+    size = x @ x
+    own = boundary.lengths @ (h.real**2 + np.abs(q) ** 2)
+    assert energy == pytest.approx(8 * own, rel=0.02)
+    assert own <= size
+
+
+def test_a_handle_of_weight_0_is_free():
+    known = corrector("bar")
+    base = bent(known.paths.nodes)
+    moves = np.array([0, 0.1j, 5.0])
+    weights = np.array([1.0, 1.0, 0.0])
+    found = solve(known, base, Targets(moves, weights, is_anchored=True))
+    few = corrector_of(known.boundary, 0.05 + 0.02j, known.points[:2])
+    alone = solve(few, bent(few.paths.nodes), Targets(moves[:2], np.ones(2), is_anchored=True))
+    assert_allclose(found.x @ found.x, alone.x @ alone.x, rtol=1e-4)
+    light = solve(known, base, Targets(moves, np.array([1.0, 1.0, 1e-9]), is_anchored=True))
+    assert_allclose(light.x, found.x, atol=1e-6)
+
+
+def test_an_anchor_stays_or_all_is_moved():
+    known = corrector("star")
+    base = bent(known.paths.nodes)
+    moves = np.full(len(known.points), 0.3 - 0.2j)
+    free = solve(known, base, Targets(moves, np.ones(6), is_anchored=False))
+    assert_allclose(free.shift, 0.3 - 0.2j, atol=1e-12)
+    assert np.abs(free.x).max() < 1e-12
+    held = solve(known, base, Targets(moves, np.ones(6), is_anchored=True))
+    assert held.shift == 0
+    assert held.misses.max() < 1e-8
+    assert np.abs(held.x).max() > 0.01
+
+
+def test_periods_around_holes_are_closed():
+    known = holed()
+    moves = np.array([0.05, 0.1j])
+    # With a period of its own, which is closed, too.
+    base = bent(known.paths.nodes)
+    base = base._replace(g=base.g + 0.01 / known.paths.nodes)
+    opened = known.paths.weights[2:] @ base.fz + (known.paths.weights[2:] @ base.g).conj()
+    assert np.abs(opened).max() > 0.05
+    found = solve(known, base, Targets(moves, np.ones(2), is_anchored=False))
+    frame = CorrectedFrame.of(known, base, found.x)
+    assert np.abs(frame.places()[2:]).max() < 1e-9
+    assert found.misses.max() < 1e-9
+
+
+def test_nothing_asked_changes_nothing():
+    known = corrector("bar")
+    moves = np.zeros(3, dtype=np.complex128)
+    found = solve(known, bent(known.paths.nodes), Targets(moves, np.ones(3), is_anchored=False))
+    assert not found.x.any()
+    assert found.steps == 0
+
+
+def test_the_same_is_found_elsewhere_and_turned():
+    """A base that is turned and scaled is corrected alike."""
+    known = corrector("star")
+    base, factor = bent(known.paths.nodes), 2 * np.exp(0.7j)
+    moves = moves_of(known.points, 0.1j)
+    found = solve(known, base, Targets(moves, np.ones(6), is_anchored=False))
+    turned = base._replace(
+        fz=factor * base.fz, g=factor.conjugate() * base.g, by=factor.conjugate() * base.by
+    )
+    other = solve(known, turned, Targets(factor * moves, np.ones(6), is_anchored=False))
+    assert_allclose(np.abs(other.x @ other.x), np.abs(found.x @ found.x), rtol=1e-8)
+    assert other.shift == pytest.approx(factor * found.shift, abs=1e-9)
+
+
+def test_limits_are_kept_out_of_reach():
+    known, bounds = corrector("bar"), Bounds(k=0.3, sigma_a=1.3, sigma_b=0.75)
+    base, samples = (bent(z, amount=0.02) for z in (known.paths.nodes, known.boundary.points))
+    walls = Walls.of(known, samples, bounds)
+    moves = moves_of(known.points, 1.5j)
+    found = solve(known, base, Targets(moves, np.ones(3), is_anchored=False), walls)
+    assert found.is_held_back
+    conformal, own, factor = samples.corrected(known.variables.at_samples, found.x)
+    a = np.abs(conformal)
+    b = np.abs(own + factor * known.variables.at_samples.q_of(found.x))
+    assert (a + b).max() <= bounds.sigma_a
+    assert (a - b).min() >= bounds.sigma_b
+    assert (b / a).max() <= bounds.k
+    # It goes a good part of the way, and within reach nothing is held back.
+    assert found.misses[1] < 1.4
+    near = solve(known, base, Targets(moves / 100, np.ones(3), is_anchored=False), walls)
+    assert not near.is_held_back
+    assert near.misses.max() < 1e-9
+
+
+def test_a_start_changes_nothing_but_the_steps():
+    known = corrector("star")
+    base = bent(known.paths.nodes)
+    targets = Targets(moves_of(known.points, 0.2), np.ones(6), is_anchored=False)
+    far = solve(known, base, targets)
+    near = solve(known, base, targets, start=far)
+    assert near.steps <= far.steps
+    assert_allclose(near.x, far.x, atol=1e-7)

@@ -1,0 +1,177 @@
+"""Handles that stay during a segment: where they are, keyframes, streams, and proofs."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from interpolation_shapes import bar, bent, inner_points, stage_of
+from numpy.testing import assert_allclose
+
+from engine.correction import corrector_of, solve
+from engine.interpolation import Pins, Variant, finish, points_for_pins, prove, solve_pins
+from engine.interpolation.pins import pinning
+from engine.maps import Bounds
+from engine.streaming import Positions, build_series
+
+SHAPE = bar()
+ANCHOR = 0.1 + 0.1j
+HANDLES = np.array([-1.7, 0.2j, 1.6 - 0.1j])
+WIDE = Bounds(k=0.95, sigma_a=20, sigma_b=0.05)
+
+
+def keyframes():
+    """The bar, and the bar bent with the middle where it was."""
+    return bent(SHAPE), bent(SHAPE, bend=0.5, stretch=1.1, turn=0.4)
+
+
+def pins_of(maps, *, pinned=(True, True, False), anchored=False):
+    ends = np.array([f(HANDLES) for f in maps])
+    none = np.zeros((2, 3))
+    return Pins(
+        is_pinned=np.array(pinned),
+        ends=ends,
+        slopes=none + 0j,
+        weights=none,
+        firmness=np.ones(3),
+        is_anchored=anchored,
+    )
+
+
+@cache
+def pinned(variant, *, anchored=False, bounds=WIDE):
+    """In-betweens at the points that pins need, without pins and with them."""
+    maps = keyframes()
+    stage = stage_of(SHAPE, HANDLES, ANCHOR)
+    corrector = corrector_of(stage.sites.boundary, ANCHOR, HANDLES)
+    base = stage_of(SHAPE, points_for_pins(corrector), ANCHOR).between(maps, variant)
+    pins = pins_of(maps, anchored=anchored)
+    return base, base.pinned(solve_pins(base, corrector, pins, bounds)), pins
+
+
+def at(points, variant, **options):
+    """The same at other points."""
+    base, known, _ = pinned(variant, **options)
+    series = known.pins.pins
+    return stage_of(SHAPE, points, ANCHOR).between(keyframes(), variant).pinned(series)
+
+
+@pytest.mark.parametrize("variant", list(Variant))
+def test_pinned_handles_go_evenly_between_their_places(variant):
+    base, known, pins = pinned(variant)
+    wandered = 0.0
+    for time in (0.1, 0.37, 0.5, 0.9):
+        places = known.frame(time).positions[:2]
+        wanted = pins.ends[0] + time**2 * (3 - 2 * time) * (pins.ends[1] - pins.ends[0])
+        assert np.abs(places - wanted[:2]).max() < 2e-5
+        wandered = max(wandered, np.abs(base.frame(time).positions[:2] - wanted[:2]).max())
+    assert wandered > 1e-3
+
+
+@pytest.mark.parametrize("variant", [Variant.METRIC, Variant.NU])
+def test_keyframes_are_met_exactly(variant):
+    base, known, _ = pinned(variant)
+    for time in (0.0, 1.0):
+        assert_allclose(known.frame(time).positions, base.frame(time).positions, atol=1e-12)
+
+
+def test_series_is_what_is_solved_at_any_time():
+    base, known, pins = pinned(Variant.METRIC)
+    corrector = corrector_of(base.boundary, ANCHOR, HANDLES)
+    nodes = slice(3, 3 + len(corrector.paths.nodes))
+    for time in (0.21, 0.66):
+        frame = base.frame(time)
+        plain = np.exp(base.passage.plain_log_fz(time)[0][base.sites.paths.places])
+        fz, g, by = (z[nodes] for z in (frame.fz, frame.fzbar.conj(), plain**2 / frame.fz))
+        targets = pins.targets(time, frame.positions[:3], base.anchor_position(time))
+        found = solve(corrector, pinning.BaseFrame(fz, g, by, -1), targets)
+        series = known.pins.pins
+        values = corrector.variables.at_samples
+        h = base.boundary.span.evaluate(
+            series.h @ series.series(time)[:, None], base.boundary.points, orders=(0,)
+        )[0][:, 0]
+        assert_allclose(h, values.h_of(found.x), atol=2e-5)
+        assert series.shift(np.array([time]))[0] == pytest.approx(found.shift, abs=1e-4)
+
+
+@pytest.mark.parametrize("variant", [Variant.METRIC, Variant.SCALED_ETA, Variant.NU])
+def test_frames_are_harmonic_maps_with_these_derivatives(variant):
+    z = inner_points(SHAPE[0], 12, 1, margin=0.1)
+    e = 1e-4
+    around = np.concatenate([z, z + e, z - e, z + 1j * e, z - 1j * e])
+    frame = at(around, variant).frame(0.4)
+    _, right, left, up, down = frame.positions.reshape(5, -1)
+    by_x, by_y = (right - left) / (2 * e), (up - down) / (2 * e)
+    assert_allclose((by_x - 1j * by_y) / 2, frame.fz[:12], atol=2e-4)
+    assert_allclose((by_x + 1j * by_y) / 2, frame.fzbar[:12], atol=2e-4)
+
+
+def test_an_anchor_that_stays_is_where_the_base_has_it():
+    base, known, _ = pinned(Variant.METRIC, anchored=True)
+    for time in (0.3, 0.8):
+        assert known.anchor_position(time) == base.anchor_position(time)
+        assert np.abs(known.frame(time).positions - base.frame(time).positions).max() > 1e-3
+
+
+def test_a_stream_holds_the_pins():
+    points = inner_points(SHAPE[0], 300, 2)
+    known = at(points, Variant.METRIC)
+    series = finish(build_series(Positions.of(known, known.sites)))
+    assert series.is_whole
+    for time in (0.13, 0.5, 0.77):
+        streamed = series.values(time).view(np.complex64)
+        assert np.abs(streamed - known.frame(time).positions).max() < 1e-5
+
+
+def test_derivatives_at_some_points_are_the_frames_own():
+    known = pinned(Variant.SCALED_ETA)[1]
+    which = np.array([0, 5, 40])
+    times = np.array([0.2, 0.7])
+    fz, fzbar = known.derivatives_at(which)(times)
+    for row, time in enumerate(times):
+        frame = known.frame(float(time))
+        assert_allclose(fz[row], frame.fz[which], atol=1e-6)
+        assert_allclose(fzbar[row], frame.fzbar[which], atol=1e-6)
+
+
+@pytest.mark.parametrize("variant", list(Variant))
+def test_whole_segments_are_proven_with_their_pins(variant):
+    boundary = pinned(variant)[0].boundary
+    ends = boundary.points[boundary.following]
+    dense = [boundary.points * (1 - s) + ends * s for s in (0.3, 0.7)]
+    known = at(np.concatenate([boundary.points, *dense]), variant)
+    proof = prove(known)
+    k, sigma_a, sigma_b = 0.0, 0.0, np.inf
+    for time in np.linspace(0, 1, 41):
+        frame = known.frame(float(time))
+        a, b = np.abs(frame.fz), np.abs(frame.fzbar)
+        k = max(k, (b / a).max())
+        sigma_a, sigma_b = max(sigma_a, (a + b).max()), min(sigma_b, (a - b).min())
+    assert k <= proof.k <= k + 0.004
+    assert sigma_a <= proof.sigma_a <= 1.01 * sigma_a
+    assert 0.98 * sigma_b - 0.005 <= proof.sigma_b <= sigma_b
+    assert proof.unsettled == ()
+
+
+def test_limits_are_kept_where_pins_ask_too_much():
+    maps = keyframes()
+    tight = Bounds(k=0.3, sigma_a=1.4, sigma_b=0.7)
+    stage = stage_of(SHAPE, HANDLES, ANCHOR)
+    corrector = corrector_of(stage.sites.boundary, ANCHOR, HANDLES)
+    base = stage_of(SHAPE, points_for_pins(corrector), ANCHOR).between(maps, Variant.NU)
+    own = pins_of(maps)
+    far = Pins(
+        is_pinned=np.array([True, True, True]),
+        ends=own.ends,
+        slopes=np.array([[3j, 0, 0], [0, 0, 0]]),
+        weights=np.array([[1.0, 0, 0], [0, 0, 0]]),
+        firmness=own.firmness,
+        is_anchored=True,
+    )
+    reached = base.frame(0.5)
+    assert (np.abs(reached.fz) + np.abs(reached.fzbar)).max() < 1.4
+    known = base.pinned(solve_pins(base, corrector, far, tight))
+    for time in np.linspace(0.05, 0.95, 19):
+        frame = known.frame(float(time))
+        a, b = np.abs(frame.fz), np.abs(frame.fzbar)
+        assert (a + b).max() <= 1.4 * 1.002
+        assert (a - b).min() >= 0.7 * 0.998
