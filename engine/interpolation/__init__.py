@@ -6,6 +6,7 @@ proof that they keep their bounds.
 Imports: `engine.paths`, `engine.dirichlet`, `engine.maps`.
 """
 
+from engine.interpolation.added.pins import PinSeries as PinSeries, SegmentPins as SegmentPins
 from engine.interpolation.blends import BLENDS as BLENDS
 from engine.interpolation.courses import (
     Course as Course,
@@ -17,7 +18,9 @@ from engine.interpolation.courses import (
 from engine.interpolation.inbetweens import Frame as Frame, Inbetweens as Inbetweens
 from engine.interpolation.one_interval import (
     frame_at as frame_at,
+    points_for_pins as points_for_pins,
     prepare_inbetweens as prepare_inbetweens,
+    solve_pins as solve_pins,
 )
 from engine.interpolation.passage import (
     Interval as Interval,
@@ -25,11 +28,6 @@ from engine.interpolation.passage import (
     Passage as Passage,
     sample_keyframes as sample_keyframes,
 )
-from engine.interpolation.pinned import (
-    points_for_pins as points_for_pins,
-    solve_pins as solve_pins,
-)
-from engine.interpolation.pins import Pins as Pins, PinSeries as PinSeries
 from engine.interpolation.preparation import (
     TWO_KEYFRAMES as TWO_KEYFRAMES,
     Prepared as Prepared,

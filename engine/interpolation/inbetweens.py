@@ -7,10 +7,10 @@ from typing import Self
 import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices, held_bytes
+from engine.interpolation.added.periods import Closing
+from engine.interpolation.added.pins import FoldedPins, PinSeries
 from engine.interpolation.blends import Blend
 from engine.interpolation.passage import Derivatives, Passage, weighted
-from engine.interpolation.periods import Closing
-from engine.interpolation.pins import FoldedPins, PinSeries
 from engine.interpolation.scaling import Scaling
 from engine.interpolation.series import Residual
 from engine.interpolation.sites import Sites

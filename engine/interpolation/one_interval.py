@@ -2,15 +2,17 @@
 
 import numpy as np
 
-from engine.arrays import Floats
+from engine.arrays import Complexes, Floats
+from engine.deform.relative.correction import BaseFrame, PointCorrector
 from engine.errors import EngineError
+from engine.interpolation.added.periods import Unclosed, close, to_conformal
+from engine.interpolation.added.pins import BaseAt, PinSeries, SegmentPins, pin
 from engine.interpolation.blends import BLENDS, Blend
 from engine.interpolation.inbetweens import Frame, Inbetweens
 from engine.interpolation.passage import Interval
-from engine.interpolation.periods import Unclosed, close, to_conformal
-from engine.interpolation.pins import PinSeries
 from engine.interpolation.scaling import Scaling
 from engine.interpolation.sites import Sites
+from engine.maps import Bounds
 from engine.variant import Variant
 
 # Times at which it is seen whether in-betweens around holes need a ρ.
@@ -49,6 +51,45 @@ def frame_at(
     else:
         found = _closed(BLENDS[variant].only_at(time, interval), interval.sites)
     return (found if pins is None else found.pinned(pins)).frame(time)
+
+
+def points_for_pins(corrector: PointCorrector) -> Complexes:
+    """Return at which points in-betweens tell what pins need: handles, nodes and samples."""
+    return np.concatenate([corrector.points, corrector.paths.nodes, corrector.boundary.points])
+
+
+def solve_pins(
+    base: Inbetweens, corrector: PointCorrector, pins: SegmentPins, bounds: Bounds
+) -> PinSeries:
+    """Find the corrections of a segment.
+
+    Parameters
+    ----------
+    base : Inbetweens
+        Without pins, at `points_for_pins`.
+    corrector : PointCorrector
+        For the handles.
+    pins : SegmentPins
+    bounds : Bounds
+        Limits that are kept at the samples, as far as the base keeps them.
+    """
+    count, nodes = len(corrector.points), len(corrector.paths.nodes)
+    parts = slice(count, count + nodes), slice(count + nodes, None)
+    places, blend = base.sites.paths.places, base.blend
+    # The linear blend has zeros of f_z, where L² / F would be infinite.
+    sign, is_squared = blend.sign or -1, blend.sign != 0
+
+    def base_at(time: float) -> BaseAt:
+        frame = base.frame(time)
+        by = np.exp(base.passage.plain_log_fz(time)[0][places])
+        if is_squared:
+            by = by * by / frame.fz
+        of_nodes, of_samples = (
+            BaseFrame(frame.fz[part], frame.fzbar[part].conj(), by[part], sign) for part in parts
+        )
+        return BaseAt(frame.positions[:count], base.anchor_position(time), of_nodes, of_samples)
+
+    return pin(corrector, base_at, pins, bounds, sign=sign, is_squared=is_squared)
 
 
 def _closed(blend: Blend, sites: Sites) -> Inbetweens:

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from engine.arrays import Complexes, Floats, as_points, freeze, held_bytes
 from engine.errors import EngineError
 from engine.geometry import ON_OUTLINE, Hole, deepest_point, diameter, require_inside
-from engine.interpolation.periods import PeriodBasis
+from engine.interpolation.added.periods import PeriodBasis
 from engine.maps import Boundary
 from engine.paths import (
     IntegrationPaths,

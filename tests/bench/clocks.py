@@ -5,10 +5,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from app.document import Clip, Spring, Track, TrackKey, clip_of
+from app.document import Clip, Spring, Track, TrackKey, clip_of, pinned_segments
 from app.motion import Animation
-from app.motion.inbetweens import FrameCorrection, is_corrected
+from app.motion.inbetweens import AutoPins, FrameCorrection, PoseSampler
 from app.storage import load_project, sample_images
+from engine.interpolation import finish
+from engine.streaming import Positions, Series, build_series
 from tests.bench.table import Row, Table, measure
 
 # Samples, their layers, a handle that wags, and by how many pixels: within and at the bounds.
@@ -37,7 +39,7 @@ def tables(extent: Extent) -> Iterator[Table]:
         figure = next(each for each in document.figures if each.name == layer)
         own = next(each.id for each in figure.handles if each.name == handle)
         clip = clip_of(document, figure.id)
-        rows = [_row("handles that stay", clip, extent.frames)] if is_corrected(clip) else []
+        rows = _pin_rows(clip, extent.frames)
         for size in sizes:
             keys = tuple(
                 TrackKey(frame=8 * number, place=size * (0, 1j, 0, -1j)[number % 4])
@@ -51,6 +53,39 @@ def tables(extent: Extent) -> Iterator[Table]:
         rows.append(_row(f"{handle!r} swings on a spring", swinging, extent.frames))
         count = sum(map(len, figure.domain.cages))
         yield Table(title=f"A frame of {name}'s {layer}, {count} cage vertices", rows=tuple(rows))
+
+
+def _pin_rows(clip: Clip, frames: int) -> list[Row]:
+    """Measure the segment of a clip with the most handles that stay, with and without them."""
+    segments = pinned_segments(clip)
+    pinned = [n for n, each in enumerate(segments) if each is not None and each.is_pinned.any()]
+    if not pinned:
+        return []
+    figure = clip.figure
+    handles = np.array([handle.position for handle in figure.handles])
+    loose = replace(clip, figure=replace(figure, stillness=False))
+    rows, plain = [], 0.0
+    for name, each in (("a segment without pins", loose), ("the same with pins", clip)):
+
+        def prepare(each: Clip = each) -> None:
+            own = PoseSampler(figure.domain, anchor=figure.anchor, points=handles)
+            AutoPins(each, figure.variant, own).inbetweens(pinned[0], own)
+
+        prepare()  # what is prepared once
+        seconds = measure(prepare, repeats=1)
+        mesh = PoseSampler(figure.domain, anchor=figure.anchor)
+        inbetweens = AutoPins(each, figure.variant, mesh).inbetweens(pinned[0], mesh)
+        series = finish(build_series(Positions.of(inbetweens, mesh.sites)))
+
+        def play(series: Series = series) -> None:
+            for time in np.linspace(0.0, 1.0, frames):
+                series.values(float(time))
+
+        frame = measure(play) / frames
+        plain = plain or frame
+        note = f"a streamed frame takes {1e3 * frame:.2f} ms, {frame / plain:.2f} times as much"
+        rows.append(Row(name=name, seconds=seconds, note=note))
+    return rows
 
 
 def _row(name: str, clip: Clip, frames: int) -> Row:
@@ -67,7 +102,7 @@ def _row(name: str, clip: Clip, frames: int) -> Row:
         found[:] = [corrections.at(clip.frames.first + 1.0 + number) for number in range(frames)]
 
     seconds = measure(play, repeats=1) / frames
-    steps = [each.steps for each in found if each is not None and each.phi is not None]
+    steps = [each.steps for each in found if each is not None]
     miss = max((max(each.misses.values(), default=0.0) for each in found if each), default=0.0)
     note = f"{np.mean(steps or [0]):.1f} steps, at most {max(steps, default=0)}"
     return Row(name=name, seconds=seconds, note=f"{note}; misses by {miss:.2f} px at most")

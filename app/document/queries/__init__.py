@@ -14,11 +14,6 @@ from app.document.queries.clips import (
     Clip as Clip,
     clip_of as clip_of,
 )
-from app.document.queries.fronts import (
-    USUAL_EXTENT as USUAL_EXTENT,
-    Front as Front,
-    fronts_at as fronts_at,
-)
 from app.document.queries.given import (
     digest_of_keys as digest_of_keys,
     is_as_given as is_as_given,
@@ -45,13 +40,16 @@ from app.document.queries.spans import (
 )
 from app.document.queries.stage import (
     AS_DRAWN as AS_DRAWN,
+    USUAL_EXTENT as USUAL_EXTENT,
     Composite as Composite,
+    Front as Front,
     Shot as Shot,
     TreeRow as TreeRow,
     alternates as alternates,
     camera_at as camera_at,
     carried_by as carried_by,
     composed as composed,
+    fronts_at as fronts_at,
     in_order as in_order,
     is_visible as is_visible,
     keyed_frame as keyed_frame,

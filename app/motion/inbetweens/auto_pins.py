@@ -1,4 +1,4 @@
-"""In-betweens of a clip's segments, with the handles that stay (`engine.interpolation.pins`)."""
+"""In-betweens of a clip's segments, with the handles that stay between their keys."""
 
 from functools import partial
 
@@ -16,13 +16,13 @@ from app.document import (
 from app.motion.inbetweens.pairs import pair_of
 from app.motion.inbetweens.pose_sampler import PoseSampler, corrector_for
 from engine.arrays import Complexes, Floats
-from engine.correction import Corrector
+from engine.deform.relative.correction import PointCorrector
 from engine.geometry import box_diagonal
 from engine.interpolation import (
     Frame,
     Inbetweens,
-    Pins,
     PinSeries,
+    SegmentPins,
     points_for_pins,
     solve_pins,
 )
@@ -49,7 +49,7 @@ class AutoPins:
     def __init__(self, clip: Clip, variant: Variant, sampler: PoseSampler) -> None:
         self.clip, self._variant, self._known = clip, variant, sampler
         self._segments = pinned_segments(clip)
-        self._prepared: tuple[Corrector, PoseSampler] | None = None
+        self._prepared: tuple[PointCorrector, PoseSampler] | None = None
 
     def inbetweens(self, number: int, sampler: PoseSampler) -> Inbetweens:
         """Return the in-betweens of a segment at the points of a sampler."""
@@ -79,7 +79,7 @@ class AutoPins:
         pins, bounds = self._pins(number, segment, sampler), self.clip.figure.bounds
         return solve_pins(self._base(number, sampler), corrector, pins, bounds)
 
-    def _prepare(self) -> tuple[Corrector, PoseSampler]:
+    def _prepare(self) -> tuple[PointCorrector, PoseSampler]:
         """Return what corrects the handles, and a sampler of all points that this looks at."""
         if self._prepared is None:
             figure, sites = self.clip.figure, self._known.sites
@@ -93,7 +93,7 @@ class AutoPins:
             self._prepared = corrector, sampler
         return self._prepared
 
-    def _pins(self, number: int, segment: PinnedSegment, sampler: PoseSampler) -> Pins:
+    def _pins(self, number: int, segment: PinnedSegment, sampler: PoseSampler) -> SegmentPins:
         """Return where the handles are wanted during a segment."""
         clip, figure = self.clip, self.clip.figure
         count, own = len(figure.handles), spans(clip)[number]
@@ -107,7 +107,7 @@ class AutoPins:
                 away = self._velocity(other, 1 - side, sampler)[:count]
                 slopes[side] = -self._pace(other, 1 - side) * away / pace
         anchor = figure.anchor if figure.hangs else None
-        return Pins(
+        return SegmentPins(
             is_pinned=segment.is_pinned,
             ends=np.array(ends),
             slopes=np.where(segment.fading, slopes, 0.0),

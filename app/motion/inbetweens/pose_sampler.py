@@ -12,7 +12,7 @@ from app.motion.inbetweens.content_cache import ContentCache, digest
 from app.motion.inbetweens.correction import FrameCorrection
 from app.motion.inbetweens.pairs import Pair
 from engine.arrays import Complexes, freeze
-from engine.correction import Corrector, corrector_of
+from engine.deform.relative.correction import PointCorrector, corrector_of
 from engine.dirichlet import Extension, HilbertTransform
 from engine.domain import Domain
 from engine.interpolation import (
@@ -44,11 +44,11 @@ _SAMPLED = ContentCache(64 * 2**20)
 MOST_PINNED = 512  # segments of one outline whose pins are kept
 
 
-def _nbytes(value: Sites | HilbertTransform | Extension | KeyframeSamples | Corrector) -> int:
+def _nbytes(value: Sites | HilbertTransform | Extension | KeyframeSamples | PointCorrector) -> int:
     return value.nbytes
 
 
-def corrector_for(boundary: Boundary, anchor: complex, points: Complexes) -> Corrector:
+def corrector_for(boundary: Boundary, anchor: complex, points: Complexes) -> PointCorrector:
     """Return what corrects frames of a domain with targets for points (m,)."""
     content = digest(*boundary.loops, *boundary.span.cages, boundary.weights, points)
     make = partial(corrector_of, boundary, anchor, points)

@@ -8,6 +8,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices
+from engine.interpolation.added.periods import Closing
 from engine.interpolation.courses import (
     Course,
     Joint,
@@ -18,7 +19,6 @@ from engine.interpolation.courses import (
 )
 from engine.interpolation.enclosing import Changes, Chord, EdgeCurves, EndValues, Patch
 from engine.interpolation.passage import Derivatives, Interval, Passage
-from engine.interpolation.periods import Closing
 from engine.interpolation.series import HoleConstants, Residual
 from engine.interpolation.sites import Sites
 from engine.maps import Boundary, Bounds, Enclosures, HarmonicMap

@@ -7,10 +7,10 @@ from typing import Any, Self
 import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices, freeze
+from engine.interpolation.added.periods import Closing
 from engine.interpolation.blends.blend import Blend, PairCurves
 from engine.interpolation.enclosing import Changes, Chord, EndValues, Patch, exponential
 from engine.interpolation.passage import Derivatives, Interval, weighted
-from engine.interpolation.periods import Closing
 from engine.interpolation.scaling import SharpScaling
 from engine.interpolation.series import combined
 from engine.interpolation.sites import Sites

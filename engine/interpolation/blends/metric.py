@@ -8,9 +8,9 @@ handful of Dirichlet problems serve every time.
 
 Around holes ln |f_z| differs from what Equation (13) asks for: by a constant on the boundary of
 each hole, which no single-valued f_z does without (`engine.dirichlet`), and by the h that closes
-the periods and makes the constants good as far as it can (`engine.interpolation.periods`). Between
-hard keyframes the map may then leave their bounds, and even fold. There η is scaled by a ρ, as in
-the scaled η variant.
+the periods and makes the constants good as far as it can (`engine.interpolation.added.periods`).
+Between hard keyframes the map may then leave their bounds, and even fold. There η is scaled by a ρ,
+as in the scaled η variant.
 """
 
 from collections.abc import Callable
@@ -22,6 +22,7 @@ import numpy as np
 from engine.arrays import Complexes, Floats, Indices
 from engine.dirichlet import Extension, Refinement
 from engine.errors import EngineError
+from engine.interpolation.added.periods import Closing
 from engine.interpolation.blends.blend import PairCurves
 from engine.interpolation.blends.eta import EtaBlend
 from engine.interpolation.blends.outline import (
@@ -38,7 +39,6 @@ from engine.interpolation.enclosing import (
     from_metric,
 )
 from engine.interpolation.passage import Interval
-from engine.interpolation.periods import Closing
 from engine.interpolation.scaling import Worst, allowed
 from engine.interpolation.series import HoleConstants, PiecewiseSeries, Residual, one, separate
 from engine.interpolation.sites import Sites

@@ -78,7 +78,7 @@ class Changes(NamedTuple):
     Parameters
     ----------
     correction : Patch
-        Re h (`engine.interpolation.periods`).
+        Re h (`engine.interpolation.added.periods`).
     rho : Patch
         ln ρ, by which conj(f_z̄) is scaled.
     factor : Patch

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from engine.arrays import Complexes, Floats, Indices
+from engine.interpolation.added.periods import Closing
 from engine.interpolation.enclosing import Patch, Subdivision, followed
-from engine.interpolation.periods import Closing
 from engine.interpolation.series import HoleConstants, PiecewiseSeries
 from engine.maps import Boundary
 

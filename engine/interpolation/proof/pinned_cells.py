@@ -4,6 +4,7 @@ import numpy as np
 
 from engine.arrays import Complexes, Floats, ratio
 from engine.errors import EngineError
+from engine.interpolation.added.pins import FoldedPins
 from engine.interpolation.enclosing import (
     EdgeCurves,
     Patch,
@@ -13,7 +14,6 @@ from engine.interpolation.enclosing import (
     log_modulus_of_metric,
 )
 from engine.interpolation.inbetweens import Inbetweens
-from engine.interpolation.pins import FoldedPins
 from engine.interpolation.proof.correction import Correction
 from engine.interpolation.proof.enclosing_cells import CellEnclosures, CellResults, Cells, patch_of
 from engine.maps import Enclosures

@@ -2,7 +2,7 @@
 
 In: keyframes, an outline, the course through the keys, bounds.
 Out: the factor ρ at any time.
-Imports: `engine.maps`, `engine.interpolation.courses.course`, `engine.interpolation.periods`.
+Imports: `engine.maps`, `engine.interpolation.courses.course`, `engine.interpolation.added.periods`.
 """
 
 from engine.interpolation.scaling.pointwise import (

@@ -8,8 +8,8 @@ import numpy as np
 
 from engine.arrays import Booleans, Complexes, Floats, Indices
 from engine.geometry import box_diagonal, sample_graded
+from engine.interpolation.added.periods import Closing
 from engine.interpolation.courses import Course
-from engine.interpolation.periods import Closing
 from engine.interpolation.scaling.outline_curves import (
     PARTS,
     ROUNDS,

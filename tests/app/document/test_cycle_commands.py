@@ -14,7 +14,7 @@ from app.document.commands.cycle_commands import TWO_POSES_SHOWN
 from app.document.keyframe import Handle, Target
 from app.document.layering import Switch
 from app.document.queries.clips import clip_of
-from app.document.queries.fronts import fronts_at
+from app.document.queries.stage.fronts import fronts_at
 from app.document.queries.stage.sight import is_visible
 from app.document.queries.tracks import track_at
 from app.document.settings import FrameRange

@@ -15,7 +15,7 @@ from app.document.commands.staging.layer_commands import LAST_LAYER
 from app.document.layering import Attachment, Switch
 from app.document.model import HANGS_ON_ITSELF, NO_FIGURE
 from app.document.queries.clips import clip_of
-from app.document.queries.fronts import fronts_at
+from app.document.queries.stage.fronts import fronts_at
 from app.document.queries.stage.sight import is_visible
 from app.errors import LissomError
 

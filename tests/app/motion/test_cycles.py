@@ -13,8 +13,8 @@ from app.document.commands import cycle_commands, filming_commands, key_commands
 from app.document.keyframe import Handle, Passing, Target
 from app.document.layering import MoveKey, OpacityKey, Placing, Switch
 from app.document.queries.clips import clip_of
-from app.document.queries.fronts import fronts_at
 from app.document.queries.spans import intervals
+from app.document.queries.stage.fronts import fronts_at
 from app.document.queries.stage.moves import in_order, movement_at, opacity_at
 from app.document.queries.stage.sight import is_visible
 from app.document.queries.timeline import exported_frames, time_of

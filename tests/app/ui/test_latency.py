@@ -5,12 +5,12 @@ from itertools import count
 import numpy as np
 import pytest
 
-from app.document import Pose, intervals, time_of, transits
+from app.document import Pose, intervals, time_of
 from app.document.commands import key_commands
 from app.document.keyframe import Target
 from app.editor.actions import editing, keys, playback, posing
 from app.motion import PoseSampler
-from app.motion.intervals import pair_of
+from app.motion.inbetweens import AutoPins, pair_of
 
 
 def pull(window, bar, by):
@@ -116,8 +116,8 @@ def check(bent):
             if shown.stand_in is not None:
                 assert shown.stand_in.pair == pair_of(clip, moment.interval)
                 moment = moment._replace(weight=shown.stand_in.weight)
-            transit, figure = transits(clip)[moment.interval], clip.figure
-            exact = sampler.inbetweens_of(transit, figure.bounds, figure.variant)
+            pins = AutoPins(clip, clip.figure.variant, sampler)
+            exact = pins.inbetweens(moment.interval, sampler)
             expected = exact.frame(moment.weight).positions
             if shown.correction is not None:
                 expected = shown.correction.on(expected, shown.mesh.coordinates)

@@ -489,7 +489,7 @@ def test_a_pose_elsewhere_comes_to_rest_where_frames_cannot_be_corrected(
     def broken(*_):
         raise EngineError("no way")
 
-    for name in ("_begin", "_find"):
+    for name in ("_find",):
         monkeypatch.setattr(f"app.motion.corrected_frames.{name}", broken)
     keyed.chosen_track = None
     playback.scrub(window.session, LAST)

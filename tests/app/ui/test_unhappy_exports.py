@@ -523,7 +523,8 @@ def test_export_and_in_betweens_of_the_window_do_not_wait_for_each_other(window,
     posing.remove_handles(window.session, frozenset({0}))
     window.act(exporting.start, tmp_path / "more frames")
     window.session.jobs.settle()
-    assert sampler._samples == known
+    # In-betweens of the same maps, whatever handles they have.
+    assert {id(pose.phi) for pose in sampler._samples} == {id(pose.phi) for pose in known}
 
 
 def test_picture_may_go_once_it_is_open(window, tmp_path):

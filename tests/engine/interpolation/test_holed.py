@@ -22,8 +22,8 @@ from engine.interpolation import (
     prepare_sites,
     sample_keyframes,
 )
-from engine.interpolation.periods.basis import as_complex
-from engine.interpolation.periods.closing import Unclosed, correction
+from engine.interpolation.added.periods.basis import as_complex
+from engine.interpolation.added.periods.closing import Unclosed, correction
 from engine.interpolation.proof import bisection, prove
 from engine.maps import Boundary, Bounds, HarmonicMap, distortion
 from engine.paths import root_sheets

@@ -7,9 +7,9 @@ import pytest
 from interpolation_shapes import bar, bent, inner_points, stage_of
 from numpy.testing import assert_allclose
 
-from engine.correction import corrector_of, solve
-from engine.interpolation import Pins, Variant, finish, points_for_pins, prove, solve_pins
-from engine.interpolation.pins import pinning
+from engine.deform.relative.correction import corrector_of, solve
+from engine.interpolation import SegmentPins, Variant, finish, points_for_pins, prove, solve_pins
+from engine.interpolation.added.pins import pinning
 from engine.maps import Bounds
 from engine.streaming import Positions, build_series
 
@@ -27,7 +27,7 @@ def keyframes():
 def pins_of(maps, *, pinned=(True, True, False), anchored=False):
     ends = np.array([f(HANDLES) for f in maps])
     none = np.zeros((2, 3))
-    return Pins(
+    return SegmentPins(
         is_pinned=np.array(pinned),
         ends=ends,
         slopes=none + 0j,
@@ -50,7 +50,7 @@ def pinned(variant, *, anchored=False, bounds=WIDE):
 
 def at(points, variant, **options):
     """The same at other points."""
-    base, known, _ = pinned(variant, **options)
+    _, known, _ = pinned(variant, **options)
     series = known.pins.pins
     return stage_of(SHAPE, points, ANCHOR).between(keyframes(), variant).pinned(series)
 
@@ -159,7 +159,7 @@ def test_limits_are_kept_where_pins_ask_too_much():
     corrector = corrector_of(stage.sites.boundary, ANCHOR, HANDLES)
     base = stage_of(SHAPE, points_for_pins(corrector), ANCHOR).between(maps, Variant.NU)
     own = pins_of(maps)
-    far = Pins(
+    far = SegmentPins(
         is_pinned=np.array([True, True, True]),
         ends=own.ends,
         slopes=np.array([[3j, 0, 0], [0, 0, 0]]),

@@ -11,6 +11,11 @@ from app.document.queries.stage.alternates import (
 )
 from app.document.queries.stage.clipping import seen_alone as seen_alone
 from app.document.queries.stage.compositing import Composite as Composite, composed as composed
+from app.document.queries.stage.fronts import (
+    USUAL_EXTENT as USUAL_EXTENT,
+    Front as Front,
+    fronts_at as fronts_at,
+)
 from app.document.queries.stage.layer_tree import (
     TreeRow as TreeRow,
     carried_by as carried_by,

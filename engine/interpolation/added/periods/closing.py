@@ -32,7 +32,7 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 
 from engine.arrays import Complexes, Floats, freeze
-from engine.interpolation.periods.basis import PeriodBasis, as_complex
+from engine.interpolation.added.periods.basis import PeriodBasis, as_complex
 from engine.interpolation.series import PiecewiseSeries, Residual, separate
 
 CLOSED = 1e-14  # of the diagonal: where the iteration may end

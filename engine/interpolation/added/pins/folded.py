@@ -1,4 +1,4 @@
-"""Pins folded into in-betweens: what becomes of their derivatives at any points."""
+"""SegmentPins folded into in-betweens: what becomes of their derivatives at any points."""
 
 from dataclasses import dataclass
 from typing import Self
@@ -6,8 +6,8 @@ from typing import Self
 import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices
+from engine.interpolation.added.pins.pinning import PinSeries
 from engine.interpolation.passage import Derivatives, Passage
-from engine.interpolation.pins.pinning import PinSeries
 from engine.interpolation.series import Residual
 from engine.maps import Span
 

@@ -3,13 +3,13 @@
 from dataclasses import dataclass
 
 from engine.arrays import Complexes, held_bytes
-from engine.correction.paths import PointPaths
-from engine.correction.variables import Variables
+from engine.deform.relative.correction.paths import PointPaths
+from engine.deform.relative.correction.variables import Variables
 from engine.maps import Boundary
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Corrector:
+class PointCorrector:
     """Corrections of frames of one domain with targets for some of its points.
 
     Parameters
@@ -32,10 +32,10 @@ class Corrector:
         return held_bytes(self, but=(self.boundary,))
 
 
-def corrector_of(boundary: Boundary, anchor: complex, points: Complexes) -> Corrector:
+def corrector_of(boundary: Boundary, anchor: complex, points: Complexes) -> PointCorrector:
     """Prepare corrections with targets for points (m,); the anchor is where integrals begin."""
     paths = PointPaths.of(boundary, anchor, points)
-    return Corrector(
+    return PointCorrector(
         boundary=boundary,
         points=points,
         paths=paths,

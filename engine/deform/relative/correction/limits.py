@@ -12,8 +12,8 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices
-from engine.correction.corrector import Corrector
-from engine.correction.frame import BaseFrame
+from engine.deform.relative.correction.corrector import PointCorrector
+from engine.deform.relative.correction.frame import BaseFrame
 from engine.maps import Bounds
 
 MARGIN = 0.02  # of the walls inside the limits, in logarithms
@@ -39,24 +39,24 @@ class Felt(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Walls:
+class LimitWalls:
     """The walls of a frame at samples of the boundary.
 
     Parameters
     ----------
-    corrector : Corrector
+    corrector : PointCorrector
     base : BaseFrame
         At the samples (p,).
     places : float64, shape (3, p)
         Where the walls are, of ln σ_a, −ln σ_b and k.
     """
 
-    corrector: Corrector
+    corrector: PointCorrector
     base: BaseFrame
     places: Floats
 
     @classmethod
-    def of(cls, corrector: Corrector, base: BaseFrame, bounds: Bounds) -> Self:
+    def of(cls, corrector: PointCorrector, base: BaseFrame, bounds: Bounds) -> Self:
         """Put walls inside bounds, or where the base is."""
         a, b = np.abs(base.fz), np.abs(base.g)
         inside = (

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.arrays import Booleans, Complexes, Floats
-from engine.correction import Targets
+from engine.deform.relative.correction import Targets
 from engine.geometry import best_rigid
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Pins:
+class SegmentPins:
     """Handles that stay from one keyframe to the next, and how the others leave and reach them.
 
     A pinned handle goes from its place at the first keyframe to that at the second one as 3t² − 2t³

@@ -5,8 +5,11 @@ Out: the correction as few functions times series in time.
 Imports: `engine.maps`, `engine.paths`, `engine.interpolation.series`.
 """
 
-from engine.interpolation.periods.basis import PeriodBasis as PeriodBasis, as_complex as as_complex
-from engine.interpolation.periods.closing import (
+from engine.interpolation.added.periods.basis import (
+    PeriodBasis as PeriodBasis,
+    as_complex as as_complex,
+)
+from engine.interpolation.added.periods.closing import (
     Closing as Closing,
     Unclosed as Unclosed,
     close as close,

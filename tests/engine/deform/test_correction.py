@@ -9,9 +9,9 @@ from holed_shapes import ring
 from numpy.testing import assert_allclose
 from scipy.optimize import minimize
 
-from engine.correction import BaseFrame, Targets, Walls, corrector_of, solve
-from engine.correction.frame import CorrectedFrame
-from engine.correction.paths import PointPaths
+from engine.deform.relative.correction import BaseFrame, LimitWalls, Targets, corrector_of, solve
+from engine.deform.relative.correction.frame import CorrectedFrame
+from engine.deform.relative.correction.paths import PointPaths
 from engine.maps import Boundary, Bounds
 
 SHAPES = {"bar": (bar_boundary, BAR_POINTS), "star": (star_boundary, STAR_POINTS)}
@@ -209,7 +209,7 @@ def test_the_same_is_found_elsewhere_and_turned():
 def test_limits_are_kept_out_of_reach():
     known, bounds = corrector("bar"), Bounds(k=0.3, sigma_a=1.3, sigma_b=0.75)
     base, samples = (bent(z, amount=0.02) for z in (known.paths.nodes, known.boundary.points))
-    walls = Walls.of(known, samples, bounds)
+    walls = LimitWalls.of(known, samples, bounds)
     moves = moves_of(known.points, 1.5j)
     found = solve(known, base, Targets(moves, np.ones(3), is_anchored=False), walls)
     assert found.is_held_back

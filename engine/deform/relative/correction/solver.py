@@ -9,8 +9,8 @@ step solves the model in which the rows J are linear, exactly, in the few dimens
     (J M⁻¹ Jᵀ + C) μ + T t = −(r − J M⁻¹ g),    Tᵀ μ = 0,    δ = M⁻¹ (Jᵀ μ − g),
 
 and then what the rows' own curvature changes of it, by conjugate gradients. Only where a limit of
-the distortion is passed, or a pull would be too large, it is solved again with walls
-(`engine.correction.limits`), which get stiffer, and points that give in beyond their largest pull.
+the distortion is passed, or a pull would be too large, it is solved again with walls (`limits`
+beside this module), which get stiffer, and points that give in beyond their largest pull.
 """
 
 from dataclasses import dataclass
@@ -20,10 +20,10 @@ from typing import NamedTuple
 import numpy as np
 
 from engine.arrays import Complexes, Floats
-from engine.correction.corrector import Corrector
-from engine.correction.frame import BaseFrame, CorrectedFrame
-from engine.correction.limits import Felt, Walls
-from engine.correction.step_model import PointRows, StepModel
+from engine.deform.relative.correction.corrector import PointCorrector
+from engine.deform.relative.correction.frame import BaseFrame, CorrectedFrame
+from engine.deform.relative.correction.limits import Felt, LimitWalls
+from engine.deform.relative.correction.step_model import PointRows, StepModel
 
 SMALL = 1e-6  # a step in h: where the iteration ends
 MET = 1e-11  # of the diagonal: points that are where they are wanted
@@ -52,7 +52,7 @@ class Targets(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Found:
+class PointSolution:
     """A correction.
 
     Parameters
@@ -76,29 +76,29 @@ class Found:
 
 
 def solve(
-    corrector: Corrector,
+    corrector: PointCorrector,
     base: BaseFrame,
     targets: Targets,
-    walls: Walls | None = None,
-    start: Found | None = None,
-) -> Found:
+    walls: LimitWalls | None = None,
+    start: PointSolution | None = None,
+) -> PointSolution:
     """Find the correction of one frame.
 
     Parameters
     ----------
-    corrector : Corrector
+    corrector : PointCorrector
     base : BaseFrame
         At the nodes of the corrector's paths.
     targets : Targets
-    walls : Walls, optional
+    walls : LimitWalls, optional
         Not to be passed.
-    start : Found, optional
+    start : PointSolution, optional
         Of a frame that is much the same.
     """
     problem = _Problem(corrector, base, targets)
     count = 2 * corrector.variables.count
     if not problem.is_asked:
-        return Found(
+        return PointSolution(
             x=np.zeros(count),
             shift=0j,
             misses=np.zeros(len(targets.moves)),
@@ -141,7 +141,7 @@ class _State(NamedTuple):
 class _Problem:
     """One frame: its points as rows that are scaled by the roots of their weights."""
 
-    def __init__(self, corrector: Corrector, base: BaseFrame, targets: Targets) -> None:
+    def __init__(self, corrector: PointCorrector, base: BaseFrame, targets: Targets) -> None:
         self.corrector, self.base = corrector, base
         holes = len(corrector.boundary.holes)
         self.count = len(targets.moves)
@@ -169,13 +169,15 @@ class _Problem:
         lack = self.roots * (frame.places() + shift * self.of_points - self.wanted)
         return _State(frame, shift, lack, np.zeros_like(lack) if pulls is None else pulls)
 
-    def found(self, at: _State, steps: int, *, is_held_back: bool) -> Found:
+    def found(self, at: _State, steps: int, *, is_held_back: bool) -> PointSolution:
         """Pack the end of a search."""
         misses = np.abs(at.frame.places() + at.shift - self.wanted)[: self.count]
-        return Found(x=at.x, shift=at.shift, misses=misses, steps=steps, is_held_back=is_held_back)
+        return PointSolution(
+            x=at.x, shift=at.shift, misses=misses, steps=steps, is_held_back=is_held_back
+        )
 
     def solved(
-        self, at: _State, walls: Walls | None = None, stiffness: float = 0.0
+        self, at: _State, walls: LimitWalls | None = None, stiffness: float = 0.0
     ) -> tuple[_State, int]:
         """Take steps from a state until they are small."""
         most = np.where(self.of_points > 0, LARGEST_PULL, inf) if walls is not None else inf

@@ -7,8 +7,14 @@ from typing import NamedTuple
 import numpy as np
 
 from engine.arrays import Complexes, Floats, freeze
-from engine.correction import BaseFrame, Corrector, Found, Walls, solve
-from engine.interpolation.pins.targets import Pins
+from engine.deform.relative.correction import (
+    BaseFrame,
+    LimitWalls,
+    PointCorrector,
+    PointSolution,
+    solve,
+)
+from engine.interpolation.added.pins.targets import SegmentPins
 from engine.interpolation.series import PiecewiseSeries, separate
 from engine.maps import Bounds
 
@@ -75,9 +81,9 @@ class PinSeries:
 
 
 def pin(
-    corrector: Corrector,
+    corrector: PointCorrector,
     base_at: Callable[[float], BaseAt],
-    pins: Pins,
+    pins: SegmentPins,
     bounds: Bounds,
     *,
     sign: int,
@@ -87,24 +93,24 @@ def pin(
 
     Parameters
     ----------
-    corrector : Corrector
+    corrector : PointCorrector
         For the handles.
     base_at : callable
         Returns the base at a time in [0, 1].
-    pins : Pins
+    pins : SegmentPins
     bounds : Bounds
         Limits that are kept at the samples, as far as the base keeps them.
     sign, is_squared
         As in `PinSeries`.
     """
     known, size = corrector.variables, corrector.boundary.size
-    solved: dict[float, Found] = {}
+    solved: dict[float, PointSolution] = {}
 
     def at(time: float) -> Floats:
         base = base_at(time)
         targets = pins.targets(time, base.places, base.anchor)
         near = min(solved, key=lambda other: abs(other - time), default=None)
-        walls = Walls.of(corrector, base.samples, bounds)
+        walls = LimitWalls.of(corrector, base.samples, bounds)
         found = solve(corrector, base.nodes, targets, walls, None if near is None else solved[near])
         solved[time] = found
         return np.append(found.x, [found.shift.real / size, found.shift.imag / size])
@@ -130,6 +136,6 @@ def pin(
     )
 
 
-def _largest(corrector: Corrector, x: Floats) -> float:
+def _largest(corrector: PointCorrector, x: Floats) -> float:
     values = corrector.variables.at_samples
     return float(max(np.abs(values.h_of(x)).max(), np.abs(values.q_of(x)).max()))

@@ -1,4 +1,4 @@
-"""The functions that close periods around holes (`engine.interpolation.periods`)."""
+"""The functions that close periods around holes (`engine.interpolation.added.periods`)."""
 
 from dataclasses import dataclass
 from itertools import pairwise

@@ -6,8 +6,8 @@ import numpy as np
 import scipy.linalg
 
 from engine.arrays import Complexes, Floats, Indices
-from engine.correction.frame import Bending
-from engine.correction.limits import Felt
+from engine.deform.relative.correction.frame import Bending
+from engine.deform.relative.correction.limits import Felt
 
 RIDGE = 1e-13  # of the mean of the rows' products
 MOST_BENDS = 30  # steps of the conjugate gradients

@@ -14,8 +14,8 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from engine.arrays import Complexes, Floats
-from engine.correction.corrector import Corrector
-from engine.correction.variables import Values
+from engine.deform.relative.correction.corrector import PointCorrector
+from engine.deform.relative.correction.variables import Values
 
 
 class BaseFrame(NamedTuple):
@@ -56,14 +56,14 @@ class CorrectedFrame:
 
     Parameters
     ----------
-    corrector : Corrector
+    corrector : PointCorrector
     base : BaseFrame
     x : float64, shape (2N,)
     conformal, own, mixed, factor : complex128, shape (s,)
         F e^h, G e^{σh}, q K e^h and K e^h.
     """
 
-    corrector: Corrector
+    corrector: PointCorrector
     base: BaseFrame
     x: Floats
     conformal: Complexes
@@ -72,7 +72,7 @@ class CorrectedFrame:
     factor: Complexes
 
     @classmethod
-    def of(cls, corrector: Corrector, base: BaseFrame, x: Floats) -> Self:
+    def of(cls, corrector: PointCorrector, base: BaseFrame, x: Floats) -> Self:
         """Correct a frame."""
         values = corrector.variables.at_nodes
         conformal, own, factor = base.corrected(values, x)

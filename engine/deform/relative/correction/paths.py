@@ -66,7 +66,7 @@ class PointPaths:
         return cls(nodes=freeze(nodes), weights=freeze(weights))
 
 
-Leg = tuple[complex, complex]
+PathLeg = tuple[complex, complex]
 
 
 def _are_fine(pieces: Pieces, near: cKDTree, size: float) -> Booleans:
@@ -82,7 +82,9 @@ def _distances(places: Complexes, near: cKDTree) -> Floats:
     return np.asarray(near.query(as_xy(places.ravel()))[0]).reshape(places.shape)
 
 
-def _ways(boundary: Boundary, anchor: complex, points: Complexes, near: cKDTree) -> list[list[Leg]]:
+def _ways(
+    boundary: Boundary, anchor: complex, points: Complexes, near: cKDTree
+) -> list[list[PathLeg]]:
     """Return the legs of a way to each point: the cheapest chain of corners of a known way."""
     outline, *holes = boundary.loops
     network = scattered_network(outline, points, np.array([anchor]), holes=holes)
@@ -99,8 +101,8 @@ def _ways(boundary: Boundary, anchor: complex, points: Complexes, near: cKDTree)
     )
     prices = _prices(starts, ends, near, boundary.size)
     prices[leave_region(boundary.loops, starts, ends)] = np.inf
-    ways: list[list[Leg]] = []
-    used: set[Leg] = set()
+    ways: list[list[PathLeg]] = []
+    used: set[PathLeg] = set()
     parts = np.split(prices, np.cumsum([len(legs) for legs in tried])[:-1])
     for chain, legs, own in zip(chains, tried, parts, strict=True):
         # Legs of the known way are inside, whatever rounding says.
@@ -128,14 +130,16 @@ def _prices(starts: Complexes, ends: Complexes, near: cKDTree, size: float) -> F
     return np.maximum(prices, 1.0)
 
 
-def _cheapest(chain: list[complex], tried: Indices, prices: Floats, used: set[Leg]) -> list[Leg]:
+def _cheapest(
+    chain: list[complex], tried: Indices, prices: Floats, used: set[PathLeg]
+) -> list[PathLeg]:
     """Return the legs of the cheapest way along a chain."""
     best, came = [0.0] + [np.inf] * (len(chain) - 1), [0] * len(chain)
     for (i, j), price in zip(tried.tolist(), prices.tolist(), strict=True):
         cost = best[i] + price * (SHARED if (chain[i], chain[j]) in used else 1.0)
         if cost < best[j]:
             best[j], came[j] = cost, i
-    legs: list[Leg] = []
+    legs: list[PathLeg] = []
     j = len(chain) - 1
     while j:
         legs.append((chain[came[j]], chain[j]))

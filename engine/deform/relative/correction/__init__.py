@@ -1,0 +1,19 @@
+"""Corrections of in-betweens in the variables in which they are blended.
+
+In: f_z and conj(f_z̄) of a frame at the nodes of paths to some points, and where those are wanted.
+Out: two holomorphic functions h and q; with them the frame's points are where they are wanted, and
+its distortion is known from moduli.
+Imports: `engine.maps`, `engine.paths`.
+"""
+
+from engine.deform.relative.correction.corrector import (
+    PointCorrector as PointCorrector,
+    corrector_of as corrector_of,
+)
+from engine.deform.relative.correction.frame import BaseFrame as BaseFrame
+from engine.deform.relative.correction.limits import LimitWalls as LimitWalls
+from engine.deform.relative.correction.solver import (
+    PointSolution as PointSolution,
+    Targets as Targets,
+    solve as solve,
+)
