@@ -32,8 +32,6 @@ from engine.maps import Limits
 # much softer.
 LEAST_TIGHTENING = 0.1
 SOFTNESS = 0.003
-# One sample in so many enters the sketch of the Hessian.
-STRIDE = 6
 # A hand that gives in stops at bounds by itself, with full steps, after which the weight would fall
 # and the shape stick to them: the barrier weighs at least this much.
 LEAST_GIVING = 0.03
@@ -48,7 +46,7 @@ def follow_hand(shape: HeldShape, state: State, wish: Wish) -> State:
         state.map,
         state.certificate,
         required=step.required,
-        sketch=state.sketch,
+        preconditioner=state.preconditioner,
     )
     free = replace(step.objective, handles=shape.handles, wish=wish, barrier=None)
     schedule = step.schedule.after(
@@ -84,7 +82,7 @@ def follow_hand(shape: HeldShape, state: State, wish: Wish) -> State:
         duals=duals,
         wish=wish,
         handles=shape.handles,
-        sketch=taken.sketch,
+        preconditioner=taken.preconditioner,
     )
 
 
@@ -135,9 +133,7 @@ def _prepare(shape: HeldShape, state: State, wish: Wish) -> _Step:
     return _Step(
         jet=jet,
         barrier=barrier,
-        objective=replace(
-            free, handles=handles, wish=wish, barrier=barrier, stride=STRIDE, secant=True
-        ),
+        objective=replace(free, handles=handles, wish=wish, barrier=barrier, secant=True),
         limits=limits,
         required=required,
         schedule=schedule,

@@ -65,7 +65,7 @@ def _drag(boundary: Boundary) -> Table:
     moving = _steps(deformer, [handles.wish(targets) for targets in arc])
     resting = _steps(deformer, [wish] * DRAG_STEPS)
     state = resting[DRAG_STEPS // 2].start
-    objective = Objective(boundary=boundary, handles=handles, wish=wish, stride=4)
+    objective = Objective(boundary=boundary, handles=handles, wish=wish)
     jet = objective.jet(*state.map.columns)
     radial = objective.radial(jet)
     rows = (
