@@ -227,16 +227,19 @@ class Drag:
                 break
         return replace(self, rig=rig, deformer=deformer, state=state)
 
-    def let_go(self, targets: Mapping[int, Target], hands: Sequence[Hand]) -> Mapping[int, Target]:
-        """Return the targets of what hands have pulled, joints too, once these let go here."""
-        wish = self.rig.wish(targets, self.pins, hands)
-        places = self.deformer.positions(self.state)
-        left = wish.let_go(places, self.deformer.handles.stiffness).positions
+    def release(
+        self, targets: Mapping[int, Target], hands: Sequence[Hand]
+    ) -> tuple["Drag", Mapping[int, Target]]:
+        """Return the drag after hands let go here, and the new targets of what these have pulled.
+
+        Joints that gave in are among them. A pose at rest is at rest towards the new targets, too.
+        """
+        state, left = self.deformer.release(self.state, self.rig.wish(targets, self.pins, hands))
         giving = (*hands, *self.rig.yielding(hands))
         pulled = {identity for hand in giving for identity in hand.handles}
-        return {
+        return replace(self, state=state), {
             handle.id: replace(targets[handle.id], position=complex(place))
-            for handle, place in zip(self.rig.handles, left, strict=False)
+            for handle, place in zip(self.rig.handles, left.positions, strict=False)
             if handle.id in pulled
         }
 

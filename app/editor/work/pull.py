@@ -177,21 +177,27 @@ class Pull(Promise):
         self.hands = {}
         self.steps = 0
 
-    def settle_for(self, places: Mapping[int, Target]) -> None:
-        """Let what hands pulled be wanted at these places from now on."""
-        asked = self.asked or {}
-        moves = {i: place.position - asked[i].position for i, place in places.items()}
-        for gesture in self.hands:
-            self.wishes[gesture] = partial(_moved, self.wishes[gesture], moves)
+    def release(self) -> None:
+        """Let what hands pulled be wanted where it is from now on; a pose at rest stays."""
+        if self.drag is None or self.targets is None:
+            return
+        hands = self.hands
+        self.drag, places = self.drag.release(self.targets, tuple(hands.values()))
+        for gesture in hands:
+            others = {i for other in hands if other is not gesture for i in hands[other].handles}
+            own = {i: place for i, place in places.items() if i not in others}
+            self.wishes[gesture] = partial(_replaced, self.wishes[gesture], own)
         self.hands = {}
         self.aim()
+        self.solved = (self.targets, ())
+        self.take(self.drag.pose(self.targets))
 
     @property
     def reached(self) -> Mapping[int, Target]:
         """Where handles that hands pull would be wanted if these let go now, by their ids."""
         if self.drag is None or self.targets is None or not self.hands:
             return {}
-        return self._moved(self.drag.let_go(self.targets, tuple(self.hands.values())))
+        return self._moved(self.drag.release(self.targets, tuple(self.hands.values()))[1])
 
     @property
     def asked(self) -> Mapping[int, Target] | None:
@@ -269,11 +275,11 @@ class Pull(Promise):
         return of
 
 
-def _moved(
-    wish: WishFrom, moves: Mapping[int, complex], start: Start, targets: Mapping[int, Target]
+def _replaced(
+    wish: WishFrom, places: Mapping[int, Target], start: Start, targets: Mapping[int, Target]
 ) -> Mapping[int, Target]:
-    """Return what is wished, moved as far as hands have given in."""
-    return _moved_targets(wish(start, targets), moves)
+    """Return what is wished, but for handles that are wanted at other places by now."""
+    return {**wish(start, targets), **wherever(places, start, targets)}
 
 
 def _moved_targets(

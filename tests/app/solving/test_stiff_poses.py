@@ -215,9 +215,11 @@ def test_a_hand_that_is_pulled_too_far_draws_the_elbow_straight_and_stops():
     assert abs(shoulder - 30 - 40j) < 1
     assert abs(elbow.imag - 40) < 3
     # Let go, it stays: the elbow is wanted where it came to, too.
-    left = {**targets, **drag.let_go(targets, hands)}
+    released, places = drag.release(targets, hands)
+    left = {**targets, **places}
     assert left.keys() == targets.keys()
     assert left[0] == targets[0]
+    assert released.towards(left, 1).state is released.state
     after = drag.towards(left, 200)
     assert after.is_over
     assert np.abs(after.rig.deformer.positions(after.state)[1:] - [elbow, hand]).max() < 1
