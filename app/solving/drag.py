@@ -232,16 +232,21 @@ class Drag:
     ) -> tuple["Drag", Mapping[int, Target]]:
         """Return the drag after hands let go here, and the new targets of what these have pulled.
 
-        Joints that gave in are among them. A pose at rest is at rest towards the new targets, too.
+        Joints that gave in are among them. A pose at rest is at rest towards the new targets, too,
+        unless a bone at its limit pulls at a handle that stays.
         """
-        state, left = self.deformer.release(self.state, self.rig.wish(targets, self.pins, hands))
+        wish = self.rig.wish(targets, self.pins, hands)
+        at = self.deformer.positions(self.state)
+        left = wish.let_go(at, self.deformer.handles.stiffness).positions
         giving = (*hands, *self.rig.yielding(hands))
         pulled = {identity for hand in giving for identity in hand.handles}
-        return replace(self, state=state), {
+        places = {
             handle.id: replace(targets[handle.id], position=complex(place))
-            for handle, place in zip(self.rig.handles, left.positions, strict=False)
+            for handle, place in zip(self.rig.handles, left, strict=False)
             if handle.id in pulled
         }
+        wanted = self.rig.wish({**targets, **places}, self.pins)
+        return replace(self, state=self.deformer.release(self.state, wanted)), places
 
     def pose(self, targets: Mapping[int, Target]) -> Pose:
         """Return where the drag is, as a pose with these wishes."""

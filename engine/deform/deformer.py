@@ -142,18 +142,18 @@ class Deformer(HeldShape):
             return follow_hand(self, state, wish)
         return search_on(self, state, state.search)
 
-    def release(self, state: State, wish: Wish) -> tuple[State, Wish]:
-        """Return the state and the wish after all hands of a wish let go where handles are.
+    def release(self, state: State, left: Wish) -> State:
+        """Return the state after all hands let go, and handles are wanted as is left.
 
-        A minimum of the old wish is one of the new wish, too, as the gradient is the same: such a
-        state stays final. From any other state further steps search on.
+        A minimum is one towards `Wish.let_go`, too, as the gradient is the same: such a state stays
+        final. From any other state further steps search on.
         """
-        if wish.hands is None:
-            return state, wish
-        left = wish.let_go(self.positions(state), self.handles.stiffness)
-        if state.status in (Status.CONVERGED, Status.AT_LIMITS) and wish.is_same(state.wish):
-            return replace(state, wish=left), left
-        return replace(state, status=Status.MOVING), left
+        wish, is_minimum = state.wish, state.status in (Status.CONVERGED, Status.AT_LIMITS)
+        if is_minimum and wish is not None:
+            exact = wish.let_go(self.positions(state), self.handles.stiffness)
+            if exact.is_same(left):
+                return replace(state, wish=left)
+        return replace(state, status=Status.MOVING, search=None, outcome=None, ways=())
 
     def _goes_on(self, state: State, wish: Wish) -> bool:
         """Tell whether the last step was towards this wish, with these handles and bounds."""
