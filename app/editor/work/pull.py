@@ -13,6 +13,7 @@ from engine.deform import Hand
 
 # Newton steps towards one wish; a drag comes to rest in far fewer.
 MOST_STEPS = 600
+ROUNDING = 1e-9  # pixels
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -181,16 +182,20 @@ class Pull(Promise):
         """Let what hands pulled be wanted where it is from now on; a pose at rest stays."""
         if self.drag is None or self.targets is None:
             return
-        hands = self.hands
-        self.drag, places = self.drag.release(self.targets, tuple(hands.values()))
+        before, hands = self.targets, self.hands
+        self.drag, places = self.drag.release(before, tuple(hands.values()))
+        moves = {i: place.position - before[i].position for i, place in places.items()}
         for gesture in hands:
             others = {i for other in hands if other is not gesture for i in hands[other].handles}
-            own = {i: place for i, place in places.items() if i not in others}
-            self.wishes[gesture] = partial(_replaced, self.wishes[gesture], own)
+            own = {i: moves.pop(i) for i in places if i in moves and i not in others}
+            self.wishes[gesture] = partial(_moved, self.wishes[gesture], own)
         self.hands = {}
         self.aim()
-        self.solved = (self.targets, ())
-        self.take(self.drag.pose(self.targets))
+        # Unless a later wish is for a place that does not depend on the one before it.
+        found = {**before, **places}
+        if all(abs(self.targets[i].position - found[i].position) < ROUNDING for i in found):
+            self.solved = (self.targets, ())
+            self.take(self.drag.pose(self.targets))
 
     @property
     def reached(self) -> Mapping[int, Target]:
@@ -275,11 +280,12 @@ class Pull(Promise):
         return of
 
 
-def _replaced(
-    wish: WishFrom, places: Mapping[int, Target], start: Start, targets: Mapping[int, Target]
+def _moved(
+    wish: WishFrom, moves: Mapping[int, complex], start: Start, targets: Mapping[int, Target]
 ) -> Mapping[int, Target]:
-    """Return what is wished, but for handles that are wanted at other places by now."""
-    return {**wish(start, targets), **wherever(places, start, targets)}
+    """Return what is wished, moved as far as hands, and joints beside them, have given in."""
+    joints = {i: targets[i] for i in moves if i in targets}
+    return _moved_targets({**joints, **wish(start, targets)}, moves)
 
 
 def _moved_targets(
