@@ -143,10 +143,10 @@ class Deformer(HeldShape):
         return search_on(self, state, state.search)
 
     def release(self, state: State, left: Wish) -> State:
-        """Return the state after all hands let go, and handles are wanted as is left.
+        """Return the state after all hands let go and the handles have the targets `left`.
 
-        A minimum is one towards `Wish.let_go`, too, as the gradient is the same: such a state stays
-        final. From any other state further steps search on.
+        A minimum stays final if `left` is the wish that `Wish.let_go` returns: the gradient is the
+        same. From any other state further steps search on.
         """
         wish, is_minimum = state.wish, state.status in (Status.CONVERGED, Status.AT_LIMITS)
         if is_minimum and wish is not None:

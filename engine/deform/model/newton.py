@@ -135,7 +135,7 @@ class Preconditioner(NamedTuple):
         return self.handles is objective.handles and np.array_equal(self.turning, objective.turning)
 
     def after(self, rounds: int) -> "Preconditioner | None":
-        """Return the one for the next step, if it pays, after one of so many rounds."""
+        """Return the preconditioner of the next step after a step of so many rounds, if it pays."""
         served = self.served + 1
         pays = rounds <= SERVES_ROUNDS and served < SERVES_STEPS
         return self._replace(served=served) if pays else None
@@ -150,10 +150,10 @@ def newton_direction(objective: Objective, jet: Jet) -> Direction:
 def preconditioned_direction(
     objective: Objective, jet: Jet, earlier: Preconditioner | None
 ) -> tuple[Direction, Preconditioner | None]:
-    """Solve for Newton's step with the factor of an earlier one; return that of the next one too.
+    """Solve for Newton's step with an earlier factor; return the preconditioner of the next step.
 
-    By preconditioned conjugate gradients (Nocedal and Wright, algorithm 5.3). A factor in single
-    precision does as well.
+    By preconditioned conjugate gradients (Nocedal and Wright, algorithm 5.3). Factors in single
+    precision do as well.
     """
     radial = objective.radial(jet)
     gradient = objective.gradient(jet, radial)
