@@ -12,6 +12,8 @@ times its size.
 """
 
 import json
+import os
+from collections.abc import Mapping
 from dataclasses import replace
 from math import isfinite
 from pathlib import Path
@@ -44,7 +46,7 @@ LARGEST_JSON = 32 * MEBIBYTE
 # In project.json; a thousand keys of a hundred handles have as many.
 MOST_VALUES = 1_000_000
 LARGEST_THUMBNAIL = 2 * MEBIBYTE
-THUMBNAIL = "thumbnail.png"
+PROJECT_JSON, THUMBNAIL = "project.json", "thumbnail.png"
 # Of lists and objects in each other; fields that are not known are kept, and must be writable.
 DEEPEST = 40
 
@@ -70,7 +72,7 @@ def save_project(
     """
     content = write_document(document)
     members = {
-        "project.json": json.dumps(content, indent=1, sort_keys=True, allow_nan=False).encode(),
+        PROJECT_JSON: json.dumps(content, indent=1, sort_keys=True, allow_nan=False).encode(),
     }
     for figure in document.figures:
         members |= figure_members(figure)
@@ -81,6 +83,7 @@ def save_project(
 
     def write(file: IO[bytes]) -> str:
         write_archive(file, members)
+        _require_readable(path, file, members)
         return tail_digest(file)
 
     digest = write_atomically(path, write, is_private=is_private)
@@ -133,6 +136,22 @@ def load_member(path: Path, name: str, largest: int) -> bytes | None:
         return None
 
 
+def _require_readable(path: Path, file: IO[bytes], members: Mapping[str, bytes]) -> None:
+    """Refuse a file that was just written unless it can be opened again.
+
+    Its values and sizes are read; arrays are those in memory, and their maps are proven already.
+    """
+    arrays = {name: content for name, content in members.items() if name != PROJECT_JSON}
+    size = file.seek(0, os.SEEK_END)
+    try:
+        with opened_zip(file) as written:
+            _read(Archive(written, size, arrays))
+    except (*EXPECTED_ERRORS, *DAMAGED_ZIP) as error:
+        raise LissomError(
+            f"cannot write {path}, as Lissom could not open it again: {error}"
+        ) from error
+
+
 def _read(archive: Archive) -> Document:
     content = _read_json(archive)
     schema = as_whole(content["schema"], "schema")
@@ -146,14 +165,16 @@ def _read(archive: Archive) -> Document:
         raise LissomError(f"its schema {schema} does not exist")
     document = read_document(content, archive)
     attachments = {name: archive.read(name) for name in archive.unread if name != THUMBNAIL}
-    return replace(document, attachments=MappingProxyType(attachments))
+    return replace(document, attachments=MappingProxyType(attachments)) if attachments else document
 
 
 def _read_json(archive: Archive) -> JsonObject:
-    text = archive.read("project.json", largest=LARGEST_JSON)
+    text = archive.read(PROJECT_JSON, largest=LARGEST_JSON)
     # Each value but the first stands behind one of these; decoded, it takes some hundred bytes.
     if sum(text.count(mark) for mark in (b",", b"[", b"{")) > MOST_VALUES:
-        raise LissomError("its project.json holds more values than any project")
+        raise LissomError(
+            f"its project.json holds more values than any project, which has {MOST_VALUES:,}"
+        )
     try:
         content = json.loads(
             text,
@@ -166,7 +187,7 @@ def _read_json(archive: Archive) -> JsonObject:
     except ValueError as error:
         raise LissomError(f"its project.json is not JSON: {error}") from error
     if content is None or _is_deeper(content, DEEPEST):
-        raise LissomError("its project.json is nested too deeply")
+        raise LissomError(f"its project.json is nested deeper than {DEEPEST} levels")
     return as_object(content, "project.json")
 
 
