@@ -138,7 +138,7 @@ def _circle(content: Content, size: int) -> None:
     repeat = {"first": 0, "last": 3, "until": None}
     for each in content["figures"]:
         each.update(keys=each["keys"][:1], cycles=[repeat])
-    content["frames"] = [0, min(size, 60_000)]
+    content["frames"] = [0, min(size, 59_000)]
 
 
 def _track(content: Content, size: int) -> None:
@@ -153,7 +153,7 @@ def _repeats(content: Content, size: int) -> None:
     repeat = {"first": 0, "last": 2, "until": None}
     figure |= {"keys": figure["keys"][:1], "cycles": [repeat]}
     figure["switches"] = [[0, True], [1, False]]
-    content["frames"] = [0, min(size, 60_000)]
+    content["frames"] = [0, min(size, 59_000)]
 
 
 MOTION = {

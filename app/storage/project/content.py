@@ -1,10 +1,11 @@
 """The document as `project.json`, except for its figures' pictures and arrays."""
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import astuple
 from importlib.metadata import version
 from math import inf
 from operator import attrgetter
+from types import MappingProxyType
 from typing import Any, Literal
 
 from app.document import (
@@ -73,6 +74,7 @@ from engine.geometry.motions import Parameters
 from engine.maps import Boundary, Bounds, Certificate, HarmonicMap, certify
 
 SCHEMA = 2
+NOTHING: Mapping[int, Figure] = MappingProxyType({})
 SIZE = pair(WHOLE, WHOLE, "two whole numbers")
 RANGE = pair(WHOLE, WHOLE, "two whole numbers", make=FrameRange, of=astuple)
 MARKER = record(Marker, Field("frame", WHOLE), Field("name", TEXT))
@@ -386,8 +388,13 @@ def write_document(document: Document) -> dict[str, Any]:
     return written
 
 
-def read_document(content: JsonObject, archive: Archive) -> Document:
+def read_document(
+    content: JsonObject, archive: Archive, known: Mapping[int, Figure] = NOTHING
+) -> Document:
     """Return the document with these fields, and with the pictures and arrays of an archive.
+
+    Of an archive that was just written, figures that are `known` by their ids are not read again;
+    they come first.
 
     Raises
     ------
@@ -396,6 +403,9 @@ def read_document(content: JsonObject, archive: Archive) -> Document:
     """
     if as_whole(content["schema"], "schema") < SCHEMA:
         _bring_up_to_schema_2(content)
+    if known:
+        others = [each for each in content["figures"] if each["id"] not in known]
+        content = JsonObject({**content, "figures": others}, content.where)
     fields = DOCUMENT.read(content, "")
     del fields["schema"], fields["app_version"]
     figures = fields.pop("figures")
@@ -406,7 +416,7 @@ def read_document(content: JsonObject, archive: Archive) -> Document:
     read = tuple(_read_figure(figure, archive, shared) for figure in figures)
     if not archive.is_written:
         require_memory(picture.size for picture in {figure.picture for figure in read})
-    return Document(figures=read, **fields)
+    return Document(figures=(*known.values(), *read), **fields)
 
 
 def _bring_up_to_schema_2(content: JsonObject) -> None:
