@@ -421,6 +421,10 @@ class Figure:
             object.__setattr__(
                 self, "stiffness", readonly(require_stiffness(self.stiffness, count))
             )
+        require(
+            len(self.bones) <= MOST_HANDLES,
+            f"A drawing has at most {MOST_HANDLES:,} bones, not {len(self.bones):,}.",
+        )
         known = {handle.id for handle in self.handles}
         for bone in self.bones:
             for end in bone.ends:
