@@ -269,7 +269,7 @@ def _random_track_command(rng: np.random.Generator, document: Document) -> Comma
     track = figure.track_of(one) or random_track(rng, some)
     every = [key.frame for key in track.keys]
     frames = rng.choice(every, rng.integers(1, len(every) + 1), replace=False).tolist()
-    by, factor = int(rng.integers(-8, 9)), rng.choice([0.5, 1.0, 1.5, 2.0])
+    by, factor = int(rng.integers(-8, 9)), float(rng.choice([0.5, 1.0, 1.5, 2.0]))
     places = [inside(rng) for _ in every]
     flag = bool(rng.integers(2))
     commands = [
