@@ -98,7 +98,6 @@ def turns_in(choice: Choice, cycle: Cycle) -> bool:
     return cycle.has_all(turn.frame for turn in choice.turns if turn != again)
 
 
-@lru_cache(maxsize=256)
 def repeated(
     changes: tuple[Change, ...], cycles: tuple[Cycle, ...], end: int, rest: tuple[Change, ...]
 ) -> tuple[Change, ...]:
@@ -107,6 +106,13 @@ def repeated(
     Each repeat, and what follows the last one, begins as the stretch does: before the first change
     as `rest` has it.
     """
+    return _repeated(changes, cycles, end, rest) if changes and cycles else changes
+
+
+@lru_cache(maxsize=256)
+def _repeated(
+    changes: tuple[Change, ...], cycles: tuple[Cycle, ...], end: int, rest: tuple[Change, ...]
+) -> tuple[Change, ...]:
     for cycle in cycles:
         if not changes_in([each.frame for each in changes], cycle):
             continue
