@@ -361,6 +361,7 @@ class Figure:
             f"{self.name!r} has {len(handles):,} handles, more than the {MOST_HANDLES:,} that a "
             "drawing may have.",
         )
+        require_identity(self.next_handle, "the next handle")
         require_distinct((handle.id for handle in handles), "Two handles have the id {!r}.")
         require_distinct((handle.name for handle in handles), "Two handles have the name {!r}.")
         require_distinct((each.position for each in handles), "Two handles have the place {!r}.")

@@ -14,6 +14,7 @@ from documents import (
     differences,
     disc_document,
     disc_domain,
+    inside,
     random_command,
 )
 from hypothesis import given, settings, strategies as st
@@ -109,7 +110,7 @@ def extreme_command(rng, document):
         key_commands.insert_key(identity, to, pose),
         pose_commands.keep_pose(identity, pose, name),
         pose_commands.set_mirror(identity, FARTHEST),
-        handle_commands.add_handle(identity, CENTRE + 60 * np.exp(1j * rng.normal()), name=name),
+        handle_commands.add_handle(identity, inside(rng), name=name),
         layer_commands.rename_figure(identity, name),
         layer_commands.duplicate_figure(identity),
         layer_commands.switch_at(identity, frame, visible=bool(rng.integers(2))),
@@ -170,7 +171,7 @@ def test_what_commands_make_at_limits_opens_again(tmp_path_factory, begin, seeds
 
 
 @pytest.mark.long
-@settings(max_examples=1000)
+@settings(max_examples=300)
 @given(st.sampled_from(BEGINNINGS), st.lists(st.integers(0, 2**32 - 1), max_size=40))
 def test_many_commands_at_limits_open_again(tmp_path_factory, begin, seeds):
     require_reopened(tmp_path_factory.getbasetemp() / "more_limits.lissom", begin, seeds)
@@ -322,6 +323,7 @@ REFUSED = (
     (lambda c: c["figures"][0].update(switches=[[-1, True]]), "frame from 0 to 999,999, not at -1"),
     (lambda c: c["figures"][0].update(switches=[[10**6, True]]), "frame from 0 to 999,999"),
     (lambda c: c["figures"][0].update(id=LARGEST_ID + 1), "lacks figures/2147483648"),
+    (lambda c: c["figures"][0].update(next_handle=2**31), "id of the next handle is 0 to"),
     (lambda c: c["figures"][0]["handles"][0].update(id=10**30), "id of a handle is 0 to"),
     (
         lambda c: c.update(choices=[{"name": "{", "figures": [0, 1], "turns": [[10**6, 0]]}]),
