@@ -85,6 +85,7 @@ from app.storage.pictures import (
     encode_mask as encode_mask,
     let_go as let_go,
     on_disk as on_disk,
+    require_memory as require_memory,
     side_by_side as side_by_side,
 )
 from app.storage.preferences import (

@@ -27,6 +27,7 @@ PARTS = {
     "export": "frames and files",
     "window": "the window: its start, its frames, how soon it follows a hand",
     "scenes": "drawings on many layers",
+    "opening": "projects with 1 MB of each kind of thing in them",
     "limits": "hard requests under tight bounds; this one takes five minutes",
 }
 

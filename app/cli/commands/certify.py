@@ -6,7 +6,8 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from app.document import Extremes, clip_of
+from app.cli.console import notice
+from app.document import Extremes, clip_of, motion_notices
 from app.motion import carried_in
 from app.reports import IntervalReport, Report, Verdict, certify_clip
 from app.storage import load_project
@@ -26,6 +27,8 @@ BY_METRIC = (
 def run(arguments: argparse.Namespace) -> int:
     """Print the report of a project."""
     document = load_project(arguments.project)
+    for message in motion_notices(document):
+        notice(message)
     reports = {
         figure.name: certify_clip(
             clip_of(document, figure.id), arguments.variant, carried_in(document, figure.id)

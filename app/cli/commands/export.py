@@ -8,7 +8,14 @@ from pathlib import Path
 from typing import Any
 
 from app.cli.console import StatusLine, notice, say
-from app.document import Document, ExportSettings, FrameRange, clip_of, seen_alone
+from app.document import (
+    Document,
+    ExportSettings,
+    FrameRange,
+    clip_of,
+    motion_notices,
+    seen_alone,
+)
 from app.errors import LissomError
 from app.export import (
     PROJECT,
@@ -35,6 +42,8 @@ NO_USE = "{name} has no use for --{flag}; leave it out"
 def run(arguments: argparse.Namespace) -> int:
     """Export a project."""
     document = load_project(arguments.project)
+    for message in motion_notices(document):
+        notice(message)
     if arguments.figure is not None:
         document = _alone(document, arguments.figure)
     name = arguments.project.stem

@@ -17,6 +17,7 @@ from app.document.queries.fronts import (
 from app.document.queries.given import (
     digest_of_keys as digest_of_keys,
     is_as_given as is_as_given,
+    motion_notices as motion_notices,
 )
 from app.document.queries.material import (
     are_as_stiff as are_as_stiff,

@@ -46,8 +46,8 @@ def _has_been(figure: Figure, key: int, frame: float) -> bool:
 
     What those of a cycle say holds until a repeat, or all of them, are over.
     """
-    for cycle in figure.cycles:
-        if cycle.has(key):
-            end = frame if cycle.until is None else min(frame, cycle.until)
-            return key <= frame and key <= cycle.source(end)
-    return key <= frame
+    cycle = figure.cycle_having(key)
+    if cycle is None:
+        return key <= frame
+    end = frame if cycle.until is None else min(frame, cycle.until)
+    return key <= frame and key <= cycle.source(end)
