@@ -56,6 +56,7 @@ from app.storage.json_values import (
     as_text as as_text,
     as_whole as as_whole,
     load_json as load_json,
+    shown as shown,
 )
 from app.storage.layers import (
     as_layer as as_layer,

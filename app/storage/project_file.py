@@ -19,7 +19,7 @@ from types import MappingProxyType
 from typing import IO
 
 from app.document import Document
-from app.errors import EXPECTED_ERRORS, LissomError
+from app.errors import EXPECTED_ERRORS, LissomError, shortened
 from app.storage.files import (
     DAMAGED_ZIP,
     opened_file,
@@ -137,7 +137,7 @@ def _read(archive: Archive) -> Document:
     content = _read_json(archive)
     schema = as_whole(content["schema"], "schema")
     if schema > SCHEMA:
-        app_version = as_text(content.get("app_version", "?"), "app_version")
+        app_version = shortened(as_text(content.get("app_version", "?"), "app_version"))
         raise LissomError(
             f"it was saved by a newer Lissom ({app_version}, schema {schema}); this version reads "
             f"schema {SCHEMA}. Update Lissom to open it"

@@ -161,7 +161,7 @@ def _told(name: str) -> Iterator[None]:
             f"{name} is not a picture that Lissom reads ({FORMATS_IN_WORDS})"
         ) from error
     except DECODER_ERRORS as error:
-        raise LissomError(f"{name} is damaged or cut short ({error})") from error
+        raise LissomError(f"{name} is damaged or cut short") from error
 
 
 def _decode(data: bytes, name: str) -> Picture:
