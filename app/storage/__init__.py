@@ -31,6 +31,7 @@ from app.storage.files import (
     IS_FOLDER as IS_FOLDER,
     NO_ARRAYS as NO_ARRAYS,
     NO_FOLDER as NO_FOLDER,
+    NOT_FINITE as NOT_FINITE,
     SAME_FILE as SAME_FILE,
     Cancellation as Cancellation,
     Hold as Hold,
@@ -43,6 +44,7 @@ from app.storage.files import (
     passing_picture as passing_picture,
     read_arrays as read_arrays,
     read_file as read_file,
+    strict_json as strict_json,
     write_arrays as write_arrays,
     write_atomically as write_atomically,
 )

@@ -1,7 +1,6 @@
 """`lissom certify`: how far an animation distorts its drawing."""
 
 import argparse
-import json
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -11,7 +10,7 @@ from app.document import Extremes, clip_of
 from app.errors import shortened
 from app.motion import carried_in
 from app.reports import IntervalReport, Report, Verdict, certify_clip
-from app.storage import load_project
+from app.storage import load_project, strict_json
 from engine.interpolation import Proof
 from engine.maps import Certificate
 
@@ -55,7 +54,7 @@ def _as_json(reports: Mapping[str, Report]) -> str:
         if len(blocks) != 1
         else next(iter(blocks.values()))
     )
-    return json.dumps(content, indent=2)
+    return strict_json(content, indent=2)
 
 
 def _tables(reports: Mapping[str, Report]) -> list[str]:
