@@ -31,6 +31,7 @@ LARGEST_XML = 4 * 1024 * 1024
 # By which all pictures together may outgrow twice the file; they are packed already.
 MOST_UNPACKED = 16 * 1024 * 1024
 LARGEST_SIDE = 65_535
+DAMAGED_STACK = "its stack.xml is damaged, or in a rare encoding; UTF-8 is usual"
 MODES: dict[str, BlendMode] = {
     "": "normal",
     "svg:src-over": "normal",
@@ -198,9 +199,7 @@ def _parse(content: bytes) -> ET.Element:
         # No entities are left.
         return ET.fromstring(content, ET.XMLParser(target=_Builder()))  # noqa: S314
     except (ET.ParseError, LookupError, TypeError, ValueError, RecursionError) as error:
-        raise LissomError(
-            "its stack.xml is damaged, or in a rare encoding; UTF-8 is usual"
-        ) from error
+        raise LissomError(DAMAGED_STACK) from error
 
 
 def _member(archive: zipfile.ZipFile, name: str, largest: int) -> bytes:

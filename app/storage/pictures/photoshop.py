@@ -47,6 +47,7 @@ MODES: Final[dict[str, BlendMode]] = {
     "MULTIPLY": "multiply",
     "SCREEN": "screen",
 }
+DAMAGED: Final = "it is not a Photoshop file, or it is damaged"
 DAMAGE = (
     OSError,
     ValueError,
@@ -102,7 +103,7 @@ def read_photoshop(data: bytes) -> LayeredPicture:
             _require_few_records(data)
             return _read(psd_tools.PSDImage.open(io.BytesIO(data), max_alloc_bytes=2048 * MEBIBYTE))
     except DAMAGE as error:
-        raise LissomError("it is not a Photoshop file, or it is damaged") from error
+        raise LissomError(DAMAGED) from error
 
 
 def _require_few_records(data: bytes) -> None:
