@@ -7,8 +7,8 @@ from numpy.testing import assert_allclose
 
 from app.document import LINEAR, FrameRange, Keyframe
 from app.document.timing import Cycle
-from app.motion import long_extent
-from app.motion.long_extent import MOST_MEASURED, farthest_reach
+from app.motion.extents import long_extent
+from app.motion.extents.long_extent import MOST_MEASURED, farthest_reach
 
 LAST = 999_999
 LONG = FrameRange(0, LAST)

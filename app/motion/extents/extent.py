@@ -8,10 +8,10 @@ import numpy as np
 from app.document import Document, FrameRange, clip_of, exported_frames, framed_frames
 from app.errors import LissomError
 from app.motion.corrected_frames import CorrectedFrames
+from app.motion.extents.long_extent import farthest_reach
 from app.motion.inbetweens import is_corrected
 from app.motion.interval_store import IntervalStore
 from app.motion.joints import Joints
-from app.motion.long_extent import farthest_reach
 from engine.arrays import Complexes, Floats
 
 

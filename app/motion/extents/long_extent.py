@@ -35,7 +35,7 @@ Reaches = Floats
 Measure = Callable[[int], Reaches]
 
 
-class Stretch(NamedTuple):
+class UnkeyedFrames(NamedTuple):
     """Frames between two at which something is keyed, both included, in rounds of so many."""
 
     first: int
@@ -57,7 +57,7 @@ class Stretch(NamedTuple):
 class _Gap(NamedTuple):
     """Rounds between two that are measured, and how far they may reach, (4,)."""
 
-    stretch: Stretch
+    stretch: UnkeyedFrames
     ends: tuple[int, int]
     reaches: tuple[Floats, Floats]  # of both ends, each (p, f, 4)
     bound: Floats
@@ -84,7 +84,7 @@ class _Search:
         self._farthest: Floats = np.full(4, -np.inf)
         self._measured = 0
 
-    def begin(self, stretch: Stretch, most: int) -> Iterator[_Gap]:
+    def begin(self, stretch: UnkeyedFrames, most: int) -> Iterator[_Gap]:
         """Measure the ends of a stretch and some rounds within; yield the gaps between these."""
         within = max(1, min(most, MOST_AT_FIRST // len(stretch.phases)))
         if rest := stretch.round(stretch.rounds):
@@ -128,7 +128,7 @@ class _Search:
         return reaches
 
     def _split(
-        self, stretch: Stretch, ends: tuple[int, int], reaches: tuple[Floats, Floats]
+        self, stretch: UnkeyedFrames, ends: tuple[int, int], reaches: tuple[Floats, Floats]
     ) -> Iterator[_Gap]:
         """Measure the middle of a gap, and yield the gaps before and after it."""
         (low, high), (before, after) = ends, reaches
@@ -146,7 +146,7 @@ class _Search:
                 yield _Gap(stretch, part, both, bound)
 
 
-def _stretches(document: Document, frames: FrameRange) -> list[Stretch]:
+def _stretches(document: Document, frames: FrameRange) -> list[UnkeyedFrames]:
     """Return the stretches between the frames at which anything is keyed."""
     keyed = {frame for figure in document.figures for frame in _keyed(document, figure)}
     inside = {frame for frame in keyed if frame in frames}
@@ -157,7 +157,7 @@ def _stretches(document: Document, frames: FrameRange) -> list[Stretch]:
         phases = set(range(0, period, -(-period // MOST_PHASES)))
         if period > MOST_PHASES:
             phases |= {(frame - first) % period for frame in keyed}
-        found.append(Stretch(first, last, period, sorted(phases)))
+        found.append(UnkeyedFrames(first, last, period, sorted(phases)))
     return found
 
 
