@@ -22,7 +22,7 @@ from typing import IO, Final
 from weakref import WeakSet
 
 from app.document import Document, Figure
-from app.errors import EXPECTED_ERRORS, LissomError
+from app.errors import EXPECTED_ERRORS, LissomError, shortened
 from app.storage.files import (
     DAMAGED_ZIP,
     opened_file,
@@ -170,7 +170,7 @@ def _read(archive: Archive, known: Mapping[int, Figure] = MappingProxyType({})) 
     content = _read_json(archive)
     schema = as_whole(content["schema"], "schema")
     if schema > SCHEMA:
-        app_version = as_text(content.get("app_version", "?"), "app_version")
+        app_version = shortened(as_text(content.get("app_version", "?"), "app_version"))
         raise LissomError(NEWER_LISSOM.format(version=app_version, schema=schema, own=SCHEMA))
     if schema < 1:
         raise LissomError(f"its schema {schema} does not exist")

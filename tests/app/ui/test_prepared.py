@@ -7,7 +7,7 @@ from app.editor import Session
 from app.editor.actions import playback
 from app.editor.work import Jobs
 from app.motion import Streamed
-from app.motion.extent import extent_source
+from app.motion.extents.extent import extent_source
 
 HALFWAY = 12  # between the two keys
 
