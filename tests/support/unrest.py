@@ -28,6 +28,11 @@ def unrest(session: Session) -> str:
     return "\n".join(lines)
 
 
+def is_shown(session: Session) -> bool:
+    """Tell whether every layer shows what the document has."""
+    return session.project is not None and not _shown(session.project)
+
+
 def _shown(project: Project) -> list[str]:
     lines = []
     for identity, puppet in project.puppets.items():

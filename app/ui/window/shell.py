@@ -116,7 +116,7 @@ class Shell:
         self._follow = self._step(upkeep.follow_playhead)
         self._upkeep = [
             self._step(each)
-            for each in (promises.go_on, upkeep.maintain, saving.maintain, guiding.follow)
+            for each in (promises.go_on, *upkeep.STEPS, saving.maintain, guiding.follow)
         ]
 
     def runner_params(self) -> hello_imgui.RunnerParams:

@@ -11,7 +11,7 @@ from imgui_bundle import imgui
 from invariants import check_invariants
 from layered import openraster
 from PIL import Image, ImageDraw
-from unrest import unrest
+from unrest import is_shown, unrest
 
 from app.document.commands import figure_commands, handle_commands, key_commands, layer_commands
 from app.document.keyframe import Target
@@ -169,11 +169,11 @@ class Walk:
             self.window.frames(int(self.choice((0, 0, 1, 4))))
         self.look(thorough=number % LOOKED_AT == 0, saves=number % SAVED == 0)
 
-    def catch_up(self) -> None:
-        """Let the workers prepare what is to be shown."""
+    def catch_up(self, *, wholly: bool = False) -> None:
+        """Let the workers prepare what is to be shown, or all that there is to do."""
         for _ in range(MOST_FRAMES):
             self.window.frames()
-            if self.project.puppet.shown.is_current:
+            if is_shown(self.session) and not (wholly and self.session.jobs.kinds):
                 return
             self.workers.do_all()
         raise AssertionError(f"never at rest:\n{unrest(self.session)}")
@@ -397,7 +397,7 @@ class Walk:
         if frames and max(frames) + by < LAST:
             copies = self.chance(0.3) and len(self.project.figure.keys) + len(frames) <= MOST_KEYS
             verb = key_commands.copy_keys if copies else key_commands.move_keys
-            self.edit(verb(frames, by))
+            self.edit(verb(self.project.active, frames, by))
 
     def change_easing(self) -> None:
         easing = (
@@ -648,9 +648,7 @@ class Walk:
             check_invariants(session)
         if not saves:
             return
-        self.catch_up()
-        assert project.puppet.shown.is_current
-        assert project.puppet.shown.clip == project.clip
+        self.catch_up(wholly=True)
         save_project(self.path, self.document)
         assert not differences(self.document, load_project(self.path))
 
