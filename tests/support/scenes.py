@@ -43,14 +43,15 @@ PICTURE = BLOB
 
 
 @cache
-def _drawn() -> Document:
+def drawn() -> Document:
+    """Return a drawing as it was opened, within twelve corners."""
     circle = regular_polygon(12)
     return within(still_document(), 60 + 47j + 54 * circle.real + 40j * circle.imag)
 
 
 def random_scene(rng: np.random.Generator) -> Document:
     """Return a document of up to four layers, some of which hang on each other, move and repeat."""
-    base = _drawn()
+    base = drawn()
     layers = [_random_layer(rng, base.figures[0], number) for number in range(rng.integers(1, 5))]
     document = replace(
         base, figures=tuple(layers), frames=FrameRange(0, LAST), loop=bool(rng.integers(2))
