@@ -23,7 +23,7 @@ CLOSEST = 0.4  # em between two marks of a row: what is closer is drawn once
 EVEN, ROOMY = 2.0, 3.4  # em: heights of the rows of figures, at least and at most
 
 
-class Timed(Protocol):
+class HasFrame(Protocol):
     """A key, a marker or anything else at a frame."""
 
     @property
@@ -31,7 +31,7 @@ class Timed(Protocol):
         """The frame that it is at."""
 
 
-Mark = TypeVar("Mark", bound=Timed)
+Mark = TypeVar("Mark", bound=HasFrame)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -259,7 +259,7 @@ class Bands:
         return imgui.invisible_button(name, size, flags)
 
 
-def _frame(mark: Timed) -> int:
+def _frame(mark: HasFrame) -> int:
     return mark.frame
 
 
@@ -267,7 +267,7 @@ def _frame(mark: Timed) -> int:
 def least_gap(figure: Figure, handle: int | None) -> int:
     """Return how many frames there are between the two closest keys of poses, or of a track."""
     track = None if handle is None else figure.track_of(handle)
-    row: Sequence[Timed] = figure.keys if track is None else track.keys
+    row: Sequence[HasFrame] = figure.keys if track is None else track.keys
     return min((later.frame - key.frame for key, later in pairwise(row)), default=LAST_FRAME)
 
 

@@ -9,7 +9,7 @@ from app.document import Figure, Switch, carried_by, is_visible, layer_commands,
 from app.editor import Action, SwitchDrag, do
 from app.editor.actions import editing, playback, timeline_pointing
 from app.ui.style import CHOSEN, SMALL, begin_tip, in_hand, ink, is_pressed, shortened, sized
-from app.ui.timeline.bands import THIN, Bands, FigureRow, Timed, tag
+from app.ui.timeline.bands import THIN, Bands, FigureRow, HasFrame, tag
 from app.ui.timeline.keys import choose_row
 from app.ui.timeline.rows.stage import INDENT, draw_stage, draw_stage_names
 from app.ui.timeline.tracks import FOLD, draw_fold, draw_names, draw_ways
@@ -160,7 +160,7 @@ def _draw_changes(bands: Bands, row: FigureRow) -> list[Action]:
     actions: list[Action] = []
     figure, em, palette = row.figure, bands.look.em, bands.look.palette
     changes: dict[int, list[str]] = {}
-    rows: dict[str, Sequence[Timed]] = {
+    rows: dict[str, Sequence[HasFrame]] = {
         "Moved": figure.movement,
         "Opacity": figure.opacities,
         "Order": figure.placings,

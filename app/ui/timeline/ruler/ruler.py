@@ -121,7 +121,7 @@ def _tag_width(bands: Bands, frame: int) -> float:
 
 
 @lru_cache(maxsize=4)
-def _at_pixels(figures: tuple[Figure, ...], step: int) -> list[int]:
+def _frames_apart(figures: tuple[Figure, ...], step: int) -> list[int]:
     """Return frames of keys, of which there is one in each of so many frames at most."""
     frames = {key.frame // step * step for each in figures if not each.still for key in each.keys}
     return sorted(frames)
@@ -146,15 +146,18 @@ def draw_overview(bands: Bands, frame: int) -> list[Action]:
     bar = ink(palette.dim if in_hand() else palette.pressed)
     draw_list.add_rect_filled(ImVec2(left, top), ImVec2(right, bottom), bar, rounding)
     middle = (top + bottom) / 2
-    # Each pixel once, however many keys there are; those of the active figure over them.
+    # Each place once, however many keys there are; those of the active figure over them.
     figure = bands.project.figure
     for figures, radius, colour in (
         (tuple(row.figure for row in bands.rows), 0.09 * em, ink(palette.dim)),
         ((figure,), 0.11 * em, ink(palette.text, 0.8)),
     ):
-        for at in _at_pixels(figures, max(round(1 / per_frame), 1)):
-            x = bands.left + (at - low) * per_frame
-            draw_list.add_circle_filled(ImVec2(x, middle), radius, colour, 8)
+        for at in _frames_apart(figures, max(round(2 * radius / per_frame), 1)):
+            place, half = (
+                ImVec2(bands.left + (at - low) * per_frame, middle),
+                ImVec2(radius, radius),
+            )
+            draw_list.add_rect_filled(place - half, place + half, colour)
     x = bands.left + (frame - low) * per_frame
     draw_list.add_line(ImVec2(x, top), ImVec2(x, bottom), ink(palette.accent), 1.5)
     delta = imgui.get_io().mouse_delta.x
