@@ -1,12 +1,10 @@
 """Moving along the timeline."""
 
 from bisect import bisect_left
-from functools import lru_cache
 
-from app.document import Document
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.timeline_view import KeyRow, TrackRow, figure_of, frames_in, seen_at
+from app.editor.timeline_view import frames_in, seen_at
 
 SPEEDS = (0.25, 0.5, 1.0, 2.0)
 
@@ -66,19 +64,21 @@ def to_key(session: Session, project: Project, direction: int) -> None:
 
 def keyed_frames(project: Project) -> list[int]:
     """Return the frames at which keys of the chosen row are seen, in their order."""
-    return list(_keyed_frames(project.document, project.row))
+    return list(_keyed_frames(project))
 
 
-@lru_cache(maxsize=1)
-def _keyed_frames(document: Document, row: KeyRow) -> tuple[int, ...]:
-    figure = document.figure(figure_of(row))
-    track = figure.track_of(row.handle) if isinstance(row, TrackRow) else None
-    return tuple(sorted(seen_at(document, track, frame) for frame in frames_in(document, row)))
+def _keyed_frames(project: Project) -> tuple[int, ...]:
+    document, row, keyed = project.document, project.row, project.timing.keyed
+    if not keyed.follows((document, row)):
+        track = project.track_in(row)
+        frames = sorted(seen_at(document, track, frame) for frame in frames_in(document, row))
+        keyed.set((document, row), tuple(frames))
+    return keyed.value
 
 
 def is_keyed(project: Project, frame: int) -> bool:
     """Tell whether a key of the chosen row is seen at a frame."""
-    frames = _keyed_frames(project.document, project.row)
+    frames = _keyed_frames(project)
     at = bisect_left(frames, frame)
     return at < len(frames) and frames[at] == frame
 

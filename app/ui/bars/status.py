@@ -1,16 +1,14 @@
 """The status bar."""
 
 from collections.abc import Callable, Sequence
-from functools import lru_cache
 from typing import NamedTuple
 
 from imgui_bundle import ImColor, ImVec2, imgui, imspinner
 
-from app.document import Clip, Extremes, falls_short, find_shortfall, loosened
+from app.document import Extremes, falls_short, find_shortfall, loosened
 from app.editor import Action, Kind, Project, Session, do, promises
 from app.editor.actions import exporting, rebuilding, upkeep
 from app.errors import shown_name
-from app.motion import IntervalStore
 from app.ui.style import Look, shortened, tip
 
 LEAST_ROOM = 6.0  # em: narrower, a hint is left out
@@ -116,7 +114,13 @@ def limit_of_motion(session: Session) -> str:
     project = session.project
     if project is None or project.is_posing or project.playhead.since is not None:
         return ""
-    slowed, stopped = _slowed(project.puppet.store, project.clip, session.jobs.delivered)
+    # It changes with what the worker has delivered.
+    known, source = project.timing.slowed, (project.clip, session.jobs.delivered)
+    if not known.follows(source):
+        shares = project.puppet.store.velocity_shares(project.clip)
+        known.set(source, {at: share for at, share in shares.items() if share < SLOWED})
+    slowed = sorted(known.value)
+    stopped = [frame for frame in slowed if known.value[frame] < STOPPED]
     if not slowed:
         return ""
     verb, frames = ("stops", stopped) if stopped else ("slows down", slowed)
@@ -126,17 +130,6 @@ def limit_of_motion(session: Session) -> str:
     where = f"{', '.join(told[:-1])} and {told[-1]}" if len(told) > 1 else told[0]
     noun = "frame" if len(frames) == 1 else "frames"
     return f"The motion {verb} at {noun} {where} to keep within the stretch limit"
-
-
-@lru_cache(maxsize=1)
-def _slowed(store: IntervalStore, clip: Clip, _: int) -> tuple[list[int], list[int]]:
-    """Return the frames of keys that are slowed down, and of those that are stopped.
-
-    They change with what the worker has delivered.
-    """
-    kept = store.velocity_shares(clip)
-    slowed = sorted(frame for frame, share in kept.items() if share < SLOWED)
-    return slowed, [frame for frame in slowed if kept[frame] < STOPPED]
 
 
 def _export(session: Session) -> str:

@@ -1,10 +1,8 @@
 """The ruler with frames and seconds, the playhead, and the overview below the track."""
 
-from functools import lru_cache
-
 from imgui_bundle import ImVec2, imgui
 
-from app.document import Figure
+from app.document import Figure, remembered
 from app.editor import Action, Scrub, do
 from app.editor.actions import timeline_pointing
 from app.ui.style import SMALL, in_hand, ink, is_pressed, sized, write_in
@@ -120,11 +118,10 @@ def _tag_width(bands: Bands, frame: int) -> float:
     return max(imgui.calc_text_size(f"{frame}").x + 0.9 * bands.look.em, 1.9 * bands.look.em)
 
 
-@lru_cache(maxsize=4)
-def _frames_apart(figures: tuple[Figure, ...], step: int) -> list[int]:
+@remembered
+def _frames_apart(figure: Figure, step: int) -> frozenset[int]:
     """Return frames of keys, of which there is one in each of so many frames at most."""
-    frames = {key.frame // step * step for each in figures if not each.still for key in each.keys}
-    return sorted(frames)
+    return frozenset(key.frame // step * step for key in figure.keys if not figure.still)
 
 
 def draw_overview(bands: Bands, frame: int) -> list[Action]:
@@ -152,7 +149,8 @@ def draw_overview(bands: Bands, frame: int) -> list[Action]:
         (tuple(row.figure for row in bands.rows), 0.09 * em, ink(palette.dim)),
         ((figure,), 0.11 * em, ink(palette.text, 0.8)),
     ):
-        for at in _frames_apart(figures, max(round(2 * radius / per_frame), 1)):
+        step = max(round(2 * radius / per_frame), 1)
+        for at in frozenset[int]().union(*(_frames_apart(each, step) for each in figures)):
             place, half = (
                 ImVec2(bands.left + (at - low) * per_frame, middle),
                 ImVec2(radius, radius),
