@@ -41,7 +41,7 @@ from engine.maps.bounds import Bounds
 
 # Both drawings, one of them by two variants.
 SEEDS = (1, 2, *(pytest.param(seed, marks=pytest.mark.long) for seed in (15, 3)))
-FAR = {3: 2_000}  # steps of walks that go farther than the others
+FAR = {3: 1_000}  # steps of walks that go farther than the others
 MOST_FRAMES = 400  # until the worker has caught up
 REMEMBERED = 20  # actions that are told where the walk fails
 LOOKED_AT, SAVED = 25, 50  # steps between two looks at the invariants, and between two saves
