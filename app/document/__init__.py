@@ -118,6 +118,7 @@ from app.document.queries import (
     passings_of as passings_of,
     place_at as place_at,
     placing_at as placing_at,
+    remembered as remembered,
     repeating as repeating,
     resting_pose as resting_pose,
     seen_alone as seen_alone,

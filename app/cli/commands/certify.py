@@ -5,7 +5,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from app.cli.console import say
+from app.cli.console import give_notices, say
 from app.document import Extremes, clip_of, motion_notices
 from app.errors import shortened
 from app.motion import carried_in

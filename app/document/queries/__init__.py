@@ -26,6 +26,7 @@ from app.document.queries.material import (
     stiff_outline as stiff_outline,
     stiffened as stiffened,
 )
+from app.document.queries.remembered import remembered as remembered
 from app.document.queries.shortfall import (
     Extremes as Extremes,
     Shortfall as Shortfall,

@@ -31,7 +31,7 @@ def fronts_at(clip: Clip, frame: float) -> tuple[Front, ...]:
         frame = clip.frames.first + (frame - clip.frames.first) % clip.period
     is_before_all = clip.loop and frame < clip.keys[0].frame
     for key in clip.keys:
-        if is_before_all or _has_been(figure, key.frame, frame):
+        if key.fronts and (is_before_all or _has_been(figure, key.frame, frame)):
             depths.update(key.fronts)
     usual = USUAL_EXTENT * box_diagonal(figure.domain.outline)
     return tuple(
