@@ -9,7 +9,7 @@ import re
 import shlex
 import shutil
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
@@ -29,6 +29,16 @@ CANCELLED: Final = "it was cancelled"
 REINSTALL: Final = "install Lissom again"
 # What Python makes of the bytes of a file's name that are no UTF-8, on Linux.
 _UNREADABLE = re.compile("[\ud800-\udfff]")
+LONGEST_SHOWN: Final = 120  # characters of a text that others wrote
+LONGEST_MESSAGE: Final = 1_000  # characters
+MOST_SHOWN: Final = 10  # names in a row, and notices
+_CUT: Final = "\N{HORIZONTAL ELLIPSIS}"
+# A text in quotes within a message, of more characters than are shown.
+_LONG_QUOTED: Final = re.compile(
+    rf"""(?<!\w)(['"])((?:(?!\1).){{{LONGEST_SHOWN - 1}}})(?:(?!\1).){{2,}}\1(?!\w)"""
+)
+# Beside all that Python counts as printable: spaces of every width, and joiners within words.
+_PRINTABLE: Final = re.compile("[\u00a0\u1680\u2000-\u200a\u202f\u205f\u3000\u200c\u200d]")
 
 
 class LissomError(Exception):
@@ -82,7 +92,7 @@ class Told:
     def summary(self) -> ImportSummary:
         """All that was told."""
         losses, matters = (
-            tuple(f"{', '.join(names)}: {what}" for what, names in found.items())
+            tuple(f"{listed(names)}: {what}" for what, names in found.items())
             for found in (self._losses, self._matters)
         )
         return ImportSummary(losses, matters)
@@ -94,6 +104,47 @@ def shown_name(name: object) -> str:
     Neither a window nor a file of text takes such a name as it is.
     """
     return _UNREADABLE.sub("\N{REPLACEMENT CHARACTER}", str(name))
+
+
+def printable(text: object, *, keeps_lines: bool = False) -> str:
+    r"""Return a text as any terminal shows it: its control characters are escapes, such as \x1b.
+
+    Those that turn the direction of writing are among them.
+    """
+
+    def escaped(letter: str) -> str:
+        if letter.isprintable() or _PRINTABLE.match(letter) or (keeps_lines and letter == "\n"):
+            return letter
+        return letter.encode("unicode_escape").decode("ascii")
+
+    text = shown_name(text)
+    return text if text.isprintable() else "".join(map(escaped, text))
+
+
+def shortened(text: object) -> str:
+    """Return a text that others wrote as it stands in a sentence: printable, and cut if long."""
+    shown = printable(str(text)[: LONGEST_SHOWN + 1])
+    return shown if len(shown) <= LONGEST_SHOWN else shown[: LONGEST_SHOWN - 1] + _CUT
+
+
+def shown_message(message: object) -> str:
+    """Return a message as it is printed: on one line, printable, and what is long in it cut."""
+    shown = _LONG_QUOTED.sub(rf"\1\2{_CUT}\1", printable(" ".join(str(message).split())))
+    half = LONGEST_MESSAGE // 2
+    return shown if len(shown) <= LONGEST_MESSAGE else f"{shown[:half]}{_CUT}{shown[-half:]}"
+
+
+def listed(names: Sequence[object]) -> str:
+    """Return names in a row, and how many more there are."""
+    few = ", ".join(map(shortened, names[:MOST_SHOWN]))
+    more = len(names) - MOST_SHOWN
+    return f"{few} and {more:,} more" if more > 0 else few
+
+
+def few_notices(notices: Sequence[str]) -> list[str]:
+    """Return the first notices, and how many more there are."""
+    more = len(notices) - MOST_SHOWN
+    return [*notices[:MOST_SHOWN], *([f"and {more:,} more"] if more > 0 else [])]
 
 
 def missing(extra: Extra) -> str:

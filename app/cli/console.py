@@ -3,9 +3,10 @@
 import argparse
 import sys
 import time
+from collections.abc import Sequence
 from typing import NoReturn, Self
 
-from app.errors import shown_name
+from app.errors import few_notices, printable, shown_message
 
 EXIT_ERROR = 2
 PATIENCE = 0.5  # seconds before a person is told how far a computation is
@@ -21,19 +22,24 @@ class Parser(argparse.ArgumentParser):
 
 def fail(message: str) -> NoReturn:
     """Print one line of error and leave with the exit status of bad input."""
-    line = " ".join(shown_name(message).split())
-    print(f"lissom: error: {line}", file=sys.stderr)
+    print(f"lissom: error: {shown_message(message)}", file=sys.stderr)
     raise SystemExit(EXIT_ERROR)
 
 
 def say(message: str) -> None:
-    """Print what a command found or made."""
-    print(shown_name(message))
+    """Print what a command found or made, on one line or several."""
+    print(printable(message, keeps_lines=True))
 
 
 def notice(message: str) -> None:
     """Tell the person what was done on their behalf."""
-    print(f"lissom: {shown_name(message)}", file=sys.stderr)
+    print(f"lissom: {shown_message(message)}", file=sys.stderr)
+
+
+def give_notices(messages: Sequence[str]) -> None:
+    """Tell the person several things; of many the first ones, and how many more there are."""
+    for message in few_notices(messages):
+        notice(message)
 
 
 class StatusLine:
@@ -55,7 +61,7 @@ class StatusLine:
     def show(self, text: str) -> None:
         """Put a text in place of the one before."""
         if self._is_seen:
-            print(f"\r\x1b[K{text}", end="", file=sys.stderr, flush=True)
+            print(f"\r\x1b[K{shown_message(text)}", end="", file=sys.stderr, flush=True)
 
     def tell(self, share: float) -> None:
         """Tell how much of what takes long is done, from 0 to 1."""

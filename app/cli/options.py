@@ -34,7 +34,7 @@ def input_file(text: str) -> Path:
     LissomError
         Not an error of usage: what was said is right, but nothing is there.
     """
-    path = Path(text)
+    path = Path(_named(text))
     try:
         path.stat()
     except OSError as error:
@@ -48,11 +48,18 @@ def output(text: str) -> Path:
     Raises
     ------
     LissomError
-        If it is a dash, which stands for standard output elsewhere.
+        If it is a dash, which stands for standard output elsewhere, or empty.
     """
     if text == "-":
         raise LissomError(NO_STANDARD_OUTPUT)
-    return Path(text)
+    return Path(_named(text))
+
+
+def _named(text: str) -> str:
+    """Return the name of a file; refuse an empty one, which Python takes for this folder."""
+    if not text:
+        raise LissomError("the name of a file is empty; name one")
+    return text
 
 
 def whole_number(least: int, most: int = sys.maxsize) -> Callable[[str], int]:

@@ -10,13 +10,16 @@ from app.document.body import (
     Bone as Bone,
     GivenMotion as GivenMotion,
     SidePairs as SidePairs,
+    UnreadMotion as UnreadMotion,
     carried_over as carried_over,
     mirrored_name as mirrored_name,
     pairs_by_name as pairs_by_name,
     partners_of as partners_of,
     read_pairs as read_pairs,
+    require_motions as require_motions,
     written_pairs as written_pairs,
 )
+from app.document.checks import LAST_FRAME as LAST_FRAME
 from app.document.commands import (
     Command as Command,
     Settled as Settled,
@@ -110,6 +113,7 @@ from app.document.queries import (
     keyed_frame as keyed_frame,
     layer_tree as layer_tree,
     limb_of as limb_of,
+    motion_notices as motion_notices,
     movement_at as movement_at,
     opacity_at as opacity_at,
     passings_of as passings_of,
@@ -117,6 +121,7 @@ from app.document.queries import (
     pinned_segments as pinned_segments,
     place_at as place_at,
     placing_at as placing_at,
+    remembered as remembered,
     repeating as repeating,
     resting_pose as resting_pose,
     seen_alone as seen_alone,
@@ -134,11 +139,12 @@ from app.document.queries import (
     with_repeats as with_repeats,
 )
 from app.document.settings import (
+    FASTEST as FASTEST,
     FRAME_NAMES as FRAME_NAMES,
     FRAMINGS as FRAMINGS,
-    LAST_FRAME as LAST_FRAME,
     NATURAL as NATURAL,
     RUBBERY as RUBBERY,
+    SLOWEST as SLOWEST,
     STIFF as STIFF,
     STRETCHES as STRETCHES,
     VARIANTS as VARIANTS,

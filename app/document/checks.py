@@ -9,6 +9,8 @@ from app.errors import LissomError
 WIDEST = 65_535
 # Pixels. There is nothing to be seen so far out, and squares would run out of digits.
 FARTHEST = 1e7
+LAST_FRAME = 999_999
+LARGEST_ID = 2**31 - 1  # as much as the window takes
 # Fields of a project file that this version does not know and hands on.
 Unknown = Mapping[str, Any]
 NOTHING: Unknown = MappingProxyType({})
@@ -27,6 +29,19 @@ def require_distinct(values: Iterable[object], message: str) -> None:
         if value in seen:
             raise LissomError(message.format(value))
         seen.add(value)
+
+
+def require_frame(frame: int, what: str) -> None:
+    """Raise a `LissomError` unless there can be such a frame; `what` is there."""
+    if not 0 <= frame <= LAST_FRAME:
+        raise LissomError(f"{what} is at a frame from 0 to {LAST_FRAME:,}, not at {frame}.")
+
+
+def require_identity(identity: int, what: str) -> None:
+    """Raise a `LissomError` unless a number can be an id."""
+    require(
+        0 <= identity <= LARGEST_ID, f"The id of {what} is 0 to {LARGEST_ID:,}, not {identity}."
+    )
 
 
 def require_place(place: complex, name: str) -> None:

@@ -2,6 +2,7 @@
 
 import hashlib
 import re
+from bisect import bisect_right
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
@@ -9,12 +10,20 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from app.document.body import SIDES, Bone, GivenMotion, pairs_by_name
+from app.document.body import (
+    SIDES,
+    Bone,
+    GivenMotion,
+    UnreadMotion,
+    pairs_by_name,
+    require_motions,
+)
 from app.document.checks import (
     NOTHING,
     Unknown,
     require,
     require_distinct,
+    require_identity,
     require_place,
     require_size,
 )
@@ -94,6 +103,7 @@ class Figure:
     # Ready motions that its keys were made by, in the order of their frames; they tell nothing of
     # keys that were edited since.
     motions: tuple[GivenMotion, ...] = ()
+    unread_motions: tuple[UnreadMotion, ...] = ()  # in the order of their places
     variant: Variant = Variant.METRIC  # it may be given by its name
     bounds: Bounds = NATURAL.bounds  # distortion that the solver allows in new poses
     library: tuple[KeptPose, ...] = ()  # poses that are kept to be used again
@@ -127,7 +137,7 @@ class Figure:
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
-        require(self.id >= 0, f"A figure's id is not negative, unlike {self.id}.")
+        require_identity(self.id, "a layer")
         require(bool(self.name.strip()), "A figure needs a name.")
         require_place(self.corner, f"The corner of {self.name!r}")
         require(0 <= self.opacity <= 1, f"Opacity is between 0 and 1, not {self.opacity:g}.")
@@ -189,7 +199,15 @@ class Figure:
 
     def cycle_at(self, frame: float) -> Cycle | None:
         """Return the cycle that a frame is in, be it in its stretch or in its repeats."""
-        return next((cycle for cycle in self.cycles if cycle.covers(frame)), None)
+        # One may end where the next one begins.
+        count = bisect_right(self.cycles, frame, key=lambda cycle: cycle.first)
+        near = self.cycles[max(count - 2, 0) : count]
+        return next((cycle for cycle in near if cycle.covers(frame)), None)
+
+    def cycle_having(self, frame: float) -> Cycle | None:
+        """Return the cycle in whose stretch itself a frame is."""
+        count = bisect_right(self.cycles, frame, key=lambda cycle: cycle.first)
+        return next((cycle for cycle in self.cycles[:count][-1:] if cycle.has(frame)), None)
 
     def source_of(self, frame: int) -> int:
         """Return the frame at which what a frame shows is keyed: another one where it repeats."""
@@ -346,6 +364,7 @@ class Figure:
             f"{self.name!r} has {len(handles):,} handles, more than the {MOST_HANDLES:,} that a "
             "drawing may have.",
         )
+        require_identity(self.next_handle, "the next handle")
         require_distinct((handle.id for handle in handles), "Two handles have the id {!r}.")
         require_distinct((handle.name for handle in handles), "Two handles have the name {!r}.")
         require_distinct((each.position for each in handles), "Two handles have the place {!r}.")
@@ -378,9 +397,10 @@ class Figure:
                 key.fronts.keys() <= key.pose.targets.keys(),
                 f"The key at frame {key.frame} puts a handle in front that is not there.",
             )
+        frames = [key.frame for key in self.keys]
         require_apart(self.cycles)
         for cycle in self.cycles:
-            require_repeatable(cycle, [key.frame for key in self.keys])
+            require_repeatable(cycle, frames)
 
     def _check_library(self) -> None:
         require_distinct((kept.name for kept in self.library), "Two poses have the name {!r}.")
@@ -397,6 +417,7 @@ class Figure:
                     identity in known, f"A {what} is of the handle {identity}, which is not there."
                 )
             require_distinct(identities, f"Two {what}s are of the handle {{!r}}.")
+        require_motions(self.motions, known)
 
     def _check_material(self) -> None:
         if self.stiffness is not None:
@@ -404,6 +425,10 @@ class Figure:
             object.__setattr__(
                 self, "stiffness", readonly(require_stiffness(self.stiffness, count))
             )
+        require(
+            len(self.bones) <= MOST_HANDLES,
+            f"A drawing has at most {MOST_HANDLES:,} bones, not {len(self.bones):,}.",
+        )
         known = {handle.id for handle in self.handles}
         for bone in self.bones:
             for end in bone.ends:

@@ -117,7 +117,9 @@ class History:
         LissomError
             If the command is not possible; then nothing has changed.
         """
-        self._go_on(Step(command(self.document), self.unkeyed, command.label, gesture))
+        document = command(self.document)
+        unkeyed = _fitting(self.unkeyed, self.document, document)
+        self._go_on(Step(document, unkeyed, command.label, gesture))
 
     def pose(self, unkeyed: UnkeyedPose | None, *, gesture: object = None) -> None:
         """Hold a pose outside of all keys in place of the one before, or none any more."""
@@ -225,6 +227,15 @@ class History:
         del self._steps[:count], self._bytes[:count]
         self._now -= count
         self._forgotten += count
+
+
+def _fitting(unkeyed: UnkeyedPose | None, before: Document, after: Document) -> UnkeyedPose | None:
+    """Return a pose of a document, unless a later one has its figure no more, or another domain."""
+    if unkeyed is None:
+        return None
+    domains = {figure.id: figure.domain for figure in after.figures}
+    is_fit = domains.get(unkeyed.figure) is before.figure(unkeyed.figure).domain
+    return unkeyed if is_fit else None
 
 
 def _is_same(step: Step, other: Step) -> bool:

@@ -8,7 +8,15 @@ from typing import Self
 
 import numpy as np
 
-from app.document.checks import FARTHEST, NOTHING, Unknown, require, require_place
+from app.document.checks import (
+    FARTHEST,
+    NOTHING,
+    Unknown,
+    require,
+    require_frame,
+    require_identity,
+    require_place,
+)
 from app.document.timing import HOLD, LINEAR, Easing, Passing, require_passing
 from engine.arrays import Complexes, as_points, freeze
 from engine.maps import Certificate, HarmonicMap
@@ -20,6 +28,9 @@ HOLDS = {"Soft": 0.1, "Normal": 1.0, "Firm": 10.0}
 # let it moves it by less than a tenth of a pixel.
 LOCK = 1e4
 MOST_TURNS = 20
+# Pixels. No pose between targets that are within `FARTHEST` comes near; beyond, what is seen of a
+# pose would run out of digits.
+LARGEST_COEFFICIENT = 1e12
 NO_FRONTS: Mapping[int, float] = MappingProxyType({})
 
 
@@ -44,7 +55,7 @@ class Handle:
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
-        require(self.id >= 0, f"A handle's id is not negative, unlike {self.id}.")
+        require_identity(self.id, "a handle")
         require(bool(self.name.strip()), "A handle needs a name.")
         require_place(self.position, f"The position of handle {self.name!r}")
         require(
@@ -108,6 +119,12 @@ class Pose:
         object.__setattr__(self, "phi", as_points(self.phi, "phi", at_least=3))
         object.__setattr__(self, "psi", as_points(self.psi, "psi", at_least=3))
         object.__setattr__(self, "logs", as_points(self.logs, "logs"))
+        largest = max(np.abs(each).max(initial=0.0) for each in (self.phi, self.psi, self.logs))
+        require(
+            largest <= LARGEST_COEFFICIENT,
+            f"The coefficients of a pose are at most {LARGEST_COEFFICIENT:g} pixels, not "
+            f"{largest:.3g}; move its targets nearer, or choose tighter limits.",
+        )
 
     @classmethod
     def of(
@@ -156,6 +173,7 @@ class Keyframe:
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
+        require_frame(self.frame, "A key")
         require(
             abs(self.turns) <= MOST_TURNS,
             f"There may be {MOST_TURNS} whole turns on the way to a key, not {self.turns}.",

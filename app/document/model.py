@@ -9,7 +9,9 @@ and a certificate is proven of its map, never read.
 from bisect import bisect_left, bisect_right
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import pairwise
+from graphlib import CycleError, TopologicalSorter
+from itertools import groupby, pairwise
+from operator import itemgetter
 from typing import NoReturn
 
 from app.document.body import PAIRS, SidePairs, require_pairs
@@ -24,11 +26,14 @@ from app.document.layering import (
     repeated_joints,
     require_rising,
 )
-from app.document.settings import FASTEST, ExportSettings, FrameRange, Marker
+from app.document.settings import ExportSettings, FrameRange, Marker, require_fps
+from app.document.timing import count_changes
 from app.errors import NOTHING_TOLD, ImportSummary, LissomError
 
 NO_FIGURE = "There is no figure with the id {identity}."
 HANGS_ON_ITSELF = "{name!r} would hang on itself{when}: {links}; detach one of them first."
+# Of all layers, in the repeats of their cycles, too.
+MOST_CHANGES = 100_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -62,8 +67,19 @@ class Document:
     camera: tuple[CameraKey, ...] = ()
     # What was told when drawings on layers were brought in.
     told: ImportSummary = NOTHING_TOLD
+    # Figures by their ids, choices by those of their figures, groups by their paths.
+    _figures: Mapping[int, Figure] = field(init=False, repr=False)
+    _choices: Mapping[int, Choice] = field(init=False, repr=False)
+    _groups: Mapping[str, Group] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
+        chosen = {identity: each for each in self.choices for identity in each.figures}
+        for name, found in (
+            ("_figures", {each.id: each for each in self.figures}),
+            ("_choices", chosen),
+            ("_groups", {each.name: each for each in self.groups}),
+        ):
+            object.__setattr__(self, name, found)
         self._check_figures()
         require_pairs(self.pairs)
         require(
@@ -77,11 +93,7 @@ class Document:
         require_rising(self.camera, "The camera")
         for key in self.camera:
             self._require_inside(key.frame)
-        require(
-            0 < self.fps <= FASTEST,
-            f"The speed must be above 0 and at most {FASTEST:g} frames per second, "
-            f"not {self.fps:g}.",
-        )
+        require_fps(self.fps, "The speed")
 
     @property
     def played(self) -> FrameRange:
@@ -96,12 +108,11 @@ class Document:
     @property
     def exported(self) -> tuple[Figure, ...]:
         """The figures that exports show at some time, from back to front."""
-        chosen = {identity for choice in self.choices for identity in choice.figures}
         return tuple(
             each
             for each in self.figures
             if not (each.reference or self.is_in_hidden(each))
-            and (each.id in chosen or not each.hidden)
+            and (each.id in self._choices or not each.hidden)
         )
 
     def is_in_hidden(self, figure: Figure) -> bool:
@@ -110,10 +121,9 @@ class Document:
 
     def group(self, path: str) -> Group:
         """Return the group with this path."""
-        for group in self.groups:
-            if group.name == path:
-                return group
-        raise LissomError(f"There is no group {path!r}.")
+        if path not in self._groups:
+            raise LissomError(f"There is no group {path!r}.")
+        return self._groups[path]
 
     def groups_around(self, path: str) -> tuple[Group, ...]:
         """Return the group with this path after those that it is in, the outermost first."""
@@ -121,10 +131,9 @@ class Document:
 
     def figure(self, identity: int) -> Figure:
         """Return the figure with this id."""
-        for figure in self.figures:
-            if figure.id == identity:
-                return figure
-        raise LissomError(NO_FIGURE.format(identity=identity))
+        if identity not in self._figures:
+            raise LissomError(NO_FIGURE.format(identity=identity))
+        return self._figures[identity]
 
     def choice(self, name: str) -> Choice:
         """Return the choice with this name."""
@@ -135,7 +144,7 @@ class Document:
 
     def choice_of(self, identity: int) -> Choice | None:
         """Return the choice that decides when the figure with this id is seen, if there is one."""
-        return next((choice for choice in self.choices if identity in choice.figures), None)
+        return self._choices.get(identity)
 
     def marker(self, frame: int) -> Marker:
         """Return the marker at this frame."""
@@ -178,20 +187,25 @@ class Document:
             Whether what hangs just before the frame counts, and not from it on.
         """
         frame = self.in_time(frame)
-        chain = [self.figure(identity)]
-        while (joint := self.joint_at(chain[-1], frame, before=before)) and joint.to is not None:
-            parent = self.figure(joint.to)
-            if parent in chain:
-                self._refuse_circle((*chain[chain.index(parent) :], parent), frame)
-            chain.append(parent)
-        return tuple(chain)
+        figure = self.figure(identity)
+        chain = {figure.id: figure}
+        while (joint := self.joint_at(figure, frame, before=before)) and joint.to is not None:
+            figure = self.figure(joint.to)
+            if figure.id in chain:
+                found = [*chain.values()]
+                self._refuse_circle((*found[found.index(figure) :], figure), frame)
+            chain[figure.id] = figure
+        return tuple(chain.values())
 
     def all_carriers(self, identity: int) -> tuple[Figure, ...]:
         """Return the others on which a figure hangs at some time, directly or by others."""
         found = [self.figure(identity)]
+        known = {identity}
         for figure in found:
-            parents = [self.figure(joint.to) for joint in figure.joints if joint.to is not None]
-            found += [each for each in dict.fromkeys(parents) if each not in found]
+            for joint in figure.joints:
+                if joint.to is not None and joint.to not in known:
+                    known.add(joint.to)
+                    found.append(self.figure(joint.to))
         return tuple(found[1:])
 
     def in_time(self, frame: float) -> float:
@@ -213,23 +227,59 @@ class Document:
             for placing in figure.placings:
                 if placing.beside is not None:
                     self.figure(placing.beside)
+        self._check_choices()
+        self._check_repeats()
         self._check_joints()
         for figure in self.figures:
             self._check_clocks(figure)
-        self._check_choices()
+
+    def _check_repeats(self) -> None:
+        """Refuse more changes than can be told in a moment, those in repeats among them."""
+        end, count = self.frames.last, 0
+        for figure in self.figures:
+            for changes in (figure.switches, figure.placings, figure.joints):
+                count += count_changes([each.frame for each in changes], figure.cycles, end)
+        for choice in self.choices:
+            cycles = set.intersection(*({*self.figure(each).cycles} for each in choice.figures))
+            count += count_changes([turn.frame for turn in choice.turns], cycles, end)
+        require(
+            count <= MOST_CHANGES,
+            f"With their repeats, layers are shown, hidden, ordered and attached {count:,} times, "
+            f"more than {MOST_CHANGES:,}; let the repeats end earlier.",
+        )
 
     def _check_joints(self) -> None:
         """Refuse figures that hang on each other in a circle at any frame."""
-        carried = {each.id: self.all_carriers(each.id) for each in self.figures if each.joints}
-        circling = [
-            self.figure(identity)
-            for identity, carriers in carried.items()
-            if any(joint.to == identity for each in carriers for joint in each.joints)
-            or any(joint.to == identity for joint in self.figure(identity).joints)
-        ]
-        for frame in sorted({joint.frame for each in circling for joint in self.joints_of(each)}):
-            for figure in circling:
-                self.carriers(figure.id, frame)
+        hung = [each for each in self.figures if each.joints]
+        links = {
+            each.id: {self.figure(joint.to).id for joint in each.joints if joint.to is not None}
+            for each in hung
+        }
+        try:
+            TopologicalSorter(links).prepare()
+        except CycleError:
+            self._check_circles(hung)
+
+    def _check_circles(self, hung: Sequence[Figure]) -> None:
+        """Refuse figures in a circle, where some hang on each other at different frames.
+
+        A circle begins where one of its figures is attached, from which it leads back.
+        """
+        first, last = self.frames.first, self.frames.last
+        changes = sorted(
+            # What a loop has before its first frame holds there.
+            (max(joint.frame, first) if self.loop else joint.frame, joint.frame, place, joint.to)
+            for place, each in enumerate(hung)
+            for joint in self.joints_of(each)
+            if not (self.loop and joint.frame > last)
+        )
+        parents: dict[int, int | None] = {}
+        for frame, at_once in groupby(changes, key=itemgetter(0)):
+            attached = {hung[place].id: parent for _, _, place, parent in at_once}
+            parents |= attached
+            if any(_leads_back(parents, identity) for identity in attached):
+                for figure in hung:
+                    self.carriers(figure.id, frame)  # tells the circle
 
     def _require_inside(self, frame: int) -> None:
         require(
@@ -299,3 +349,13 @@ class Document:
                 f"A spring of {figure.name!r} has no damping, so that it never comes round in a "
                 "loop; give it some.",
             )
+
+
+def _leads_back(parents: Mapping[int, int | None], identity: int) -> bool:
+    """Tell whether going from a figure to its parent, and on, comes to a figure again."""
+    passed = {identity}
+    above = parents.get(identity)
+    while above is not None and above not in passed:
+        passed.add(above)
+        above = parents.get(above)
+    return above is not None

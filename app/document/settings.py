@@ -4,7 +4,14 @@ import re
 from dataclasses import dataclass, field, replace
 from typing import Final, Literal, NamedTuple, Self, get_args
 
-from app.document.checks import NOTHING, Unknown, require, require_size
+from app.document.checks import (
+    LAST_FRAME,
+    NOTHING,
+    Unknown,
+    require,
+    require_frame,
+    require_size,
+)
 from app.export_formats import EXPORT_FORMATS, FormatSettings, full_colour
 from engine.domain import MOST_TRIANGLES
 from engine.domain.outline import Detail
@@ -64,11 +71,18 @@ def loosened(bounds: Bounds) -> Bounds | None:
     return None
 
 
-LAST_FRAME = 999_999
-FASTEST = 1000.0
+SLOWEST, FASTEST = 1 / 60, 1000.0  # frames per second
 FRAME_NAMES = "frame_####"
 # What some system or other takes for more than a character of a name.
 _LITERAL = r'[^#/\\:*?"<>|\x00-\x1f\ud800-\udfff]{0,100}'
+
+
+def require_fps(fps: float, what: str) -> None:
+    """Raise a `LissomError` unless so many frames a second can be shown."""
+    require(
+        SLOWEST <= fps <= FASTEST,
+        f"{what} is from 1/60 to {FASTEST:,.0f} frames per second, not {fps:g}.",
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,10 +116,7 @@ class Marker:
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
-        require(
-            0 <= self.frame <= LAST_FRAME,
-            f"A marker is at a frame from 0 to {LAST_FRAME:,}, not at {self.frame}.",
-        )
+        require_frame(self.frame, "A marker")
         require(bool(self.name.strip()), "A marker needs a name.")
 
 

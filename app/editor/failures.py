@@ -68,7 +68,7 @@ def report(session: Session, what: str, error: Exception) -> None:
 
 def surprise(session: Session, text: str, error: Exception, *, topic: str = "") -> None:
     """Tell that the program itself failed, with details to copy and a report to save."""
-    session.trouble = trace_in_words(error, _hidden(session))
+    session.trouble = trace_of(session, error)
     session.tell(
         text,
         tone="error",
@@ -77,6 +77,11 @@ def surprise(session: Session, text: str, error: Exception, *, topic: str = "") 
         label="Report…",
         action=do(show_report),
     )
+
+
+def trace_of(session: Session, error: Exception) -> str:
+    """Return the traceback of a surprise, without what a report does not name."""
+    return trace_in_words(error, _hidden(session))
 
 
 def note(session: Session, action: Action) -> None:
@@ -96,7 +101,7 @@ def report_of(session: Session) -> str:
 
 def keep_report_of(session: Session, error: Exception) -> str:
     """Keep a report of what ends the window beside unsaved work, and return it."""
-    session.trouble = trace_in_words(error, _hidden(session))
+    session.trouble = trace_of(session, error)
     text = report_of(session)
     keep_report(session.folder, text)
     return text

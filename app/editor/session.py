@@ -12,7 +12,7 @@ from app.editor.action import Action
 from app.editor.dialogs import Dialog, FileDialog
 from app.editor.project import Project
 from app.editor.work import Jobs
-from app.errors import shown_name
+from app.errors import printable, shown_message
 from app.export import ExportPlan, Poses
 from app.motion import Box
 from app.storage import Autosave, Cancellation, Preferences, home_folder
@@ -319,7 +319,7 @@ class Session:
         action: Action | None = None,
     ) -> None:
         """Show a message; one that shows already starts its time again."""
-        text, details = shown_name(text), shown_name(details)
+        text, details = shown_message(text), printable(details, keeps_lines=True)
         self.toasts = [
             toast
             for toast in self.toasts

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 from typing import Literal, NamedTuple, Self
 
 from app.document import (
+    Clip,
     Cycle,
     Document,
     Figure,
@@ -268,3 +269,12 @@ class Timing:
     seen_rows: tuple[KeyRow, frozenset[int]] | None = None
     unfolded: frozenset[int] = frozenset()  # the figures whose tracks have rows
     shortfalls: Derived[Figure, Shortfalls] = field(default_factory=lambda: Derived({}))
+    # The frames at which keys of a row are seen, in their order.
+    keyed: Derived[tuple[Document, KeyRow], tuple[int, ...]] = field(
+        default_factory=lambda: Derived(())
+    )
+    # The frames of keys that the limits slow down, and by which shares, as far as that was known
+    # when so many results had been delivered.
+    slowed: Derived[tuple[Clip, int], Mapping[int, float]] = field(
+        default_factory=lambda: Derived({})
+    )

@@ -76,10 +76,15 @@ def check_destination(
     Raises
     ------
     LissomError
-        If it is a folder instead of a file or the other way round, is named like another format,
-        or its folder is missing or may not be written to; or as `check_writable`, of every file.
+        If it is a folder instead of a file or the other way round, is named like another format or
+        by an ending alone, or its folder is missing or may not be written to; or as
+        `check_writable`, of every file.
     """
     suffixes, label = EXPORT_FORMATS[name].suffixes, EXPORT_FORMATS[name].label
+    if out.name.lower() in _all_suffixes():
+        raise LissomError(
+            f"{out} is only the ending of a name; put a name before it, as in animation{out.name}"
+        )
     if suffixes:
         check_writable(*_files(out, name, frames), sources=sources)
         ending = out.suffix.lower()

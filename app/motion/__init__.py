@@ -10,7 +10,7 @@ from app.motion.corrected_frames import (
     FoundCorrections as FoundCorrections,
     corrected_clip as corrected_clip,
 )
-from app.motion.extent import (
+from app.motion.extents import (
     Box as Box,
     box_around as box_around,
     extent_source as extent_source,

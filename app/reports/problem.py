@@ -15,6 +15,8 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Final
 
+from app.errors import printable
+
 LIBRARIES: Final = (
     *("numpy", "scipy", "pillow", "shapely", "contourpy", "zlib-ng"),
     *("moderngl", "glcontext", "glfw", "imgui-bundle"),
@@ -71,7 +73,7 @@ def problem_report(*, graphics: str, actions: Sequence[str], trace: str) -> str:
     if actions:
         parts.append("\n".join(["Done last, the newest at the end:", *(f"  {a}" for a in actions)]))
     parts.append(trace.rstrip() or "Nothing failed that the program has noticed.")
-    return "\n\n".join(parts) + "\n"
+    return printable("\n\n".join(parts) + "\n", keeps_lines=True)
 
 
 def trace_in_words(error: BaseException, hidden: Iterable[Path] = ()) -> str:

@@ -227,18 +227,26 @@ class Drag:
                 break
         return replace(self, rig=rig, deformer=deformer, state=state)
 
-    def let_go(self, targets: Mapping[int, Target], hands: Sequence[Hand]) -> Mapping[int, Target]:
-        """Return the targets of what hands have pulled, joints too, once these let go here."""
+    def release(
+        self, targets: Mapping[int, Target], hands: Sequence[Hand]
+    ) -> tuple["Drag", Mapping[int, Target]]:
+        """Return the drag after hands let go here, and the new targets of what these have pulled.
+
+        Joints that gave in are among them. A pose at rest is at rest towards the new targets, too,
+        unless a bone at its limit pulls at a handle that stays.
+        """
         wish = self.rig.wish(targets, self.pins, hands)
-        places = self.deformer.positions(self.state)
-        left = wish.let_go(places, self.deformer.handles.stiffness).positions
+        at = self.deformer.positions(self.state)
+        left = wish.let_go(at, self.deformer.handles.stiffness).positions
         giving = (*hands, *self.rig.yielding(hands))
         pulled = {identity for hand in giving for identity in hand.handles}
-        return {
+        places = {
             handle.id: replace(targets[handle.id], position=complex(place))
             for handle, place in zip(self.rig.handles, left, strict=False)
             if handle.id in pulled
         }
+        wanted = self.rig.wish({**targets, **places}, self.pins)
+        return replace(self, state=self.deformer.release(self.state, wanted)), places
 
     def pose(self, targets: Mapping[int, Target]) -> Pose:
         """Return where the drag is, as a pose with these wishes."""

@@ -303,8 +303,9 @@ def _solve(rig: Rig, start: Pose, key: PoseKey) -> tuple[Pose, list[str]]:
     hands = tuple(Hand((identity,), key.pull) for identity in named)
     drag = Drag.begin(rig, start).towards(targets, MOST_STEPS, hands)
     shortfall = find_shortfall(figure, drag.pose(targets))
-    left = {**targets, **drag.let_go(targets, hands)}
-    pose = (drag if left == targets else drag.towards(left, MOST_STEPS)).pose(left)
+    drag, released = drag.release(targets, hands)
+    left = {**targets, **released}
+    pose = drag.towards(left, MOST_STEPS).pose(left)
     # Joints of bones give way: nobody asked them to stay.
     joints = {identity for hand in rig.yielding(hands) for identity in hand.handles}
     notices += [

@@ -19,7 +19,7 @@ from app.document import (
     repeating,
     turns_in,
 )
-from app.errors import LissomError
+from app.errors import LissomError, listed
 from app.motion import Joints, anchor_of, hand_over
 from app.solving.script import FigureScript, PoseScript, ScriptJoint
 
@@ -28,7 +28,7 @@ def layer_named(document: Document, name: str) -> Figure:
     """Return the layer with a name."""
     names = {figure.name: figure for figure in document.figures}
     if name not in names:
-        raise LissomError(f"there is no layer {name!r}; the layers are {', '.join(names)}")
+        raise LissomError(f"there is no layer {name!r}; the layers are {listed([*names])}")
     return names[name]
 
 

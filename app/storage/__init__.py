@@ -31,6 +31,7 @@ from app.storage.files import (
     IS_FOLDER as IS_FOLDER,
     NO_ARRAYS as NO_ARRAYS,
     NO_FOLDER as NO_FOLDER,
+    NOT_FINITE as NOT_FINITE,
     SAME_FILE as SAME_FILE,
     Cancellation as Cancellation,
     Hold as Hold,
@@ -43,6 +44,7 @@ from app.storage.files import (
     passing_picture as passing_picture,
     read_arrays as read_arrays,
     read_file as read_file,
+    strict_json as strict_json,
     write_arrays as write_arrays,
     write_atomically as write_atomically,
 )
@@ -56,6 +58,7 @@ from app.storage.json_values import (
     as_text as as_text,
     as_whole as as_whole,
     load_json as load_json,
+    shown as shown,
 )
 from app.storage.layers import (
     as_layer as as_layer,
@@ -85,6 +88,7 @@ from app.storage.pictures import (
     encode_mask as encode_mask,
     let_go as let_go,
     on_disk as on_disk,
+    require_memory as require_memory,
     side_by_side as side_by_side,
 )
 from app.storage.preferences import (

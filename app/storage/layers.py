@@ -17,7 +17,6 @@ from app.document import (
     PictureFile,
     composed,
     is_visible,
-    layer_commands,
     new_figure,
 )
 from app.errors import LissomError, Told, shown_name
@@ -26,6 +25,7 @@ from app.storage.opening import OpenedScene, cut_picture, scene_of
 from app.storage.pictures import (
     Layer,
     LayeredPicture,
+    Names,
     Picture,
     decode_pictures,
     encode_png,
@@ -88,8 +88,7 @@ def open_pictures(paths: Sequence[Path], meshing: Meshing) -> OpenedScene:
     The canvas is as large as the largest of them; the others stand in its middle.
     """
     layers: list[Layer] = []
-    taken: set[str] = set()
-    told = Told()
+    names, told = Names(), Told()
     files = [(read_file(path), str(path)) for path in paths]
     pictures = decode_pictures(files)
     size = (
@@ -97,8 +96,7 @@ def open_pictures(paths: Sequence[Path], meshing: Meshing) -> OpenedScene:
         max(picture.size[1] for picture in pictures),
     )
     for path, (data, _), picture in zip(paths, files, pictures, strict=True):
-        name = layer_commands.numbered_name(shown_name(path.stem), taken)
-        taken.add(name)
+        name = names.free(shown_name(path.stem))
         corner = complex((size[0] - picture.size[0]) // 2, (size[1] - picture.size[1]) // 2)
         layers.append(Layer(name=name, data=data, picture=picture, corner=corner))
         for notice in picture.notices:

@@ -12,14 +12,17 @@ times its size.
 """
 
 import json
+import os
+from collections.abc import Mapping
 from dataclasses import replace
 from math import isfinite
 from pathlib import Path
 from types import MappingProxyType
-from typing import IO
+from typing import IO, Final
+from weakref import WeakSet
 
-from app.document import Document
-from app.errors import EXPECTED_ERRORS, LissomError
+from app.document import Document, Figure
+from app.errors import EXPECTED_ERRORS, LissomError, shortened
 from app.storage.files import (
     DAMAGED_ZIP,
     opened_file,
@@ -44,13 +47,14 @@ LARGEST_JSON = 32 * MEBIBYTE
 # In project.json; a thousand keys of a hundred handles have as many.
 MOST_VALUES = 1_000_000
 LARGEST_THUMBNAIL = 2 * MEBIBYTE
-THUMBNAIL = "thumbnail.png"
+PROJECT_JSON, THUMBNAIL = "project.json", "thumbnail.png"
 # Of lists and objects in each other; fields that are not known are kept, and must be writable.
 DEEPEST = 40
 NEWER_LISSOM = (
     "it was saved by a newer Lissom ({version}, schema {schema}); this version reads schema {own}. "
     "Update Lissom to open it"
 )
+_readable: Final = WeakSet[Figure]()  # figures that were read of a file as they are
 
 
 def save_project(
@@ -74,7 +78,7 @@ def save_project(
     """
     content = write_document(document)
     members = {
-        "project.json": json.dumps(content, indent=1, sort_keys=True, allow_nan=False).encode(),
+        PROJECT_JSON: json.dumps(content, indent=1, sort_keys=True, allow_nan=False).encode(),
     }
     for figure in document.figures:
         members |= figure_members(figure)
@@ -85,6 +89,7 @@ def save_project(
 
     def write(file: IO[bytes]) -> str:
         write_archive(file, members)
+        _require_readable(path, file, members, document)
         return tail_digest(file)
 
     digest = write_atomically(path, write, is_private=is_private)
@@ -114,13 +119,15 @@ def load_project(path: Path) -> Document:
     """
     try:
         with opened_file(path) as (file, size), opened_zip(file) as members:
-            return _read(Archive(members, size))
+            document = _read(Archive(members, size))
     except OSError as error:
         raise LissomError(f"cannot read {path}: {error.strerror or error}") from error
     except EXPECTED_ERRORS as error:
         raise LissomError(f"cannot open {path}: {error}") from error
     except DAMAGED_ZIP as error:
         raise LissomError(f"{path} {NO_PROJECT}, or it is damaged") from error
+    _readable.update(document.figures)
+    return document
 
 
 def load_thumbnail(path: Path) -> bytes | None:
@@ -137,24 +144,48 @@ def load_member(path: Path, name: str, largest: int) -> bytes | None:
         return None
 
 
-def _read(archive: Archive) -> Document:
+def _require_readable(
+    path: Path, file: IO[bytes], members: Mapping[str, bytes], document: Document
+) -> None:
+    """Refuse a file that was just written unless it can be opened again.
+
+    Its values and sizes are read; arrays are those in memory, and their maps are proven already.
+    Figures that were read before, as nearly all are when a project is saved again, are as readable
+    now.
+    """
+    known = {figure.id: figure for figure in document.figures if figure in _readable}
+    arrays = {name: content for name, content in members.items() if name != PROJECT_JSON}
+    size = file.seek(0, os.SEEK_END)
+    try:
+        with opened_zip(file) as written:
+            _read(Archive(written, size, arrays), known)
+    except (*EXPECTED_ERRORS, *DAMAGED_ZIP) as error:
+        raise LissomError(
+            f"cannot write {path}, as Lissom could not open it again: {error}"
+        ) from error
+    _readable.update(document.figures)
+
+
+def _read(archive: Archive, known: Mapping[int, Figure] = MappingProxyType({})) -> Document:
     content = _read_json(archive)
     schema = as_whole(content["schema"], "schema")
     if schema > SCHEMA:
-        app_version = as_text(content.get("app_version", "?"), "app_version")
+        app_version = shortened(as_text(content.get("app_version", "?"), "app_version"))
         raise LissomError(NEWER_LISSOM.format(version=app_version, schema=schema, own=SCHEMA))
     if schema < 1:
         raise LissomError(f"its schema {schema} does not exist")
-    document = read_document(content, archive)
+    document = read_document(content, archive, known)
     attachments = {name: archive.read(name) for name in archive.unread if name != THUMBNAIL}
-    return replace(document, attachments=MappingProxyType(attachments))
+    return replace(document, attachments=MappingProxyType(attachments)) if attachments else document
 
 
 def _read_json(archive: Archive) -> JsonObject:
-    text = archive.read("project.json", largest=LARGEST_JSON)
+    text = archive.read(PROJECT_JSON, largest=LARGEST_JSON)
     # Each value but the first stands behind one of these; decoded, it takes some hundred bytes.
     if sum(text.count(mark) for mark in (b",", b"[", b"{")) > MOST_VALUES:
-        raise LissomError("its project.json holds more values than any project")
+        raise LissomError(
+            f"its project.json holds more values than any project, which has {MOST_VALUES:,}"
+        )
     try:
         content = json.loads(
             text,
@@ -166,8 +197,8 @@ def _read_json(archive: Archive) -> JsonObject:
         content = None
     except ValueError as error:
         raise LissomError(f"its project.json is not JSON: {error}") from error
-    if content is None or _is_deeper(content, DEEPEST):
-        raise LissomError("its project.json is nested too deeply")
+    if content is None or _is_deeper(content):
+        raise LissomError(f"its project.json is nested deeper than {DEEPEST} levels")
     return as_object(content, "project.json")
 
 
@@ -178,9 +209,16 @@ def _finite(text: str) -> float:
     return number
 
 
-def _is_deeper(content: object, levels: int) -> bool:
-    if isinstance(content, dict):
-        content = list(content.values())
-    if not isinstance(content, list):
-        return False
-    return levels == 0 or any(_is_deeper(value, levels - 1) for value in content)
+def _is_deeper(content: object) -> bool:
+    """Tell whether lists and objects lie deeper in each other than any project's."""
+    inside = [content] if isinstance(content, (dict, list)) else []
+    for _ in range(DEEPEST + 1):
+        inside = [
+            value
+            for each in inside
+            for value in (each.values() if isinstance(each, dict) else each)
+            if isinstance(value, (dict, list))
+        ]
+        if not inside:
+            return False
+    return True

@@ -22,6 +22,8 @@ class Panel:
     icon: str
     draw: Callable[[Session, Look, Project], list[Action]]
     place: Literal["MainDockSpace", "side", "bottom"] = "side"
+    # What is drawn first, and stays in sight where `draw` fails.
+    draw_ground: Callable[[Session, Look, Project], list[Action]] | None = None
 
     @property
     def labels(self) -> tuple[str, str, str]:

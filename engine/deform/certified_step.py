@@ -9,9 +9,9 @@ from engine.deform.model import (
     Direction,
     Jet,
     Objective,
-    Sketch,
+    Preconditioner,
     line_search,
-    sketched_direction,
+    preconditioned_direction,
     with_samples_between,
 )
 from engine.maps import Boundary, Certificate, HarmonicMap, Limits, certify_segments
@@ -41,7 +41,7 @@ class CertifiedStep:
         Part of the direction that was taken; 0 where no map along it could be certified.
     broken : Indices
         The segments where the first of them broke a bound.
-    sketch : Sketch or None
+    preconditioner : Preconditioner or None
         For the next step.
     """
 
@@ -51,7 +51,7 @@ class CertifiedStep:
     direction: Direction
     length: float
     broken: Indices
-    sketch: Sketch | None
+    preconditioner: Preconditioner | None
 
 
 def take_certified_step(
@@ -61,7 +61,7 @@ def take_certified_step(
     certificate: Certificate,
     *,
     required: Limits,
-    sketch: Sketch | None,
+    preconditioner: Preconditioner | None,
 ) -> CertifiedStep:
     """Step as far along Newton's direction as the map stays certified within `required`.
 
@@ -71,10 +71,10 @@ def take_certified_step(
     jet, harmonic_map, certificate
         Of the map at the start.
     required : Limits
-    sketch : Sketch or None
+    preconditioner : Preconditioner or None
         Of the step before.
     """
-    direction, sketch = sketched_direction(objective, jet, sketch)
+    direction, preconditioner = preconditioned_direction(objective, jet, preconditioner)
     direction = _moderate(direction, objective.boundary)
     value = objective.value(jet)
     start, length, refusals, broken = jet, 1.0, 0, np.empty(0, np.intp)
@@ -98,7 +98,7 @@ def take_certified_step(
         direction=direction,
         length=length if refusals < HALVINGS else 0.0,
         broken=broken,
-        sketch=sketch if refusals == 0 and length > FAR_FROM_WALLS else None,
+        preconditioner=preconditioner if refusals == 0 and length > FAR_FROM_WALLS else None,
     )
 
 

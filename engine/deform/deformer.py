@@ -146,6 +146,19 @@ class Deformer(HeldShape):
             return follow_hand(self, state, wish)
         return search_on(self, state, state.search)
 
+    def release(self, state: State, left: Wish) -> State:
+        """Return the state after all hands let go and the handles have the targets `left`.
+
+        A minimum stays final if `left` is the wish that `Wish.let_go` returns: the gradient is the
+        same. From any other state further steps search on.
+        """
+        wish, is_minimum = state.wish, state.status in (Status.CONVERGED, Status.AT_LIMITS)
+        if is_minimum and wish is not None:
+            exact = wish.let_go(self.positions(state), self.handles.stiffness)
+            if exact.is_same(left):
+                return replace(state, wish=left)
+        return replace(state, status=Status.MOVING, search=None, outcome=None, ways=())
+
     def _goes_on(self, state: State, wish: Wish) -> bool:
         """Tell whether the last step was towards this wish, with these handles and bounds."""
         return (

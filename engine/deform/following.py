@@ -21,7 +21,9 @@ from engine.deform.model import Barrier, Jet, Objective
 from engine.deform.state import State, Statistics, Status
 from engine.deform.steering import (
     Schedule,
+    as_rows,
     cut_to_leash,
+    distortions,
     place_walls,
     proven_at,
     tightening_limits,
@@ -32,8 +34,6 @@ from engine.maps import Limits
 # much softer.
 LEAST_TIGHTENING = 0.1
 SOFTNESS = 0.003
-# One sample in so many enters the sketch of the Hessian.
-STRIDE = 6
 # A hand that gives in stops at bounds by itself, with full steps, after which the weight would fall
 # and the shape stick to them: the barrier weighs at least this much.
 LEAST_GIVING = 0.03
@@ -48,9 +48,9 @@ def follow_hand(shape: HeldShape, state: State, wish: Wish) -> State:
         state.map,
         state.certificate,
         required=step.required,
-        sketch=state.sketch,
+        preconditioner=state.preconditioner,
     )
-    free = replace(step.objective, handles=shape.handles, wish=wish, barrier=None)
+    free = step.free
     schedule = step.schedule.after(
         length=taken.length,
         shortfall=_excess(shape.bounds.at(state.boundary), taken)
@@ -84,14 +84,20 @@ def follow_hand(shape: HeldShape, state: State, wish: Wish) -> State:
         duals=duals,
         wish=wish,
         handles=shape.handles,
-        sketch=taken.sketch,
+        preconditioner=taken.preconditioner,
+        jet=taken.jet if boundary is state.boundary else None,
     )
 
 
 class _Step(NamedTuple):
-    """A step as it is prepared; `required` is what the certificate of its map is tested for."""
+    """A step as it is prepared.
+
+    `free` is the objective of the whole wish, without a barrier; `required` is what the certificate
+    of the step's map is tested for.
+    """
 
     jet: Jet
+    free: Objective
     objective: Objective
     barrier: Barrier
     limits: Limits
@@ -111,10 +117,11 @@ class _Step(NamedTuple):
 def _prepare(shape: HeldShape, state: State, wish: Wish) -> _Step:
     """Choose what the next step minimises, and what it must keep."""
     free = Objective(boundary=state.boundary, handles=shape.handles, wish=wish)
-    jet = free.jet(*state.map.columns)
-    a, b = jet.a, jet.b
-    limits = tightening_limits(shape.bounds, state.limits, state.boundary, a, b)
-    walls, required = place_walls(limits, state.boundary, a, b, state.certificate)
+    known = state.jet if state.handles is shape.handles else None
+    jet = known or free.jet(*state.map.columns)
+    reached = distortions(jet.a, jet.b)
+    limits = tightening_limits(shape.bounds, state.limits, state.boundary, reached)
+    walls, required = place_walls(limits, state.boundary, reached, state.certificate)
     same = wish.is_same(state.wish)
     schedule = state.schedule if same else state.schedule.for_new_wish()
     tightening = limits is not shape.bounds
@@ -134,10 +141,9 @@ def _prepare(shape: HeldShape, state: State, wish: Wish) -> _Step:
     )
     return _Step(
         jet=jet,
+        free=free,
         barrier=barrier,
-        objective=replace(
-            free, handles=handles, wish=wish, barrier=barrier, stride=STRIDE, secant=True
-        ),
+        objective=replace(free, handles=handles, wish=wish, barrier=barrier, secant=True),
         limits=limits,
         required=required,
         schedule=schedule,
@@ -148,9 +154,7 @@ def _prepare(shape: HeldShape, state: State, wish: Wish) -> _Step:
 
 def _excess(bounds: Limits, taken: CertifiedStep) -> float:
     """Return by how much a map is outside its bounds; more than any distance of handles."""
-    reached = proven_at(taken.certificate, taken.jet.a, taken.jet.b)
-    return 1e3 + max(
-        np.max(reached.k - bounds.k),
-        np.max((reached.sigma_a - bounds.sigma_a) / bounds.sigma_a),
-        np.max((bounds.sigma_b - reached.sigma_b) / bounds.sigma_b),
-    )
+    allowed, reached = as_rows(bounds), distortions(taken.jet.a, taken.jet.b)
+    excess = proven_at(taken.certificate, reached) - allowed
+    excess[1:] /= np.abs(allowed[1:])
+    return 1e3 + float(excess.max())

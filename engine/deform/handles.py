@@ -60,13 +60,14 @@ class Wish(NamedTuple):
 
     def is_same(self, other: "Wish | None") -> bool:
         """Tell whether another wish asks for the same."""
-        if other is None:
-            return False
+        if other is None or other is self:
+            return other is self
         ours, theirs = (
             [*wish[:2], *(wish.hands or ()), *(wish.links or ())] for wish in (self, other)
         )
         return len(ours) == len(theirs) and all(
-            np.array_equal(one, two, equal_nan=True) for one, two in zip(ours, theirs, strict=True)
+            one is two or np.array_equal(one, two, equal_nan=one is self.rotations)
+            for one, two in zip(ours, theirs, strict=True)
         )
 
     def errors(self, positions: Complexes) -> Complexes:

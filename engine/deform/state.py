@@ -5,7 +5,7 @@ from enum import Enum
 
 from engine.arrays import Floats
 from engine.deform.handles import Handles, Wish
-from engine.deform.model import Sketch
+from engine.deform.model import Jet, Preconditioner
 from engine.deform.rest import ActiveBound, Search, Way
 from engine.deform.steering import Schedule
 from engine.maps import Boundary, Certificate, HarmonicMap, Limits
@@ -93,8 +93,10 @@ class State:
         Of the last step.
     handles : Handles or None
         Of the last step.
-    sketch : Sketch or None
-        Of the Hessian, for the next step.
+    preconditioner : Preconditioner or None
+        For the next step.
+    jet : Jet or None
+        Of the map, as the last step measured it for its boundary and handles.
     search : Search or None
         For the minimum, once the drag has come as far as it gets.
     ways : tuple of Way
@@ -117,7 +119,8 @@ class State:
     duals: Floats | None = None
     wish: Wish | None = None
     handles: Handles | None = None
-    sketch: Sketch | None = None
+    preconditioner: Preconditioner | None = None
+    jet: Jet | None = None
     search: Search | None = None
     ways: tuple[Way, ...] = ()
     outcome: Search | None = None

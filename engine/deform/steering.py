@@ -1,7 +1,8 @@
 """What steers a drag: how far a step looks ahead, how the walls push, and where they stand."""
 
+from cmath import phase, rect
 from dataclasses import dataclass, replace
-from math import inf
+from math import inf, sqrt
 from typing import NamedTuple, Self
 
 import numpy as np
@@ -124,7 +125,7 @@ def cut_to_leash(
     cut = distance / np.maximum(np.abs(pull), distance)
     # Free handles have NaN, which passes through.
     turn = np.angle(np.exp(1j * wish.rotations) * jet.fz.conj())
-    near = np.angle(jet.fz) + np.clip(turn, -most, most)
+    near = np.angle(jet.fz) + np.minimum(np.maximum(turn, -most), most)
     leashed = bool(np.any(cut < 1.0) or np.any(np.abs(turn) > most))
     return Wish(positions + cut * pull, near, wish.hands, wish.links), leashed
 
@@ -148,7 +149,7 @@ def _turned(handles: Handles, positions: Complexes, targets: Complexes, most: fl
     if len(positions) == 0:
         return positions
     common = common_motion(handles, positions, targets)
-    turn = np.exp(1j * np.clip(common.angle, -most, most))
+    turn = rect(1.0, min(max(common.angle, -most), most))
     turned: Complexes = common.centre + turn * (positions - common.centre)
     return turned
 
@@ -181,14 +182,15 @@ def common_motion(handles: Handles, positions: Complexes, targets: Complexes) ->
     centre, wanted = complex(weights @ positions), complex(weights @ targets)
     from_centre, from_wanted = positions - centre, targets - wanted
     product = complex(weights @ (from_centre.conj() * from_wanted))
-    scale = float(weights @ (np.abs(from_centre) * np.abs(from_wanted)))
-    squares = float(weights @ (np.abs(from_centre) ** 2 + np.abs(from_wanted) ** 2))
+    lengths, others = np.abs(from_centre), np.abs(from_wanted)
+    scale = float(weights @ (lengths * others))
+    squares = float(weights @ (lengths * lengths + others * others))
     return CommonMotion(
         centre,
         wanted,
-        angle=float(np.angle(product)) if abs(product) > CORRELATED * scale else 0.0,
+        angle=phase(product) if abs(product) > CORRELATED * scale else 0.0,
         correlation=abs(product) / scale if scale > 0 else 1.0,
-        misfit=float(np.sqrt(max(squares - 2 * abs(product), 0.0))),
+        misfit=sqrt(max(squares - 2 * abs(product), 0.0)),
     )
 
 
@@ -218,21 +220,21 @@ def proven_around(
 
 
 def tightening_limits(
-    bounds: Limits, before: Limits, boundary: Boundary, a: Floats, b: Floats
+    bounds: Limits, before: Limits, boundary: Boundary, reached: Floats
 ) -> Limits:
-    """Return the bounds, or limits that close in on a map that is outside of them."""
-    at, k, sigma_a, sigma_b = bounds.at(boundary), b / a, a + b, a - b
-    too_bent, too_long, too_short = k >= at.k, sigma_a >= at.sigma_a, sigma_b <= at.sigma_b
-    if not (too_bent.any() or too_long.any() or too_short.any()):
+    """Return the bounds, or limits that close in on a map that is outside of them.
+
+    It has `reached` these `distortions` (3, m).
+    """
+    outside = reached >= as_rows(bounds.at(boundary))
+    if not outside.any():
         return bounds
     # Where nothing is outside, nothing bounds the worst of it from below.
-    worst_k = k.max(where=too_bent, initial=-np.inf)
-    worst_a = sigma_a.max(where=too_long, initial=0.0)
-    worst_b = sigma_b.min(where=too_short, initial=np.inf)
+    worst_k, worst_a, negative_b = np.where(outside, reached, -np.inf).max(axis=1).tolist()
     near = Limits(
         k=1 - (1 - FOLLOW) * (1 - worst_k),
         sigma_a=worst_a * (1 + FOLLOW),
-        sigma_b=worst_b * (1 - FOLLOW),
+        sigma_b=-negative_b * (1 - FOLLOW),
     )
     return Limits(
         k=np.maximum(bounds.k, np.minimum(before.k, near.k)),
@@ -242,48 +244,48 @@ def tightening_limits(
 
 
 def place_walls(
-    limits: Limits, boundary: Boundary, a: Floats, b: Floats, certificate: Certificate
+    limits: Limits, boundary: Boundary, reached: Floats, certificate: Certificate
 ) -> tuple[Walls, Limits]:
-    """Return the walls of the samples, and the bounds that the next map must keep everywhere."""
-    at, inner = limits.at(boundary), limits.towards_identity(MARGIN).at(boundary)
-    k, sigma_a, sigma_b = b / a, a + b, a - b
-    rounding = LEAST_SLACK * sigma_a
+    """Return the walls of the samples, and the bounds that the next map must keep everywhere.
+
+    The map has `reached` these `distortions` (3, m).
+    """
+    at = as_rows(limits.at(boundary))
+    inner = as_rows(limits.towards_identity(MARGIN).at(boundary))
+    least = np.full(reached.shape, LEAST_SLACK)
+    least[1:] *= reached[1]
     # A map may start between the walls and the limits.
-    walls = Walls(
-        k=np.maximum(inner.k, k + np.maximum((at.k - k) / 4, LEAST_SLACK)),
-        sigma_a=np.maximum(
-            inner.sigma_a, sigma_a + np.maximum((at.sigma_a - sigma_a) / 4, rounding)
-        ),
-        sigma_b=np.minimum(
-            inner.sigma_b, sigma_b - np.maximum((sigma_b - at.sigma_b) / 4, rounding)
-        ),
-    )
+    walls = np.maximum(inner, reached + np.maximum((at - reached) / 4, least))
+    k, sigma_a, negative_b = walls
+    beyond, kept = walls - at, KEPT * (walls - reached)
     outermost, required = (
-        Limits(
-            k=limits.k + np.max(walls.k - kept * (walls.k - k) - at.k),
-            sigma_a=limits.sigma_a
-            + np.max(walls.sigma_a - kept * (walls.sigma_a - sigma_a) - at.sigma_a),
-            sigma_b=limits.sigma_b
-            + np.min(walls.sigma_b - kept * (walls.sigma_b - sigma_b) - at.sigma_b),
-        )
-        for kept in (0.0, KEPT)
+        Limits(k=limits.k + more, sigma_a=limits.sigma_a + longer, sigma_b=limits.sigma_b - shorter)
+        for more, longer, shorter in (beyond.max(axis=1), (beyond - kept).max(axis=1))
     )
     # Between its samples the present map may have less slack than that.
-    reached = proven_at(certificate, a, b)
+    proven = proven_at(certificate, reached)
     for asked in (required, outermost, limits.towards_identity(ROUNDING)):
-        if limits.include(asked) and asked.at(boundary).include(reached):
-            return walls, asked
-    return walls, limits
+        if limits.include(asked) and (proven <= as_rows(asked.at(boundary))).all():
+            return Walls(k, sigma_a, -negative_b), asked
+    return Walls(k, sigma_a, -negative_b), limits
 
 
-def proven_at(certificate: Certificate, a: Floats, b: Floats) -> Limits:
-    """Return about what is proven around each sample of a map.
+def proven_at(certificate: Certificate, reached: Floats) -> Floats:
+    """Return about what is proven around samples that have reached some distortions, (3, m) each.
 
     That is as much beyond it as the worst that is proven is beyond the worst sample.
     """
-    k, sigma_a, sigma_b = b / a, a + b, a - b
-    return Limits(
-        k=certificate.k + (k - k.max()),
-        sigma_a=certificate.sigma_a + (sigma_a - sigma_a.max()),
-        sigma_b=certificate.sigma_b + (sigma_b - sigma_b.min()),
-    )
+    worst = reached.max(axis=1, keepdims=True)
+    proven: Floats = as_rows(certificate) + (reached - worst)
+    return proven
+
+
+def as_rows(limits: Certificate | Limits) -> Floats:
+    """Return k, σ_a and −σ_b, of which none may be larger, as rows (3, 1) or (3, m)."""
+    rows = np.array([limits.k, limits.sigma_a, np.negative(limits.sigma_b)], np.float64)
+    return rows.reshape(3, -1)
+
+
+def distortions(a: Floats, b: Floats) -> Floats:
+    """Return the same rows (3, m) of |f_z| and |f_z̄| (m,)."""
+    return np.array([b / a, a + b, b - a])

@@ -19,8 +19,9 @@ from engine.geometry import (
 
 # Built meshes have as many triangles as are aimed at, but for a few percent.
 MOST_MESH_TRIANGLES = 2 * MOST_TRIANGLES
-# Farther out than any picture goes, and squares still have digits to spare.
-OUTERMOST = 1e7
+# Farther out than any picture goes that lies on a canvas, with the cage around it; squares still
+# have digits to spare. The corners of pictures are within half of that.
+OUTERMOST = 2e7
 # Of the diagonal: how near a vertex of the cage may come. Samples of the outline are graded towards
 # it, so that this bounds their number; a built cage keeps 300 times that distance.
 NEAREST = 1e-6
@@ -56,6 +57,9 @@ def require_domain(domain: Domain) -> None:
         _require_near(np.concatenate(polygons), name)
         if min(map(len, polygons)) < 3 or count > LARGEST_OUTLINE:
             raise EngineError(VERTEX_COUNT.format(name=name, most=LARGEST_OUTLINE, count=count))
+    _require_near(domain.mesh.vertices, "mesh")
+    # Far from the origin small shapes would have no digits left for what lies between vertices.
+    domain = domain.moved(-complex(domain.outline[0]))
     require_simple(domain.outline, "outline")
     require_cages_in_holes(domain.holes, domain.outline)
     require_around(domain.cage, domain.outline)
@@ -69,7 +73,6 @@ def require_domain(domain: Domain) -> None:
             away = float(np.abs(domain.closed - corners).max())
         if not away <= FARTHEST_CLOSED * box_diagonal(domain.outline):
             raise EngineError("The slits are not closed beside the outline's own vertices.")
-    _require_near(domain.mesh.vertices, "mesh")
     _require_tiling(domain)
 
 

@@ -19,6 +19,7 @@ ROOT = Path(__file__).parents[2]
 PARTS = {
     "domain": "from a picture to its domain",
     "deform": "certified steps of a drag",
+    "rest": "how soon a pull of a drawing comes to rest",
     "interpolate": "in-betweens, worked out directly",
     "streaming": "in-betweens as series in time",
     "methods": "in-betweens by every method of the paper's Figure 9",
@@ -26,6 +27,7 @@ PARTS = {
     "export": "frames and files",
     "window": "the window: its start, its frames, how soon it follows a hand",
     "scenes": "drawings on many layers",
+    "opening": "projects with 1 MB of each kind of thing in them",
     "limits": "hard requests under tight bounds; this one takes five minutes",
 }
 

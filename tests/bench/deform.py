@@ -1,8 +1,11 @@
 """The deformer: one certified step, its parts, and Newton's method from the identity."""
 
-from collections.abc import Iterator, Sequence
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
 from typing import NamedTuple
+from unittest import mock
 
 import numpy as np
 
@@ -13,6 +16,7 @@ from engine.deform import (
     Objective,
     State,
     Wish,
+    certified_step,
     line_search,
     newton_direction,
     projected_hessian,
@@ -23,6 +27,12 @@ from tests.bench.table import Row, Table, measure
 MOVING_STEPS = 40
 DRAG_STEPS = 20
 MOST_STEPS = 100
+REPEATS = 5
+# What a certified step consists of, and the functions that do it.
+PARTS = {
+    "  its Hessian, factors and direction": "preconditioned_direction",
+    "  its certificate": "certify_segments",
+}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,15 +75,11 @@ def _drag(boundary: Boundary) -> Table:
     moving = _steps(deformer, [handles.wish(targets) for targets in arc])
     resting = _steps(deformer, [wish] * DRAG_STEPS)
     state = resting[DRAG_STEPS // 2].start
-    objective = Objective(boundary=boundary, handles=handles, wish=wish, stride=4)
+    objective = Objective(boundary=boundary, handles=handles, wish=wish)
     jet = objective.jet(*state.map.columns)
     radial = objective.radial(jet)
     rows = (
-        Row(
-            name="certified step, the hand moves",
-            seconds=_mean_step(deformer, moving),
-            note=f"mean of {MOVING_STEPS} wishes; {len(boundary.points)} samples",
-        ),
+        *_split(deformer, moving),
         Row(
             name="certified step, the hand rests",
             seconds=_mean_step(deformer, resting),
@@ -121,6 +127,35 @@ def _mean_step(deformer: Deformer, steps: list[_Step]) -> float:
             deformer.step(step.start, step.wish)
 
     return measure(all_steps) / len(steps)
+
+
+def _split(deformer: Deformer, steps: list[_Step]) -> Iterator[Row]:
+    """Measure steps, and of them Newton's direction, the certificate, and the rest."""
+    spent = dict.fromkeys(PARTS, 0.0)
+
+    def clocked(part: str, function: Callable[..., object]) -> Callable[..., object]:
+        def timed(*arguments: object, **named: object) -> object:
+            start = time.process_time()
+            result = function(*arguments, **named)
+            spent[part] += time.process_time() - start
+            return result
+
+        return timed
+
+    with ExitStack() as stack:
+        for part, name in PARTS.items():
+            function = clocked(part, getattr(certified_step, name))
+            stack.enter_context(mock.patch.object(certified_step, name, function))
+        start = time.process_time()
+        for step in REPEATS * steps:
+            deformer.step(step.start, step.wish)
+        whole, count = time.process_time() - start, REPEATS * len(steps)
+    samples = len(deformer.boundary.points)
+    note = f"mean of {len(steps)} wishes; {samples} samples"
+    yield Row(name="certified step, the hand moves", seconds=whole / count, note=note)
+    for part, seconds in spent.items():
+        yield Row(name=part, seconds=seconds / count)
+    yield Row(name="  the rest of it", seconds=(whole - sum(spent.values())) / count)
 
 
 def _newton_steps(boundary: Boundary, handles: Handles, wish: Wish) -> int:

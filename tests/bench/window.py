@@ -18,7 +18,7 @@ from app.storage import decode_picture, load_project, sample_images
 from app.ui.window import share_heap
 from app.ui.window.window import SIZE
 from engine.domain import mesh_inside
-from tests.bench.stage import idle, start
+from tests.bench.stage import crowded, idle, start
 from tests.bench.stage.driver import (
     REACH,
     Driver,
@@ -50,6 +50,7 @@ class Extent:
     idle: float = 10.0  # seconds in which nobody touches the window
     size: tuple[int, int] = SIZE
     variant: Variant = Variant.METRIC
+    crowd: int = 10_000  # keys, or markers, of a drawing
 
 
 BRIEF = Extent(
@@ -63,6 +64,7 @@ BRIEF = Extent(
     idle=0.1,
     size=(640, 440),
     variant=Variant.NU,
+    crowd=50,
 )
 
 
@@ -81,6 +83,7 @@ def tables(extent: Extent) -> Iterator[Table]:
         yield _latency(stage, extent)
         yield _release(stage, extent)
         yield _playhead(stage, extent)
+        yield crowded.table(stage, Path(folder), extent.crowd, extent.frames)
     yield idle.table(extent.idle)
 
 

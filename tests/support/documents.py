@@ -217,8 +217,8 @@ def _random_key_command(rng: np.random.Generator, document: Document) -> Command
         key_commands.reverse_keys(0, frames),
         key_commands.put_keys(0, [document.figures[0].key(frame) for frame in frames]),
         key_commands.put_pose(0, int(rng.integers(80)), pose, easing),
-        key_commands.scale_keys(0, frames, rng.choice([0.5, 1.0, 1.5, 2.0])),
-        scene_commands.scale_time(rng.choice([0.5, 1.0, 1.5, 2.0])),
+        key_commands.scale_keys(0, frames, float(rng.choice([0.5, 1.0, 1.5, 2.0]))),
+        scene_commands.scale_time(float(rng.choice([0.5, 1.0, 1.5, 2.0]))),
         key_commands.match_ends(0),
         key_commands.set_easing(0, frames, easing),
         key_commands.set_turns(0, frames, int(rng.integers(-1, 2))),
@@ -269,7 +269,7 @@ def _random_track_command(rng: np.random.Generator, document: Document) -> Comma
     track = figure.track_of(one) or random_track(rng, some)
     every = [key.frame for key in track.keys]
     frames = rng.choice(every, rng.integers(1, len(every) + 1), replace=False).tolist()
-    by, factor = int(rng.integers(-8, 9)), rng.choice([0.5, 1.0, 1.5, 2.0])
+    by, factor = int(rng.integers(-8, 9)), float(rng.choice([0.5, 1.0, 1.5, 2.0]))
     places = [inside(rng) for _ in every]
     flag = bool(rng.integers(2))
     commands = [

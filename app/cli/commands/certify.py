@@ -1,15 +1,16 @@
 """`lissom certify`: how far an animation distorts its drawing."""
 
 import argparse
-import json
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from app.document import Extremes, clip_of
+from app.cli.console import give_notices, say
+from app.document import Extremes, clip_of, motion_notices
+from app.errors import shortened
 from app.motion import carried_in
 from app.reports import IntervalReport, Report, Verdict, certify_clip
-from app.storage import load_project
+from app.storage import load_project, strict_json
 from engine.interpolation import Proof
 from engine.maps import Certificate
 
@@ -26,6 +27,7 @@ BY_METRIC = (
 def run(arguments: argparse.Namespace) -> int:
     """Print the report of a project."""
     document = load_project(arguments.project)
+    give_notices(motion_notices(document))
     reports = {
         figure.name: certify_clip(
             clip_of(document, figure.id), arguments.variant, carried_in(document, figure.id)
@@ -34,11 +36,11 @@ def run(arguments: argparse.Namespace) -> int:
         if not figure.still
     }
     if arguments.json:
-        print(_as_json(reports))
+        say(_as_json(reports))
     else:
         # Of one figure the table is all that there is to say.
         parts = [_overview(reports)] if len(reports) != 1 else []
-        print("\n\n".join([*parts, *(_tables(reports) if arguments.details or not parts else [])]))
+        say("\n\n".join([*parts, *(_tables(reports) if arguments.details or not parts else [])]))
     return EXITS[_verdict(reports)]
 
 
@@ -53,13 +55,13 @@ def _as_json(reports: Mapping[str, Report]) -> str:
         if len(blocks) != 1
         else next(iter(blocks.values()))
     )
-    return json.dumps(content, indent=2)
+    return strict_json(content, indent=2)
 
 
 def _tables(reports: Mapping[str, Report]) -> list[str]:
     if len(reports) == 1:
         return [_as_table(report) for report in reports.values()]
-    return [f"{name}\n{_as_table(report)}" for name, report in reports.items()]
+    return [f"{shortened(name)}\n{_as_table(report)}" for name, report in reports.items()]
 
 
 def _overview(reports: Mapping[str, Report]) -> str:
@@ -75,9 +77,10 @@ def _overview(reports: Mapping[str, Report]) -> str:
         Verdict.OVER: f"{worst} of {count} figures are beyond their bounds, or may fold",
     }
     lines = [f"All in all: {WORDS[verdict]}: {whole[verdict]}."]
-    width = max(map(len, reports))
+    shown = [(shortened(name), report) for name, report in reports.items()]
+    width = max(len(name) for name, _ in shown)
     lines.append(_line("", NAMES, width=width, cell=9))
-    for name, report in reports.items():
+    for name, report in shown:
         cells = [f"{value:.4f}" for value in _numbers(report.reached)]
         where = ", ".join(_where(report))
         told = f"{WORDS[report.verdict]}{f' at {where}' if where else ''}"
@@ -211,7 +214,8 @@ def _corrected_lines(report: Report) -> list[str]:
         f"{BY_METRIC if measured else ''}. Halfway between two of them the drawing is measured."
     )
     lines += [
-        f"{short.handle!r} is out of reach of its track by up to {short.lag:.1f} px in frame"
+        f"{shortened(repr(short.handle))} is out of reach of its track by up to {short.lag:.1f} px "
+        "in frame"
         f"{f's {short.first} to {short.last}' if short.last > short.first else f' {short.first}'}."
         for short in corrected.short
     ]

@@ -7,6 +7,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from app.cli.console import say
 from app.errors import LIBRARIES, Extra, LissomError, missing
 from app.export_formats import EXPORT_FORMATS
 from app.render import Renderer, Scene, canvas_view
@@ -43,14 +44,14 @@ class Finding(NamedTuple):
 
 def run(_: argparse.Namespace) -> int:
     """Print what works here."""
-    print(machine_in_words())
+    say(machine_in_words())
     rendering = [_rendering(backend) for backend in AUTOMATIC]
     for finding in (*rendering, _display(), _dialogs(), *map(_extra, LIBRARIES)):
-        print(f"{'ok' if finding.works else '--'}  {finding.name}: {finding.text}")
+        say(f"{'ok' if finding.works else '--'}  {finding.name}: {finding.text}")
     if any(finding.works for finding in rendering):
-        print("Lissom can render here.")
+        say("Lissom can render here.")
         return 0
-    print("Lissom cannot render here: install what is named above.")
+    say("Lissom cannot render here: install what is named above.")
     return 1
 
 

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
-from app.cli.console import notice, say
+from app.cli.console import give_notices, say
 from app.cli.cut_out import read_cut_out
 from app.cli.hole_arrays import hole_arrays
-from app.errors import LissomError
+from app.errors import LissomError, listed
 from app.reports import draw_preview
 from app.storage import (
     Picture,
@@ -39,8 +39,7 @@ def run(arguments: argparse.Namespace) -> int:
     domain, remedies = build_domain(
         picture.rgba, triangles=arguments.triangles, detail=arguments.detail, cut_out=cut_out
     )
-    for message in (*picture.notices, *remedies):
-        notice(message)
+    give_notices((*picture.notices, *remedies))
     if arguments.preview is not None:
         drawn = draw_preview(picture, domain)
         write_atomically(arguments.preview, lambda file: file.write(drawn))
@@ -77,14 +76,13 @@ def _read(path: Path, layer: str | None) -> tuple[Picture, complex]:
         return decode_picture(read_file(path), str(path)), 0j
     drawing = read_layered(path)
     names = [each.name for each in drawing.layers]
-    told = ", ".join(map(repr, reversed(names)))
+    told = listed([repr(name) for name in reversed(names)])
     if layer is None and len(names) > 1:
         raise LissomError(
             f"{path} has {len(names)} layers; name one by --layer, from the front: {told}"
         )
     if layer is not None and layer not in names:
         raise LissomError(f"{path} has no layer {layer!r}; its layers are, from the front: {told}")
-    for message in drawing.summary.lines:
-        notice(message)
+    give_notices(drawing.summary.lines)
     found = drawing.layers[0 if layer is None else names.index(layer)]
     return found.picture, found.corner

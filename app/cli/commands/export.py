@@ -7,9 +7,16 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from app.cli.console import StatusLine, notice, say
-from app.document import Document, ExportSettings, FrameRange, clip_of, seen_alone
-from app.errors import LissomError
+from app.cli.console import StatusLine, give_notices, say
+from app.document import (
+    Document,
+    ExportSettings,
+    FrameRange,
+    clip_of,
+    motion_notices,
+    seen_alone,
+)
+from app.errors import LissomError, listed
 from app.export import (
     PROJECT,
     ExportPlan,
@@ -35,6 +42,7 @@ NO_USE = "{name} has no use for --{flag}; leave it out"
 def run(arguments: argparse.Namespace) -> int:
     """Export a project."""
     document = load_project(arguments.project)
+    give_notices(motion_notices(document))
     if arguments.figure is not None:
         document = _alone(document, arguments.figure)
     name = arguments.project.stem
@@ -65,7 +73,7 @@ def _alone(document: Document, name: str) -> Document:
     """Return a document of which only one figure is seen; it hangs where it hung."""
     names = [figure.name for figure in document.figures]
     if name not in names:
-        raise LissomError(f"there is no layer {name!r}; the layers are {', '.join(names)}")
+        raise LissomError(f"there is no layer {name!r}; the layers are {listed(names)}")
     figures = tuple(
         replace(figure, hidden=False, reference=figure.name != name) for figure in document.figures
     )
@@ -98,8 +106,7 @@ def _make(
         with closing(maker.run()) as steps:
             for done in steps:
                 status.show(f"{done} of {len(plan.times)} frames")
-    for message in (*maker.notices, *plan.notices):
-        notice(message)
+    give_notices((*maker.notices, *plan.notices))
     if isinstance(maker, ShapeExport):
         return _summary_of_shapes(maker, plan)
     return _summary_of_frames(plan)

@@ -3,7 +3,7 @@
 import argparse
 from typing import NamedTuple
 
-from app.cli.console import StatusLine, notice, say
+from app.cli.console import StatusLine, give_notices, say
 from app.cli.cut_out import read_cut_out
 from app.document import Document, Figure, Meshing
 from app.errors import LissomError
@@ -91,8 +91,7 @@ def _opened(arguments: argparse.Namespace) -> OpenedScene:
     meshing = Meshing(triangles=arguments.triangles, detail=arguments.detail)
     open_one = open_merged if is_layered(arguments.picture) else open_picture
     opened = open_one(arguments.picture, meshing, read_cut_out(arguments))
-    for message in (*opened.notices, *opened.document.told.lines):
-        notice(message)
+    give_notices((*opened.notices, *opened.document.told.lines))
     return opened
 
 
@@ -125,8 +124,7 @@ def _moved(document: Document, order: MotionOrder) -> Document:
         while not giving.is_over:
             status.show(giving.now)
             giving = give_on(giving)
-    for message in giving.notices:
-        notice(message)
+    give_notices(giving.notices)
     return giving.command(document)
 
 

@@ -2,7 +2,7 @@
 
 import argparse
 
-from app.cli.console import StatusLine, notice, say
+from app.cli.console import StatusLine, give_notices, say
 from app.cli.cut_out import read_cut_out
 from app.document import Meshing
 from app.solving import load_pose_script, pose_document
@@ -29,12 +29,10 @@ def run(arguments: argparse.Namespace) -> int:
         opened = open_layered(arguments.picture, meshing)
     else:
         opened = open_picture(arguments.picture, meshing, cut_out)
-    for message in (*opened.notices, *opened.document.told.lines):
-        notice(message)
+    give_notices((*opened.notices, *opened.document.told.lines))
     with StatusLine() as status:
         document, lags = pose_document(opened.document, script, status.show)
-    for message in lags:
-        notice(message)
+    give_notices(lags)
     textures = {
         figure.id: cut_picture(opened.pictures[figure.id], figure.cut_out).texture
         for figure in document.figures

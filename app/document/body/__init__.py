@@ -5,7 +5,11 @@ Out: their partners, bones and the material that these make, and motions that jo
 Imports: the values of `app.document`.
 """
 
-from app.document.body.given import GivenMotion as GivenMotion
+from app.document.body.given import (
+    GivenMotion as GivenMotion,
+    UnreadMotion as UnreadMotion,
+    require_motions as require_motions,
+)
 from app.document.body.material import (
     USUAL_STRENGTH as USUAL_STRENGTH,
     Bone as Bone,

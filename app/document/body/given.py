@@ -1,11 +1,12 @@
 """Ready motions that a figure was given, and from what they were made."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 from types import MappingProxyType
 
-from app.document.checks import NOTHING, Unknown, require
-from engine.geometry.motions import Parameters
+from app.document.checks import LAST_FRAME, NOTHING, Unknown, require
+from engine.geometry.motions import Parameters, kind_named, motion_named
 
 MOST_ROUNDS = 1000
 
@@ -34,9 +35,14 @@ class GivenMotion:
 
     def __post_init__(self) -> None:
         require(
-            self.first <= self.start < self.last,
-            f"A motion ends after frame {self.start}, at which it begins, not at {self.last}.",
+            0 <= self.first <= self.start < self.last <= LAST_FRAME,
+            f"A motion goes from a frame to a later one, from 0 to {LAST_FRAME:,}, not from "
+            f"{self.first} by {self.start} to {self.last}.",
         )
+        motion_named(self.motion).course(self.kind)
+        kind = kind_named(self.kind)
+        if kind.parents:
+            kind.require_joints(self.joints)
         require(
             self.facing in (1, -1), f"A drawing looks to the right, 1, or left, -1: {self.facing}."
         )
@@ -49,3 +55,28 @@ class GivenMotion:
     def overlaps(self, first: int, last: int) -> bool:
         """Tell whether some of its frames are strictly within others."""
         return self.first < last and first < self.last
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class UnreadMotion:
+    """A motion in a project file that this version cannot show; it is written as it was read."""
+
+    index: int  # its place among the figure's motions in the file
+    content: object  # decoded JSON
+    reason: str  # why it cannot be shown, as a sentence
+
+
+def require_motions(motions: Sequence[GivenMotion], handles: Collection[int]) -> None:
+    """Raise a `LissomError` unless motions are apart, and their joints among some handles."""
+    for before, after in pairwise(motions):
+        require(
+            before.last <= after.first,
+            f"A motion from frame {after.first} on begins before the one from frame {before.first} "
+            "on has ended.",
+        )
+    for motion in motions:
+        for joint, identity in motion.joints.items():
+            require(
+                identity in handles,
+                f"The joint {joint!r} of a motion is the handle {identity}, which is not there.",
+            )

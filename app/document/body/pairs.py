@@ -5,7 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from app.document.checks import require
+from app.document.checks import require, require_distinct
 from app.document.keyframe import Handle
 from app.errors import LissomError
 from engine.arrays import Complexes
@@ -16,6 +16,7 @@ NEAR = 0.03
 # Words, or whole names, that tell of one side and of the other.
 SidePairs = tuple[tuple[str, str], ...]
 SIDES: SidePairs = (("L", "R"), ("left", "right"))
+MOST_PAIRS = 1_000  # each name is compared with all of them
 PAIRS: SidePairs = (*SIDES, ("near", "far"))
 NO_PAIR = (
     "“{words}” is no pair: write two words, or two whole names, with a slash between, as in "
@@ -73,13 +74,12 @@ def _places(name: str, form: str) -> Iterator[int]:
 
 def require_pairs(pairs: SidePairs) -> None:
     """Raise a `LissomError` unless each of some words has one partner."""
+    require(
+        len(pairs) <= MOST_PAIRS, f"There are at most {MOST_PAIRS:,} pairs, not {len(pairs):,}."
+    )
     words = [word.casefold() for pair in pairs for word in pair]
     require(all(word.strip() for word in words), "A pair is of two words, such as near and far.")
-    for word in words:
-        require(
-            words.count(word) == 1,
-            f"“{word}” is twice among the pairs; it has one partner only.",
-        )
+    require_distinct(words, "“{}” is twice among the pairs; it has one partner only.")
 
 
 def read_pairs(text: str) -> SidePairs:

@@ -158,8 +158,14 @@ def end_of_repeats(figure: Figure, first: int, last: int) -> int | None:
     Raises
     ------
     LissomError
-        If there is no room for a repeat before the next key.
+        If there is no room for a repeat before the next key, or another cycle begins within.
     """
+    for cycle in figure.cycles:
+        if first < cycle.first < last:
+            raise LissomError(
+                f"Frames {first} to {last} cannot repeat, as {cycle.told} in them repeat already; "
+                "stop those first, or choose other keys."
+            )
     after = [frame for frame in figure.key_frames if frame > last]
     after += [cycle.first for cycle in figure.cycles if cycle.first > first]
     if not after:

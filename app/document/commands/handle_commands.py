@@ -73,7 +73,11 @@ def remove_handles(figure: Figure, identities: Collection[int]) -> Figure:
         replace(key, fronts={i: front for i, front in key.fronts.items() if i not in gone})
         for key in figure.keys
     )
-    left = without_handles(replace(figure, keys=keys), gone)
+    motions = tuple(
+        replace(each, joints={name: i for name, i in each.joints.items() if i not in gone})
+        for each in figure.motions
+    )
+    left = without_handles(replace(figure, keys=keys, motions=motions), gone)
     return _with_poses(left, remaining, handles)
 
 

@@ -7,9 +7,16 @@ from functools import lru_cache
 from itertools import pairwise
 from typing import Self
 
-from app.document.checks import NOTHING, Unknown, require, require_place
-from app.document.settings import LAST_FRAME
-from app.document.timing import Cycle
+from app.document.checks import (
+    LAST_FRAME,
+    NOTHING,
+    Unknown,
+    require,
+    require_frame,
+    require_identity,
+    require_place,
+)
+from app.document.timing import Cycle, changes_in
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,16 +46,12 @@ class Attachment:
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
-        require(
-            self.to is None or self.to >= 0, f"A figure's id is not negative, unlike {self.to}."
-        )
+        if self.to is not None:
+            require_identity(self.to, "a layer")
         require_place(self.at, "A joint")
         require_place(self.offset, "What hangs on a joint")
         require(math.isfinite(self.rest), f"A turn must be finite, not {self.rest}.")
-        require(
-            0 <= self.frame <= LAST_FRAME,
-            f"A joint holds from a frame from 0 to {LAST_FRAME:,} on, not from {self.frame}.",
-        )
+        require_frame(self.frame, "A joint")
         require(
             self.since is None or 0 <= self.since <= self.frame,
             f"What a joint keeps from frame {self.frame} on was so at that frame or before, not at "
@@ -96,7 +99,9 @@ def repeated_joints(
     where what carries the figure goes on meanwhile.
     """
     for cycle in cycles:
-        if not joints_repeat(joints, cycle):
+        if not (
+            changes_in([joint.frame for joint in joints], cycle) and joints_repeat(joints, cycle)
+        ):
             continue
         begun, until = _begun(joints, cycle), end if cycle.until is None else cycle.until
         own = [joint for joint in joints if cycle.first < joint.frame < cycle.last]

@@ -6,9 +6,9 @@ from itertools import pairwise
 from math import tau
 from typing import Final
 
-from app.document.checks import require, require_place
-from app.document.settings import LAST_FRAME
+from app.document.checks import require, require_frame, require_place
 from app.document.timing import MOST_TURN, MovingKey, Passing
+from app.errors import LissomError
 
 MOST_ZOOM: Final = 1000.0  # and as many times smaller
 
@@ -23,7 +23,6 @@ class CameraKey(MovingKey):
 
     def __post_init__(self) -> None:
         MovingKey.__post_init__(self)
-        _require_frame(self.frame)
         require_place(self.centre, "The camera's centre")
         require(
             1 / MOST_ZOOM <= self.zoom <= MOST_ZOOM,
@@ -41,7 +40,6 @@ class MoveKey(MovingKey):
 
     def __post_init__(self) -> None:
         MovingKey.__post_init__(self)
-        _require_frame(self.frame)
         require_place(self.shift, "A figure's movement")
         _require_turn(self.turn)
 
@@ -55,7 +53,6 @@ class OpacityKey(MovingKey):
 
     def __post_init__(self) -> None:
         MovingKey.__post_init__(self)
-        _require_frame(self.frame)
         require(0 <= self.opacity <= 1, f"Opacity is between 0 and 1, not {self.opacity:g}.")
 
 
@@ -71,23 +68,20 @@ class Placing:
     in_front: bool = True
 
     def __post_init__(self) -> None:
-        _require_frame(self.frame)
+        require_frame(self.frame, "A place in the draw order")
 
 
 def require_rising(keys: Sequence[MovingKey] | Sequence[Placing], what: str) -> None:
     """Raise a `LissomError` unless each of some keys comes after the one before."""
     for before, after in pairwise(key.frame for key in keys):
-        require(before < after, f"{what} has a key at frame {after} after that at frame {before}.")
+        if before >= after:
+            raise LissomError(f"{what} has a key at frame {after} after that at frame {before}.")
 
 
 def moved_in_time(placings: Sequence[Placing], to: Callable[[int], int]) -> tuple[Placing, ...]:
     """Return placings at other frames; of two at one frame the later one holds."""
     placed = {max(to(placing.frame), 0): placing for placing in placings}
     return tuple(replace(placing, frame=at) for at, placing in sorted(placed.items()))
-
-
-def _require_frame(frame: int) -> None:
-    require(0 <= frame <= LAST_FRAME, f"A key is at a frame from 0 to {LAST_FRAME:,}, not {frame}.")
 
 
 def _require_turn(turn: float) -> None:

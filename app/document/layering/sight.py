@@ -1,11 +1,13 @@
 """When figures are seen: each by itself, or one of several that take turns."""
 
+from bisect import bisect_right
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import NamedTuple, Self
 
-from app.document.checks import NOTHING, Unknown, require, require_distinct
+from app.document.checks import NOTHING, Unknown, require, require_distinct, require_frame
+from app.errors import LissomError
 
 
 @dataclass(frozen=True, slots=True)
@@ -14,6 +16,9 @@ class Switch:
 
     frame: int
     visible: bool
+
+    def __post_init__(self) -> None:
+        require_frame(self.frame, "A visibility key")
 
 
 def require_in_order(switches: tuple[Switch, ...]) -> None:
@@ -49,18 +54,20 @@ class Choice:
     def __post_init__(self) -> None:
         require(bool(self.name.strip()), "A choice needs a name.")
         require(len(self.figures) > 1, f"The choice {self.name!r} is between two layers or more.")
-        require_distinct(self.figures, f"The choice {self.name!r} has the layer {{!r}} twice.")
+        require_distinct(self.figures, "A choice has the layer {!r} twice.")
+        known = set(self.figures)
         for turn in self.turns:
-            require(
-                turn.figure in self.figures,
-                f"The choice {self.name!r} shows a layer at frame {turn.frame} that it has not.",
-            )
+            require_frame(turn.frame, "What a choice shows")
+            if turn.figure not in known:
+                raise LissomError(
+                    f"The choice {self.name!r} shows a layer at frame {turn.frame} that it has not."
+                )
         for before, after in pairwise(self.turns):
-            require(
-                before.frame < after.frame,
-                f"The choice {self.name!r} is made at frame {after.frame} after frame "
-                f"{before.frame}.",
-            )
+            if before.frame >= after.frame:
+                raise LissomError(
+                    f"The choice {self.name!r} is made at frame {after.frame} after frame "
+                    f"{before.frame}."
+                )
 
     def at_frames(self, to: Callable[[int], int]) -> Self:
         """Return the choice with its turns at other frames; of two at one frame the later holds."""
@@ -69,8 +76,5 @@ class Choice:
 
     def at(self, frame: float) -> int:
         """Return the id of the figure that is seen at a frame."""
-        seen = self.turns[0].figure if self.turns else self.figures[0]
-        for turn in self.turns:
-            if turn.frame <= frame:
-                seen = turn.figure
-        return seen
+        count = bisect_right(self.turns, frame, key=lambda turn: turn.frame)
+        return self.turns[max(count - 1, 0)].figure if self.turns else self.figures[0]

@@ -17,6 +17,7 @@ from app.document.queries.clips import (
 from app.document.queries.given import (
     digest_of_keys as digest_of_keys,
     is_as_given as is_as_given,
+    motion_notices as motion_notices,
 )
 from app.document.queries.material import (
     are_as_stiff as are_as_stiff,
@@ -25,6 +26,7 @@ from app.document.queries.material import (
     stiff_outline as stiff_outline,
     stiffened as stiffened,
 )
+from app.document.queries.remembered import remembered as remembered
 from app.document.queries.shortfall import (
     Extremes as Extremes,
     Shortfall as Shortfall,

@@ -5,6 +5,7 @@ import hashlib
 from app.document.body import GivenMotion
 from app.document.figure import Figure
 from app.document.keyframe import Keyframe
+from app.document.model import Document
 
 
 def digest_of_keys(figure: Figure, first: int, last: int) -> str:
@@ -27,6 +28,20 @@ def digest_of_keys(figure: Figure, first: int, last: int) -> str:
 def is_as_given(figure: Figure, given: GivenMotion) -> bool:
     """Tell whether nothing of a motion was edited since it was given to a figure."""
     return digest_of_keys(figure, given.first, given.last) == given.digest
+
+
+def motion_notices(document: Document) -> tuple[str, ...]:
+    """Return a line for each figure of which the file has motions that are not shown."""
+    notices = []
+    for figure in document.figures:
+        unread = figure.unread_motions
+        if unread:
+            count = f"{len(unread)} motions" if len(unread) > 1 else "a motion"
+            notices.append(
+                f"{figure.name!r} has {count} that this version cannot show, and the file keeps: "
+                f"{unread[0].reason}"
+            )
+    return tuple(notices)
 
 
 def _told(key: Keyframe, first: int) -> tuple[object, ...]:

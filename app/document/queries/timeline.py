@@ -12,7 +12,7 @@ from app.document.queries.spans import place_at, spans
 from app.document.queries.stage import camera_at, movement_at, opacity_at
 from app.document.queries.tracks import track_at
 from app.document.queries.transits import transits
-from app.document.settings import FrameRange
+from app.document.settings import FrameRange, require_fps
 from app.errors import LissomError
 from engine.geometry import RigidMotion, Similarity
 
@@ -184,14 +184,15 @@ def frame_times(document: Document, frames: FrameRange, fps: float | None = None
     Raises
     ------
     LissomError
-        If the rate is not a positive number.
+        If the rate is out of its range.
     """
     if fps is None:
         return [float(frame) for frame in range(frames.first, frames.last + 1)]
-    if not 0 < fps <= 100 * document.fps:
+    require_fps(fps, "The export's speed")
+    if fps > 100 * document.fps:
         raise LissomError(
-            f"The export's frames per second must be above 0 and at most {100 * document.fps:g}, "
-            f"a hundred times the document's own, not {fps:g}."
+            f"The export's frames per second must be at most {100 * document.fps:g}, a hundred "
+            f"times the document's own, not {fps:g}."
         )
     # In exact arithmetic, so that rounding neither drops the last picture nor adds one.
     step = Fraction(document.fps) / Fraction(fps)

@@ -7,6 +7,8 @@ Imports: `app.errors`, and the checks of `app.document`.
 
 from app.document.timing.cycles import (
     Cycle as Cycle,
+    changes_in as changes_in,
+    count_changes as count_changes,
     require_apart as require_apart,
     require_repeatable as require_repeatable,
 )

@@ -1,12 +1,16 @@
 """Cycles: stretches of time that repeat."""
 
+from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Self
 
-from app.document.checks import NOTHING, Unknown, require
+from app.document.checks import NOTHING, Unknown, require, require_frame
 from app.document.timing.moving_key import MovingKey
+from app.errors import LissomError
+
+MOST_CYCLES = 1_000  # of a layer
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -19,6 +23,8 @@ class Cycle:
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
+        for frame in filter(None, (self.first, self.last, self.until)):
+            require_frame(frame, "An end of what repeats")
         require(
             self.first < self.last,
             f"What repeats ends after the frame at which it begins, {self.first}, not at "
@@ -80,8 +86,12 @@ class Cycle:
         return self.first + (frame - self.first) % self.period
 
 
-def require_apart(cycles: Iterable[Cycle]) -> None:
+def require_apart(cycles: Sequence[Cycle]) -> None:
     """Raise a `LissomError` unless each cycle has ended when the next one begins."""
+    require(
+        len(cycles) <= MOST_CYCLES,
+        f"A layer has at most {MOST_CYCLES:,} stretches that repeat, not {len(cycles):,}.",
+    )
     for before, after in pairwise(cycles):
         require(
             before.until is not None and before.until <= after.first,
@@ -95,38 +105,52 @@ def require_repeatable(cycle: Cycle, keys: Sequence[int]) -> None:
 
     These are told by their frames, in order.
     """
-    own = [frame for frame in keys if cycle.has(frame)]
-    before = [frame for frame in keys if frame < cycle.first]
-    after = [frame for frame in keys if frame >= cycle.last]
-    for frame in after:
-        require(
-            cycle.until is not None and frame >= cycle.until,
-            f"The key at frame {frame} is where {cycle.told} repeat; pose it in {cycle.told}, let "
-            "the repeats end there, or make them into keys first.",
+    begin, end = bisect_left(keys, cycle.first), bisect_left(keys, cycle.last)
+    own, has_before, after = keys[begin:end], begin > 0, keys[end : end + 1]
+    if after and (cycle.until is None or after[0] < cycle.until):
+        raise LissomError(
+            f"The key at frame {after[0]} is where {cycle.told} repeat; pose it in {cycle.told}, "
+            "let the repeats end there, or make them into keys first."
         )
     require(
-        bool(own) or not (before and after),
+        bool(own) or not (has_before and after),
         f"There is no key in {cycle.told} that could repeat; insert one there first.",
     )
     require(
-        not (before and own) or own[0] == cycle.first,
+        not (has_before and own) or own[0] == cycle.first,
         f"Frame {cycle.first} needs a key, to which the keys before lead: it is where what repeats "
         "begins.",
     )
-    if len(own) > 1 and after and cycle.until is not None:
-        ways_on = [frame for frame in own if (cycle.until - frame) % cycle.period == 0]
-        require(
-            bool(ways_on) or after[0] == cycle.until,
-            f"At frame {cycle.until} the repeats of {cycle.told} are between two keys, from where "
+    until = cycle.until
+    if until is None or len(own) < 2 or not after or after[0] == until:
+        return
+    if all((until - frame) % cycle.period for frame in own):
+        raise LissomError(
+            f"At frame {until} the repeats of {cycle.told} are between two keys, from where "
             f"nothing leads to the key at frame {after[0]}; let them end at frame "
-            f"{_nearest_end(cycle, own, after[0])} instead.",
+            f"{_nearest_end(cycle, own, after[0])} instead."
         )
 
 
 def _nearest_end(cycle: Cycle, own: Sequence[int], before: int) -> int:
     """Return the frame nearest to a cycle's end at which it shows one of its keys."""
     until = cycle.last if cycle.until is None else cycle.until
-    rounds = range((before - cycle.first) // cycle.period + 2)
-    ends = [frame + number * cycle.period for number in rounds for frame in own]
+    begun = until - (until - cycle.first) % cycle.period - cycle.first
+    ends = [frame + begun + away for frame in own for away in (-cycle.period, 0, cycle.period)]
     fitting = [end for end in ends if cycle.last <= end <= before] or [before]
     return min(fitting, key=lambda end: abs(end - until))
+
+
+def changes_in(frames: Sequence[int], cycle: Cycle) -> int:
+    """Return how many of some frames, in their order, lie within a cycle, its ends left out."""
+    return max(0, bisect_left(frames, cycle.last) - bisect_right(frames, cycle.first))
+
+
+def count_changes(frames: Sequence[int], cycles: Iterable[Cycle], end: int) -> int:
+    """Return how many changes come of some in all repeats at most, up to the scene's last frame."""
+    count = len(frames)
+    for cycle in cycles:
+        own = changes_in(frames, cycle)
+        until = end if cycle.until is None else cycle.until
+        count += (own + 1) * ((until - cycle.first) // cycle.period) if own else 0
+    return count

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field, replace
 from typing import Self
 
-from app.document.checks import NOTHING, Unknown
+from app.document.checks import NOTHING, Unknown, require_frame
 from app.document.timing.easing import HOLD, LINEAR, Easing
 from app.document.timing.passing import Passing, require_passing
 
@@ -18,6 +18,7 @@ class MovingKey:
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
+        require_frame(self.frame, "A key")
         require_passing(self.passing)
         object.__setattr__(self, "passing", Passing(self.passing))
 

@@ -5,11 +5,18 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Self
 
-from app.document.checks import FARTHEST, NOTHING, Unknown, require, require_distinct, require_place
+from app.document.checks import (
+    FARTHEST,
+    LAST_FRAME,
+    NOTHING,
+    Unknown,
+    require,
+    require_distinct,
+    require_place,
+)
 from app.document.timing.moving_key import MovingKey
 
 MOST_TURN = 20 * math.tau  # either way
-LONGEST_DELAY = 999_999  # frames: an animation is no longer
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -75,8 +82,8 @@ class Track:
             require(after != before, f"A track has two keys at frame {before}.")
             require(after > before, f"A track's keys at frames {before} and {after} are mixed up.")
         require(
-            0 <= self.delay <= LONGEST_DELAY,
-            f"The delay of a track is from 0 to {LONGEST_DELAY:,} frames, not {self.delay:,}.",
+            0 <= self.delay <= LAST_FRAME,
+            f"The delay of a track is from 0 to {LAST_FRAME:,} frames, not {self.delay:,}.",
         )
         require(
             0 <= self.reach <= 1, f"The reach of a track is between 0 and 1, not {self.reach:g}."

@@ -7,7 +7,7 @@ from functools import cache, lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
-from app.document import Document, History, Meshing, clip_of
+from app.document import Document, History, Meshing, clip_of, motion_notices
 from app.editor.action import Action, do
 from app.editor.actions import playback, saving
 from app.editor.actions.body import cutting
@@ -322,7 +322,7 @@ def decoded(document: Document, name: str) -> Opened:
     decoded = decode_pictures([(file.data, f"the picture of {name}") for file in files])
     by_file = dict(zip(files, decoded, strict=True))
     pictures = {figure.id: by_file[figure.picture] for figure in document.figures}
-    return Opened(document, _puppets(document, pictures))
+    return Opened(document, _puppets(document, pictures), motion_notices(document))
 
 
 def _read_picture(path: Path, meshing: Meshing) -> Opened:

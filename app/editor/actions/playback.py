@@ -1,5 +1,7 @@
 """Moving along the timeline."""
 
+from bisect import bisect_left
+
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.timeline_view import frames_in, seen_at
@@ -62,9 +64,23 @@ def to_key(session: Session, project: Project, direction: int) -> None:
 
 def keyed_frames(project: Project) -> list[int]:
     """Return the frames at which keys of the chosen row are seen, in their order."""
-    document, row = project.document, project.row
-    track = project.track_in(row)
-    return sorted(seen_at(document, track, frame) for frame in frames_in(document, row))
+    return list(_keyed_frames(project))
+
+
+def _keyed_frames(project: Project) -> tuple[int, ...]:
+    document, row, keyed = project.document, project.row, project.timing.keyed
+    if not keyed.follows((document, row)):
+        track = project.track_in(row)
+        frames = sorted(seen_at(document, track, frame) for frame in frames_in(document, row))
+        keyed.set((document, row), tuple(frames))
+    return keyed.value
+
+
+def is_keyed(project: Project, frame: int) -> bool:
+    """Tell whether a key of the chosen row is seen at a frame."""
+    frames = _keyed_frames(project)
+    at = bisect_left(frames, frame)
+    return at < len(frames) and frames[at] == frame
 
 
 @with_project

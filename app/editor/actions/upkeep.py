@@ -54,13 +54,21 @@ Value = TypeVar("Value")
 
 
 @with_project
-def maintain(session: Session, project: Project) -> None:
-    """Ask the worker for what is missing, and settle what is drawn; once a frame."""
+def bring_poses(session: Session, project: Project) -> None:
+    """Let the document have what pulls have come to."""
     posing.give_in(session, project, rebuilding.loosen)
     posing.maintain(session, project)
+
+
+@with_project
+def bring_tracks(session: Session, project: Project) -> None:
+    """Let the document have what hands do with tracks."""
     tracking.maintain(session, project)
-    rebuilding.maintain(session)
-    drafting.maintain(session)
+
+
+@with_project
+def ask_for_missing(session: Session, project: Project) -> None:
+    """Ask the worker for what is missing."""
     inputs = _inputs(session, project)
     # Where all is as it was when nothing was missing, nothing is.
     if inputs != project.polled:
@@ -73,9 +81,31 @@ def maintain(session: Session, project: Project) -> None:
     if not shortfalls.follows(figure):
         # Little work: of the poses that were not measured before, and there is one at a time.
         shortfalls.set(figure, measure_shortfalls(figure, shortfalls))
+
+
+@with_project
+def settle_shown(session: Session, project: Project) -> None:
+    """Settle what is drawn in the next frame."""
     _show(session, project)
     if project.awaits_extent:
         _fit_motion(session, project)
+
+
+# In this order, once a frame. The window goes on with the next one where one fails.
+STEPS: tuple[Callable[[Session], None], ...] = (
+    bring_poses,
+    bring_tracks,
+    rebuilding.maintain,
+    drafting.maintain,
+    ask_for_missing,
+    settle_shown,
+)
+
+
+def maintain(session: Session) -> None:
+    """Ask the worker for what is missing, and settle what is drawn."""
+    for step in STEPS:
+        step(session)
 
 
 @with_project

@@ -1,6 +1,6 @@
 """Pictures that become layers, or take the place of a layer's own."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
@@ -35,6 +35,7 @@ from app.storage import (
     layer_figure,
     read_file,
     read_layered,
+    require_memory,
     still_figure,
     still_picture,
 )
@@ -99,10 +100,12 @@ def _replace_picture(session: Session, project: Project, identity: int, path: Pa
     if identity not in project.puppets:
         return
     before, canvas = project.document.figure(identity), project.document.canvas
+    scene = project.document.figures
 
     def work() -> tuple[Renewal, _Made]:
         data = read_file(path)
         picture = decode_picture(data, path.name)
+        _require_room([each for each in scene if each is not before], [picture])
         if before.still:
             made = _Made(still_picture(data, picture), picture, picture.notices)
         else:
@@ -135,6 +138,7 @@ def add(session: Session, project: Project, paths: Sequence[Path]) -> None:
         made: list[_Made] = []
         for path in paths:
             drawing = _with_free_groups(_drawing(path), document)
+            _require_room(document.figures, [layer.picture for layer in drawing.layers])
             document = group_commands.add_groups(drawing.groups)(document)
             summary += drawing.summary
             across, up = ((ours - its) // 2 for ours, its in zip(canvas, drawing.size, strict=True))
@@ -170,6 +174,12 @@ def add(session: Session, project: Project, paths: Sequence[Path]) -> None:
         files.tell_of_import(session, project, summary)
 
     promises.begin(session, project, ADDING, work, done)
+
+
+def _require_room(figures: Iterable[Figure], pictures: Iterable[Picture]) -> None:
+    """Refuse more pictures beside those of figures than could be opened together."""
+    there = {figure.picture for figure in figures}
+    require_memory([*(file.size for file in there), *(picture.size for picture in pictures)])
 
 
 def _with_free_groups(drawing: LayeredPicture, document: Document) -> LayeredPicture:

@@ -211,11 +211,12 @@ class Jobs:
             hand_over()
 
     def settle(self, timeout: float = 60.0) -> bool:
-        """Wait until all that is left is to deliver; return whether that came in time."""
+        """Wait until all that is not held is to be delivered; return whether that came in time."""
         with self._condition:
             return self._condition.wait_for(
-                lambda: (
-                    not self._waiting and all(lane.running is None for lane in self._lanes.values())
+                lambda: all(
+                    lane.running is None and self._next(name) is None
+                    for name, lane in self._lanes.items()
                 ),
                 timeout,
             )

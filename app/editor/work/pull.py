@@ -13,6 +13,7 @@ from engine.deform import Hand
 
 # Newton steps towards one wish; a drag comes to rest in far fewer.
 MOST_STEPS = 600
+ROUNDING = 1e-9  # pixels
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -177,21 +178,31 @@ class Pull(Promise):
         self.hands = {}
         self.steps = 0
 
-    def settle_for(self, places: Mapping[int, Target]) -> None:
-        """Let what hands pulled be wanted at these places from now on."""
-        asked = self.asked or {}
-        moves = {i: place.position - asked[i].position for i, place in places.items()}
-        for gesture in self.hands:
-            self.wishes[gesture] = partial(_moved, self.wishes[gesture], moves)
+    def release(self) -> None:
+        """Let what hands pulled be wanted where it is from now on; a pose at rest stays."""
+        if self.drag is None or self.targets is None:
+            return
+        before, hands = self.targets, self.hands
+        self.drag, places = self.drag.release(before, tuple(hands.values()))
+        moves = {i: place.position - before[i].position for i, place in places.items()}
+        for gesture in hands:
+            others = {i for other in hands if other is not gesture for i in hands[other].handles}
+            own = {i: moves.pop(i) for i in places if i in moves and i not in others}
+            self.wishes[gesture] = partial(_moved, self.wishes[gesture], own)
         self.hands = {}
         self.aim()
+        # Unless a later wish is for a place that does not depend on the one before it.
+        found = {**before, **places}
+        if all(abs(self.targets[i].position - found[i].position) < ROUNDING for i in found):
+            self.solved = (self.targets, ())
+            self.take(self.drag.pose(self.targets))
 
     @property
     def reached(self) -> Mapping[int, Target]:
         """Where handles that hands pull would be wanted if these let go now, by their ids."""
         if self.drag is None or self.targets is None or not self.hands:
             return {}
-        return self._moved(self.drag.let_go(self.targets, tuple(self.hands.values())))
+        return self._moved(self.drag.release(self.targets, tuple(self.hands.values()))[1])
 
     @property
     def asked(self) -> Mapping[int, Target] | None:
@@ -272,8 +283,9 @@ class Pull(Promise):
 def _moved(
     wish: WishFrom, moves: Mapping[int, complex], start: Start, targets: Mapping[int, Target]
 ) -> Mapping[int, Target]:
-    """Return what is wished, moved as far as hands have given in."""
-    return _moved_targets(wish(start, targets), moves)
+    """Return what is wished, moved as far as hands, and joints beside them, have given in."""
+    joints = {i: targets[i] for i in moves if i in targets}
+    return _moved_targets({**joints, **wish(start, targets)}, moves)
 
 
 def _moved_targets(

@@ -3,7 +3,6 @@
 Source: https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html
 """
 
-import json
 import struct
 from importlib.metadata import version
 from typing import Any, Final
@@ -15,6 +14,7 @@ from app.errors import shown_name
 from app.export.moving_shape import MovingScene, MovingShape
 from app.export.plan import ExportPlan
 from app.export.writers.png import encode_png
+from app.storage import strict_json
 from engine.arrays import Complexes, Floats
 
 PIXELS_PER_METRE: Final = 100  # as engines take sprites
@@ -113,7 +113,7 @@ class _Asset:
             animation = {"name": name, "channels": self._channels, "samplers": self._samplers}
             content["animations"] = [animation | {"extras": {"loop": self._plan.loop}}]
         content["buffers"] = [{"byteLength": len(self._binary)}]
-        text = json.dumps(content, separators=(",", ":")).encode()
+        text = strict_json(content).encode()
         chunks = _chunk(b"JSON", text, b" ") + _chunk(b"BIN\0", bytes(self._binary), b"\0")
         return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
 

@@ -2,7 +2,6 @@
 
 import base64
 import html
-import json
 from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
@@ -17,7 +16,7 @@ from app.export.framing import shown_box
 from app.export.moving_shape import MovingScene, MovingShape
 from app.export.plan import ExportPlan
 from app.export.writers.png import encode_png
-from app.storage import shader_source
+from app.storage import shader_source, strict_json
 from engine.arrays import Complexes, Floats
 
 _PAGE: Final = Path(__file__).with_name("player.html")
@@ -53,7 +52,7 @@ def html_page(scene: MovingScene, plan: ExportPlan) -> bytes:
         generator=f"Lissom {version('lissom')}",
         background="transparent" if colour is None else f"rgb{colour}",
         # Nothing in it may end the element that holds it.
-        film=json.dumps(film, separators=(",", ":")).replace("<", "\\u003c"),
+        film=strict_json(film).replace("<", "\\u003c"),
     )
     return page.encode()
 

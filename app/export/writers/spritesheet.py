@@ -4,7 +4,6 @@ The JSON is that of TexturePacker ("hash"), with the durations and tags of Asepr
 https://www.aseprite.org/docs/cli/#sheet
 """
 
-import json
 import math
 from collections.abc import Sequence
 from importlib.metadata import version
@@ -16,6 +15,7 @@ from app.errors import LissomError, shown_name
 from app.export.plan import ExportPlan
 from app.export.writers.frame_writer import FrameWriter, duration
 from app.export.writers.png import save_png
+from app.storage import strict_json
 from engine.arrays import Bytes
 
 LARGEST: Final = 16_384  # pixels each way: what graphics cards hold, and a gigabyte at most
@@ -205,7 +205,7 @@ def _data(
             for tag in plan.tags
         ],
     }
-    return json.dumps({"frames": frames, "meta": meta}, indent=1).encode()
+    return strict_json({"frames": frames, "meta": meta}, indent=1).encode()
 
 
 def _box(corner: tuple[int, int], size: tuple[int, int]) -> dict[str, int]:

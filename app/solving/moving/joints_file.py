@@ -1,12 +1,11 @@
 """Joints of a drawing, written as a small JSON text."""
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from app.errors import LissomError
-from app.storage import as_object, as_point, as_text, load_json
+from app.storage import as_object, as_point, as_text, load_json, shown
 from engine.geometry.motions import kind_named
 
 SCHEMA = 1
@@ -42,7 +41,7 @@ def _parsed(content: object) -> ToldJoints:
             )
     schema = told["schema"]
     if schema != SCHEMA or isinstance(schema, bool):
-        raise LissomError(f"schema must be {SCHEMA}, not {json.dumps(schema)}")
+        raise LissomError(f"schema must be {SCHEMA}, not {shown(schema)}")
     kind = None if told.get("kind") is None else as_text(told["kind"], "kind")
     if kind is not None:
         kind_named(kind)

@@ -1,6 +1,5 @@
 """Clocks of a pose script: tracks and springs of single handles, and cycles of all of a figure."""
 
-import json
 from collections.abc import Mapping, Sequence
 from math import radians
 
@@ -24,7 +23,7 @@ from app.solving.script.fields import (
     require_handle,
     require_order,
 )
-from app.storage import JsonObject, as_list, as_number, as_point, as_text, as_whole
+from app.storage import JsonObject, as_list, as_number, as_point, as_text, as_whole, shown
 
 TRACK_FIELDS = ("handle", "handles", "with", "keys", "delay", "reach")
 TRACK_KEY_FIELDS = ("frame", "offset", "at", "velocity", "turn", "ease", "passing")
@@ -104,7 +103,7 @@ def _track(content: object, where: str, handles: Mapping[str, int]) -> Track:
         raise LissomError(HANDLE_OR_HANDLES.format(where=where))
     goes_with = track.get("with", "pose")
     if goes_with not in list(PLACES):
-        raise LissomError(NO_BASIS.format(where=where, content=json.dumps(goes_with)))
+        raise LissomError(NO_BASIS.format(where=where, content=shown(goes_with)))
     keys = as_list(track["keys"], f"{where}.keys")
     parsed = tuple(
         _track_key(key, f"{where}.keys[{index}]", PLACES[goes_with])

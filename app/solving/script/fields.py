@@ -1,13 +1,12 @@
 """What keys of poses and of tracks have alike in a pose script."""
 
-import json
 from collections.abc import Callable, Collection, Mapping, Sequence
 from itertools import pairwise
 from typing import Any, TypeVar
 
 from app.document import HOLD, LAST_FRAME, LINEAR, Easing, Passing
-from app.errors import LissomError
-from app.storage import JsonObject, as_object
+from app.errors import LissomError, listed
+from app.storage import JsonObject, as_object, shown
 
 Made = TypeVar("Made")
 NOT_A_FRAME = "{where}.{name} must be a whole number from 0 to {last}, not {content}"
@@ -30,7 +29,7 @@ def frame_of(key: Mapping[str, object], where: str, name: str = "frame") -> int:
     frame = key.get(name)
     if not isinstance(frame, int) or isinstance(frame, bool) or not 0 <= frame <= LAST_FRAME:
         raise LissomError(
-            NOT_A_FRAME.format(where=where, name=name, last=LAST_FRAME, content=json.dumps(frame))
+            NOT_A_FRAME.format(where=where, name=name, last=LAST_FRAME, content=shown(frame))
         )
     return frame
 
@@ -44,9 +43,7 @@ def passage_of(key: JsonObject, where: str) -> tuple[Easing, Passing]:
     default = Passing.CORNER if "ease" in key else Passing.THROUGH
     word = key.get("passing", default)
     if word not in list(Passing):
-        raise LissomError(
-            f"{where}.passing must be one of {', '.join(Passing)}, not {json.dumps(word)}"
-        )
+        raise LissomError(f"{where}.passing must be one of {', '.join(Passing)}, not {shown(word)}")
     if word != Passing.HOLD:
         return ease, Passing(word)
     if "ease" in key and ease != HOLD:
@@ -65,7 +62,7 @@ def require_handle(name: str, handles: Collection[str], where: str) -> None:
     """Refuse the name of a handle that the script does not have."""
     if name not in handles:
         raise LissomError(
-            f"{where} names the handle {name!r}, but the handles are {', '.join(handles) or 'none'}"
+            f"{where} names the handle {name!r}, but the handles are {listed([*handles]) or 'none'}"
         )
 
 

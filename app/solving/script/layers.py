@@ -3,7 +3,6 @@
 What hangs on what, which take turns, how they move as a whole, fade, and lie over each other.
 """
 
-import json
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -22,6 +21,7 @@ from app.storage import (
     as_point,
     as_text,
     as_whole,
+    shown,
 )
 
 CHOICE_FIELDS = ("name", "layers", "keys")
@@ -227,7 +227,7 @@ def parse_order(content: object, where: str) -> tuple[ScriptPlacing, ...]:
         (side, *others) = read or {"": ""}
         if others or side not in SIDES:
             raise LissomError(
-                f"{at} must have in_front_of or behind, with a layer, not {json.dumps(place)}"
+                f"{at} must have in_front_of or behind, with a layer, not {shown(place)}"
             )
         beside = as_text(read[side], f"{at}.{side}")
         placings.append(ScriptPlacing(frame=frame, beside=beside, in_front=SIDES[side]))
@@ -239,7 +239,7 @@ def parse_canvas(content: object) -> tuple[int, int]:
     """Return the size of the canvas."""
     sides = as_list(content, "canvas")
     if len(sides) != 2:
-        raise LissomError(f"canvas must be width and height, not {json.dumps(content)}")
+        raise LissomError(f"canvas must be width and height, not {shown(content)}")
     width, height = (as_whole(side, "canvas") for side in sides)
     return width, height
 
@@ -251,6 +251,6 @@ def _from_frames(content: object, where: str, what: str) -> list[tuple[str, int,
         at = f"{where}[{index}]"
         pair = as_list(entry, at)
         if len(pair) != 2:
-            raise LissomError(f"{at} must be a frame and {what}, not {json.dumps(pair)}")
+            raise LissomError(f"{at} must be a frame and {what}, not {shown(pair)}")
         found.append((at, frame_of({"frame": pair[0]}, at), pair[1]))
     return found

@@ -1,6 +1,5 @@
 """An animation written as a small JSON text: handles, keys and where each key drags the handles."""
 
-import json
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -55,6 +54,7 @@ from app.storage import (
     as_point,
     as_text,
     load_json,
+    shown,
 )
 from engine.maps import Bounds
 
@@ -180,7 +180,7 @@ def parse_pose_script(content: object) -> PoseScript:
     script = fields_in(content, "the script", (*SCENE_FIELDS, *own))
     schema = script.get("schema")
     if schema != SCHEMA or isinstance(schema, bool):
-        raise LissomError(WRONG_SCHEMA.format(own=SCHEMA, content=json.dumps(schema)))
+        raise LissomError(WRONG_SCHEMA.format(own=SCHEMA, content=shown(schema)))
     usual = _options(script, "")
     figures = [] if "figures" in script else [_figure(script, "", usual)]
     for index, entry in enumerate(as_list(script.get("figures", []), "figures")):
@@ -263,7 +263,7 @@ def _options(script: Mapping[str, Any], where: str) -> dict[str, Any]:
         if script["variant"] not in VARIANTS:
             raise LissomError(
                 NO_VARIANT.format(
-                    where=where, variants=", ".join(VARIANTS), content=json.dumps(script["variant"])
+                    where=where, variants=", ".join(VARIANTS), content=shown(script["variant"])
                 )
             )
         options["variant"] = Variant(script["variant"])

@@ -1,7 +1,7 @@
 """Files on the disk, whatever is in them: read within limits, written whole, held against others.
 
 In: paths, and what is written to them.
-Out: bytes and arrays; files that are whole or absent; locks that end with their process.
+Out: bytes, arrays and JSON; files that are whole or absent; locks that end with their process.
 Imports: nothing of the project but `app.errors`.
 """
 
@@ -35,3 +35,4 @@ from app.storage.files.reading import (
     read_file as read_file,
     tail_digest as tail_digest,
 )
+from app.storage.files.strict_json import NOT_FINITE as NOT_FINITE, strict_json as strict_json

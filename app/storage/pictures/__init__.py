@@ -12,6 +12,7 @@ from app.storage.pictures.cores import (
 from app.storage.pictures.layered import (
     Layer as Layer,
     LayeredPicture as LayeredPicture,
+    Names as Names,
     encode_png as encode_png,
 )
 from app.storage.pictures.openraster import read_openraster as read_openraster

@@ -10,13 +10,15 @@ from typing import NamedTuple
 import numpy as np
 from PIL import Image
 
-from app.document import DEEPEST, BlendMode, Group, layer_commands, paths_to
-from app.errors import NOTHING_TOLD, ImportSummary, LissomError, Told, shown_name
+from app.document import DEEPEST, BlendMode, Group, paths_to
+from app.errors import NOTHING_TOLD, ImportSummary, LissomError, Told, shortened, shown_name
 from app.storage.pictures.cores import require_memory, side_by_side
 from app.storage.pictures.picture import Picture
 from engine.arrays import readonly
 
 MOST_LAYERS = 200
+MOST_GROUPS = 10_000
+LONGEST_NAME = 1_000  # characters of a layer or a group
 EMPTY = "left out, since it is empty"
 # Of a layer's pixels: where no more of them are within the box of what is drawn, the rest is cut
 # off. Decoded, and on the graphics card, every pixel takes memory.
@@ -81,10 +83,31 @@ class LayeredPicture:
     groups: tuple[Group, ...] = ()
 
 
+class Names:
+    """Names as they are given out: one that is taken gets the next number that is free.
+
+    However many of them are alike, each takes as little time.
+    """
+
+    def __init__(self) -> None:
+        self._taken: set[str] = set()
+        self._next: dict[str, int] = {}
+
+    def free(self, name: str) -> str:
+        """Take a name, with a number where it needs one, and return it."""
+        free, number = name, self._next.get(name, 2)
+        while free in self._taken:
+            free, number = f"{name} {number}", number + 1
+        self._next[name] = number
+        self._taken.add(free)
+        return free
+
+
 class Groups:
     """The groups of a drawing as they are found, each with a path of its own."""
 
     def __init__(self) -> None:
+        self._names = Names()
         self._found: dict[str, Group] = {}
 
     def add(self, around: str, group: Group) -> str:
@@ -93,13 +116,18 @@ class Groups:
         Raises
         ------
         LissomError
-            If it lies too deep in others.
+            If it lies too deep in others, there are too many, or its name is too long.
         """
         if around.count("/") + bool(around) >= DEEPEST:
             raise LissomError(GROUPS_DEEP.format(most=DEEPEST))
+        if len(self._found) == MOST_GROUPS:
+            raise LissomError(
+                f"it has more than {MOST_GROUPS:,} groups, which Lissom does not take: merge some"
+            )
         # A slash stands between groups.
         name = shown_name(group.name).replace("/", "-").strip() or "group"
-        path = layer_commands.numbered_name(f"{around}/{name}" if around else name, self._found)
+        require_short(name)
+        path = self._names.free(f"{around}/{name}" if around else name)
         self._found[path] = replace(group, name=path)
         return path
 
@@ -137,14 +165,13 @@ def layered_picture(
     trimmed = {id(layer.picture): each for layer, each in zip(distinct, made, strict=True)}
     kept = [trimmed[id(layer.picture)].of(layer) for layer in kept]
     own = Counter(layer.name for layer in kept)
-    taken: set[str] = set()
+    names = Names()
     layers = []
     for layer in kept:
+        require_short(layer.name)
         has_twin = layer.group and own[layer.name] > 1
         name = f"{layer.group}/{layer.name}" if has_twin else layer.name
-        free = layer_commands.numbered_name(name, taken)
-        taken.add(free)
-        layers.append(replace(layer, name=free))
+        layers.append(replace(layer, name=names.free(name)))
     return LayeredPicture(
         size=size, layers=tuple(layers), summary=told.summary, groups=groups.of(layers)
     )
@@ -235,6 +262,15 @@ def require_few(count: int) -> None:
     if count > MOST_LAYERS:
         raise LissomError(
             f"it has {count:,} layers; Lissom takes up to {MOST_LAYERS}: merge some of them"
+        )
+
+
+def require_short(name: str) -> None:
+    """Refuse a name that would be told and shown everywhere, and stands in those of all inside."""
+    if len(name) > LONGEST_NAME:
+        raise LissomError(
+            f"the name {shortened(name)!r} has {len(name):,} characters; Lissom takes up to "
+            f"{LONGEST_NAME:,}: shorten it"
         )
 
 

@@ -11,7 +11,7 @@ from math import isfinite
 from xml.etree import ElementTree as ET
 
 from app.document import BlendMode, Group, paths_to
-from app.errors import LissomError, Told
+from app.errors import LissomError, Told, shortened
 from app.storage.files import DAMAGED_ZIP, opened_zip
 from app.storage.pictures.layered import (
     EMPTY,
@@ -31,6 +31,7 @@ LARGEST_XML = 4 * 1024 * 1024
 # By which all pictures together may outgrow twice the file; they are packed already.
 MOST_UNPACKED = 16 * 1024 * 1024
 LARGEST_SIDE = 65_535
+DAMAGED_STACK = "its stack.xml is damaged, or in a rare encoding; UTF-8 is usual"
 MODES: dict[str, BlendMode] = {
     "": "normal",
     "svg:src-over": "normal",
@@ -75,7 +76,7 @@ def _read(archive: zipfile.ZipFile) -> LayeredPicture:
     for element, _ in elements:
         source = element.get("src", "")
         if source not in archive.NameToInfo:
-            raise LissomError(f"it lacks {source or 'the picture of a layer'}")
+            raise LissomError(f"it lacks {shortened(source) or 'the picture of a layer'}")
         sources.append(source)
     distinct = list(dict.fromkeys(sources))
     packed = sum(member.compress_size for member in archive.infolist())
@@ -181,19 +182,24 @@ def _blend(element: ET.Element, told: Told) -> BlendMode:
     mode = element.get("composite-op", "")
     if mode not in MODES:
         name = element.get("name", "").strip() or element.tag
-        told.lose(name, f"drawn normally, not in the mode {mode.removeprefix('svg:')!r}")
+        told.lose(name, f"drawn normally, not in the mode {shortened(mode.removeprefix('svg:'))!r}")
     return MODES.get(mode, "normal")
+
+
+class _Builder(ET.TreeBuilder):
+    """Builds the elements of a layer stack, in whichever encoding it is."""
+
+    def doctype(self, *_: str | None) -> None:
+        """Refuse a document type: that is where entities that grow are declared."""
+        raise LissomError("its stack.xml has a document type, which no layer stack has")
 
 
 def _parse(content: bytes) -> ET.Element:
     try:
-        text = content.decode("utf-8-sig")
-        # A layer stack has no document type: that is where entities that grow are declared.
-        if "<!DOCTYPE" in text:
-            raise LissomError("its stack.xml has a document type, which no layer stack has")
-        return ET.fromstring(text)  # noqa: S314 - no entities are left
-    except (ET.ParseError, UnicodeDecodeError, ValueError, RecursionError) as error:
-        raise LissomError(f"its stack.xml is damaged ({error})") from error
+        # No entities are left.
+        return ET.fromstring(content, ET.XMLParser(target=_Builder()))  # noqa: S314
+    except (ET.ParseError, LookupError, TypeError, ValueError, RecursionError) as error:
+        raise LissomError(DAMAGED_STACK) from error
 
 
 def _member(archive: zipfile.ZipFile, name: str, largest: int) -> bytes:
@@ -208,7 +214,9 @@ def _member(archive: zipfile.ZipFile, name: str, largest: int) -> bytes:
 def _whole(element: ET.Element, name: str) -> int:
     number = _number(element, name, 0.0)
     if not (number == int(number) and 1 <= number <= LARGEST_SIDE):
-        raise LissomError(f"its stack.xml gives the canvas a size of {element.get(name)!r} pixels")
+        raise LissomError(
+            f"its stack.xml gives the canvas a size of {shortened(element.get(name))!r} pixels"
+        )
     return int(number)
 
 
@@ -219,5 +227,7 @@ def _number(element: ET.Element, name: str, default: float) -> float:
     except ValueError:
         number = float("nan")
     if not (isfinite(number) and abs(number) <= 1e7):
-        raise LissomError(f"its stack.xml says {name}={text!r}, which is not a number of use")
+        raise LissomError(
+            f"its stack.xml says {name}={shortened(text)!r}, which is not a number of use"
+        )
     return number

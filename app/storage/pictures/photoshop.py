@@ -1,6 +1,7 @@
 """Reading Photoshop files with psd-tools, where that is installed."""
 
 import io
+import logging
 import re
 import struct
 import warnings
@@ -13,7 +14,7 @@ import numpy as np
 from PIL import Image
 
 from app.document import BlendMode, Group
-from app.errors import LissomError, Told, missing
+from app.errors import LissomError, Told, missing, shortened
 from app.storage.pictures.layered import (
     Groups,
     Layer,
@@ -29,6 +30,8 @@ from engine.arrays import freeze
 
 MEBIBYTE = 1024 * 1024
 SIGNATURE = b"8BPS"
+HEADER: Final = 26  # bytes
+MOST_RECORDS: Final = 1_000
 # What is drawn, and by which name psd-tools knows it. Shapes, placed pictures and texts come with
 # pixels.
 DRAWN: Final = {"pixel", "shape", "smartobject", "type"}
@@ -44,6 +47,7 @@ MODES: Final[dict[str, BlendMode]] = {
     "MULTIPLY": "multiply",
     "SCREEN": "screen",
 }
+DAMAGED: Final = "it is not a Photoshop file, or it is damaged"
 DAMAGE = (
     OSError,
     ValueError,
@@ -90,13 +94,32 @@ def read_photoshop(data: bytes) -> LayeredPicture:
             f"Photoshop files need psd-tools: {missing('psd')}; or save the drawing as OpenRaster "
             "(.ora)"
         ) from error
+    # It says its own words about what it skips, where nobody listens on standard error.
+    logging.getLogger(psd_tools.__name__).setLevel(logging.CRITICAL)
     try:
         with warnings.catch_warnings():
             # Where a channel cannot be unpacked, black would take its place.
             warnings.simplefilter("error", psd_tools.PSDDecompressionWarning)
+            _require_few_records(data)
             return _read(psd_tools.PSDImage.open(io.BytesIO(data), max_alloc_bytes=2048 * MEBIBYTE))
     except DAMAGE as error:
-        raise LissomError(f"it is not a Photoshop file, or it is damaged ({error})") from error
+        raise LissomError(DAMAGED) from error
+
+
+def _require_few_records(data: bytes) -> None:
+    """Refuse a file that lists more than there is time for, before it is read."""
+    (version,) = struct.unpack_from(">H", data, len(SIGNATURE))
+    at = HEADER
+    for _ in ("the palette", "the resources"):
+        at += 4 + struct.unpack_from(">I", data, at)[0]
+    # After the lengths of all that is on layers, and of what is said of them.
+    at += 2 * 4 * version
+    (count,) = struct.unpack_from(">h", data, at) if at < len(data) else (0,)
+    if abs(count) > MOST_RECORDS:
+        raise LissomError(
+            f"it has {abs(count):,} layers and ends of groups; Lissom takes up to "
+            f"{MOST_RECORDS:,}: merge some of them"
+        )
 
 
 def _read(drawing: Any) -> LayeredPicture:
@@ -225,7 +248,7 @@ def _require_channels(layer: Any, drawing: Any) -> None:
         found[int(told.id)] = channel
     colours = COLOURS.get(drawing.color_mode.name, 0)
     if layer.width and layer.height and not set(range(colours)) <= set(found):
-        raise LissomError(f"the layer {layer.name!r} lacks a channel of its colours")
+        raise LissomError(f"the layer {shortened(layer.name)!r} lacks a channel of its colours")
     for number, channel in found.items():
         if number >= TRANSPARENCY:
             _require_all_rows(channel, layer.height, drawing.version)

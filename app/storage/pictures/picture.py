@@ -53,7 +53,7 @@ BAND = 64  # rows of pixels that are copied at once
 OPAQUE = 255
 HALF = 128  # levels: of a mask, what is lighter is kept
 NO_PICTURE = "{name} is not a picture that Lissom reads ({formats})"
-DAMAGED_PICTURE = "{name} is damaged or cut short ({error})"
+DAMAGED_PICTURE = "{name} is damaged or cut short"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -161,7 +161,7 @@ def _told(name: str) -> Iterator[None]:
     except UnidentifiedImageError as error:
         raise LissomError(NO_PICTURE.format(name=name, formats=FORMATS_IN_WORDS)) from error
     except DECODER_ERRORS as error:
-        raise LissomError(DAMAGED_PICTURE.format(name=name, error=error)) from error
+        raise LissomError(DAMAGED_PICTURE.format(name=name)) from error
 
 
 def _decode(data: bytes, name: str) -> Picture:

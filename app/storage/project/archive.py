@@ -4,6 +4,7 @@ import io
 import re
 import zipfile
 from collections.abc import Mapping
+from types import MappingProxyType
 from typing import IO, Any
 
 import numpy as np
@@ -25,16 +26,21 @@ NPY_MAGIC = b"\x93NUMPY\x01\x00"
 LARGEST_NPY_HEADER = 1024
 NOT_ARRAY = "its {name} is not an array {dtype} (n{shape})"
 MEMBER_CUT_SHORT = "its {name} is cut short"
-MEMBER_TOO_LARGE = "its {name} is too large: {size:,} bytes"
+MEMBER_TOO_LARGE = "its {name} is too large: {size:,} bytes, more than {most:,}"
+NOTHING_WRITTEN: Mapping[str, bytes] = MappingProxyType({})
 
 
 def write_archive(file: IO[bytes], members: Mapping[str, bytes]) -> None:
-    """Write the members, by their names, after the one that tells what the file is."""
+    """Write the members, by their names, after the one that tells what the file is.
+
+    What would unpack to more than is read of a small file is not packed.
+    """
+    packs = sum(map(len, members.values())) <= MOST_UNPACKED
     with zipfile.ZipFile(file, "w") as archive:
         for name, content in {"mimetype": MIMETYPE, **members}.items():
             member = zipfile.ZipInfo(name, DATE)
             member.external_attr = 0o644 << 16
-            packed = name.endswith(PACKED)
+            packed = packs and name.endswith(PACKED)
             member.compress_type = zipfile.ZIP_DEFLATED if packed else zipfile.ZIP_STORED
             archive.writestr(member, content, compresslevel=1)
 
@@ -57,6 +63,9 @@ class Archive:
         Of the file on the disk, in bytes. However much of it is read, no more is ever unpacked than
         this and `MOST_UNPACKED` together.
 
+    written : mapping of str to bytes
+        Contents that were just written to it, which are not unpacked to be read.
+
     Raises
     ------
     LissomError
@@ -64,12 +73,17 @@ class Archive:
         to too much. Nothing but its table of contents is read to tell.
     """
 
-    def __init__(self, file: zipfile.ZipFile, size: int) -> None:
+    def __init__(
+        self, file: zipfile.ZipFile, size: int, written: Mapping[str, bytes] = NOTHING_WRITTEN
+    ) -> None:
         self._file = file
+        self._written = written
         self._read: set[str] = set()
         members = file.infolist()
         if len(members) > MOST_MEMBERS:
-            raise LissomError(f"it has {len(members):,} members, more than any project")
+            raise LissomError(
+                f"it has {len(members):,} members, more than the {MOST_MEMBERS:,} of any project"
+            )
         if not members or members[0].filename != "mimetype":
             raise LissomError(f"it {NO_PROJECT}")
         self._members = {member.filename: member for member in members}
@@ -82,6 +96,11 @@ class Archive:
             raise LissomError(f"it would unpack to {unpacked:,} bytes, more than any project")
         if self.read("mimetype", largest=len(MIMETYPE)) != MIMETYPE:
             raise LissomError(f"it {NO_PROJECT}")
+
+    @property
+    def is_written(self) -> bool:
+        """Whether it was just written, so that what holds of its arrays is known."""
+        return bool(self._written)
 
     @property
     def unread(self) -> list[str]:
@@ -105,7 +124,11 @@ class Archive:
         self._read.add(name)
         member = self._members[name]
         if largest is not None and member.file_size > largest:
-            raise LissomError(MEMBER_TOO_LARGE.format(name=name, size=member.file_size))
+            raise LissomError(
+                MEMBER_TOO_LARGE.format(name=name, size=member.file_size, most=largest)
+            )
+        if name in self._written and len(self._written[name]) == member.file_size:
+            return self._written[name]
         # With the size given, no more than that is ever unpacked, whatever the data would grow to;
         # a checksum that differs is an error.
         with self._file.open(member) as packed:

@@ -1,12 +1,12 @@
 """The document as `project.json`, except for its figures' pictures and arrays."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import astuple
 from importlib.metadata import version
+from math import inf
 from operator import attrgetter
+from types import MappingProxyType
 from typing import Any, Literal
-
-import numpy as np
 
 from app.document import (
     FRAME_NAMES,
@@ -41,8 +41,10 @@ from app.document import (
     Track,
     TrackKey,
     Turn,
+    UnreadMotion,
+    require_motions,
 )
-from app.errors import NOTHING_TOLD, ImportSummary, LissomError
+from app.errors import EXPECTED_ERRORS, NOTHING_TOLD, ImportSummary, LissomError
 from app.export_formats import FormatOptions, FormatSettings
 from app.storage.json_values import (
     ANYTHING,
@@ -67,14 +69,12 @@ from app.storage.json_values import (
 from app.storage.pictures import require_memory
 from app.storage.project.archive import Archive
 from app.storage.project.members import FigureMembers
-from engine.domain import CutOut, Slit, Stroke
+from engine.domain import CutOut, Domain, Slit, Stroke
 from engine.geometry.motions import Parameters
-from engine.maps import Boundary, Bounds, HarmonicMap, certify
+from engine.maps import Boundary, Bounds, Certificate, HarmonicMap, certify
 
 SCHEMA = 2
-# Over the longer side of the picture: how far a pose may take it, and its coefficients, which are
-# larger where they nearly cancel each other, as around tight cages.
-FARTHEST_POSE, MOST_COEFFICIENT = 1_000, 1e6
+NOTHING: Mapping[int, Figure] = MappingProxyType({})
 SIZE = pair(WHOLE, WHOLE, "two whole numbers")
 RANGE = pair(WHOLE, WHOLE, "two whole numbers", make=FrameRange, of=astuple)
 MARKER = record(Marker, Field("frame", WHOLE), Field("name", TEXT))
@@ -227,6 +227,31 @@ MOTION = record(
     *(Field(name, WHOLE) for name in ("first", "start", "last", "rounds")),
     Field("digest", TEXT),
 )
+
+
+def _write_motions(figure: Figure) -> list[Any]:
+    """Return a figure's motions, with those that were not read in their places."""
+    written = [MOTION.write(motion) for motion in figure.motions]
+    for unread in figure.unread_motions:
+        written.insert(unread.index, unread.content)
+    return written
+
+
+def _read_motions(content: object, handles: Collection[int]) -> dict[str, Any]:
+    """Return a figure's motions, and those that are not known here, or do not fit."""
+    motions: list[GivenMotion] = []
+    unread = []
+    for index, each in enumerate(as_list(content, "motions")):
+        try:
+            motion = MOTION.read(each, f"motions[{index}]")
+            require_motions([*motions[-1:], motion], handles)
+        except EXPECTED_ERRORS as error:
+            unread.append(UnreadMotion(index=index, content=each, reason=str(error)))
+        else:
+            motions.append(motion)
+    return {"motions": tuple(motions), "unread_motions": tuple(unread)}
+
+
 BACKGROUND = Codec(
     lambda value: list(value) if isinstance(value, tuple) else value,
     lambda content, where: (several(WHOLE) if isinstance(content, list) else TEXT).read(
@@ -305,7 +330,7 @@ FIGURE = record(
     Field("springs", several(SPRING), usual=()),
     Field("cycles", several(CYCLE), usual=()),
     Field("bones", several(BONE), usual=()),
-    Field("motions", several(MOTION), usual=()),
+    Field("motions", ANYTHING, _write_motions, usual=[]),
     Field("stiffness", FLAG, lambda figure: figure.stiffness is not None, usual=False),
     Field("variant", TEXT),
     Field("bounds", part(Bounds, *(Field(name, NUMBER) for name in ("k", "sigma_a", "sigma_b")))),
@@ -363,8 +388,13 @@ def write_document(document: Document) -> dict[str, Any]:
     return written
 
 
-def read_document(content: JsonObject, archive: Archive) -> Document:
+def read_document(
+    content: JsonObject, archive: Archive, known: Mapping[int, Figure] = NOTHING
+) -> Document:
     """Return the document with these fields, and with the pictures and arrays of an archive.
+
+    Of an archive that was just written, figures that are `known` by their ids are not read again;
+    they come first.
 
     Raises
     ------
@@ -373,6 +403,9 @@ def read_document(content: JsonObject, archive: Archive) -> Document:
     """
     if as_whole(content["schema"], "schema") < SCHEMA:
         _bring_up_to_schema_2(content)
+    if known:
+        others = [each for each in content["figures"] if each["id"] not in known]
+        content = JsonObject({**content, "figures": others}, content.where)
     fields = DOCUMENT.read(content, "")
     del fields["schema"], fields["app_version"]
     figures = fields.pop("figures")
@@ -381,8 +414,9 @@ def read_document(content: JsonObject, archive: Archive) -> Document:
         raise LissomError("two of its figures have the same id")
     shared: dict[str, PictureFile] = {}
     read = tuple(_read_figure(figure, archive, shared) for figure in figures)
-    require_memory(figure.picture.size for figure in read)
-    return Document(figures=read, **fields)
+    if not archive.is_written:
+        require_memory(picture.size for picture in {figure.picture for figure in read})
+    return Document(figures=(*known.values(), *read), **fields)
 
 
 def _bring_up_to_schema_2(content: JsonObject) -> None:
@@ -414,15 +448,15 @@ def _read_figure(
     if (same.suffix, same.size) == (picture.suffix, picture.size):
         picture = same
     domain = members.domain(parted=made.pop("parted"))
-    boundary = Boundary.sample(domain.outline, domain.cage, domain.holes)
+    proven = _unproven if archive.is_written else _prover(domain, fields["bounds"])
 
     def pose(kind: Literal["keys", "poses"], index: int, given: tuple[Any, ...]) -> Pose:
         targets, f = dict(given), members.map(domain, kind, index)
-        _require_near(f, boundary, max(picture.size), f"one of its {kind}")
         if len(targets) < len(given):
             raise LissomError(f"one of its {kind} has two targets for one handle")
-        return Pose.of(f, targets, certify(f, boundary, fields["bounds"]))
+        return Pose.of(f, targets, proven(f))
 
+    motions = _read_motions(fields.pop("motions"), {handle.id for handle in fields["handles"]})
     first, later = fields.pop("attachment"), fields.pop("handovers")
     for index, key in enumerate(fields["keys"]):
         key["pose"] = pose("keys", index, key.pop("targets"))
@@ -431,6 +465,7 @@ def _read_figure(
         kept["pose"] = pose("poses", index, kept.pop("targets"))
     return Figure(
         **fields
+        | motions
         | {
             "picture": picture,
             "joints": (*(() if first is None else (first,)), *later),
@@ -445,17 +480,15 @@ def _read_figure(
     )
 
 
-def _require_near(f: HarmonicMap, boundary: Boundary, side: int, what: str) -> None:
-    """Refuse a map that takes a picture of this side farther than any pose, or wildly between."""
-    phi, psi = f.columns
-    largest = max(np.abs(phi).max(), np.abs(psi).max())
-    if largest <= MOST_COEFFICIENT * side:
-        places = boundary.vertex_coordinates @ f.coefficients
-        if np.abs(places[:, 0] + places[:, 1].conj()).max() <= FARTHEST_POSE * side:
-            return
-    raise LissomError(
-        f"{what} lies farther from its picture than {FARTHEST_POSE} times the picture's size"
-    )
+def _prover(domain: Domain, bounds: Bounds) -> Callable[[HarmonicMap], Certificate]:
+    """Return what proves maps of a domain."""
+    boundary = Boundary.sample(domain.outline, domain.cage, domain.holes)
+    return lambda f: certify(f, boundary, bounds)
+
+
+def _unproven(_: HarmonicMap) -> Certificate:
+    """Return the certificate of a map of which nothing is said."""
+    return Certificate(k=inf, sigma_a=inf, sigma_b=-inf, winding=None, certified=False)
 
 
 def _cut_out(fields: dict[str, Any], members: FigureMembers, size: tuple[int, int]) -> CutOut:

@@ -107,7 +107,8 @@ class FigureMembers:
             holes=self._holes(),
             closed=self._points(CLOSED) if parted else None,
         )
-        require_domain(domain)
+        if not self._archive.is_written:
+            require_domain(domain)
         return domain
 
     def stiffness(self, domain: Domain) -> Floats:

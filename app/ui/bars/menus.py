@@ -18,21 +18,17 @@ PATH_REACHES = {0: "All that play", 6: "6 around the playhead", 12: "12", 24: "2
 BACKDROPS = {"Checker": CHECKER, "White": "#ffffff", "Grey": "#808080", "Black": "#000000"}
 
 
-def draw_menus(session: Session, _: Look, *, panels: Sequence[Panel]) -> list[Action]:
-    """Draw the menus, as the table of shortcuts has them; `panels` are all of the window."""
+def draw_menu(session: Session, _: Look, *, title: str, panels: Sequence[Panel]) -> list[Action]:
+    """Draw what is in an open menu, as the table of shortcuts has it; `panels` are the window's."""
     actions: list[Action] = []
-    for title, bindings in MENUS.items():
-        if not imgui.begin_menu(title):
-            continue
-        for name, binding in bindings.items():
-            if binding.parted:
-                imgui.separator()
-            actions += bound_item(session, name)
-            if name in BELOW:
-                actions += BELOW[name](session)
-            if name == "reset layout":
-                actions += _tabs(session, panels)
-        imgui.end_menu()
+    for name, binding in MENUS[title].items():
+        if binding.parted:
+            imgui.separator()
+        actions += bound_item(session, name)
+        if name in BELOW:
+            actions += BELOW[name](session)
+        if name == "reset layout":
+            actions += _tabs(session, panels)
     return actions
 
 

@@ -114,9 +114,13 @@ def limit_of_motion(session: Session) -> str:
     project = session.project
     if project is None or project.is_posing or project.playhead.since is not None:
         return ""
-    kept = project.puppet.store.velocity_shares(project.clip)
-    slowed = sorted(frame for frame, share in kept.items() if share < SLOWED)
-    stopped = [frame for frame in slowed if kept[frame] < STOPPED]
+    # It changes with what the worker has delivered.
+    known, source = project.timing.slowed, (project.clip, session.jobs.delivered)
+    if not known.follows(source):
+        shares = project.puppet.store.velocity_shares(project.clip)
+        known.set(source, {at: share for at, share in shares.items() if share < SLOWED})
+    slowed = sorted(known.value)
+    stopped = [frame for frame in slowed if known.value[frame] < STOPPED]
     if not slowed:
         return ""
     verb, frames = ("stops", stopped) if stopped else ("slows down", slowed)

@@ -1,11 +1,14 @@
 """Where times are on the screen, for all that is drawn in the timeline."""
 
-from collections.abc import Sequence
+from bisect import bisect_left, bisect_right
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
+from typing import Protocol, TypeVar
 
 from imgui_bundle import ImVec2, imgui
 
-from app.document import Figure, Track, TreeRow
+from app.document import LAST_FRAME, Figure, Track, TreeRow, remembered
 from app.editor import KeyRow, Project, Session, Strip, row_of, seen_at
 from app.ui.style import Look, tag_size, write_tag
 
@@ -16,7 +19,19 @@ CRAMPED, CRAMPED_SHARE = 5.5, 0.85  # em: below this height bars take more, and 
 ROUNDING = 0.4  # em
 NAMES, NAMES_SHARE = 11.0, 0.25  # em: width of the figures' names at most, and as a part of all
 THIN, TALL = 1.25, 2.8  # em: height of tracks' rows, and of the row of a figure that is alone
+CLOSEST = 0.4  # em between two marks of a row: what is closer is drawn once
 EVEN, ROOMY = 2.0, 3.4  # em: heights of the rows of figures, at least and at most
+
+
+class HasFrame(Protocol):
+    """A key, a marker or anything else at a frame."""
+
+    @property
+    def frame(self) -> int:
+        """The frame that it is at."""
+
+
+Mark = TypeVar("Mark", bound=HasFrame)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -201,6 +216,35 @@ class Bands:
         """Tell whether a stretch of pixels is on the screen."""
         return high > self.left and low < self.right
 
+    def shows_row(self, row: FigureRow | TrackLane | StageLane) -> bool:
+        """Tell whether a row is on the screen, and not scrolled away."""
+        return row.bottom > self.track_top and row.top < self.track_bottom
+
+    def in_view(
+        self, marks: Sequence[Mark], *, room: float = 1.0, late: int = 0, closest: float = CLOSEST
+    ) -> Iterator[int]:
+        """Yield the indices of marks, in the order of their frames, that are on the screen.
+
+        Of those that are closer to each other than `closest`, the first one stands for all. It
+        takes no longer for many marks than for few.
+
+        Parameters
+        ----------
+        room : float
+            By how many em a mark reaches beyond its place.
+        late : int
+            Frames by which they are drawn later.
+        closest : float
+            In em.
+        """
+        beyond = room * self.look.em
+        index = bisect_left(marks, self.frame(self.left - beyond) - late, key=_frame)
+        end = bisect_right(marks, self.frame(self.right + beyond) - late, key=_frame)
+        while index < end:
+            yield index
+            apart = marks[index].frame + closest / self.strip.scale
+            index = bisect_left(marks, apart, index + 1, end, key=_frame)
+
     def button(self, name: str, low: ImVec2, high: ImVec2, *, right: bool = False) -> bool:
         """Lay an invisible button over a box; return whether it was clicked.
 
@@ -213,6 +257,18 @@ class Bands:
             flags |= imgui.ButtonFlags_.mouse_button_right
         size = ImVec2(max(high.x - low.x, 1.0), max(high.y - low.y, 1.0))
         return imgui.invisible_button(name, size, flags)
+
+
+def _frame(mark: HasFrame) -> int:
+    return mark.frame
+
+
+@remembered
+def least_gap(figure: Figure, handle: int | None) -> int:
+    """Return how many frames there are between the two closest keys of poses, or of a track."""
+    track = None if handle is None else figure.track_of(handle)
+    row: Sequence[HasFrame] = figure.keys if track is None else track.keys
+    return min((later.frame - key.frame for key, later in pairwise(row)), default=LAST_FRAME)
 
 
 def tag(bands: Bands, x: float, text: str) -> None:

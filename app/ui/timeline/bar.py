@@ -88,7 +88,7 @@ def _key_buttons(session: Session, look: Look, project: Project) -> list[Action]
     frame = playback.current_frame(session, project)
     if project.chosen_track is None:
         frame = playback.posed_frame(session, project)
-    is_free = project.unkeyed is not None or frame not in playback.keyed_frames(project)
+    is_free = project.unkeyed is not None or not playback.is_keyed(project, frame)
     imgui.begin_disabled(not is_free)
     actions += bound_button(session, look, "insert key")
     imgui.end_disabled()

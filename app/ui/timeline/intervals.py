@@ -3,15 +3,28 @@
 A click on a bar opens the easing's editor; the end of repeats can be dragged.
 """
 
+from bisect import bisect_left, bisect_right
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from imgui_bundle import ImVec2, imgui
 
-from app.document import HOLD, LINEAR, Cycle, Keyframe, Transit, closing_span, spans, transits
+from app.document import (
+    HOLD,
+    LINEAR,
+    Cycle,
+    Figure,
+    Keyframe,
+    KeySpan,
+    Transit,
+    closing_span,
+    spans,
+    transits,
+)
 from app.editor import Action, CycleDrag, do
 from app.editor.actions import timeline_pointing, tracks
 from app.ui.style import SMALL, begin_tip, in_hand, ink, is_pressed, sized, tip
-from app.ui.timeline.bands import ROUNDING, Bands, FigureRow, tag
+from app.ui.timeline.bands import CLOSEST, ROUNDING, Bands, FigureRow, tag
 from app.ui.timeline.easing_curve import draw_curve, easing_popup, fill_curve
 from app.ui.timeline.keys import begin_box, is_plain_click
 
@@ -20,6 +33,7 @@ INSET = 0.35  # em: between the curve and the bar's edge
 HATCH = 0.55  # em: between the lines over repeats
 GRIP = 0.35  # em: on both sides of their end
 AGAIN = 0.26  # em: of a repeated key
+SEAM = 0.2  # em between two seams at least
 NAMES = {"linear": "linear", "in": "ease in", "out": "ease out", "in-out": "ease in-out"}
 
 
@@ -59,7 +73,8 @@ def draw_intervals(bands: Bands) -> list[Action]:
 
 def _bars(bands: Bands) -> list[_Bar]:
     clip, bars = bands.project.clip, list[_Bar]()
-    for span, way in zip(spans(clip), transits(clip), strict=True):
+    ways, laid = transits(clip), spans(clip)
+    for span, way in ((laid[number], ways[number]) for number in _in_view(bands, laid)):
         if span.first == span.last:
             continue
         key, end = clip.keys[span.first], span.start + span.frames
@@ -81,6 +96,24 @@ def _bars(bands: Bands) -> list[_Bar]:
             for part, shift, low, high in parts
         ]
     return bars
+
+
+def _in_view(bands: Bands, laid: Sequence[KeySpan]) -> Iterator[int]:
+    """Yield the numbers of spans in view, but for those that are too narrow to be drawn."""
+    number = max(bisect_right(laid, bands.frame(bands.left), key=_start) - 1, 0)
+    end = bisect_left(laid, bands.frame(bands.right), key=_start)
+    while number < end:
+        yield number
+        # The last one that begins within a narrow one may be wide.
+        narrow = laid[number].start + LEAST / bands.strip.scale
+        number = max(number + 1, bisect_right(laid, narrow, number, end, key=_start) - 1)
+    if laid and end < len(laid):
+        # A loop's last one goes on in front of its first key.
+        yield len(laid) - 1
+
+
+def _start(span: KeySpan) -> int:
+    return span.start
 
 
 def _draw_still(bands: Bands) -> None:
@@ -159,7 +192,7 @@ def draw_cycles(bands: Bands) -> list[Action]:
     """Draw the repeats of all figures, and take what the pointer does to their ends."""
     actions: list[Action] = []
     bands.push_clip()
-    for row in bands.rows:
+    for row in filter(bands.shows_row, bands.rows):
         for cycle in row.figure.cycles:
             end = bands.project.document.frames.last if cycle.until is None else cycle.until
             _hatch(bands, row, cycle, end)
@@ -185,15 +218,33 @@ def _hatch(bands: Bands, row: FigureRow, cycle: Cycle, end: int) -> None:
     while x < right + 2 * half:
         draw_list.add_line(ImVec2(x, low.y), ImVec2(x - 2 * half, high.y), ink(accent, 0.28))
         x += gap
-    for start in range(cycle.last, end + 1, cycle.period):
+    # Of seams closer than a line is wide, one stands for all.
+    step = cycle.period * max(round(SEAM / (cycle.period * bands.strip.scale)), 1)
+    before = max(int(bands.frame(bands.left) - cycle.last) // step, 0) * step
+    until = min(end, int(bands.frame(bands.right)) + 1)
+    own = _closest_keys(row.figure, cycle, CLOSEST / bands.strip.scale)
+    for start in range(cycle.last + before, until + 1, step):
         x = bands.x(start)
         draw_list.add_line(ImVec2(x, low.y), ImVec2(x, high.y), ink(accent, 0.6))
-        for frame in row.figure.key_frames if cycle.period * bands.strip.scale > 1 else ():
+        for frame in own if cycle.period * bands.strip.scale > 1 else ():
             again = bands.x(start + frame - cycle.first)
-            if cycle.has(frame) and bands.shows(again - em, again + em):
+            if bands.shows(again - em, again + em):
                 colour = ink(bands.look.palette.dim, 0.9)
                 draw_list.add_circle(ImVec2(again, row.middle), AGAIN * em, colour, 0, 1.5)
     imgui.pop_clip_rect()
+
+
+def _closest_keys(figure: Figure, cycle: Cycle, apart: float) -> list[int]:
+    """Return the frames of a cycle's keys, of which several that are closer are told once."""
+    frames, at = list[int](), bisect_left(figure.keys, cycle.first, key=_frame)
+    while at < len(figure.keys) and figure.keys[at].frame < cycle.last:
+        frames.append(figure.keys[at].frame)
+        at = bisect_left(figure.keys, frames[-1] + apart, at + 1, key=_frame)
+    return frames
+
+
+def _frame(key: Keyframe) -> int:
+    return key.frame
 
 
 def _ends_of_cycle(bands: Bands, row: FigureRow, cycle: Cycle, end: int) -> list[Action]:

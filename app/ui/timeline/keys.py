@@ -1,10 +1,8 @@
 """Keys of all figures, marked by how they are passed, and the box that chooses them."""
 
-from itertools import pairwise
-
 from imgui_bundle import ImVec2, ImVec4, icons_fontawesome_6 as icons, imgui
 
-from app.document import LAST_FRAME, Keyframe, Passing
+from app.document import Keyframe, Passing
 from app.editor import (
     Action,
     KeyBox,
@@ -27,6 +25,7 @@ from app.ui.timeline.bands import (
     FigureRow,
     TrackLane,
     in_seconds,
+    least_gap,
     tag,
     was_dragged,
 )
@@ -119,7 +118,7 @@ def draw_keys(bands: Bands) -> list[Action]:
     actions: list[Action] = []
     bands.push_clip()
     for row in bands.rows:
-        if not row.figure.still or row.is_active:
+        if bands.shows_row(row) and (not row.figure.still or row.is_active):
             # The same buttons when another figure becomes the active one.
             imgui.push_id(f"row {row.figure.id}")
             actions += _draw_row(bands, row)
@@ -133,10 +132,9 @@ def _draw_row(bands: Bands, row: FigureRow) -> list[Action]:
     radius = _radius(bands, row)
     grip = GRIP * radius
     gesture, identity = bands.project.timing.gesture, row.figure.id
-    for key in row.figure.keys:
+    for index in bands.in_view(row.figure.keys):
+        key = row.figure.keys[index]
         x = bands.x(key.frame)
-        if not bands.shows(x - grip, x + grip):
-            continue
         box = ImVec2(x - grip, row.middle - grip), ImVec2(x + grip, row.middle + grip)
         origin = origin_of(gesture, identity, key.frame)
         bands.button(f"key {origin}", *box, right=True)
@@ -151,8 +149,7 @@ def _draw_row(bands: Bands, row: FigureRow) -> list[Action]:
 
 def _radius(bands: Bands, row: FigureRow) -> float:
     """Return how large keys are, in pixels: smaller where they would cover each other."""
-    pairs = pairwise(row.figure.keys)
-    gap = min((later.frame - key.frame for key, later in pairs), default=LAST_FRAME)
+    gap = least_gap(row.figure, None)
     part = 1.0 if row.is_active else SMALLER
     return part * min(max(0.48 * gap * bands.strip.scale, SMALLEST), REACH) * bands.look.em
 

@@ -10,7 +10,7 @@ from app.editor import Action, KeyDrag, TrackRow, do, row_of
 from app.editor.actions import editing, timeline_pointing
 from app.ui.shortcuts import CTRL, with_key
 from app.ui.style import CHOSEN, SMALL, begin_tip, in_hand, ink, shortened, sized, tip
-from app.ui.timeline.bands import THIN, Bands, FigureRow, TrackLane, in_seconds
+from app.ui.timeline.bands import THIN, Bands, FigureRow, TrackLane, in_seconds, least_gap
 from app.ui.timeline.keys import (
     choose_row,
     draw_mark,
@@ -54,7 +54,7 @@ def draw_fold(bands: Bands, row: FigureRow, left: float) -> list[Action]:
 def draw_names(bands: Bands) -> list[Action]:
     """Draw the names of tracks beside their rows, and what switches them on and off."""
     actions: list[Action] = []
-    for lane in bands.track_rows:
+    for lane in filter(bands.shows_row, bands.track_rows):
         imgui.push_id(f"track {lane.figure.id} {lane.track.handles[0]}")
         actions += _draw_name(bands, lane)
         imgui.pop_id()
@@ -99,7 +99,7 @@ def _draw_name(bands: Bands, lane: TrackLane) -> list[Action]:
 def draw_ways(bands: Bands) -> None:
     """Draw the grounds of tracks' rows, when each one acts, and where it is out of reach."""
     palette, draw_list, em = bands.look.palette, imgui.get_window_draw_list(), bands.look.em
-    for lane in bands.track_rows:
+    for lane in filter(bands.shows_row, bands.track_rows):
         low, high = ImVec2(bands.left, lane.top), ImVec2(bands.right, lane.bottom)
         draw_list.add_rect_filled(low, high, ink(palette.desk, 0.45))
         if lane.is_chosen:
@@ -162,19 +162,27 @@ def draw_track_keys(bands: Bands) -> list[Action]:
     """Draw the keys of tracks, and take what the pointer does to them."""
     actions: list[Action] = []
     bands.push_clip()
-    for lane in bands.track_rows:
+    for lane in filter(bands.shows_row, bands.track_rows):
         imgui.push_id(f"track {lane.figure.id} {lane.track.handles[0]}")
-        for key in lane.track.keys:
-            actions += _key(bands, lane, key)
+        for index in _in_view(bands, lane.track):
+            actions += _key(bands, lane, lane.track.keys[index])
         imgui.pop_id()
     imgui.pop_clip_rect()
     return actions
 
 
+def _in_view(bands: Bands, track: Track) -> list[int]:
+    """Return the indices of a track's keys on the screen; in a loop late ones come round."""
+    document = bands.project.document
+    round_ = document.frames.last - document.frames.first
+    shifts = {track.delay, track.delay - round_ * document.loop}
+    return sorted({index for late in shifts for index in bands.in_view(track.keys, late=late)})
+
+
 def _key(bands: Bands, lane: TrackLane, key: TrackKey) -> list[Action]:
     em, gesture = bands.look.em, bands.project.timing.gesture
     row = TrackRow(lane.figure.id, lane.track.handles[0])
-    gap = min((b.frame - a.frame for a, b in pairwise(lane.track.keys)), default=99)
+    gap = least_gap(lane.figure, lane.track.handles[0])
     room = max(0.48 * gap * bands.strip.scale, 0.24)
     x, grip, radius = bands.x_of(lane.track, key.frame), GRIP * em, min(room, RADIUS) * em
     if not bands.shows(x - grip, x + grip):

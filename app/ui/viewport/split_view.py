@@ -17,8 +17,8 @@ KNOB = 0.85  # em: radius of what is seen of the grip
 class SplitTextures(NamedTuple):
     """OpenGL's names of the picture, and of the one by another method where there is one."""
 
-    own: int | None
-    twin: int | None
+    own: int | None = None
+    twin: int | None = None
 
 
 class Parts(NamedTuple):

@@ -48,17 +48,23 @@ CANVAS = (
 DEPTHS = {"In front": 1.0, "In its usual order": 0.0, "Behind": -1.0}
 
 
-def draw(session: Session, look: Look, project: Project, pictures: SplitTextures) -> list[Action]:
-    """Show the pictures that were drawn of the project, and take what the pointer does there.
+def draw_ground(session: Session, project: Project, pictures: SplitTextures) -> list[Action]:
+    """Show the pictures that were drawn of the project.
 
     Where the viewport is divided into two, `pictures` has the other method's picture, too.
     """
+    parts = divide(session, imgui.get_window_pos(), imgui.get_window_size())
+    if project.puppet.shown is not None and pictures.own is not None and min(parts.room) >= 1:
+        draw_pictures(parts, pictures.own, pictures.twin)
+    return _fit(session, parts.room)
+
+
+def draw(session: Session, look: Look, project: Project, pictures: SplitTextures) -> list[Action]:
+    """Show what lies over the pictures, and take what the pointer does there."""
     corner, whole = imgui.get_window_pos(), imgui.get_window_size()
-    parts = divide(session, corner, whole)
-    actions = _fit(session, parts.room)
+    parts, actions = divide(session, corner, whole), list[Action]()
     if project.puppet.shown is None or pictures.own is None or min(parts.room) < 1:
         return actions
-    draw_pictures(parts, pictures.own, pictures.twin)
     screen = Screen(session, project, project.puppet.shown, corner)
     if session.cutting is None:
         draw_camera(look, project, screen, (corner, parts.room))

@@ -8,6 +8,7 @@ from imgui_bundle import ImVec2, hello_imgui, imgui, implot
 
 from app.editor import Action, FileDialog, Project, Session, do, failures, promises, sentence
 from app.editor.actions import (
+    close_dialog,
     dismiss,
     editing,
     exporting,
@@ -24,10 +25,10 @@ from app.render import Thumbnail
 from app.ui import bars, toasts, welcome
 from app.ui.dialogs import Dialogs
 from app.ui.panel import Panel, bring_to_front
-from app.ui.shortcuts import pressed
+from app.ui.shortcuts import MENUS, pressed
 from app.ui.style import FONT_SIZE, PALETTES, Look, apply_theme, interface_scale, load_fonts
 from app.ui.window.docking import Docking
-from app.ui.window.guard import allow_recovery, guard
+from app.ui.window.guard import FrameStep, WindowPart, allow_recovery
 from app.ui.window.guide import Callout
 
 # Saved layouts of another number are forgotten: they name other panels.
@@ -61,8 +62,6 @@ class Shell:
         moments: Callable[[Path], list[Thumbnail]],
     ) -> None:
         self.session = session
-        self._thumbnail = thumbnail
-        self._moments = moments
         self._panels = panels
         self._docking = Docking(panels)
         self._bold: imgui.ImFont | None = None
@@ -76,6 +75,49 @@ class Shell:
         self._asked: list[Action] = []
         self._awake_until = 0.0
         self._idle_frames = 0
+        previews = welcome.Previews(thumbnail, moments)
+        over = (
+            # Hello ImGui draws the tabs themselves.
+            WindowPart("The names of the tabs", self._draw_tabs, place="window"),
+            WindowPart("The welcome view", partial(_welcome, previews=previews), place="window"),
+            WindowPart("The guide", self._draw_guide, place="window"),
+            WindowPart(
+                "The dialog",
+                partial(self._dialogs.draw, thumbnail=thumbnail),
+                place="window",
+                dismissal=do(close_dialog),
+            ),
+            WindowPart("The messages", toasts.draw, place="window"),
+        )
+        bars_around = (
+            WindowPart("The menu bar", self._draw_menus, place="bar"),
+            WindowPart("The status bar", bars.draw_status, place="bar"),
+            WindowPart("The icon bar", _with_project(bars.draw_icons), place="bar"),
+        )
+        menus = [
+            WindowPart(
+                f"The menu {title}",
+                partial(bars.draw_menu, title=title, panels=panels),
+                place="menu",
+            )
+            for title in MENUS
+        ]
+        docked = [
+            WindowPart(f"The panel {each.title}", _with_project(each.draw)) for each in panels
+        ]
+        grounds = [
+            WindowPart(f"The picture in {each.title}", _with_project(each.draw_ground))
+            for each in panels
+            if each.draw_ground is not None
+        ]
+        # Every part of the window's frame, by its name.
+        self.parts = {part.name: part for part in (*over, *bars_around, *menus, *docked, *grounds)}
+        self._over = [part.name for part in over]
+        self._follow = self._step(upkeep.follow_playhead)
+        self._upkeep = [
+            self._step(each)
+            for each in (promises.go_on, *upkeep.STEPS, saving.maintain, guiding.follow)
+        ]
 
     def runner_params(self) -> hello_imgui.RunnerParams:
         """Return what Hello ImGui needs to know; platform and renderer are left to the caller."""
@@ -92,15 +134,15 @@ class Shell:
         calls.setup_imgui_config = self._configure
         calls.setup_imgui_style = self._apply_theme
         calls.pre_new_frame = partial(self.attempt, self._begin_frame)
-        calls.show_menus = self._part("The menu", partial(bars.draw_menus, panels=self._panels))
-        calls.show_status = self._part("The status bar", bars.draw_status)
-        calls.show_gui = partial(guard, "The window", self._draw_over_panels, self._report)
+        calls.show_menus = partial(self._ask, "The menu bar")
+        calls.show_status = partial(self._ask, "The status bar")
+        calls.show_gui = self._draw_over_panels
         calls.before_imgui_render = self._apply_actions
         calls.confirm_exit = self._may_exit
         options = hello_imgui.EdgeToolbarOptions()
         options.size_em = 2.7
         options.window_padding_em = ImVec2(0.35, 0.5)
-        icons = self._part("The icon bar", _with_project(bars.draw_icons))
+        icons = partial(self._ask, "The icon bar")
         calls.add_edge_toolbar(hello_imgui.EdgeToolbarType.left, icons, options)
         params.fps_idling.fps_idle = IDLE_FPS
         params.fps_idling.time_active_after_last_event = AWAKE
@@ -123,10 +165,17 @@ class Shell:
         """Do something; where that fails, tell it, and the window lives on."""
         try:
             change()
-        except EXPECTED_ERRORS as error:
-            self.session.tell(sentence(str(error)), tone="error")
         except Exception as error:  # noqa: BLE001 - part of the frame guard
-            self._report(f"That did not work: {error}", error)
+            self._tell_of(error)
+
+    def _tell_of(self, error: Exception) -> None:
+        if isinstance(error, EXPECTED_ERRORS):
+            self.session.tell(sentence(str(error)), tone="error")
+        else:
+            failures.surprise(self.session, f"That did not work: {error}", error)
+
+    def _step(self, run: Callable[[Session], None]) -> FrameStep:
+        return FrameStep(partial(run, self.session), self._tell_of)
 
     @property
     def look(self) -> Look:
@@ -149,8 +198,9 @@ class Shell:
         return layout
 
     def _window(self, panel: Panel) -> hello_imgui.DockableWindow:
-        draw = self._part(f"The panel {panel.title}", _with_project(panel.draw))
-        window = hello_imgui.DockableWindow(panel.label, panel.place, draw)
+        window = hello_imgui.DockableWindow(
+            panel.label, panel.place, partial(self._draw_panel, panel)
+        )
         window.can_be_closed = False
         if panel.place == "MainDockSpace":
             window.imgui_window_flags = (
@@ -158,16 +208,31 @@ class Shell:
             )
         return window
 
-    def _part(self, what: str, draw: Callable[[Session, Look], list[Action]]) -> Callable[[], None]:
-        """Return a callback that draws a part under the guard and collects its actions."""
+    def _draw_panel(self, panel: Panel) -> None:
+        if panel.draw_ground is not None:
+            self._ask(f"The picture in {panel.title}")
+        self._ask(f"The panel {panel.title}")
 
-        def collect() -> None:
-            self._actions += draw(self.session, self.look)
+    def _ask(self, name: str) -> None:
+        """Draw a part, and collect what the person asked for."""
+        self._actions += self.parts[name].ask(self.session, self.look)
 
-        return partial(guard, what, collect, self._report)
+    def _draw_menus(self, *_: object) -> list[Action]:
+        for title in MENUS:
+            if imgui.begin_menu(title):
+                self._ask(f"The menu {title}")
+                imgui.end_menu()
+        return []
 
-    def _report(self, text: str, error: Exception) -> None:
-        failures.surprise(self.session, text, error)
+    def _draw_tabs(self, *_: object) -> list[Action]:
+        self._docking.draw_tabs()
+        return []
+
+    def _draw_guide(self, session: Session, look: Look) -> list[Action]:
+        return self.callout.draw(session, look, places=self._seen)
+
+    def _hear_keys(self) -> None:
+        self._actions += pressed(self.session)
 
     def _load_fonts(self) -> None:
         self._bold = load_fonts()
@@ -204,22 +269,16 @@ class Shell:
         session.export_frame = session.pointed_layer = None
         playback.halt_at_end(session)
         # Panels are to see the frame that it is by now.
-        self.attempt(partial(upkeep.follow_playhead, session))
+        self._follow.go_on(session)
         if _is_busy(session):
             self._awake_until = session.clock() + AWAKE
         if session.clock() < self._awake_until:
             hello_imgui.request_refresh()
 
     def _draw_over_panels(self) -> None:
-        session = self.session
-        self._actions += pressed(session)
-        self._docking.draw_tabs()
-        if session.project is None:
-            pictures = welcome.Previews(self._thumbnail, self._moments)
-            self._part("The welcome view", partial(welcome.draw, pictures=pictures))()
-        self._part("The guide", partial(self.callout.draw, places=self._seen))()
-        self._part("The dialog", partial(self._dialogs.draw, thumbnail=self._thumbnail))()
-        self._part("The messages", toasts.draw)()
+        self.attempt(self._hear_keys)
+        for name in self._over:
+            self._ask(name)
         # Where the pointer is down on no widget, that counts as one.
         widget = imgui.internal.get_active_id() or int(imgui.is_mouse_down(LEFT))
         self._actions.append(do(editing.use_widget, widget))
@@ -237,10 +296,8 @@ class Shell:
         # After the actions, so that a pull goes on with the newest wish; before the picture is
         # drawn, so that it shows at once how far the solver has come.
         self.attempt(self.session.jobs.deliver)
-        self.attempt(partial(promises.go_on, self.session))
-        self.attempt(partial(upkeep.maintain, self.session))
-        self.attempt(partial(saving.maintain, self.session))
-        self.attempt(partial(guiding.follow, self.session))
+        for step in self._upkeep:
+            step.go_on(self.session)
         self._idle_frames = self._idle_frames + 1 if _awaits_in_between(self.session) else 0
         if self.session.quitting:
             hello_imgui.get_runner_params().app_shall_exit = True
@@ -260,6 +317,10 @@ def _with_project(
         return draw(session, look, session.project) if session.project else []
 
     return drawn
+
+
+def _welcome(session: Session, look: Look, previews: welcome.Previews) -> list[Action]:
+    return [] if session.project else welcome.draw(session, look, pictures=previews)
 
 
 def _is_busy(session: Session) -> bool:

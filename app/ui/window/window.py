@@ -32,6 +32,7 @@ from app.ui.timeline import timeline
 from app.ui.viewport import Canvas, SplitTextures, viewport
 from app.ui.window.dropped import accept_files
 from app.ui.window.exporter import Exporter
+from app.ui.window.guard import FrameStep
 from app.ui.window.memory import FreeMemory
 from app.ui.window.modifiers import release_stuck_modifiers
 from app.ui.window.shell import Shell
@@ -93,6 +94,7 @@ class Window:
         # Whether the viewport's picture is drawn; a test that takes no picture does without.
         self.paints = True
         self._memory = FreeMemory(session)
+        self._drawing = FrameStep(self._paint, self._tell_of_drawing)
         self._taps = Taps()
         self._title = NAME
         self._is_open = False
@@ -191,17 +193,18 @@ class Window:
         """Draw the viewport's picture, and go on with an export; once a frame."""
         if self.canvas is None or self._renderer is None:
             return
-        try:
-            self._memory.maintain(has_closed=self.canvas.release_others(self.session.project))
-            self.canvas.draw(self.session, paints=self.paints)
-        except Exception as error:  # noqa: BLE001 - part of the frame guard
-            self._tell_of_drawing(error)
+        self._drawing.go_on(self.session)
         if self._exporter is not None:
             self._exporter.go_on(self.session)
         # ImGui draws to whatever is bound, and that is to be the screen.
         screen = self._renderer.programs.context.screen
         if screen is not None:
             screen.use()
+
+    def _paint(self) -> None:
+        if self.canvas is not None:
+            self._memory.maintain(has_closed=self.canvas.release_others(self.session.project))
+            self.canvas.draw(self.session, paints=self.paints)
 
     def _tell_of_drawing(self, error: Exception) -> None:
         """Tell that OpenGL fails, as when its driver was reset, and keep the work at once."""
@@ -226,7 +229,13 @@ class Window:
         draw_layers = partial(layers.draw, pictures=self._layer_picture)
         draw_poses = partial(poses.draw, pictures=self._pose_picture)
         return [
-            Panel("Viewport", icons.ICON_FA_IMAGE, self._draw_viewport, place="MainDockSpace"),
+            Panel(
+                "Viewport",
+                icons.ICON_FA_IMAGE,
+                self._draw_viewport,
+                place="MainDockSpace",
+                draw_ground=self._draw_ground,
+            ),
             Panel("Timeline", icons.ICON_FA_FILM, timeline.draw, place="bottom"),
             Panel("Handle", icons.ICON_FA_CIRCLE_DOT, handle.draw),
             Panel("Layers", icons.ICON_FA_LAYER_GROUP, draw_layers),
@@ -240,11 +249,16 @@ class Window:
             Panel("Export", icons.ICON_FA_FILE_EXPORT, export.draw),
         ]
 
+    def _draw_ground(self, session: Session, _: Look, project: Project) -> list[Action]:
+        return viewport.draw_ground(session, project, self._textures)
+
     def _draw_viewport(self, session: Session, look: Look, project: Project) -> list[Action]:
-        if self.canvas is None:
-            return []
-        pictures = SplitTextures(self.canvas.texture, self.canvas.twin_texture)
-        return viewport.draw(session, look, project, pictures)
+        return viewport.draw(session, look, project, self._textures)
+
+    @property
+    def _textures(self) -> SplitTextures:
+        canvas = self.canvas
+        return SplitTextures(canvas.texture, canvas.twin_texture) if canvas else SplitTextures()
 
     def _pose_picture(self, figure: int, pose: Pose, side: int) -> int | None:
         return self.canvas.pose_pictures.get(figure, pose, side) if self.canvas else None

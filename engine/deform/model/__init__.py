@@ -33,11 +33,11 @@ from engine.deform.model.newton import (
     SUFFICIENT as SUFFICIENT,
     Direction as Direction,
     Model as Model,
-    Sketch as Sketch,
+    Preconditioner as Preconditioner,
     line_search as line_search,
     newton_direction as newton_direction,
     newton_models as newton_models,
-    sketched_direction as sketched_direction,
+    preconditioned_direction as preconditioned_direction,
 )
 from engine.deform.model.objective import Objective as Objective
 from engine.deform.model.unknowns import by_unknowns as by_unknowns, in_basis as in_basis

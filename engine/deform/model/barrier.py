@@ -87,14 +87,14 @@ class Barrier:
         u = self.distances(a)
         if not np.all(u > b):
             return np.full(np.shape(a), np.inf)
-        density: Floats = -self.weight * np.log((u - b) * (u + b)).sum(axis=0)
+        density: Floats = -self.weight * np.log(((u - b) * (u + b)).prod(axis=0))
         return density
 
     def derivatives(self, a: Floats, b: Floats) -> Radial:
         """Return the derivatives of the barrier, strictly within the walls."""
         u, u_a = self.distances(a), self._slopes()
         c = (u - b) * (u + b)
-        central, dual = self.weight / c, self.current_duals(a, b)
+        central, dual = self.weight / c, self._duals_at(c)
         # The part of −y ∇²c that is positive: never less than the barrier itself has.
         bent = np.maximum(dual, central)
         by_a, b_per_b = self.margin_gradient(a, -central)
@@ -110,17 +110,21 @@ class Barrier:
 
     def current_duals(self, a: Floats, b: Floats) -> Floats:
         """Return the dual variables (3, m) as they are used at this point."""
-        central = self.weight / self.margins(a, b)
+        return self._duals_at(self.margins(a, b))
+
+    def _duals_at(self, margins: Floats) -> Floats:
+        central = self.weight / margins
         if self.duals is None:
             return central
-        return np.clip(self.duals, central / DUAL_RANGE, central * DUAL_RANGE)
+        return np.minimum(np.maximum(self.duals, central / DUAL_RANGE), central * DUAL_RANGE)
 
     def next_duals(self, a: Floats, b: Floats, da: Floats, db: Floats) -> Floats:
         """Return the dual variables (3, m) after Newton's step for dual · c = weight.
 
         Each is stopped before it reaches zero. `da`, `db` are the changes of a and b in the step.
         """
-        duals, margins = self.current_duals(a, b), self.margins(a, b)
+        margins = self.margins(a, b)
+        duals = self._duals_at(margins)
         ahead = margins + self.margin_changes(a, b, da, db)
         return np.maximum(duals + (self.weight - duals * ahead) / margins, 0.1 * duals)
 

@@ -1,11 +1,10 @@
 """Hessians of the objective, projected, as sums over samples of the boundary.
 
 The rows of φ and ψ whose Gram matrices are the blocks of the Hessian are products of the samples'
-rows with the roots of what each contributes. A sketch has fewer, each for its neighbours too.
+rows with the roots of what each contributes.
 """
 
 from collections.abc import Sequence
-from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,12 +18,9 @@ from engine.deform.model.objective import Objective
 # In single or double precision.
 Reals = npt.NDArray[np.float32] | npt.NDArray[np.float64]
 
-# A sketched Hessian takes one sample in so many, with the coefficients of its neighbours summed, as
-# long as that leaves this many for each cage vertex. Samples with coefficients this far above the
-# median (near a bound) enter one by one; of many the stiffest, this part of the number of the calm.
-SAMPLES_PER_VERTEX = 2
+# Samples that were added are summed with their neighbours, unless their coefficients are this far
+# above the median (near a bound).
 STIFF = 3.0
-STIFF_PER_CALM = 0.75
 # Samples this far above the median keep all their digits.
 HARD = 1e5
 # Stiffness of a step against turning the whole shape by an angle, over that against stretching it.
@@ -52,8 +48,7 @@ def projected_hessian(objective: Objective, jet: Jet, radial: Radial) -> Floats:
     In the frames F / |F|, G / |G| of each sample the exact Hessian has the radial block
     [[h_aa, h_ab], [h_ab, h_bb]] and the tangential entries h_a / a, h_b / b, of which only
     h_a / a can be negative: max(h_a / a, 0) is the exact projection. The sum over the samples
-    is a quadrature, coarser than that of energy and gradient, and in single precision but for
-    the hard ones. Cost: 24 s n² for s samples.
+    is in single precision but for the hard ones. Cost: 24 m n² for m samples.
     """
     samples, entries, hard = _quadrature(objective, radial)
     last = len(samples) - hard
@@ -217,37 +212,20 @@ def _roots(
 
 
 def _quadrature(objective: Objective, radial: Radial) -> "_Quadrature":
-    """Return the samples that enter the Hessian.
-
-    Calm ones stand for their neighbours that were added, and in a sketch for more.
-    """
-    entries = _entries(radial)
-    m, n = len(objective.boundary.points), objective.boundary.basis.shape[1]
-    own, loops = objective.boundary.own_samples
-    first, middles, sketched = [], [], False
-    for (start, end), cage in zip(pairwise(loops), objective.boundary.span.cages, strict=True):
-        # A small hole may have no more samples than its cage needs.
-        enough = (end - start) // (SAMPLES_PER_VERTEX * len(cage))
-        stride = max(min(objective.stride, enough), 1)
-        places = np.arange(start, end, stride)
-        first.append(places)
-        middles.append(np.minimum(places + stride // 2, end - 1))
-        sketched |= stride > 1
-    boundary = objective.boundary
+    """Return the samples that enter the Hessian; calm ones stand for added neighbours, too."""
+    boundary, entries = objective.boundary, _entries(radial)
+    own, _ = boundary.own_samples
     density = (radial.aa + radial.bb) / (boundary.shares * boundary.stiffness)
-    stiffest = max(n, int(STIFF_PER_CALM * m / objective.stride)) if sketched else 1
-    ordered = np.partition(density, sorted({m // 2, m - stiffest}))
-    median = float(ordered[m // 2])
-    least = max(STIFF * median, float(ordered[m - stiffest])) if sketched else STIFF * median
-    stiff = np.flatnonzero(density > least)
+    median = float(np.partition(density, len(density) // 2)[len(density) // 2])
+    stiff = np.flatnonzero(density > STIFF * median)
     hard = density[stiff] > HARD * median
     stiff = np.concatenate([stiff[~hard], stiff[hard]])
     alone = entries[:, stiff]
     entries[:, stiff] = 0.0
-    summed = np.add.reduceat(entries, own[np.concatenate(first)], axis=1)
+    summed = np.add.reduceat(entries, own, axis=1)
     some = summed[0] > 0
     return _Quadrature(
-        np.concatenate([own[np.concatenate(middles)[some]], stiff]),
+        np.concatenate([own[some], stiff]),
         np.hstack([summed[:, some], alone]),
         int(np.count_nonzero(hard)),
     )

@@ -25,15 +25,14 @@ SUFFICIENT = 1e-4
 # A step stops where this part of the way to the nearest wall is used up.
 TO_THE_WALL = 0.9
 SHORTEST = 1e-6
-# Conjugate gradients stop when this part of the step is missing, or after so many: one for a star
-# in the open, two to four for drawings and at walls. Measured: with less missing drags get no
-# nearer to their wishes.
+# Conjugate gradients stop when this part of the step is missing, or after so many. Measured: with
+# less missing drags get no nearer to their wishes.
 REFINED = 0.3
 REFINEMENTS = 4
-# A sketch serves so many steps, as long as it takes at most so many rounds and misses no more than
+# A factor serves so many steps, as long as it takes at most so many rounds and misses no more than
 # this: of the Hessian of another map it measures less well what is missing. Measured: drags then
-# get as near to their wishes as with a sketch of their own for each step.
-SERVES_STEPS = 4
+# get as near to their wishes as with a factor of their own for each step.
+SERVES_STEPS = 8
 SERVES_ROUNDS = 2
 REFINED_LATER = 0.1
 # Parts of what the projection removes from the Hessian that are tried to be left in it.
@@ -111,8 +110,8 @@ class Model:
         return _direction(self.objective, self.gradient, solution, self.objective.change(solution))
 
 
-class Sketch(NamedTuple):
-    """A sketch of the Hessian, factored: the preconditioner of some steps in a row.
+class Preconditioner(NamedTuple):
+    """A factored Hessian that serves some steps in a row.
 
     In a step a map changes little where walls are far, and its Hessian with it.
 
@@ -135,8 +134,8 @@ class Sketch(NamedTuple):
         """Tell whether it is of the same handles."""
         return self.handles is objective.handles and np.array_equal(self.turning, objective.turning)
 
-    def after(self, rounds: int) -> "Sketch | None":
-        """Return the sketch for the next step, if it pays, after one of so many rounds."""
+    def after(self, rounds: int) -> "Preconditioner | None":
+        """Return the preconditioner of the next step after a step of so many rounds, if it pays."""
         served = self.served + 1
         pays = rounds <= SERVES_ROUNDS and served < SERVES_STEPS
         return self._replace(served=served) if pays else None
@@ -144,33 +143,32 @@ class Sketch(NamedTuple):
 
 def newton_direction(objective: Objective, jet: Jet) -> Direction:
     """Solve for the step that minimises the projected quadratic model of the objective."""
-    direction, _ = sketched_direction(objective, jet, None)
+    direction, _ = preconditioned_direction(objective, jet, None)
     return direction
 
 
-def sketched_direction(
-    objective: Objective, jet: Jet, sketch: Sketch | None
-) -> tuple[Direction, Sketch | None]:
-    """Solve for Newton's step with the sketch of a step before; return that of the next one too.
+def preconditioned_direction(
+    objective: Objective, jet: Jet, earlier: Preconditioner | None
+) -> tuple[Direction, Preconditioner | None]:
+    """Solve for Newton's step with an earlier factor; return the preconditioner of the next step.
 
-    By the method of conjugate gradients over all samples, with a sketch as preconditioner (Nocedal
-    and Wright, algorithm 5.3). A sketch misses what shows between its samples only: by itself it
-    would lead a drag into walls, and never come to rest. One in single precision does as well.
+    By preconditioned conjugate gradients (Nocedal and Wright, algorithm 5.3). Factors in single
+    precision do as well.
     """
     radial = objective.radial(jet)
     gradient = objective.gradient(jet, radial)
-    if sketch is not None and sketch.serves(objective):
+    if earlier is not None and earlier.serves(objective):
         direction, rounds = _refined(
-            objective, jet, radial, gradient, sketch.factor, missing=REFINED_LATER
+            objective, jet, radial, gradient, earlier.factor, missing=REFINED_LATER
         )
         if rounds <= REFINEMENTS:
-            return direction, sketch.after(rounds)
+            return direction, earlier.after(rounds)
     single = single_hessian(objective, jet, radial)
     factor: Reals | None = None if single is None else factor_single(single)
     if factor is None:
         factor = factor_shifted(projected_hessian(objective, jet, radial))
     direction, rounds = _refined(objective, jet, radial, gradient, factor, missing=REFINED)
-    return direction, Sketch(objective.handles, objective.turning, factor).after(rounds)
+    return direction, Preconditioner(objective.handles, objective.turning, factor).after(rounds)
 
 
 def _refined(

@@ -37,10 +37,6 @@ class Objective:
     handles : Handles
     wish : Wish
     barrier : Barrier or None
-    stride : int
-        One sample in so many enters the Hessian; more than one make a sketch of it, two to three
-        times faster. Its steps overshoot in directions that show between the samples only, unless
-        products with the Hessian over all samples mend them.
     secant : bool
         Whether hands that give in are as stiff along their pull as across, where the Hessian has
         nothing: steps then lead no farther than to their targets.
@@ -50,7 +46,6 @@ class Objective:
     handles: Handles
     wish: Wish
     barrier: Barrier | None = None
-    stride: int = 1
     secant: bool = False
 
     @cached_property

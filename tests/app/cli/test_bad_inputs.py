@@ -1,6 +1,7 @@
 """What strangers hand in: refused in one line, whatever it is."""
 
 import io
+import json
 import os
 import re
 import resource
@@ -10,14 +11,17 @@ import zipfile
 
 import numpy as np
 import pytest
+from documents import disc_document
+from layered import blob, openraster
 from messages import says
 from refusals import refusal
 
 from app.cli import process
 from app.cli.hole_arrays import HOLE_SIZES
-from app.cli.main import TOO_LITTLE_MEMORY
+from app.cli.main import TOO_LITTLE_MEMORY, main
 from app.cli.process import LEAST_MEMORY
-from app.storage import NO_ARRAYS, sample_images
+from app.errors import LONGEST_SHOWN
+from app.storage import NO_ARRAYS, sample_images, save_project
 from app.storage.files.reading import NOT_ORDINARY
 from engine.geometry.polygon import CAGE_FAR, CAGE_REPEATS, FEW_DIGITS
 
@@ -33,6 +37,11 @@ MAPS = {
 BY_BOUNDARY = {name: MAPS[name] for name in ("outline", "cage", "points")}
 HOLE = np.array([0.4 + 0.4j, 0.4 + 0.6j, 0.6 + 0.6j, 0.6 + 0.4j])
 HUGE = 2**63 - 1
+
+
+def sample_project(folder):
+    save_project(folder / "a.lissom", disc_document())
+    return folder / "a.lissom"
 
 
 def interpolated(capsys, tmp_path, *paths, variant="nu"):
@@ -217,3 +226,61 @@ def test_a_library_that_cannot_be_loaded_is_told_in_one_line(monkeypatch, capsys
 
 def _no_thread(_):
     raise RuntimeError("can't start new thread")
+
+
+@pytest.mark.parametrize("name", [".html", ".PNG", "there/.gif"])
+def test_a_name_that_is_only_an_ending_is_refused(tmp_path, capsys, name):
+    (tmp_path / "there").mkdir()
+    project = sample_project(tmp_path)
+    assert "only the ending of a name" in refusal(
+        capsys, "export", project, "--out", tmp_path / name
+    )
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.lissom", "there"]
+
+
+def test_an_empty_name_is_refused(tmp_path, capsys):
+    project = sample_project(tmp_path)
+    assert "is empty" in refusal(capsys, "export", project, "--out", "")
+    assert "is empty" in refusal(capsys, "certify", "")
+
+
+@pytest.mark.parametrize("name", ["a.png", "a.ora", "a.psd", "a.json"])
+def test_a_folder_in_the_place_of_a_file_is_refused(tmp_path, capsys, name):
+    (tmp_path / name).mkdir()
+    picture = sample_images() / "bar.png" if name.endswith("json") else tmp_path / name
+    words = ("pose", picture, tmp_path / "a.json", "--out", tmp_path / "a.lissom")
+    if not name.endswith("json"):
+        (tmp_path / "a.json").write_text('{"schema": 1, "handles": {}, "keys": [{"frame": 0}]}')
+    assert "it is a folder" in refusal(capsys, *words)
+
+
+def test_names_and_notices_of_a_drawing_are_printable_and_few(tmp_path, capsys):
+    names = ["a&#x9b;31m&#10;b", *map(str, range(1, 2_000))]
+    odd = "".join(f'<stack composite-op="m{name}" name="{name}"/>' for name in names)
+    layer = '<layer name="&#x9b;31m" src="data/0.png"/>'
+    path = tmp_path / "a.ora"
+    path.write_bytes(openraster((60, 60), layer + odd, [blob(50, 50)]))
+    script = tmp_path / "a.json"
+    script.write_text('{"schema": 1, "handles": {}, "keys": [{"frame": 0}]}')
+    words = ["pose", path, script, "--out", tmp_path / "a.lissom", "--triangles", "1000"]
+    assert main([str(word) for word in words]) == 0
+    first, *others, last = capsys.readouterr().err.splitlines()
+    assert first.startswith(r"lissom: a\x9b31m\nb: ")
+    assert len(others) == 9
+    assert last == "lissom: and 1,990 more"
+    assert main(["certify", str(tmp_path / "a.lissom")]) == 0
+    assert capsys.readouterr().out.isascii()
+
+
+def test_the_version_of_a_newer_project_is_shortened(tmp_path, capsys):
+    project = sample_project(tmp_path)
+    with zipfile.ZipFile(project) as archive:
+        members = {name: archive.read(name) for name in archive.namelist()}
+    content = json.loads(members["project.json"])
+    members["project.json"] = json.dumps(content | {"schema": 99, "app_version": "9\n" * 500})
+    with zipfile.ZipFile(project, "w") as archive:
+        for name, data in members.items():
+            archive.writestr(name, data)
+    told = refusal(capsys, "certify", project)
+    assert r"newer Lissom (9\n9\n" in told
+    assert told.count("9") < LONGEST_SHOWN

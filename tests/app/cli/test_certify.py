@@ -11,7 +11,16 @@ import pytest
 from still_poses import posed, with_figure
 
 from app.cli.main import main
-from app.document import HOLD, Document, Extremes, FrameRange, Meshing, Passing, new_figure
+from app.document import (
+    HOLD,
+    Document,
+    Extremes,
+    FrameRange,
+    Meshing,
+    Passing,
+    UnreadMotion,
+    new_figure,
+)
 from app.reports import IntervalReport, Report, certification
 from app.storage import load_project, save_project
 from engine.interpolation import Proof
@@ -97,6 +106,16 @@ def test_where_every_layer_stands_still_there_is_nothing_to_certify(tmp_path, ca
         "certified": True,
         "figures": {},
     }
+
+
+def test_a_motion_that_is_not_known_here_is_told(tmp_path, capsys):
+    (drawn,) = load_project(SAMPLE).figures
+    still = replace(new_figure(drawn.picture, drawn.domain, Meshing()), still=True)
+    unread = UnreadMotion(index=0, content={"motion": "nosuch"}, reason="it is not known")
+    path = tmp_path / "later.lissom"
+    save_project(path, Document(figures=(replace(still, unread_motions=(unread,)),)))
+    assert main(["certify", str(path)]) == 0
+    assert "a motion that this version cannot show" in capsys.readouterr().err
 
 
 def test_of_a_key_that_is_held_only_that_key_is_seen(giraffe, tmp_path, capsys):

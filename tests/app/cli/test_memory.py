@@ -6,6 +6,7 @@ import subprocess
 import sys
 import tracemalloc
 from dataclasses import replace
+from math import inf
 
 import numpy as np
 import pytest
@@ -15,8 +16,11 @@ from messages import says
 from PIL import Image
 from refusals import refusal
 
+from app.cli.commands.certify import EXITS
 from app.cli.main import main
+from app.document import keyframe
 from app.errors import LissomError
+from app.reports import Verdict
 from app.storage import Preferences, load_project, save_preferences, save_project
 from app.storage.pictures import cores, decode_pictures, read_openraster
 from app.storage.pictures.cores import MEMORY_OF_PICTURES
@@ -134,17 +138,30 @@ def test_opening_takes_little_beyond_what_is_decoded(tmp_path, kind):
     assert int(told.split()[-1]) <= BASE + decoded + most * 4 * side * side
 
 
-@pytest.mark.parametrize("factor", [1e150, 1e12, 2e4])
-def test_a_map_that_goes_nowhere_near_its_picture_is_refused(tmp_path, capsys, factor):
+def wild_project(path, factor):
+    """Write a project of which one key takes a vertex of the cage far away."""
     document = moving_document()
     (figure,) = document.figures
     key = figure.keys[1]
     phi = key.pose.phi.copy()
     phi[2] = factor * 120
     keys = (figure.keys[0], replace(key, pose=replace(key.pose, phi=phi)))
-    path = tmp_path / "a.lissom"
     save_project(path, replace(document, figures=(replace(figure, keys=keys),)))
-    assert "lies farther from its picture" in refusal(capsys, "certify", path)
+    return path
+
+
+@pytest.mark.parametrize("factor", [1e150, 1e12])
+def test_a_map_beyond_all_pixels_is_refused(tmp_path, capsys, monkeypatch, factor):
+    with monkeypatch.context() as patched:
+        patched.setattr(keyframe, "LARGEST_COEFFICIENT", inf)
+        path = wild_project(tmp_path / "a.lissom", factor)
+    assert "The coefficients of a pose are at most 1e+12" in refusal(capsys, "certify", path)
+
+
+def test_a_map_that_goes_far_is_told_to_be_over(tmp_path, capsys):
+    path = wild_project(tmp_path / "a.lissom", 2e4)
+    assert main(["certify", str(path)]) == EXITS[Verdict.OVER]
+    assert "OVER" in capsys.readouterr().out
 
 
 def test_more_handles_than_anybody_holds_are_refused(tmp_path, capsys):

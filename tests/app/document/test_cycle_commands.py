@@ -166,3 +166,10 @@ def test_what_a_frame_shows_is_keyed_where_it_repeats():
     assert [figure.source_of(frame) for frame in (4, 20, 43, 44, 50, 67, 68, 80)] == [
         *(4, 20, 43, 20, 26, 43, 68, 80)
     ]
+
+
+def test_cycle_is_refused_in_words_over_another_cycle():
+    document = with_keys(0, 10, 15, last=60)
+    figure = cycle_commands.repeat(0, 10, 20, 40)(document).figures[0]
+    with pytest.raises(LissomError, match="frames 10 to 20 in them repeat already"):
+        cycle_commands.end_of_repeats(figure, 0, 15)

@@ -16,6 +16,7 @@ from app.document.commands import (
 )
 from app.document.history import History, UnkeyedPose, _bytes_only_in
 from app.errors import LissomError
+from app.storage.layers import still_figure
 
 seeds = st.lists(st.integers(0, 2**32 - 1), max_size=25)
 
@@ -374,3 +375,19 @@ def test_an_unkeyed_pose_goes_on_too_and_other_poses_stay():
     history.undo()
     history.undo()
     assert history.unkeyed is None
+
+
+@pytest.mark.parametrize("change", ["another domain", "no figure"])
+def test_pose_outside_keys_is_let_go_with_its_domain(change):
+    history = History(full_document(), saved=True)
+    history.do(layer_commands.duplicate_figure(0))
+    figure = history.document.figures[0]
+    history.pose(UnkeyedPose(figure=figure.id, frame=1, pose=figure.keys[0].pose))
+    if change == "another domain":
+        other = replace(still_figure(figure), id=figure.id)
+        history.do(layer_commands.replace_figure(figure.id, other))
+    else:
+        history.do(layer_commands.remove_figure(figure.id))
+    assert history.unkeyed is None
+    history.undo()
+    assert history.unkeyed is not None

@@ -184,7 +184,7 @@ def test_jobs_of_any_kind_wait_while_all_are_held():
     with jobs.held():
         jobs.put(job("pose", lambda: 1, results))
         jobs.put(job("in-betweens", lambda: 2, results))
-        assert not jobs.settle(0.0)
+        assert jobs.settle()
         assert labels(jobs.kinds) == ("pose", "in-betweens")
         jobs.drop(Kind("pose"))
     assert jobs.settle()

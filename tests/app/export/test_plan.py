@@ -230,3 +230,19 @@ def test_the_documents_own_settings_are_what_is_not_given(document, tmp_path):
     own = ExportSettings(format="webp", size=(64, 48), background="#010203", framing="fit")
     plan = plan_of(replace(document, export=own), tmp_path / "a.webp")
     assert (plan.format, plan.view.size, plan.background) == ("webp", (64, 48), (1, 2, 3))
+
+
+def test_a_frame_of_very_many_is_framed_with_few_of_them(document, tmp_path):
+    seen = set()
+
+    class Counted(Sliding):
+        def positions(self, frame: float):
+            seen.add(frame)
+            return super().positions(frame)
+
+    long, poses = replace(document, frames=FrameRange(0, 999_999)), Counted(document, 1e-3)
+    view = plan_of(long, tmp_path / "frames", poses, framing="fit", frames=FrameRange(3, 3)).view
+    assert len(seen) < 100
+    for frame in (0, 3, 999_999):
+        across = view.to_pixels(poses.positions(frame)).real
+        assert 0 < across.min() < across.max() < view.size[0]

@@ -10,7 +10,7 @@ from app.errors import CANCELLED, LissomError
 from app.export.painting import Painter
 from app.export.plan import ExportRequest, plan_export
 from app.export.poses import KeptPoses
-from app.motion.extent import box_around
+from app.motion.extents.extent import box_around
 from app.motion.inbetweens import Animation
 from app.storage import Cancellation
 

@@ -93,7 +93,7 @@ def test_a_person_who_pulls_at_it_does_pull(bar):
     # It stays as the hand left it, and is let go by the next pull elsewhere.
     hand = Hand(frozenset(pulled))
     drag = Drag.begin(Rig.of(figure), pose).towards(pose.targets, 600, (), pulled)
-    assert drag.let_go(pose.targets, (hand,)).keys() == pulled
+    assert drag.release(pose.targets, (hand,))[1].keys() == pulled
     after = drag.towards(pose.targets, 600)
     assert abs(places(figure, after.pose(pose.targets))[MIDDLE] - to) > 5
     assert drag.rig.deformer.handles is not after.rig.deformer.handles

@@ -38,7 +38,6 @@ from app.storage.json_values import (
     NOT_TEXT,
     NOT_TRUE_OR_FALSE,
     NOT_WHOLE,
-    TOO_NESTED,
 )
 from app.storage.project import NO_PROJECT
 from app.storage.project.archive import MEMBER_TOO_LARGE, MIMETYPE, NOT_ARRAY, array_member
@@ -610,8 +609,8 @@ def test_text_that_is_no_object_is_refused(tmp_path, members, text):
         (b'"x": NaN', "holds NaN"),
         (b'"x": -Infinity', "holds -Infinity"),
         (b'"x": 1e999', "holds 1e999"),
-        (b'"x": ' + b"[" * 45 + b"]" * 45, says(TOO_NESTED)),
-        (b'"x": ' + b'{"x":' * 45 + b"1" + b"}" * 45, says(TOO_NESTED)),
+        (b'"x": ' + b"[" * 45 + b"]" * 45, "nested deeper than"),
+        (b'"x": ' + b'{"x":' * 45 + b"1" + b"}" * 45, "nested deeper than"),
         (b'"x": 1' + b"0" * 5000, "not JSON"),
         (b'"fps": 24', "'fps' is given twice"),
     ],
@@ -735,7 +734,7 @@ def test_too_many_members_and_members_of_one_name_are_refused(tmp_path, members)
     with zipfile.ZipFile(path, "a") as archive:
         for index in range(65_536):
             archive.writestr(f"{index}", b"")
-    with pytest.raises(LissomError, match="members, more than any project"):
+    with pytest.raises(LissomError, match="members, more than the 65,535 of any"):
         load_project(path)
     path = pack(tmp_path / "b", members)
     with zipfile.ZipFile(path, "a") as archive, pytest.warns(UserWarning, match="Duplicate"):

@@ -6,12 +6,16 @@ from types import MappingProxyType
 import pytest
 from harness import Harness
 
+from app.document import UnreadMotion
 from app.document.commands import handle_commands
 from app.document.keyframe import Target
 from app.editor.actions import editing, files, posing, saving, viewing
+from app.editor.actions.posing.moving import drafting
 from app.editor.dialogs import Question
+from app.storage import decode_picture, project_file
 from app.storage.assets import sample_images
 from app.storage.autosave import SECONDS
+from app.storage.pictures import cores
 from app.storage.preferences import CHECKER, Preferences, load_preferences
 from app.storage.project_file import load_project, save_project
 from app.storage.thumbnail import read_thumbnail
@@ -66,6 +70,19 @@ def test_a_dropped_project_opens(window, project, drop, tmp_path):
     assert window.session.preferences.recent[0] == path
 
 
+def test_a_motion_that_is_not_known_here_is_told(window, project, tmp_path):
+    unread = UnreadMotion(index=0, content={"motion": "nosuch"}, reason="it is not known")
+    figure = replace(project.figure, unread_motions=(unread,))
+    path = tmp_path / "later.lissom"
+    save_project(path, project.document.with_figure(figure))
+    window.act(files.open_file, path)
+    window.settle()
+    assert any("motion that this version cannot show" in text for text in texts(window))
+    window.act(drafting.begin)
+    window.settle()
+    assert window.session.project.draft is not None
+
+
 def test_several_dropped_pictures_become_layers(window, drop, tmp_path):
     notes = tmp_path / "notes.txt"
     notes.write_bytes(b"")
@@ -98,6 +115,17 @@ def test_a_picture_dropped_on_a_scene_may_become_a_layer(window, project, drop):
     window.act(editing.redo)
     window.settle()
     assert set(project.puppets) == {figure.id for figure in project.document.figures}
+
+
+def test_a_layer_beyond_memory_is_refused(window, project, drop, monkeypatch):
+    sizes = [decode_picture(path.read_bytes(), path.name).size for path in (BAR, RING)]
+    both = sum(4 * width * height for width, height in sizes)
+    monkeypatch.setattr(cores, "memory_budget", lambda: both - 1)
+    drop(RING)
+    window.run(lambda robot: robot.item_click("//###dialog/New layer"))
+    window.settle()
+    assert "decoded it takes" in texts(window)[-1]
+    assert len(project.document.figures) == 1
 
 
 def test_a_dropped_thing_that_cannot_be_opened_is_named(window, project, drop, tmp_path):
@@ -218,6 +246,24 @@ def test_more_changes_are_kept_in_its_place(window, project, kept):
     assert kept() == 1
     pass_time(window, 0.5 * SECONDS)
     assert kept() == 2
+
+
+def test_refused_autosave_keeps_the_earlier_and_is_told_once(window, project, kept, monkeypatch):
+    project.autosaved_at = window.clock.now
+    change(window, project)
+    pass_time(window, SECONDS)
+    assert kept() == 1
+    with monkeypatch.context() as patched:
+        patched.setattr(project_file, "MOST_VALUES", 3)
+        for is_told in (True, False, False):
+            change(window, project)
+            pass_time(window, SECONDS)
+            window.settle()
+            told = [text for text in texts(window) if "could not open it again" in text]
+            assert len(told) == is_told
+    assert kept() == 1
+    pass_time(window, SECONDS)
+    assert kept() == 4
 
 
 def test_the_autosave_waits_for_the_hand_but_not_for_ever(window, project, kept):

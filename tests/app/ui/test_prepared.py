@@ -9,7 +9,7 @@ from app.editor import Session
 from app.editor.actions import editing, playback
 from app.editor.work import Jobs
 from app.motion import Streamed
-from app.motion.extent import extent_source
+from app.motion.extents.extent import extent_source
 
 HALFWAY = 12  # between the two keys
 TRACK = Track(handles=(1,), keys=tuple(TrackKey(frame=f, place=0j + f) for f in (0, 4, 8)))

@@ -14,7 +14,7 @@ from app.document.settings import NATURAL, RUBBERY, STIFF, Meshing
 from app.editor.actions import editing, exporting, playback, posing, upkeep
 from app.editor.actions.body.rebuilding import RENEWING
 from app.export_formats import ShapeDetail, SheetLayout
-from app.motion.extent import extent_source
+from app.motion.extents.extent import extent_source
 from app.storage import NO_FOLDER
 from engine.maps.boundary import Boundary
 from engine.maps.certificate import certify

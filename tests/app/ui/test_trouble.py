@@ -28,7 +28,6 @@ from app.storage.files import Hold, HoldError
 from app.storage.project import NO_PROJECT
 from app.storage.project_file import load_project, save_project
 from app.ui.bars.status import ENDLESS
-from app.ui.timeline import timeline
 from app.ui.viewport.canvas import Canvas
 from app.ui.window.title import window_title
 
@@ -96,23 +95,6 @@ def test_an_export_that_cannot_begin_says_why(window, tmp_path):
     window.settle()
     assert window.session.export is None
     assert any("it is a file" in text for text in texts(window))
-
-
-@pytest.mark.usefixtures("project")
-def test_a_panel_that_raises_is_told_and_the_rest_lives_on(window, monkeypatch, capfd):
-    def broken(*_):
-        raise ZeroDivisionError("a bug")
-
-    monkeypatch.setattr(timeline, "draw_bar", broken)
-    window.frames(3)
-    (toast,) = window.session.toasts
-    assert "Timeline" in toast.text
-    assert "a bug" in toast.details
-    window.session.toasts = []
-    monkeypatch.undo()
-    window.frames(3)
-    assert window.session.toasts == []
-    capfd.readouterr()
 
 
 def crash(window, project):

@@ -29,7 +29,7 @@ from app.editor.actions.posing.inserting import INSERTING
 from app.editor.timeline_view import KeyBox
 from app.editor.work.derived import Derived
 from app.errors import CANCELLED, tell
-from app.motion.extent import Box, extent_source
+from app.motion.extents.extent import Box, extent_source
 from app.storage.assets import sample_images
 from app.storage.autosave import SECONDS
 from app.ui.bars.status import SLOW

@@ -26,8 +26,8 @@ from pictures import stick_figure
 from engine.deform import Deformer, Handles, Status, following, require_held
 from engine.deform.certified_step import FARTHEST, add_samples
 from engine.deform.deformer import UNCERTIFIED_START
-from engine.deform.following import STRIDE
 from engine.deform.handles import MOST_CAGE, TARGET_COUNT, TARGET_FAR, WEIGHT_NOT_POSITIVE
+from engine.deform.model.newton import SERVES_STEPS
 from engine.domain.build import build_domain
 from engine.domain.outline.cage import offset_cage
 from engine.errors import EngineError
@@ -183,7 +183,7 @@ def test_wild_requests_stay_certified_and_the_shape_comes_back(name):
     assert_allclose(state.map(0.9 * STAR_POINTS), 0.9 * STAR_POINTS, atol=1e-4)
 
 
-def test_a_sketched_hessian_follows_the_hand_like_the_whole_one(monkeypatch):
+def test_an_old_factor_follows_the_hand_like_a_new_one(monkeypatch):
     angle = 2 * np.pi * np.arange(100) / 100
     outline, cage = (
         (1 + offset + 0.35 * np.cos(5 * angle)) * np.exp(1j * angle) for offset in (0.0, 0.04)
@@ -193,14 +193,13 @@ def test_a_sketched_hessian_follows_the_hand_like_the_whole_one(monkeypatch):
     deformer = Deformer(boundary=boundary, handles=Handles.place(boundary, points), bounds=BOUNDS)
     jitter = np.random.default_rng(101).normal(size=(25, 6, 2)) @ [1, 1j]
     means = []
-    for stride in (STRIDE, 1):
-        monkeypatch.setattr("engine.deform.following.STRIDE", stride)
+    for served in (SERVES_STEPS, 1):
+        monkeypatch.setattr("engine.deform.model.newton.SERVES_STEPS", served)
         state, energies = deformer.start(), []
         for moved in np.cumsum(0.025 * jitter, axis=0):
             state = deformer.step(state, deformer.handles.wish(points + moved))
             energies.append(state.statistics.objective)
         means.append(np.mean(energies))
-    # 14 % above, as long as samples at the bounds were summed with their neighbours.
     assert means[0] < 1.05 * means[1]
 
 

@@ -133,15 +133,13 @@ def test_margins_change_as_their_derivatives_say():
     assert_allclose(by_a * da + b_per_b * B * db, (factors * changes).sum(axis=0), rtol=1e-12)
 
 
-def problem(*, stride, rotations=None, barrier=True, seed=3):
+def problem(*, rotations=None, barrier=True, seed=3):
     boundary = star_boundary()
     handles = Handles.place(boundary, STAR_POINTS, [1, 2, 1, 1, 0.5, 1])
     wish = handles.wish(1.02 * STAR_POINTS + 0.01j, rotations)
     all_walls = Walls.around(WALLS, len(boundary.points))
     walls = Barrier(walls=all_walls, weight=0.2) if barrier else None
-    objective = Objective(
-        boundary=boundary, handles=handles, wish=wish, barrier=walls, stride=stride
-    )
+    objective = Objective(boundary=boundary, handles=handles, wish=wish, barrier=walls)
     rng = np.random.default_rng(seed)
     n = len(boundary.cage)
     noise = rng.normal(size=(2, n)) + 1j * rng.normal(size=(2, n))
@@ -154,7 +152,7 @@ def problem(*, stride, rotations=None, barrier=True, seed=3):
 @pytest.mark.parametrize("rotations", [None, np.array([0.3, np.nan, -0.2, np.nan, np.nan, 3.0])])
 @pytest.mark.parametrize("barrier", [True, False])
 def test_gradient_agrees_with_finite_differences(rotations, barrier):
-    objective, phi, psi, rng = problem(stride=4, rotations=rotations, barrier=barrier)
+    objective, phi, psi, rng = problem(rotations=rotations, barrier=barrier)
     jet = objective.jet(phi, psi)
     gradient = objective.gradient(jet, objective.radial(jet))
     n = len(phi)
@@ -169,14 +167,14 @@ def test_gradient_agrees_with_finite_differences(rotations, barrier):
 
 @pytest.mark.parametrize("barrier", [True, False])
 def test_hessian_is_exact_where_nothing_is_projected(barrier):
-    objective, phi, psi, rng = problem(stride=1, barrier=barrier)
+    objective, phi, psi, rng = problem(barrier=barrier)
     jet = objective.jet(phi, psi)
     assert np.all(objective.radial(jet).around_a > 0)
     assert_products(objective, jet, len(phi), rng)
 
 
 def test_hessian_of_rotations_is_exact_at_their_wish():
-    objective, phi, psi, rng = problem(stride=1)
+    objective, phi, psi, rng = problem()
     jet = objective.jet(phi, psi)
     wish = objective.handles.wish(jet.positions, np.angle(jet.fz))
     objective = Objective(
@@ -186,7 +184,7 @@ def test_hessian_of_rotations_is_exact_at_their_wish():
 
 
 def test_hessian_of_rotations_is_the_projection():
-    objective, phi, psi, _ = problem(stride=1, barrier=False)
+    objective, phi, psi, _ = problem(barrier=False)
     jet = objective.jet(phi, psi)
     handles = objective.handles
     turned = np.full(6, np.nan)
@@ -236,7 +234,7 @@ def assert_products(objective, jet, n, rng, *, removed=0.0, tolerance=1e-6):
 @pytest.mark.parametrize("barrier", [True, False])
 def test_the_hessian_without_its_projection_is_exact(barrier):
     # A shrunk map, where the projection removes something at most samples, and turned handles.
-    objective, phi, psi, rng = problem(stride=1, barrier=barrier)
+    objective, phi, psi, rng = problem(barrier=barrier)
     jet = objective.jet(0.6 * phi, 0.3 * psi)
     n = len(phi)
     turned = np.where(np.arange(6) % 2, np.nan, np.angle(jet.fz) - 0.4)
@@ -248,21 +246,21 @@ def test_the_hessian_without_its_projection_is_exact(barrier):
     assert_products(objective, jet, n, rng, removed=negative, tolerance=1e-5)
 
 
-def test_the_coarse_hessian_resembles_the_exact_one():
-    objective, phi, psi, rng = problem(stride=4)
+def test_samples_that_were_added_change_the_hessian_hardly():
+    objective, phi, psi, _ = problem(barrier=False)
     jet = objective.jet(phi, psi)
-    coarse = np.triu(projected_hessian(objective, jet, objective.radial(jet)))
-    whole = replace(objective, stride=1)
-    exact = np.triu(projected_hessian(whole, jet, objective.radial(jet)))
-    coarse, exact = (h + np.triu(h, 1).T for h in (coarse, exact))
-    assert not np.array_equal(coarse, exact)
-    for _ in range(20):
-        x = rng.normal(size=len(exact))
-        assert_allclose(x @ coarse @ x, x @ exact @ x, rtol=0.3)
+    hessian = np.triu(projected_hessian(objective, jet, objective.radial(jet)))
+    boundary = objective.boundary.refined(np.arange(0, len(objective.boundary.points), 3))
+    walls = Barrier(walls=Walls.around(WALLS, len(boundary.points)), weight=1e-9)
+    finer = replace(objective, boundary=boundary, barrier=walls)
+    jet = finer.jet(phi, psi)
+    assert_allclose(
+        np.triu(projected_hessian(finer, jet, finer.radial(jet))), hessian, rtol=1e-5, atol=1e-3
+    )
 
 
 def test_single_precision_serves_where_handles_hold_a_shape_and_no_wall_is_near():
-    objective, phi, psi, _ = problem(stride=4)
+    objective, phi, psi, _ = problem()
     jet = objective.jet(phi, psi)
     radial = objective.radial(jet)
     single, double = (
@@ -279,26 +277,19 @@ def test_single_precision_serves_where_handles_hold_a_shape_and_no_wall_is_near(
 
 
 @pytest.mark.parametrize("barrier", [True, False])
-def test_a_step_by_a_sketch_tends_to_that_over_all_samples(barrier, monkeypatch):
+def test_a_newton_step_is_that_of_the_whole_hessian(barrier):
     rotations = np.array([0.3, np.nan, -0.2, np.nan, np.nan, 3.0])
-    objective, phi, psi, rng = problem(stride=4, rotations=rotations, barrier=barrier)
+    objective, phi, psi, rng = problem(rotations=rotations, barrier=barrier)
     jet = objective.jet(phi, psi)
     radial = objective.radial(jet)
-    whole = replace(objective, stride=1)
-    hessian = np.triu(projected_hessian(whole, jet, radial))
+    hessian = np.triu(projected_hessian(objective, jet, radial))
     hessian = hessian + np.triu(hessian, 1).T
     x = rng.normal(size=len(hessian))
     product = hessian_product(objective, jet, radial, objective.change(x))
     assert_allclose(product, hessian @ x, rtol=0, atol=1e-5 * np.abs(product).max())
-    exact = list(newton_models(whole, jet))[-1].direction()
-
-    def missed(direction):
-        return np.abs(direction.jet.f - exact.jet.f).max() / np.abs(exact.jet.f).max()
-
-    first = newton_direction(objective, jet)
-    monkeypatch.setattr("engine.deform.model.newton.REFINED", 1e-5)
-    monkeypatch.setattr("engine.deform.model.newton.REFINEMENTS", 20)
-    assert missed(newton_direction(objective, jet)) < 0.01 * missed(first) < 1e-3
+    exact = list(newton_models(objective, jet))[-1].direction().jet.f
+    direction = newton_direction(objective, jet).jet.f
+    assert_allclose(direction, exact, rtol=0, atol=1e-4 * np.abs(exact).max())
 
 
 def test_newton_finds_the_free_minimum_in_30_steps():
@@ -321,7 +312,7 @@ def test_newton_finds_the_free_minimum_in_30_steps():
 
 @pytest.mark.parametrize("size", [1e160, 1e300])
 def test_a_trial_step_may_lead_farther_than_numbers_reach(size):
-    objective, phi, psi, _ = problem(stride=4)
+    objective, phi, psi, _ = problem()
     far = objective.jet(size * phi, size * psi)
     assert objective.energy(far) == np.inf
     assert objective.value(far) == np.inf

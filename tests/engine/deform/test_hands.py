@@ -12,6 +12,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from engine.deform import Deformer, Hand, Handles, Objective, Status, projected_hessian
 from engine.deform.hands import FORCE_NOT_POSITIVE, HAND_HANDLES
 from engine.deform.model.hessian import hessian_product
+from engine.deform.rest import OPTIMAL
 from engine.errors import EngineError
 from engine.maps import Boundary, Bounds
 
@@ -53,9 +54,15 @@ def pixels(one, other):
 
 
 @cache
+def shape():
+    """Return a star that no test changes."""
+    return star(BOUNDS)
+
+
+@cache
 def pulled_out():
     """Return the star at rest with one arm pulled beyond reach, and its wish."""
-    deformer = star(BOUNDS)
+    deformer = shape()
     wish = deformer.handles.wish(OUT, None, (Hand([1]),))
     return wish, settled(deformer, wish)
 
@@ -150,6 +157,66 @@ def test_what_a_hand_lets_go_stays_where_it_is_and_is_found_again():
         assert pixels(settled(deformer, left, start).map(BOUNDARY.outline), shape) < 0.5
     # A wish that nothing bounds stays as it is.
     assert left.let_go(places, deformer.handles.stiffness) is left
+
+
+def within_reach():
+    """Return a wish that the star meets."""
+    targets = STAR_POINTS.copy()
+    targets[1] *= 1 + 0.15 * SIZE / abs(targets[1])
+    return shape().handles.wish(targets, None, (Hand([1]),))
+
+
+@pytest.mark.parametrize("is_reached", [True, False])
+def test_a_pose_at_rest_stays_when_hands_let_go(is_reached):
+    deformer = shape()
+    wish, state = pulled_out()
+    if is_reached:
+        wish = within_reach()
+        state = settled(deformer, wish)
+    left = wish.let_go(deformer.positions(state), deformer.handles.stiffness)
+    released = deformer.release(state, left)
+    assert deformer.step(released, left) is released
+    assert released.map is state.map
+    assert deformer.release(released, left).status is state.status
+    # It is a minimum of the new wish as it was of the old one, and a new search finds it again.
+    gradients = []
+    for each in (wish, left):
+        mine, jet = deformer.measured(state, each)
+        gradients.append(mine.gradient(jet, mine.radial(jet)))
+    assert_allclose(*gradients, rtol=0, atol=1e-9)
+    again = settled(deformer, left, state)
+    off = pixels(again.map(BOUNDARY.outline), state.map(BOUNDARY.outline))
+    # At the bounds the least energy leaves the place of a pose less certain.
+    assert off < (2e-5 if is_reached else 0.5)
+
+
+def test_a_pose_on_its_way_goes_on_when_hands_let_go():
+    deformer, wish = shape(), within_reach()
+    moving = deformer.step(deformer.start(), wish)
+    left = wish.let_go(deformer.positions(moving), deformer.handles.stiffness)
+    going = deformer.release(moving, left)
+    assert going.status is Status.MOVING
+    assert settled(deformer, left, going).map is not moving.map
+
+
+def test_a_short_search_comes_to_rest_where_a_long_one_does(monkeypatch):
+    deformer, wish = shape(), within_reach()
+    moved = deformer.start()
+    for share in np.linspace(0, 1, 6)[1:]:
+        targets = STAR_POINTS + share * (wish.positions - STAR_POINTS)
+        moved = deformer.step(moved, deformer.handles.wish(targets, None, (Hand([1]),)))
+    short, few = deformer.settle(moved, wish)
+    # Heavier at first, slowly lighter, and hands with nothing along their pull in the Hessian.
+    monkeypatch.setattr("engine.deform.rest.continuation.HERE_PER_ENERGY", 1e-2)
+    monkeypatch.setattr("engine.deform.rest.continuation.LOWER_IN_THE_OPEN", 0.1)
+    monkeypatch.setattr("engine.deform.rest.continuation.FAR_FROM_REST", np.inf)
+    long, many = deformer.settle(moved, wish)
+    assert few <= 6 < many
+    for state in (short, long):
+        assert state.status is Status.CONVERGED
+        assert state.statistics.optimality <= OPTIMAL
+    assert_allclose(short.statistics.objective, long.statistics.objective, rtol=1e-8)
+    assert pixels(short.map(BOUNDARY.outline), long.map(BOUNDARY.outline)) < 2e-5
 
 
 def test_a_hand_that_comes_back_leaves_nothing_behind():

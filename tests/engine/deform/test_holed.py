@@ -135,7 +135,6 @@ def test_a_tiny_hole_hardly_matters():
             boundary=boundary, handles=Handles.place(boundary, points), bounds=Bounds()
         )
         state, steps = deformer.settle(deformer.start(), deformer.handles.wish(targets))
-        # A sketch of the Hessian that skips samples of the hole knows nothing of its cage.
         assert steps <= 40
         placed.append(state.map(inner_points(ring())))
     assert_allclose(placed[0], placed[1], rtol=0, atol=2e-3)

@@ -12,6 +12,7 @@ from engine.deform.steering import (
     LEASH,
     Schedule,
     cut_to_leash,
+    distortions,
     limits_for,
     place_walls,
     tightening_limits,
@@ -21,6 +22,7 @@ from engine.maps import Bounds, Certificate, Limits
 BOUNDS = Bounds(k=0.5, sigma_a=2.0, sigma_b=0.5)
 BOUNDARY = star_boundary()
 A, B = np.array([1.0, 1.2]), np.array([0.1, 0.3])
+REACHED = distortions(A, B)
 
 
 def certificate(k=0.26, sigma_a=1.51, sigma_b=0.89):
@@ -52,15 +54,17 @@ def test_a_drag_without_progress_is_at_rest():
 
 
 def test_a_step_keeps_some_slack_of_the_map():
-    walls, required = place_walls(BOUNDS, BOUNDARY, A, B, certificate())
+    walls, required = place_walls(BOUNDS, BOUNDARY, REACHED, certificate())
     assert 0.25 < required.k < walls.k[1] < BOUNDS.k
     assert 1.5 < required.sigma_a < walls.sigma_a[1] < BOUNDS.sigma_a
     assert 0.9 > required.sigma_b > walls.sigma_b[1] > BOUNDS.sigma_b
     # A map that has less slack between its samples may keep it.
-    walls, required = place_walls(BOUNDS, BOUNDARY, A, B, certificate(k=0.4999))
+    walls, required = place_walls(BOUNDS, BOUNDARY, REACHED, certificate(k=0.4999))
     assert required.k >= 0.4999
     # A sample between walls and bounds gets walls around it, and another one keeps its own.
-    walls, _ = place_walls(BOUNDS, BOUNDARY, np.ones(2), np.array([0.49999, 0.1]), certificate())
+    walls, _ = place_walls(
+        BOUNDS, BOUNDARY, distortions(np.ones(2), np.array([0.49999, 0.1])), certificate()
+    )
     assert 0.49999 < walls.k[0] < 0.5
     assert walls.k[1] == BOUNDS.towards_identity(MARGIN).k
 
@@ -70,24 +74,29 @@ def test_limits_close_in_and_never_open():
     assert wide.k > 0.7
     assert wide.sigma_a > 2.5
     assert wide.sigma_b < 0.3
-    nearer = tightening_limits(BOUNDS, wide, BOUNDARY, np.array([1.5]), np.array([0.9]))
+    nearer = tightening_limits(
+        BOUNDS, wide, BOUNDARY, distortions(np.array([1.5]), np.array([0.9]))
+    )
     assert 0.6 < nearer.k < 0.7
     assert nearer.sigma_a < wide.sigma_a
     assert nearer.sigma_b == BOUNDS.sigma_b
-    assert (
-        tightening_limits(BOUNDS, nearer, BOUNDARY, np.array([1.6]), np.array([1.1])).k == nearer.k
-    )
-    assert tightening_limits(BOUNDS, nearer, BOUNDARY, A, B) == BOUNDS
+    farther = distortions(np.array([1.6]), np.array([1.1]))
+    assert tightening_limits(BOUNDS, nearer, BOUNDARY, farther).k == nearer.k
+    assert tightening_limits(BOUNDS, nearer, BOUNDARY, REACHED) == BOUNDS
 
 
 def test_limits_may_be_far_from_the_identity():
     # A map twice as large under σ_b ≥ 0.95: its walls' slack reaches far beyond 1.
     a, b = np.array([2.0]), np.array([0.01])
     large = certificate(k=0.01, sigma_a=2.02, sigma_b=1.98)
-    _, required = place_walls(Limits(k=0.5, sigma_a=5.0, sigma_b=0.95), BOUNDARY, a, b, large)
+    _, required = place_walls(
+        Limits(k=0.5, sigma_a=5.0, sigma_b=0.95), BOUNDARY, distortions(a, b), large
+    )
     assert 1.0 < required.sigma_b < 1.98
     small = certificate(k=0.01, sigma_a=0.42, sigma_b=0.38)
-    _, required = place_walls(Limits(k=0.5, sigma_a=1.05, sigma_b=0.2), BOUNDARY, 0.2 * a, b, small)
+    _, required = place_walls(
+        Limits(k=0.5, sigma_a=1.05, sigma_b=0.2), BOUNDARY, distortions(0.2 * a, b), small
+    )
     assert 0.42 < required.sigma_a < 1.0
 
 
@@ -130,7 +139,7 @@ def test_the_barrier_is_convex_for_a_map_at_its_limits_to_the_last_digit():
         k, sigma_a, sigma_b = (b / a).item(), (a + b).item(), (a - b).item()
         at_limits = Limits(k=k, sigma_a=sigma_a, sigma_b=sigma_b)
         held = certificate(k=k, sigma_a=sigma_a, sigma_b=sigma_b)
-        walls, required = place_walls(at_limits, BOUNDARY, a, b, held)
+        walls, required = place_walls(at_limits, BOUNDARY, distortions(a, b), held)
         barrier = Barrier(walls=walls, weight=1e-2)
         assert np.all(barrier.slacks(a, b) > 0)
         bent = barrier.derivatives(a, b)

@@ -1,6 +1,7 @@
 """Layers that look as if they take turns."""
 
 import re
+from collections import Counter
 
 from app.document.figure import Figure
 from app.document.layering import paths_to
@@ -25,12 +26,14 @@ def alternates(document: Document) -> tuple[tuple[str, tuple[int, ...]], ...]:
             together.setdefault(_place(figure), []).append(figure)
     found = []
     for path, members in together.items():
+        if len(members) < 2:
+            continue
         words = re.split(r"[^a-zA-Z]+", path.rpartition("/")[2])
         shown = sum(not figure.hidden for figure in members)
         is_mouth = any(MOUTHS.fullmatch(word) for word in words)
         is_one = any(SIDES.fullmatch(word) for word in words) and shown <= 1
         is_free = all(_is_free(document, figure) for figure in members)
-        if len(members) > 1 and is_free and (is_mouth or is_one):
+        if is_free and (is_mouth or is_one):
             found.append((path, tuple(figure.id for figure in members)))
     return tuple(found)
 
@@ -40,13 +43,9 @@ def whole_groups(document: Document, path: str) -> tuple[str, ...]:
 
     These would take turns one by one, as lips and teeth of one mouth: none of them is a whole.
     """
-    found = []
-    for group in document.groups:
-        around, _, name = group.name.rpartition("/")
-        members = [each for each in document.figures if group.name in paths_to(each.group)]
-        if around == path and len(members) > 1:
-            found.append(name)
-    return tuple(found)
+    inside = Counter(each for figure in document.figures for each in paths_to(figure.group))
+    found = (group.name.rpartition("/") for group in document.groups if inside[group.name] > 1)
+    return tuple(name for around, _, name in found if around == path)
 
 
 def _place(figure: Figure) -> str:

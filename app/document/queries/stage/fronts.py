@@ -31,7 +31,7 @@ def fronts_at(clip: Clip, frame: float) -> tuple[Front, ...]:
         frame = clip.frames.first + (frame - clip.frames.first) % clip.period
     is_before_all = clip.loop and frame < clip.keys[0].frame
     for key in clip.keys:
-        if is_before_all or _has_been(figure, key.frame, frame):
+        if key.fronts and (is_before_all or _has_been(figure, key.frame, frame)):
             depths.update(key.fronts)
     usual = USUAL_EXTENT * box_diagonal(figure.domain.outline)
     return tuple(
@@ -46,8 +46,8 @@ def _has_been(figure: Figure, key: int, frame: float) -> bool:
 
     What those of a cycle say holds until a repeat, or all of them, are over.
     """
-    for cycle in figure.cycles:
-        if cycle.has(key):
-            end = frame if cycle.until is None else min(frame, cycle.until)
-            return key <= frame and key <= cycle.source(end)
-    return key <= frame
+    cycle = figure.cycle_having(key)
+    if cycle is None:
+        return key <= frame
+    end = frame if cycle.until is None else min(frame, cycle.until)
+    return key <= frame and key <= cycle.source(end)

@@ -121,7 +121,8 @@ def _alike(first: MoveKey | OpacityKey, last: MoveKey | OpacityKey) -> bool:
 def placing_at(document: Document, figure: Figure, frame: float) -> Placing | None:
     """Return beside what a figure is painted at a frame; None before that is said."""
     placings = repeated(figure.placings, figure.cycles, document.frames.last, AS_DRAWN)
-    return next((each for each in reversed(placings) if each.frame <= frame), None)
+    count = bisect_right(placings, frame, key=lambda each: each.frame)
+    return placings[count - 1] if count else None
 
 
 def in_order(document: Document, frame: float) -> tuple[Figure, ...]:

@@ -1,5 +1,6 @@
 """What is seen at a frame."""
 
+from bisect import bisect_right
 from dataclasses import replace
 from functools import lru_cache
 from itertools import pairwise
@@ -8,7 +9,7 @@ from typing import TypeVar
 from app.document.figure import Figure
 from app.document.layering import Choice, Placing, Switch, Turn
 from app.document.model import Document
-from app.document.timing import Cycle
+from app.document.timing import Cycle, changes_in
 
 Change = TypeVar("Change", Switch, Placing, Turn)
 
@@ -16,11 +17,8 @@ Change = TypeVar("Change", Switch, Placing, Turn)
 def is_visible(document: Document, figure: Figure, frame: float) -> bool:
     """Tell whether a figure of a document is seen at a frame."""
     switches = sights_of(document, figure)
-    shown = switches[0].visible if switches else True
-    for switch in switches:
-        if switch.frame <= frame:
-            shown = switch.visible
-    return shown
+    count = bisect_right(switches, frame, key=lambda switch: switch.frame)
+    return switches[max(count - 1, 0)].visible if switches else True
 
 
 def sights_of(document: Document, figure: Figure) -> tuple[Switch, ...]:
@@ -37,11 +35,16 @@ def sights_of(document: Document, figure: Figure) -> tuple[Switch, ...]:
             return (Switch(0, visible=False),)
         rest = figure.switches[:1]
         return repeated(figure.switches, figure.cycles, document.frames.last, rest)
+    return _sights_in(with_repeats(document, given), figure.id, document.frames.first)
+
+
+@lru_cache(maxsize=256)
+def _sights_in(choice: Choice, identity: int, first: int) -> tuple[Switch, ...]:
+    """Return when a figure of a choice comes to be seen or hidden, from the first frame on."""
     switches: list[Switch] = []
-    first = document.frames.first
-    choice = with_repeats(document, given)
-    for frame in (first, *(turn.frame for turn in choice.turns if turn.frame > first)):
-        visible = choice.at(frame) == figure.id
+    begun = Turn(first, choice.at(first))
+    for frame, seen in (begun, *(turn for turn in choice.turns if turn.frame > first)):
+        visible = seen == identity
         if not switches or switches[-1].visible != visible:
             switches.append(Switch(frame, visible))
     return () if switches == [Switch(first, visible=True)] else tuple(switches)
@@ -103,10 +106,17 @@ def repeated(
     Each repeat, and what follows the last one, begins as the stretch does: before the first change
     as `rest` has it.
     """
+    return _repeated(changes, cycles, end, rest) if changes and cycles else changes
+
+
+@lru_cache(maxsize=256)
+def _repeated(
+    changes: tuple[Change, ...], cycles: tuple[Cycle, ...], end: int, rest: tuple[Change, ...]
+) -> tuple[Change, ...]:
     for cycle in cycles:
-        own = [each for each in changes if cycle.first < each.frame < cycle.last]
-        if not own:
+        if not changes_in([each.frame for each in changes], cycle):
             continue
+        own = [each for each in changes if cycle.first < each.frame < cycle.last]
         until = end if cycle.until is None else cycle.until
         before = [each for each in changes if each.frame <= cycle.first]
         begun = before[-1] if before else rest[0]

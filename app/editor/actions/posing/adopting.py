@@ -5,23 +5,31 @@ from dataclasses import replace
 import numpy as np
 
 from app.document import Command, Figure, Pose, Target, UnkeyedPose, key_commands
+from app.editor.failures import report
 from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.work import Pull
+from app.errors import LissomError
+
+NO_POSE = "The pose could not be kept"
 
 
 def adopt(session: Session, project: Project, pull: Pull, pose: Pose) -> None:
     """Let the document have a pose of a pull in place of the pull's last one, if it still can.
 
-    If not, as where its key was deleted, the pull is over.
+    If not, as where its key was deleted or the document refuses it, the pull is over.
     """
     if pose is pull.kept:
         return
     _follow_copies(session, pull, pose)
-    if pull.kept is None:
-        is_adopted = _adopt_first(session, project, pull, pose)
-    else:
-        is_adopted = project.history.amend(pull.gesture, pull.kept, pull.brought_to(pose))
+    try:
+        if pull.kept is None:
+            is_adopted = _adopt_first(session, project, pull, pose)
+        else:
+            is_adopted = project.history.amend(pull.gesture, pull.kept, pull.brought_to(pose))
+    except LissomError as error:
+        report(session, NO_POSE, error)
+        is_adopted = False
     pull.kept = pose
     if not is_adopted and pull in project.pending:
         project.pending.remove(pull)

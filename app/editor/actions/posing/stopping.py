@@ -19,7 +19,7 @@ def give_in(session: Session, project: Project, loosen: Loosen) -> None:
     for pull in project.pulls:
         if pull.hands and pull.is_at_rest and not pull.is_held:
             asked, places = pull.asked, pull.reached
-            pull.settle_for(places)
+            pull.release()
             if asked is not None and pull.is_in(project.history):
                 _tell(session, pull, {i: asked[i] for i in places}, places, loosen)
 

@@ -7,9 +7,13 @@ the newest place.
 from app.document import Track, track_at, track_commands, velocity_at
 from app.editor.actions import playback
 from app.editor.actions.tracking.places import index_of, kept, key_frame, turn_beside
+from app.editor.failures import report
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work import Carry
+from app.errors import LissomError
+
+NO_KEY = "The key of the handle could not be kept"
 
 
 def carried_track(project: Project, handle: int) -> Track | None:
@@ -88,7 +92,12 @@ def go_on(session: Session, project: Project) -> None:
         is_there = held.figure == project.active and held.handle in [
             handle.id for handle in project.figure.handles
         ]
-        if not is_there or put_key(session, project, held):
+        try:
+            is_over = not is_there or put_key(session, project, held)
+        except LissomError as error:
+            report(session, NO_KEY, error)
+            is_over = True
+        if is_over:
             project.pending.remove(held)
 
 

@@ -6,10 +6,12 @@ from app.document import Track, TrackKey, track_at, track_commands
 from app.editor.actions import editing, playback, posing
 from app.editor.actions.tracking.carrying import go_on, put_key
 from app.editor.actions.tracking.places import ground_at, index_of
+from app.editor.failures import report
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.timeline_view import own_frame
 from app.editor.work import Carry, Sample, Take
+from app.errors import LissomError
 from app.motion import Ground, corrected_clip
 from engine.geometry.kinematics import fit_keys
 
@@ -18,6 +20,7 @@ RECORDING_SPEEDS = (1.0, 0.5, 0.25)
 # tremble: at no smoothing and at all of it.
 CLOSEST, SMOOTHEST = 0.3, 12.0
 SMOOTHING = 0.5  # at first
+NO_TAKE = "The recording could not be kept"
 
 
 @with_project
@@ -138,7 +141,11 @@ def maintain(session: Session, project: Project) -> None:
     elif not take.is_over:
         _record(session, project, take)
     elif take.after is None:
-        _write(project, take)
+        try:
+            _write(project, take)
+        except LissomError as error:
+            report(session, NO_TAKE, error)
+            give_up(session)
 
 
 def _record(session: Session, project: Project, take: Take) -> None:

@@ -5,6 +5,7 @@ from imgui_bundle import imgui
 from app.document import alternates, whole_groups
 from app.editor import Action, Project, Session, do, layering
 from app.editor.actions import files, playback, rebuilding
+from app.errors import few_notices
 from app.ui.panels.layers.menus import kept_whole
 from app.ui.panels.layers.settings import draw_settings
 from app.ui.panels.layers.tree import SmallPictures, draw_tree
@@ -39,10 +40,10 @@ def _summary(look: Look, project: Project) -> list[Action]:
     actions = [do(files.fold_summary)] if imgui.is_item_toggled_open() else []
     if not is_open:
         return actions
-    for loss in summary.losses:
+    for loss in few_notices(summary.losses):
         small(look, loss, look.palette.text)
     if summary.matters and imgui.tree_node_ex(f"Small matters: {len(summary.matters)}", _FOLD):
-        for matter in summary.matters:
+        for matter in few_notices(summary.matters):
             small(look, matter)
     imgui.separator()
     return actions

@@ -46,8 +46,15 @@ def draw_tree(
     room = imgui.get_content_region_avail().y - OTHERS * look.em
     shown = min(float(len(rows)), max(FEWEST, room / pitch))
     imgui.begin_child("list", ImVec2(0, shown * pitch))
-    for row in rows:
-        actions += _row(session, look, project, row, pictures)
+    clipper = imgui.ListClipper()
+    clipper.begin(len(rows), pitch)
+    for number, row in enumerate(rows):
+        # The list is scrolled to the one that is posed, and to that whose name is asked for.
+        if row.figure and row.figure.id in {project.active, session.named_layer}:
+            clipper.include_item_by_index(number)
+    while clipper.step():
+        for row in rows[clipper.display_start : clipper.display_end]:
+            actions += _row(session, look, project, row, pictures)
     # An item: placing the cursor alone gives the list no height.
     imgui.dummy(ImVec2(0, 0))
     scroll_while_dragged(look, ROW)

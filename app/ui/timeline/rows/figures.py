@@ -1,14 +1,15 @@
 """The rows of a scene's figures: their names, and when each one is shown or hidden."""
 
-from itertools import pairwise
+from bisect import bisect_left
+from collections.abc import Sequence
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
-from app.document import Document, Figure, Switch, carried_by, is_visible, layer_commands, sights_of
+from app.document import Figure, Switch, carried_by, is_visible, layer_commands, sights_of
 from app.editor import Action, SwitchDrag, do
 from app.editor.actions import editing, playback, timeline_pointing
 from app.ui.style import CHOSEN, SMALL, begin_tip, in_hand, ink, is_pressed, shortened, sized
-from app.ui.timeline.bands import THIN, Bands, FigureRow, tag
+from app.ui.timeline.bands import THIN, Bands, FigureRow, HasFrame, tag
 from app.ui.timeline.keys import choose_row
 from app.ui.timeline.rows.stage import INDENT, draw_stage, draw_stage_names
 from app.ui.timeline.tracks import FOLD, draw_fold, draw_names, draw_ways
@@ -28,17 +29,17 @@ def draw_rows(bands: Bands, frame: int) -> list[Action]:
         actions += _draw_names(bands, frame)
     bands.push_clip()
     actions += draw_stage(bands)
-    for row in bands.rows:
+    for row in filter(bands.shows_row, bands.rows):
         if bands.has_names:
             _draw_ground(bands, row)
-        for begin, end in _hidden(bands.project.document, row.figure):
+        for begin, end in _hidden(bands, row.figure):
             _hatch(bands, row, begin, end)
     draw_ways(bands)
-    for row in bands.rows:
+    for row in filter(bands.shows_row, bands.rows):
         imgui.push_id(f"row {row.figure.id}")
         actions += _draw_changes(bands, row)
-        for switch in row.figure.switches:
-            actions += _draw_switch(bands, row, switch)
+        for index in bands.in_view(row.figure.switches):
+            actions += _draw_switch(bands, row, row.figure.switches[index])
         imgui.pop_id()
     imgui.pop_clip_rect()
     return actions
@@ -59,7 +60,7 @@ def _draw_names(bands: Bands, frame: int) -> list[Action]:
     palette, draw_list, em = bands.look.palette, imgui.get_window_draw_list(), bands.look.em
     low, high = ImVec2(bands.corner.x, bands.track_top), ImVec2(bands.left, bands.track_bottom)
     imgui.push_clip_rect(low, high, intersect_with_current_clip_rect=True)
-    for row in bands.rows:
+    for row in filter(bands.shows_row, bands.rows):
         box = ImVec2(low.x, row.top), ImVec2(high.x - 0.3 * em, row.bottom)
         if bands.button(f"name {row.figure.id}", *box):
             actions += choose_row(row.figure.id, {})
@@ -111,17 +112,26 @@ def _draw_scrolled(bands: Bands) -> None:
     )
 
 
-def _hidden(document: Document, figure: Figure) -> list[tuple[int | None, int | None]]:
-    """Return the stretches in which a figure is hidden; None is where there is no end to them."""
-    switches = sights_of(document, figure)
-    stretches: list[tuple[int | None, int | None]] = [
-        (switch.frame, after.frame) for switch, after in pairwise(switches) if not switch.visible
-    ]
-    if switches and not switches[0].visible:
+def _hidden(bands: Bands, figure: Figure) -> list[tuple[int | None, int | None]]:
+    """Return the stretches in view in which a figure is hidden; None is where they do not end."""
+    switches = sights_of(bands.project.document, figure)
+    if not switches:
+        return []
+    stretches: list[tuple[int | None, int | None]] = []
+    shown = list(bands.in_view(switches, closest=HATCH))
+    # What began before the view reaches into it.
+    before = [shown[0] - 1] if shown and shown[0] else []
+    if not shown:
+        first = bands.frame(bands.left)
+        before = [sum(switch.frame <= first for switch in switches) - 1]
+    for index in [*before, *shown]:
+        if index >= 0 and not switches[index].visible:
+            is_last = index + 1 == len(switches)
+            end = None if is_last else switches[index + 1].frame
+            stretches.append((switches[index].frame, end))
+    if not switches[0].visible:
         # A figure begins as its first switch says.
         stretches.append((None, switches[0].frame))
-    if switches and not switches[-1].visible:
-        stretches.append((switches[-1].frame, None))
     return stretches
 
 
@@ -150,18 +160,16 @@ def _draw_changes(bands: Bands, row: FigureRow) -> list[Action]:
     actions: list[Action] = []
     figure, em, palette = row.figure, bands.look.em, bands.look.palette
     changes: dict[int, list[str]] = {}
-    rows = {
-        "Moved": [key.frame for key in figure.movement],
-        "Opacity": [key.frame for key in figure.opacities],
-        "Order": [placing.frame for placing in figure.placings],
+    rows: dict[str, Sequence[HasFrame]] = {
+        "Moved": figure.movement,
+        "Opacity": figure.opacities,
+        "Order": figure.placings,
     }
-    for what, frames in rows.items():
-        for frame in frames:
-            changes.setdefault(frame, []).append(what)
+    for what, row_of_keys in rows.items():
+        for index in bands.in_view(row_of_keys):
+            changes.setdefault(row_of_keys[index].frame, []).append(what)
     for frame, told in changes.items():
         x, y, half = bands.x(frame), row.bottom - 1.2 * CHANGE * em, CHANGE * em
-        if not bands.shows(x - half, x + half):
-            continue
         box = ImVec2(x - half, y - half), ImVec2(x + half, y + half)
         if bands.button(f"change {frame}", *box):
             actions.append(do(playback.scrub, frame))
@@ -179,8 +187,6 @@ def _draw_switch(bands: Bands, row: FigureRow, switch: Switch) -> list[Action]:
     """Draw an eye where a figure comes to be seen, or a struck one where it is hidden."""
     frame, half = switch.frame, EYE * bands.look.em
     x = bands.x(frame)
-    if not bands.shows(x - half, x + half):
-        return []
     left = _left_of_eye(bands, row, frame)
     drag = bands.project.timing.gesture
     if not isinstance(drag, SwitchDrag) or (drag.figure, drag.at) != (row.figure.id, frame):
@@ -200,7 +206,8 @@ def _left_of_eye(bands: Bands, row: FigureRow, frame: int) -> ImVec2:
     em, x = bands.look.em, bands.x(frame)
     if row.is_active and row.bottom - row.top > 2 * THIN * em:
         return ImVec2(x, row.bottom - (0.1 + THIN / 2) * em)
-    is_at_key = frame in row.figure.key_frames
+    at = bisect_left(row.figure.keys, frame, key=lambda key: key.frame)
+    is_at_key = at < len(row.figure.keys) and row.figure.keys[at].frame == frame
     return ImVec2(x + (BESIDE * em if is_at_key else 0.0), row.middle)
 
 

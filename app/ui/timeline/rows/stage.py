@@ -73,11 +73,13 @@ def _keys(bands: Bands, lane: StageLane) -> list[Action]:
     document, em = bands.project.document, bands.look.em
     figures = [document.figure(identity) for identity in lane.row.figures]
     chosen_of = bands.project.chosen_of
-    for frame in sorted({frame for figure in figures for frame in figure.key_frames}):
+    at: dict[int, list[int]] = {}
+    for figure in figures:
+        for index in bands.in_view(figure.keys):
+            at.setdefault(figure.keys[index].frame, []).append(figure.id)
+    for frame in sorted(at):
         x = bands.x(frame)
-        if not bands.shows(x - GRIP * em, x + GRIP * em):
-            continue
-        keys: KeysOf = {each.id: frozenset({frame}) for each in figures if frame in each.key_frames}
+        keys: KeysOf = {each: frozenset({frame}) for each in at[frame]}
         box = ImVec2(GRIP * em, GRIP * em)
         middle = ImVec2(x, lane.middle)
         if bands.button(f"keys {frame}", middle - box, middle + box):

@@ -34,12 +34,11 @@ def draw_camera(bands: Bands) -> list[Action]:
     first, last = (bands.x(document.camera[end].frame) for end in (0, -1))
     draw_list.add_line(ImVec2(first, middle), ImVec2(last, middle), ink(palette.dim, 0.5), 1.5)
     gesture = bands.project.timing.gesture
-    for key in document.camera:
+    for index in bands.in_view(document.camera):
+        key = document.camera[index]
         x, origin = bands.x(key.frame), key.frame
         if isinstance(gesture, CameraDrag) and gesture.at == key.frame:
             origin = gesture.key  # its button stays the same one while it is dragged
-        if not bands.shows(x - em, x + em):
-            continue
         low, high = ImVec2(x - 2 * HALF * em, top), ImVec2(x + 2 * HALF * em, bottom)
         bands.button(f"camera key {origin}", low, high, right=True)
         half, colour = HALF * em, palette.accent if in_hand() else palette.text

@@ -1,6 +1,6 @@
 """Markers: names of frames, in a band below the ruler."""
 
-from itertools import pairwise
+from itertools import zip_longest
 
 from imgui_bundle import ImVec2, imgui
 
@@ -12,6 +12,7 @@ from app.ui.style import SMALL, begin_tip, in_hand, ink, is_pressed, name_popup,
 from app.ui.timeline.bands import Bands, in_seconds, tag
 
 HALF, GRIP = 0.42, 0.6  # em: half the width of a flag, and of where the pointer takes it
+NAME_ROOM = 30.0  # em that a name may reach into view from a marker at the left of it
 LEAST_NAME = 3.0  # em: with less room names are left out
 
 
@@ -25,9 +26,11 @@ def draw_markers(bands: Bands) -> list[Action]:
     low, high = ImVec2(bands.left, bands.marks_top), ImVec2(bands.right, bands.track_bottom)
     draw_list = imgui.get_window_draw_list()
     draw_list.push_clip_rect(low, high, intersect_with_current_clip_rect=True)
-    rooms = [bands.x(after.frame) - bands.x(marker.frame) for marker, after in pairwise(markers)]
-    for marker, room in zip(markers, [*rooms, bands.size.x], strict=True):
+    shown = list(bands.in_view(markers, room=NAME_ROOM))
+    for index, after in zip_longest(shown, shown[1:]):
+        marker = markers[index]
         x = bands.x(marker.frame)
+        room = bands.size.x if after is None else bands.x(markers[after].frame) - x
         text = shortened(marker.name, room - 1.4 * em) if room > LEAST_NAME * em else ""
         width = imgui.calc_text_size(text).x if text else 0.0
         if not bands.shows(x - GRIP * em, x + GRIP * em + width):

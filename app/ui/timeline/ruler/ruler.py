@@ -2,6 +2,7 @@
 
 from imgui_bundle import ImVec2, imgui
 
+from app.document import Figure, remembered
 from app.editor import Action, Scrub, do
 from app.editor.actions import timeline_pointing
 from app.ui.style import SMALL, in_hand, ink, is_pressed, sized, write_in
@@ -117,6 +118,12 @@ def _tag_width(bands: Bands, frame: int) -> float:
     return max(imgui.calc_text_size(f"{frame}").x + 0.9 * bands.look.em, 1.9 * bands.look.em)
 
 
+@remembered
+def _frames_apart(figure: Figure, step: int) -> frozenset[int]:
+    """Return frames of keys, of which there is one in each of so many frames at most."""
+    return frozenset(key.frame // step * step for key in figure.keys if not figure.still)
+
+
 def draw_overview(bands: Bands, frame: int) -> list[Action]:
     """Draw below what part of all frames is on the screen; dragging it scrolls."""
     strip, frames, em = bands.strip, bands.project.document.frames, bands.look.em
@@ -136,18 +143,19 @@ def draw_overview(bands: Bands, frame: int) -> list[Action]:
     bar = ink(palette.dim if in_hand() else palette.pressed)
     draw_list.add_rect_filled(ImVec2(left, top), ImVec2(right, bottom), bar, rounding)
     middle = (top + bottom) / 2
-    # Each frame once, however many figures have a key there; those of the active one over them.
-    own = bands.project.figure.key_frames
-    others = {
-        key.frame for row in bands.rows if not row.figure.still for key in row.figure.keys
-    } - own
-    for frames_of, radius, colour in (
-        (others, 0.09 * em, ink(palette.dim)),
-        (own, 0.11 * em, ink(palette.text, 0.8)),
+    # Each place once, however many keys there are; those of the active figure over them.
+    figure = bands.project.figure
+    for figures, radius, colour in (
+        (tuple(row.figure for row in bands.rows), 0.09 * em, ink(palette.dim)),
+        ((figure,), 0.11 * em, ink(palette.text, 0.8)),
     ):
-        for at in frames_of:
-            x = bands.left + (at - low) * per_frame
-            draw_list.add_circle_filled(ImVec2(x, middle), radius, colour, 8)
+        step = max(round(2 * radius / per_frame), 1)
+        for at in frozenset[int]().union(*(_frames_apart(each, step) for each in figures)):
+            place, half = (
+                ImVec2(bands.left + (at - low) * per_frame, middle),
+                ImVec2(radius, radius),
+            )
+            draw_list.add_rect_filled(place - half, place + half, colour)
     x = bands.left + (frame - low) * per_frame
     draw_list.add_line(ImVec2(x, top), ImVec2(x, bottom), ink(palette.accent), 1.5)
     delta = imgui.get_io().mouse_delta.x

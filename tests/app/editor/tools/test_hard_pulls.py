@@ -7,7 +7,7 @@ from PIL import Image, ImageDraw
 from sessions import session_of, settle
 
 from app.document import NATURAL, RUBBERY
-from app.document.commands import figure_commands, handle_commands
+from app.document.commands import figure_commands, handle_commands, material_commands
 from app.editor.actions import editing, playback, posing
 from app.editor.actions.posing.stopping import STOPPED_AT_LIMIT
 from app.editor.actions.upkeep import maintain
@@ -201,6 +201,38 @@ def test_a_drag_within_reach_is_wanted_where_it_was_let_go(session):
     assert project.figure.key(0).pose.targets[hand].position == asked
     assert per_mille(session, where(project)[0][hand] - asked) < 1
     assert not session.toasts
+
+
+@pytest.mark.parametrize("session", ["person"], indirect=True)
+def test_a_pose_that_rests_when_the_hand_lets_go_is_kept(session):
+    project = session.project
+    hand, out = outwards(project)
+    asked = drag(session, hand, -0.05 * out, rests=40)
+    assert project.pull.is_at_rest
+    phi = project.figure.key(0).pose.phi
+    pointing.end(session, asked)
+    maintain(session)
+    assert not project.pending
+    assert project.figure.key(0).pose.phi is phi
+    assert project.figure.key(0).pose.targets[hand].position == asked
+
+
+def test_a_joint_that_gave_in_is_wanted_where_it_came_to(tmp_path):
+    picture = drawn(([(20, 120), (180, 120)], 24))
+    document = still_document(picture)
+    for place in (24 + 40j, 100 + 40j, 176 + 40j):
+        document = handle_commands.add_handle(0, place)(document)
+    for ends in ((0, 1), (1, 2)):
+        document = material_commands.add_bone(0, ends, 30.0)(document)
+    session = session_of(document, tmp_path, picture)
+    project = session.project
+    asked = drag(session, 2, 160j)
+    pointing.end(session, asked)
+    settle(session)
+    joint, targets = where(project)[0][1], project.figure.key(0).pose.targets
+    assert abs(joint - 100 - 40j) > 2
+    assert abs(targets[1].position - joint) < 0.1
+    assert abs(targets[0].position - 24 - 40j) < 1e-9
 
 
 @pytest.mark.parametrize("session", ["person"], indirect=True)

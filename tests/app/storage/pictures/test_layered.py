@@ -1,4 +1,5 @@
 import io
+import re
 import struct
 import zipfile
 
@@ -13,8 +14,9 @@ from psd_tools.constants import BlendMode
 
 from app.document.layering import Group
 from app.errors import LissomError
-from app.storage.pictures import read_openraster, read_photoshop
-from app.storage.pictures.layered import GROUPS_DEEP
+from app.storage.pictures import Names, read_openraster, read_photoshop
+from app.storage.pictures.layered import GROUPS_DEEP, LONGEST_NAME, MOST_GROUPS
+from app.storage.pictures.openraster import DAMAGED_STACK
 from app.storage.project.archive import MEMBER_TOO_LARGE
 
 HEAD = '<layer name="head" src="data/0.png" x="10" y="20"/>'
@@ -261,3 +263,69 @@ def test_a_photoshop_file_cut_short_is_told_in_words():
             read_photoshop(whole[:end])
         except LissomError:
             continue
+
+
+def test_names_that_are_alike_get_the_next_free_numbers():
+    names = Names()
+    given = [names.free(name) for name in ("a", "a 2", "a", "a", "b", "a 2", "a")]
+    assert given == ["a", "a 2", "a 3", "a 4", "b", "a 2 2", "a 5"]
+    # Looked for one by one, these would take minutes.
+    assert [names.free("c") for _ in range(100_000)][-1] == "c 100000"
+
+
+def test_too_many_groups_and_long_names_are_refused():
+    with pytest.raises(LissomError, match=f"{MOST_GROUPS:,} groups"):
+        read_openraster(drawing(HEAD + "<stack/>" * (MOST_GROUPS + 1)))
+    for stack in (f'<stack name="{"x" * 5000}">{HEAD}</stack>', HEAD.replace("head", "x" * 5000)):
+        with pytest.raises(LissomError, match=f"up to {LONGEST_NAME:,}") as refusal:
+            read_openraster(drawing(stack))
+        assert len(str(refusal.value)) < 300
+
+
+def with_stack(content):
+    stream = io.BytesIO(drawing())
+    with zipfile.ZipFile(stream) as old:
+        members = {name: old.read(name) for name in old.namelist()}
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w") as new:
+        for name, data in {**members, "stack.xml": content}.items():
+            new.writestr(name, data)
+    return stream.getvalue()
+
+
+STACK = f'<image w="100" h="120"><stack>{HEAD.replace("head", "häd")}</stack></image>'
+
+
+@pytest.mark.parametrize(
+    ("name", "encoding"),
+    [("UTF-16", "utf-16"), ("UTF-8", "utf-8-sig"), ("ISO-8859-1", "latin-1")],
+)
+def test_stacks_in_usual_encodings_are_read(name, encoding):
+    stack = f'<?xml version="1.0" encoding="{name}"?>{STACK}'.encode(encoding)
+    assert list(layers_of(with_stack(stack))) == ["häd"]
+
+
+@pytest.mark.parametrize(
+    "stack",
+    [
+        *(
+            f'<?xml version="1.0" encoding="{name}"?>{STACK}'.encode()
+            for name in ("klingon", "zip")
+        ),
+        STACK.encode("latin-1"),
+        STACK.encode("utf-32"),
+        STACK.replace("häd", "&what;").encode(),
+        b"",
+    ],
+)
+def test_damaged_stacks_are_refused_in_one_sentence(stack):
+    with pytest.raises(LissomError, match=f"^{re.escape(DAMAGED_STACK)}$"):
+        read_openraster(with_stack(stack))
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
+def test_entities_are_refused_in_every_encoding(encoding):
+    declared = '<!DOCTYPE image [<!ENTITY a "aaaa"><!ENTITY b "&a;&a;&a;">]>'
+    stack = f'<?xml version="1.0" encoding="{encoding}"?>{declared}{STACK}'.encode(encoding)
+    with pytest.raises(LissomError, match="document type"):
+        read_openraster(with_stack(stack))

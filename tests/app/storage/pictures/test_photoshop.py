@@ -1,5 +1,7 @@
 """Photoshop files as other programs write them: groups, masks, clipping, modes, texts."""
 
+import contextlib
+
 import numpy as np
 import pytest
 from messages import says
@@ -19,6 +21,7 @@ from app.document.layering import Group
 from app.errors import ImportSummary, LissomError
 from app.storage.pictures import read_photoshop
 from app.storage.pictures.layered import GROUPS_DEEP
+from app.storage.pictures.photoshop import DAMAGED, MOST_RECORDS
 
 SIZE = (100, 120)
 FULL = np.full((20, 30, 4), 255, np.uint8)
@@ -230,3 +233,40 @@ def test_groups_have_an_end():
         inner = Folder(name=str(depth), layers=[inner])
     with pytest.raises(LissomError, match=says(GROUPS_DEEP, most=50)):
         read(inner)
+
+
+def varied(content, rng):
+    """Return a file that was cut, or of which bytes are other ones, or gone."""
+    changed = bytearray(content)
+    match rng.integers(3):
+        case 0:
+            del changed[rng.integers(len(changed)) :]
+        case 1:
+            for place in rng.integers(len(changed), size=rng.integers(1, 9)):
+                changed[place] = rng.integers(256)
+        case _:
+            start = rng.integers(len(changed))
+            del changed[start : start + rng.integers(1, 50)]
+    return bytes(changed)
+
+
+@pytest.mark.parametrize(
+    "seed", [0, *(pytest.param(seed, marks=pytest.mark.long) for seed in range(1, 6))]
+)
+def test_damaged_files_are_refused_without_a_librarys_words(seed, capfd):
+    mask = Mask(pixels=np.full((4, 4), 99, np.uint8))
+    layer = Drawn(name="a", pixels=np.full((8, 9, 4), 200, np.uint8), mask=mask)
+    whole = photoshop_file((20, 20), [layer, Folder(name="g", layers=[layer])])
+    rng = np.random.default_rng(seed)
+    for _ in range(100):
+        with contextlib.suppress(LissomError):
+            read_photoshop(varied(whole, rng))
+    with pytest.raises(LissomError, match=f"^{DAMAGED}$"):
+        read_photoshop(whole.replace(b"8BIM", b"8BXX"))
+    assert capfd.readouterr() == ("", "")
+
+
+def test_more_layers_than_there_is_time_for_are_refused_at_once():
+    layer = Drawn(name="a", pixels=np.full((1, 1, 4), 200, np.uint8))
+    with pytest.raises(LissomError, match=f"up to {MOST_RECORDS:,}"):
+        read_photoshop(photoshop_file((9, 9), [layer] * (MOST_RECORDS + 1)))

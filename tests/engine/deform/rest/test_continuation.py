@@ -11,7 +11,14 @@ from shapes import regular_polygon
 from engine.deform import Deformer, Handles, Objective, Status
 from engine.deform.model import Walls
 from engine.deform.rest import Way, advance, exceed_first_rung
-from engine.deform.rest.continuation import AT_A_SADDLE, CENTRED, LOWER, is_centred, lowered
+from engine.deform.rest.continuation import (
+    AT_A_SADDLE,
+    CENTRED,
+    LOWER,
+    LOWER_IN_THE_OPEN,
+    is_centred,
+    lowered,
+)
 from engine.deform.rest.rungs import FIRST_REACH, is_same, rung
 from engine.deform.rest.samples import resolved
 from engine.maps import Boundary, Bounds, segment_enclosures
@@ -42,14 +49,10 @@ def test_a_segment_that_broke_a_bound_gets_a_sample_though_there_are_too_many(mo
 
 
 def test_samples_are_added_where_segments_bulge_most_first(monkeypatch):
-    search = search_from_rest(8)
-    base = replace(search, boundary=search.boundary)
-    none = np.empty(0, np.intp)
-    for _ in range(20):
-        finer = with_samples(base, none)
-        if len(finer.boundary.points) > len(base.boundary.points):
-            break
-        base = search_from_rest(base.steps + 2)
+    base, none = search_from_rest(8), np.empty(0, np.intp)
+    # Else all that bulge have their samples.
+    monkeypatch.setattr("engine.deform.rest.samples.BULGE_PER_SLACK", 0.02)
+    finer = with_samples(base, none)
     added = len(finer.boundary.points) - len(base.boundary.points)
     assert added > 1
     own = np.count_nonzero(base.boundary.weights)
@@ -77,9 +80,12 @@ def test_the_weight_falls_where_little_is_left_to_gain_but_not_at_a_saddle():
     assert is_centred(heavy, convex=False)
     # A step that was cut short says nothing.
     assert not is_centred(replace(little, length=0.1), convex=True)
-    # From the present map the valley is given.
-    assert is_centred(replace(much, way=Way.HERE), convex=False)
+    # From the present map the valley is given, and the way to it short where nothing is near.
+    here = replace(much, way=Way.HERE)
+    assert is_centred(here, convex=False)
+    assert lowered(little).weight == lowered(replace(here, length=0.9)).weight
     assert lowered(little).weight == LOWER * search.weight
+    assert lowered(here).weight == LOWER_IN_THE_OPEN * search.weight
 
 
 def test_walls_open_from_rungs_that_do_not_depend_on_the_bounds():

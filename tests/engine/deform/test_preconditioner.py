@@ -7,13 +7,13 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from engine.deform import Handles, Objective, newton_direction
 from engine.deform.model.barrier import Barrier, Walls
-from engine.deform.model.newton import newton_models, sketched_direction
+from engine.deform.model.newton import newton_models, preconditioned_direction
 from engine.maps import Bounds
 
 
 @pytest.fixture(scope="module")
 def maps():
-    """Two maps near each other, as an objective with a barrier sees them, and a sketch of one."""
+    """Two maps near each other, as an objective with a barrier sees them, and the factor of one."""
     boundary = star_boundary()
     handles = Handles.place(boundary, STAR_POINTS)
     walls = Walls.around(Bounds(), len(boundary.points))
@@ -22,56 +22,55 @@ def maps():
         handles=handles,
         wish=handles.wish(1.02 * STAR_POINTS + 0.01j),
         barrier=Barrier(walls=walls, weight=0.2),
-        stride=4,
     )
     noise = np.random.default_rng(3).normal(size=(4, len(boundary.cage)))
     phi, psi = boundary.cage + 0.002 * noise[0], 0.1 * boundary.cage + 0.002j * noise[1]
     first = objective.jet(phi, psi)
     second = objective.jet(1.05 * phi + 0.002 * noise[2], psi + 0.002 * noise[3])
-    _, sketch = sketched_direction(objective, first, None)
-    return objective, second, sketch
+    _, factored = preconditioned_direction(objective, first, None)
+    return objective, second, factored
 
 
 def missed(maps, direction):
     """Return what is missing of the step of the whole Hessian, in its norm."""
     objective, jet, _ = maps
-    exact = list(newton_models(replace(objective, stride=1), jet))[-1].direction()
+    exact = list(newton_models(objective, jet))[-1].direction()
     return np.sqrt(1.0 - direction.derivative / exact.derivative)
 
 
-def test_a_step_by_the_sketch_of_another_map_tends_to_the_same(maps, monkeypatch):
-    objective, jet, sketch = maps
-    later, kept = sketched_direction(objective, jet, sketch)
-    assert kept.factor is sketch.factor
+def test_a_step_by_the_factor_of_another_map_tends_to_the_same(maps, monkeypatch):
+    objective, jet, factored = maps
+    later, kept = preconditioned_direction(objective, jet, factored)
+    assert kept.factor is factored.factor
     assert missed(maps, later) < 0.1
     monkeypatch.setattr("engine.deform.model.newton.REFINED_LATER", 1e-5)
     monkeypatch.setattr("engine.deform.model.newton.REFINEMENTS", 30)
-    refined, _ = sketched_direction(objective, jet, sketch)
+    refined, _ = preconditioned_direction(objective, jet, factored)
     assert missed(maps, refined) < 1e-3
 
 
-def test_a_sketch_that_takes_too_many_rounds_is_made_anew(maps, monkeypatch):
-    objective, jet, sketch = maps
+def test_a_factor_that_takes_too_many_rounds_is_made_anew(maps, monkeypatch):
+    objective, jet, factored = maps
     monkeypatch.setattr("engine.deform.model.newton.REFINED_LATER", 1e-12)
-    direction, kept = sketched_direction(objective, jet, sketch)
+    direction, kept = preconditioned_direction(objective, jet, factored)
     assert_array_equal(direction.phi, newton_direction(objective, jet).phi)
-    assert kept.factor is not sketch.factor
+    assert kept.factor is not factored.factor
 
 
-def test_a_sketch_serves_its_own_handles_only(maps):
-    objective, jet, sketch = maps
+def test_a_factor_serves_its_own_handles_only(maps):
+    objective, jet, factored = maps
     turned = objective.handles.wish(objective.wish.positions, np.zeros(len(STAR_POINTS)))
     softened = objective.handles.softened(0.5)
     for other in (replace(objective, handles=softened), replace(objective, wish=turned)):
-        assert not sketch.serves(other)
-        direction, _ = sketched_direction(other, jet, sketch)
+        assert not factored.serves(other)
+        direction, _ = preconditioned_direction(other, jet, factored)
         assert_array_equal(direction.phi, newton_direction(other, jet).phi)
 
 
-def test_a_sketch_serves_a_few_steps(maps, monkeypatch):
-    objective, jet, sketch = maps
+def test_a_factor_serves_a_few_steps(maps, monkeypatch):
+    objective, jet, factored = maps
     monkeypatch.setattr("engine.deform.model.newton.SERVES_STEPS", 3)
-    _, second = sketched_direction(objective, jet, sketch)
-    direction, third = sketched_direction(objective, jet, second)
+    _, second = preconditioned_direction(objective, jet, factored)
+    direction, third = preconditioned_direction(objective, jet, second)
     assert third is None
     assert_allclose(direction.derivative, newton_direction(objective, jet).derivative, rtol=0.05)

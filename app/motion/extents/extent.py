@@ -8,9 +8,10 @@ import numpy as np
 from app.document import Document, FrameRange, clip_of, exported_frames, framed_frames
 from app.errors import LissomError
 from app.motion.corrected_frames import CorrectedFrames
+from app.motion.extents.long_extent import farthest_reach
 from app.motion.interval_store import IntervalStore
 from app.motion.joints import Joints
-from engine.arrays import Complexes
+from engine.arrays import Complexes, Floats
 
 
 class Box(NamedTuple):
@@ -90,10 +91,14 @@ def measure_extent(
     return box
 
 
+class _Missing(Exception):  # noqa: N818 - it ends a search
+    """A frame is not there yet."""
+
+
 def motion_box(
     document: Document, frames: FrameRange, place: Callable[[int, int], Complexes | None]
 ) -> Box | None:
-    """Return the box around all figures in all of these frames.
+    """Return the box around all figures in all of these frames, of which few may be measured.
 
     Parameters
     ----------
@@ -108,13 +113,22 @@ def motion_box(
     """
     if not document.exported:
         return Box(0j, complex(*document.canvas))
-    corners: list[complex] = []
-    for frame in range(frames.first, frames.last + 1):
+
+    def reaches(frame: int) -> Floats:
+        boxes = []
         for figure in document.exported:
             positions = place(figure.id, frame)
             if positions is None:
-                return None
-            corners += box_around(positions)
-        if not np.isfinite(corners[-2 * len(document.exported) :]).all():
+                raise _Missing
+            boxes.append(box_around(positions))
+        lower, upper = np.array(boxes).T
+        found = np.column_stack([-lower.real, -lower.imag, upper.real, upper.imag])
+        if not np.isfinite(found).all():
             raise LissomError(f"frame {frame} cannot be drawn: its points are not all finite")
-    return box_around(np.array(corners))
+        return found
+
+    try:
+        left, down, right, up = farthest_reach(document, frames, reaches).tolist()
+    except _Missing:
+        return None
+    return Box(complex(-left, -down), complex(right, up))

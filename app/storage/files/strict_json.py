@@ -1,0 +1,22 @@
+"""JSON as its standard has it, which every reader takes."""
+
+import json
+
+from app.errors import LissomError
+
+NOT_FINITE = "a number in it is not finite, which JSON cannot say"
+
+
+def strict_json(content: object, *, indent: int | None = None) -> str:
+    """Return a value as JSON, on one line or with this indent.
+
+    Raises
+    ------
+    LissomError
+        If a number in it is infinite or none: Python would write words that are no JSON.
+    """
+    separators = (",", ":") if indent is None else None
+    try:
+        return json.dumps(content, indent=indent, separators=separators, allow_nan=False)
+    except ValueError as error:
+        raise LissomError(NOT_FINITE) from error

@@ -1,0 +1,37 @@
+"""What is on its way to the document is over where the document refuses it, and is told once."""
+
+from dataclasses import replace
+
+import pytest
+from sessions import session_of, settle
+from still_poses import posed
+
+from app.document import cycle_commands, scene_commands
+from app.document.keyframe import Target
+from app.editor.actions import playback, posing
+from app.editor.actions.posing.adopting import NO_POSE
+from app.editor.actions.upkeep import maintain
+
+
+@pytest.fixture
+def session(tmp_path):
+    return session_of(posed(2), tmp_path)
+
+
+def test_refused_pose_is_told_once_and_hides_nothing(session):
+    project = session.project
+    last = project.figure.keys[-1].frame
+    frames = replace(project.document.frames, last=last + 20)
+    project.history.do(scene_commands.set_frames(frames))
+    playback.scrub(session, last + 5)
+    handle = project.figure.handles[0]
+    with session.jobs.held():
+        posing.wish(session, {handle.id: Target(position=handle.position + 9)})
+        maintain(session)
+        project.history.do(cycle_commands.repeat(0, 0, last + 2))
+    settle(session)
+    settle(session)
+    (toast,) = session.toasts
+    assert toast.text.startswith(NO_POSE)
+    assert not project.pending
+    assert project.puppet.shown.clip == project.clip

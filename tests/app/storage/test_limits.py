@@ -1,0 +1,410 @@
+"""What commands make can be opened again, at the limits of each field; nothing else is written."""
+
+import json
+import sys
+import zipfile
+from contextlib import suppress
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from documents import (
+    CENTRE,
+    clocked_document,
+    differences,
+    disc_document,
+    disc_domain,
+    inside,
+    random_command,
+)
+from hypothesis import given, settings, strategies as st
+from pictures import blank_png
+
+from app.document import (
+    FASTEST,
+    LAST_FRAME,
+    SLOWEST,
+    Attachment,
+    CameraKey,
+    Cycle,
+    Document,
+    FrameRange,
+    GivenMotion,
+    Meshing,
+    PictureFile,
+    Placing,
+    Spring,
+    Track,
+    TrackKey,
+    choice_commands,
+    figure_commands,
+    filming_commands,
+    group_commands,
+    handle_commands,
+    key_commands,
+    layer_commands,
+    motion_notices,
+    new_figure,
+    pose_as_drawn,
+    pose_commands,
+    scene_commands,
+    track_commands,
+)
+from app.document.body.pairs import MOST_PAIRS
+from app.document.checks import FARTHEST, LARGEST_ID, WIDEST
+from app.document.keyframe import LARGEST_COEFFICIENT
+from app.document.model import MOST_CHANGES
+from app.document.timing.cycles import MOST_CYCLES
+from app.errors import LissomError
+from app.storage import project_file
+from app.storage.autosave import Autosave, Origin, load_leftover
+from app.storage.project import archive
+from app.storage.project_file import load_project, save_project
+from engine.domain import Domain
+from engine.geometry.motions import Parameters
+from engine.maps import Bounds
+from tests.bench.opening import FILLINGS
+
+NAMES = ("x", "é\u0301 \U0001f600" * 2000, "{0} %s {", "\x00\x1b[31m\n", "\u202e right to left")
+FRAMES = (0, 1, LAST_FRAME - 1, LAST_FRAME)
+FAR = (FARTHEST, -FARTHEST, complex(FARTHEST, -FARTHEST), 1j * FARTHEST)
+SIZES = (1, 2, WIDEST)
+BREATHE = GivenMotion(
+    motion="breathe",
+    kind="anything",
+    joints={},
+    facing=1,
+    parameters=Parameters(),
+    first=0,
+    start=0,
+    last=LAST_FRAME,
+)
+
+
+def far_pose(figure, place):
+    """The pose of a figure as it was drawn, moved as a whole, with its handles' targets there."""
+    drawn = pose_as_drawn(figure.domain, figure.handles)
+    targets = {
+        identity: replace(target, position=place) for identity, target in drawn.targets.items()
+    }
+    return replace(drawn, phi=drawn.phi + place, targets=targets)
+
+
+def extreme_command(rng, document):
+    """A command that brings a field of a document to its limit, or beyond."""
+    frame, to = (FRAMES[at] for at in rng.integers(len(FRAMES), size=2))
+    name, place = NAMES[rng.integers(len(NAMES))], complex(FAR[rng.integers(len(FAR))])
+    figure = document.figures[rng.integers(len(document.figures))]
+    identity, pose = figure.id, far_pose(figure, place)
+    turn = float(rng.choice([-40 * np.pi, 40 * np.pi]))
+    commands = [
+        scene_commands.set_fps(float(rng.choice([SLOWEST, FASTEST]))),
+        scene_commands.set_frames(FrameRange(0, LAST_FRAME)),
+        scene_commands.add_marker(frame, name),
+        scene_commands.set_pairs(tuple((f"l{i}", f"r{i}") for i in range(MOST_PAIRS))),
+        filming_commands.key_camera(CameraKey(frame=frame, centre=place, zoom=1e3, turn=turn)),
+        filming_commands.key_movement(identity, frame, place, turn),
+        filming_commands.key_opacity(identity, frame, float(rng.integers(2))),
+        filming_commands.place_at(identity, Placing(frame, None)),
+        key_commands.put_pose(identity, frame, pose, figure.keys[0].easing),
+        key_commands.insert_key(identity, to, pose),
+        pose_commands.keep_pose(identity, pose, name),
+        pose_commands.set_mirror(identity, FARTHEST),
+        handle_commands.add_handle(identity, inside(rng), name=name),
+        layer_commands.rename_figure(identity, name),
+        layer_commands.duplicate_figure(identity),
+        layer_commands.switch_at(identity, frame, visible=bool(rng.integers(2))),
+        layer_commands.attach(
+            identity,
+            CENTRE,
+            Attachment(to=document.figures[0].id, at=place, rest=turn, frame=frame, offset=place),
+        ),
+        choice_commands.form_choice(name, [each.id for each in document.figures][:2]),
+        choice_commands.choose_at(identity, frame),
+        figure_commands.set_bounds(identity, Bounds(k=1 - 1e-9, sigma_a=1e9, sigma_b=1e-9)),
+        group_commands.put_in_group([identity], name.strip()),
+    ]
+    if figure.handles:
+        handle = figure.handles[0].id
+        key = TrackKey(frame=frame, place=place, turn=turn, velocity=place)
+        track = Track(handles=(handle,), keys=(key,), delay=LAST_FRAME, planted=True, turns=True)
+        spring = Spring(handle=handle, frequency=1e3, damping=100.0, lag=10_000.0, strength=10.0)
+        commands += [
+            track_commands.put_track(identity, track),
+            track_commands.put_spring(identity, spring),
+            handle_commands.weigh_handles(identity, {handle}, 1e6),
+        ]
+    return commands[rng.integers(len(commands))]
+
+
+def far_document():
+    """A layer of one pixel, as far from the lower left corner of the canvas as one may lie."""
+    disc, corner = disc_domain(), complex(FARTHEST, FARTHEST)
+    outline, cage = disc.outline / 200 + corner, disc.cage / 200 + corner
+    mesh = replace(disc.mesh, vertices=outline)
+    domain = Domain(outline=outline, cage=cage, mesh=mesh)
+    picture = PictureFile(data=blank_png(1, 1), suffix=".png", size=(1, 1))
+    figure = replace(new_figure(picture, domain, Meshing()), corner=corner)
+    return Document(figures=(figure,), size=(WIDEST, WIDEST))
+
+
+BEGINNINGS = (disc_document, clocked_document, far_document)
+
+
+def require_reopened(path, begin, seeds):
+    document = begin()
+    for seed in seeds:
+        rng = np.random.default_rng(seed)
+        make = extreme_command if seed % 4 else random_command
+        try:
+            document = make(rng, document)(document)
+        except LissomError:
+            continue
+    save_project(path, document)
+    assert not differences(load_project(path), document)
+
+
+@settings(max_examples=25)
+@given(st.sampled_from(BEGINNINGS), st.lists(st.integers(0, 2**32 - 1), max_size=15))
+def test_what_commands_make_at_limits_opens_again(tmp_path_factory, begin, seeds):
+    require_reopened(tmp_path_factory.getbasetemp() / "limits.lissom", begin, seeds)
+
+
+@pytest.mark.long
+@settings(max_examples=300)
+@given(st.sampled_from(BEGINNINGS), st.lists(st.integers(0, 2**32 - 1), max_size=40))
+def test_many_commands_at_limits_open_again(tmp_path_factory, begin, seeds):
+    require_reopened(tmp_path_factory.getbasetemp() / "more_limits.lissom", begin, seeds)
+
+
+def read_content(path):
+    with zipfile.ZipFile(path) as packed:
+        return json.loads(packed.read("project.json"))
+
+
+def with_content(path, change):
+    """Change the JSON of a project in its place."""
+    with zipfile.ZipFile(path) as packed:
+        members = {name: packed.read(name) for name in packed.namelist()}
+    content = json.loads(members["project.json"])
+    change(content)
+    with zipfile.ZipFile(path, "w") as packed:
+        for name, data in (members | {"project.json": json.dumps(content).encode()}).items():
+            packed.writestr(name, data)
+    return path
+
+
+@pytest.fixture
+def saved(tmp_path):
+    """The path of a project of two layers with a handle each, without any clock."""
+    document = two_layers()
+    save_project(tmp_path / "two.lissom", document)
+    return tmp_path / "two.lissom"
+
+
+def two_layers():
+    document = handle_commands.add_handle(0, CENTRE)(disc_document())
+    return layer_commands.duplicate_figure(0)(document)
+
+
+NOT_READ_BACK = (
+    (project_file, "MOST_VALUES", "holds more values than any project, which has 3"),
+    (project_file, "LARGEST_JSON", "project.json is too large"),
+    (project_file, "DEEPEST", "nested deeper than 3 levels"),
+    (archive, "MOST_MEMBERS", "more than the 3 of any project"),
+)
+
+
+@pytest.mark.parametrize(("module", "limit", "told"), NOT_READ_BACK)
+def test_save_is_refused_when_the_file_would_not_open(monkeypatch, saved, module, limit, told):
+    before, tmp_path = saved.read_bytes(), saved.parent
+    monkeypatch.setattr(module, limit, 3)
+    with pytest.raises(LissomError, match=f"could not open it again: .*{told}"):
+        save_project(saved, clocked_document())
+    assert saved.read_bytes() == before
+    assert [*tmp_path.iterdir()] == [saved]
+
+
+def test_autosave_keeps_earlier_work_when_newer_is_refused(monkeypatch, tmp_path):
+    own = Autosave(tmp_path)
+    own.write(disc_document(), Origin("a", None))
+    with monkeypatch.context() as patched:
+        patched.setattr(project_file, "MOST_VALUES", 10)
+        with pytest.raises(LissomError, match="could not open it again"):
+            own.write(clocked_document(), Origin("b", None))
+    (kept,) = tmp_path.glob("unsaved-*.lissom")
+    document, origin = load_leftover(kept)
+    assert origin.name == "a"
+    assert not differences(document, disc_document())
+    own.forget()
+
+
+def test_arrays_are_not_packed_when_they_would_be_refused(monkeypatch, saved):
+    packed = saved.stat().st_size
+    monkeypatch.setattr(archive, "MOST_UNPACKED", 1_000)
+    save_project(saved, two_layers())
+    assert saved.stat().st_size > packed
+    assert not differences(load_project(saved), two_layers())
+
+
+def test_a_pose_beyond_all_pixels_is_refused():
+    figure = disc_document().figures[0]
+    with pytest.raises(LissomError, match="coefficients of a pose"):
+        far_pose(figure, 2 * LARGEST_COEFFICIENT)
+
+
+KNOWN = {
+    "motion": "breathe",
+    "kind": "anything",
+    "joints": {"top": 0},
+    "facing": 1,
+    "first": 0,
+    "start": 0,
+    "last": 8,
+    "rounds": 1,
+    "digest": "",
+    "parameters": {
+        "speed": 1.0,
+        "size": 1.0,
+        "energy": 1.0,
+        "start": 0.0,
+        "mirrored": False,
+        "travel": False,
+    },
+}
+BETWEEN = KNOWN | {"first": 8, "start": 8, "last": 10}
+UNKNOWN_MOTIONS = (
+    (BETWEEN | {"motion": "nosuch"}, "there is no motion 'nosuch'"),
+    (BETWEEN | {"kind": "biped-side"}, "a motion of 'anything', and not of 'biped-side'"),
+    (BETWEEN | {"motion": "wave", "kind": "biped-side"}, "has no joint 'top'"),
+    (BETWEEN | {"joints": {"top": 7}}, "is the handle 7, which is not there"),
+    (BETWEEN | {"first": -1}, "A motion goes from a frame to a later one"),
+    (BETWEEN | {"last": LAST_FRAME + 1}, "A motion goes from a frame to a later one"),
+    (BETWEEN | {"rounds": 10**30}, "A motion is there once to 1,000 times"),
+    (BETWEEN | {"parameters": {"speed": 1e300}}, "lacks the field 'size'"),
+    ({"later": [1, 2.5, None, "x"]}, "lacks the field 'motion'"),
+    ("hop", "must be an object"),
+)
+
+
+@pytest.mark.parametrize(("motion", "reason"), UNKNOWN_MOTIONS)
+def test_motion_is_kept_and_told_when_it_is_not_known(saved, motion, reason):
+    later = KNOWN | {"first": 10, "start": 10, "last": 20}
+    with_content(saved, lambda c: c["figures"][0].update(motions=[KNOWN, motion, later]))
+    document = load_project(saved)
+    figure = document.figures[0]
+    assert [each.first for each in figure.motions] == [0, 10]
+    (notice,) = motion_notices(document)
+    assert figure.name in notice
+    assert reason in notice
+    renamed = layer_commands.rename_figure(figure.id, "other")(document)
+    save_project(saved, renamed)
+    assert read_content(saved)["figures"][0]["motions"] == [KNOWN, motion, later]
+
+
+def test_motion_is_not_shown_when_it_begins_in_another(saved):
+    with_content(saved, lambda c: c["figures"][0].update(motions=[KNOWN, KNOWN]))
+    (figure, _) = load_project(saved).figures
+    assert (len(figure.motions), len(figure.unread_motions)) == (1, 1)
+
+
+def test_motion_keeps_its_other_joints_when_a_handle_goes():
+    document = handle_commands.add_handle(0, CENTRE + 9)(two_layers())
+    motion = replace(BREATHE, joints={"top": 0, "foot": 1})
+    figure = replace(document.figure(0), motions=(motion,))
+    left = handle_commands.remove_handles(0, {0})(document.with_figure(figure))
+    assert left.figure(0).motions[0].joints == {"foot": 1}
+
+
+REFUSED = (
+    (lambda c: c.update(fps=0.01), "speed is from 1/60 to 1,000 frames"),
+    (lambda c: c.update(fps=5e-324), "speed is from 1/60 to 1,000 frames"),
+    (lambda c: c.update(fps=1000.1), "speed is from 1/60 to 1,000 frames"),
+    (lambda c: c["figures"][0].update(switches=[[-1, True]]), "frame from 0 to 999,999, not at -1"),
+    (lambda c: c["figures"][0].update(switches=[[10**6, True]]), "frame from 0 to 999,999"),
+    (lambda c: c["figures"][0].update(id=LARGEST_ID + 1), "lacks figures/2147483648"),
+    (lambda c: c["figures"][0].update(next_handle=2**31), "id of the next handle is 0 to"),
+    (lambda c: c["figures"][0]["handles"][0].update(id=10**30), "id of a handle is 0 to"),
+    (
+        lambda c: c.update(choices=[{"name": "{", "figures": [0, 1], "turns": [[10**6, 0]]}]),
+        "frame from 0 to 999,999",
+    ),
+    (
+        lambda c: c.update(choices=[{"name": "{", "figures": [0, 0], "turns": []}]),
+        "A choice has the layer 0 twice",
+    ),
+    (
+        lambda c: c["figures"][0].update(cycles=[{"first": -2, "last": 2, "until": None}]),
+        "frame from 0 to 999,999, not at -2",
+    ),
+    (
+        lambda c: c.update(pairs=[[f"a{i}", f"b{i}"] for i in range(MOST_PAIRS + 1)]),
+        "at most 1,000 pairs, not 1,001",
+    ),
+    (
+        lambda c: c["figures"][0].update(
+            cycles=[
+                {"first": 2 * i, "last": 2 * i + 1, "until": 2 * i + 1}
+                for i in range(MOST_CYCLES + 1)
+            ]
+        ),
+        "at most 1,000 stretches that repeat, not 1,001",
+    ),
+)
+
+
+@pytest.mark.parametrize(("change", "message"), REFUSED)
+def test_project_is_refused_when_a_value_is_out_of_range(saved, change, message):
+    with pytest.raises(LissomError, match=message):
+        load_project(with_content(saved, change))
+
+
+def test_changes_are_refused_when_they_repeat_too_often():
+    document = two_layers()
+    figure = document.figure(0)
+    cycles = (Cycle(first=0, last=2),)
+    figure = layer_commands.switch_at(0, 1, visible=False)(document).figure(0)
+    repeating = document.with_figure(replace(figure, cycles=cycles))
+    count = MOST_CHANGES - 3
+    assert scene_commands.set_frames(FrameRange(0, 2 * count // 3))(repeating)
+    with pytest.raises(LissomError, match=f"more than {MOST_CHANGES:,}; let the repeats end"):
+        scene_commands.set_frames(FrameRange(0, LAST_FRAME))(repeating)
+
+
+def calls_of(work):
+    """Count the calls that something makes, of Python's and of C's functions."""
+    count = 0
+
+    def listen(_, event, __):
+        nonlocal count
+        count += event.endswith("call")
+
+    sys.setprofile(listen)
+    try:
+        work()
+    finally:
+        sys.setprofile(None)
+    return count
+
+
+@pytest.mark.parametrize("kind", FILLINGS)
+def test_opening_works_twice_as_much_for_twice_as_much(saved, kind):
+    content = read_content(saved)
+    counts = []
+    for size in (0, 4_000, 8_000):
+
+        def fill(changed, size=size):
+            changed.clear()
+            changed.update(json.loads(json.dumps(content)) | {"frames": [0, LAST_FRAME]})
+            if size:
+                FILLINGS[kind](changed, size)
+
+        with_content(saved, fill)
+        counts.append(calls_of(lambda: try_to_open(saved)))
+    none, some, more = counts
+    assert more - none < 2.5 * (some - none) + 500
+
+
+def try_to_open(path):
+    with suppress(LissomError):
+        load_project(path)

@@ -1,0 +1,51 @@
+import pytest
+
+from app.errors import (
+    LONGEST_MESSAGE,
+    LONGEST_SHOWN,
+    MOST_SHOWN,
+    Told,
+    few_notices,
+    listed,
+    printable,
+    shortened,
+    shown_message,
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("\x1b[31mred\x07", r"\x1b[31mred\x07"),
+        ("a\r\nb\tc", r"a\r\nb\tc"),
+        ("a\u202eb\u2028c\x9b", r"a\u202eb\u2028c\x9b"),
+        ("Zoë 走 \N{WOMAN}\u200d\N{ROCKET}\u00a0x", "Zoë 走 \N{WOMAN}\u200d\N{ROCKET}\u00a0x"),
+        ("a\udcff", "a\N{REPLACEMENT CHARACTER}"),
+    ],
+)
+def test_control_characters_are_shown_as_escapes(text, shown):
+    assert printable(text) == shown
+
+
+def test_texts_of_others_are_cut_where_they_are_long():
+    assert shortened("x" * LONGEST_SHOWN) == "x" * LONGEST_SHOWN
+    for long in ("x" * 121, "\x1b" * 100):
+        assert len(shortened(long)) == LONGEST_SHOWN
+        assert shortened(long).endswith("…")
+
+
+def test_a_message_is_one_line_whose_long_parts_are_cut():
+    shown = shown_message(f"the layer {'x' * 900!r} is\nin two choices; the user's layer's name")
+    assert shown == f"the layer '{'x' * 119}…' is in two choices; the user's layer's name"
+    assert len(shown_message("word " * 5000)) == LONGEST_MESSAGE + 1
+
+
+def test_many_names_and_notices_are_counted():
+    names = [f"n{number}" for number in range(2_000)]
+    assert listed(names[:MOST_SHOWN]) == ", ".join(names[:MOST_SHOWN])
+    assert listed(names).endswith("n9 and 1,990 more")
+    assert few_notices(names) == [*names[:MOST_SHOWN], "and 1,990 more"]
+    told = Told()
+    for name in ("a\x1b", *names):
+        told.lose(name, "is lost")
+    assert told.summary.losses == (rf"a\x1b, {', '.join(names[:9])} and 1,991 more: is lost",)

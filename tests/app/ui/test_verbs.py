@@ -1,0 +1,73 @@
+"""Every verb of the actions' table works on whatever there is, or says why not."""
+
+from contextlib import suppress
+
+import numpy as np
+import pytest
+from harness import own
+from invariants import check_invariants
+from projects import project_of
+from scenes import PICTURE, random_scene, random_state
+
+from app.editor.actions import saving
+from app.errors import EXPECTED_ERRORS
+from app.ui.shortcuts import MENUS
+
+VERBS = {name: binding for menu in MENUS.values() for name, binding in menu.items()}
+TABS = ("Handle", "Layers", "Poses", "Motion", "Deform", "Material", "Mesh", "Export")
+DRAWN = 3  # verbs of each document after which the window is drawn
+SEEDS = (*range(4), *(pytest.param(seed, marks=pytest.mark.long) for seed in range(4, 50)))
+EACH = 4  # documents of a seed
+CLOSES = {"close", "quit"}
+
+
+@pytest.fixture
+def alone(monkeypatch):
+    """Nothing beside the window is opened."""
+    monkeypatch.setattr("webbrowser.open", lambda *_: True)
+
+
+def put(window, project, rng):
+    """Show a copy of a project in a random state, with nothing under way."""
+    session = window.session
+    for kind in session.jobs.kinds:
+        session.jobs.drop(kind)
+    session.dialog = session.export = session.guide = session.pointer = None
+    session.quitting, session.toasts = False, []
+    saving.put_project(session, own(project))
+    random_state(rng, session, session.project)
+
+
+def apply(session, name):
+    """Do what a menu entry does, unless it says why not."""
+    with suppress(*EXPECTED_ERRORS):
+        if VERBS[name].is_possible(session):
+            VERBS[name].title(session)
+            VERBS[name].action.apply(session)
+
+
+@pytest.mark.usefixtures("alone")
+@pytest.mark.parametrize("seed", SEEDS)
+def test_verbs_work_on_random_documents_or_say_why_not(window, seed):
+    rng, session = np.random.default_rng(seed), window.session
+    with session.jobs.held():
+        for number in range(EACH):
+            project = project_of(random_scene(rng), PICTURE, "scene")
+            window.show_tab(TABS[rng.integers(len(TABS))])
+            drawn = set(rng.choice(list(VERBS), DRAWN))
+            for name in VERBS:
+                put(window, project, rng)
+                told = seed, number, name
+                try:
+                    apply(session, name)
+                    if name in drawn:
+                        window.frames()
+                except Exception as error:
+                    raise AssertionError(told) from error
+                surprises = [toast.details for toast in session.toasts if toast.details]
+                assert not surprises, (told, surprises[0])
+                if name not in CLOSES:
+                    check_invariants(session)
+            session.quitting = False
+    saving.put_project(session, None)
+    session.quitting, session.dialog = False, None

@@ -1,0 +1,198 @@
+"""Opening projects: 1 MB of each kind of thing that a project holds, by the clock."""
+
+import json
+import tempfile
+import time
+import zipfile
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from app.document import (
+    alternates,
+    clip_of,
+    composed,
+    exported_frames,
+    fronts_at,
+    layer_tree,
+    sights_of,
+)
+from app.errors import LissomError
+from app.storage import load_project, sample_images
+from tests.bench.table import Row, Table
+
+SAMPLE = "giraffe.lissom"
+Content = dict[str, Any]
+# Changes a project's JSON so that it holds so many bytes of something.
+Filling = Callable[[Content, int], None]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Extent:
+    """How much is measured."""
+
+    size: int = 1_000_000  # bytes of each kind
+
+
+BRIEF = Extent(size=3_000)
+
+
+def tables(extent: Extent) -> Iterator[Table]:
+    """Open projects that hold much of one kind, and ask what is shown of them first."""
+    members = _two_layers()
+    rows = []
+    with tempfile.TemporaryDirectory() as folder:
+        for name, fill in {"as it is": lambda _, __: None, **FILLINGS}.items():
+            content = json.loads(members["project.json"])
+            content["frames"] = [0, 999_999]
+            fill(content, extent.size)
+            path = Path(folder) / SAMPLE
+            _write(path, members | {"project.json": json.dumps(content).encode()})
+            rows.append(_opened(name, path))
+    yield Table(
+        title=f"Opening {SAMPLE}, twice in one scene, with {extent.size:,} bytes more",
+        rows=tuple(rows),
+    )
+
+
+def _two_layers() -> dict[str, bytes]:
+    """Return the members of a project with the sample twice."""
+    with zipfile.ZipFile(sample_images() / SAMPLE) as archive:
+        members = {name: archive.read(name) for name in archive.namelist()}
+    content = json.loads(members["project.json"])
+    (figure,) = content["figures"]
+    content["figures"].append(figure | {"id": 1, "name": "other"})
+    twice = {name.replace("figures/0/", "figures/1/"): each for name, each in members.items()}
+    return members | twice | {"project.json": json.dumps(content).encode()}
+
+
+def _write(path: Path, members: Mapping[str, bytes]) -> None:
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, data in members.items():
+            archive.writestr(name, data)
+
+
+def _opened(name: str, path: Path) -> Row:
+    """Open a project, and ask of its layers what a window asks first."""
+    begun, refusal = time.process_time(), ""
+    try:
+        document = load_project(path)
+    except LissomError as error:
+        _, _, refusal = str(error).partition(": ")
+    else:
+        layer_tree(document)
+        alternates(document)
+        composed(document, {}, document.frames.last)
+        exported_frames(document)
+        for figure in document.figures:
+            sights_of(document, figure)
+            fronts_at(clip_of(document, figure.id), document.frames.last)
+            document.carriers(figure.id, document.frames.last)
+    return Row(name=name, seconds=time.process_time() - begun, note=refusal[:90])
+
+
+def _many(size: int, make: Callable[[int], Any]) -> list[Any]:
+    """Return as many things as take so many bytes; they are made of numbers from 0 on."""
+    length = len(json.dumps(make(size // 60))) + 2
+    return [make(number) for number in range(max(2, size // length))]
+
+
+def _of_scene(name: str, make: Callable[[int], Any]) -> Filling:
+    return lambda content, size: content.update({name: _many(size, make)})
+
+
+def _of_layer(name: str, make: Callable[[int], Any]) -> Filling:
+    return lambda content, size: content["figures"][0].update({name: _many(size, make)})
+
+
+def _key(number: int, **own: Any) -> Content:
+    return {"frame": number, "easing": "linear", "passing": "through", **own}
+
+
+def _turns(content: Content, size: int) -> None:
+    turns = _many(size, lambda number: [number, number % 2])
+    content["choices"] = [{"name": "mouth", "figures": [0, 1], "turns": turns}]
+
+
+def _hang(content: Content, joints: list[Content]) -> None:
+    figure = content["figures"][0]
+    figure["anchor"] = figure["handles"][0]["position"]
+    figure["attachment"], *figure["handovers"] = joints
+
+
+def _joint(frame: int, to: int | None) -> Content:
+    return {"frame": frame, "to": to, "at": [0, 0], "turns": True, "rest": 0.0}
+
+
+def _joints(content: Content, size: int) -> None:
+    _hang(content, _many(size, lambda number: _joint(number, 1 - number % 2 or None)))
+
+
+def _circle(content: Content, size: int) -> None:
+    """Let two layers carry each other in turn, in 59,000 frames for 1 MB."""
+    _hang(content, [_joint(0, 1), _joint(1, None)])
+    first, second = content["figures"]
+    second |= {"anchor": first["anchor"], "attachment": _joint(1, 0)}
+    second["handovers"] = [_joint(2, None)]
+    repeat = {"first": 0, "last": 3, "until": None}
+    for each in content["figures"]:
+        each.update(keys=each["keys"][:1], cycles=[repeat])
+    content["frames"] = [0, 59 * size // 1_000]
+
+
+def _track(content: Content, size: int) -> None:
+    figure = content["figures"][0]
+    keys = _many(size, lambda number: _key(number, place=[0, 0]))
+    figure["tracks"] = [{"handles": [figure["handles"][0]["id"]], "keys": keys}]
+
+
+def _repeats(content: Content, size: int) -> None:
+    """Let a layer come and go in every other frame."""
+    figure = content["figures"][0]
+    repeat = {"first": 0, "last": 2, "until": None}
+    figure |= {"keys": figure["keys"][:1], "cycles": [repeat]}
+    figure["switches"] = [[0, True], [1, False]]
+    content["frames"] = [0, 59 * size // 1_000]
+
+
+MOTION = {
+    "motion": "breathe",
+    "kind": "anything",
+    "joints": {},
+    "facing": 1,
+    "rounds": 1,
+    "digest": "",
+    "parameters": {
+        "speed": 1.0,
+        "size": 1.0,
+        "energy": 1.0,
+        "start": 0.0,
+        "mirrored": False,
+        "travel": False,
+    },
+}
+FILLINGS: dict[str, Filling] = {
+    "pairs": _of_scene("pairs", lambda number: [f"a{number}", f"b{number}"]),
+    "markers": _of_scene("markers", lambda number: {"frame": number, "name": "beat"}),
+    "groups": _of_scene("groups", lambda number: {"name": f"mouth {number}"}),
+    "camera keys": _of_scene("camera", lambda n: _key(n, centre=[0, 0], zoom=1.0, turn=0.0)),
+    "turns of a switch": _turns,
+    "fields not known": _of_scene("later", lambda number: {"value": number}),
+    "visibility keys": _of_layer("switches", lambda number: [number, number % 2 == 0]),
+    "movement keys": _of_layer("movement", lambda n: _key(n, shift=[0, 0], turn=0.0)),
+    "opacity keys": _of_layer("opacities", lambda number: _key(number, opacity=0.5)),
+    "draw order keys": _of_layer(
+        "placings", lambda number: {"frame": number, "beside": 1, "in_front": number % 2 == 0}
+    ),
+    "track keys": _track,
+    "joints": _joints,
+    "joints in a circle that repeat": _circle,
+    "visibility keys that repeat": _repeats,
+    "stretches that repeat": _of_layer(
+        "cycles", lambda n: {"first": 100 + 4 * n, "last": 102 + 4 * n, "until": 103 + 4 * n}
+    ),
+    "motions": _of_layer(
+        "motions", lambda n: MOTION | {"first": 3 * n, "start": 3 * n, "last": 3 * n + 2}
+    ),
+}

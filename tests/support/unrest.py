@@ -1,0 +1,55 @@
+"""What a window that does not come to rest waits for, in words."""
+
+from app.document import clip_of
+from app.editor import promises
+from app.editor.project import Project
+from app.editor.session import Session
+
+
+def unrest(session: Session) -> str:
+    """Tell which jobs are under way, what waits for which of them, and what is shown meanwhile."""
+    lines = [f"job: {kind.label!r} on {kind.lane!r}" for kind in session.jobs.kinds]
+    project = session.project
+    if project is None:
+        return "\n".join(lines)
+    lines += [f"on its way: {each.label!r} ({type(each).__name__})" for each in project.pending]
+    lines += [
+        f"pull: figure {pull.figure}, frame {pull.frame}, held {pull.is_held}, left {pull.is_left},"
+        f" settled {pull.is_settled}, in history {pull.is_in(project.history)}"
+        for pull in project.pulls
+    ]
+    lines += [f"waits until nothing is on its way: {each.what!r}" for each in project.afterwards]
+    if project.stale_figure is not None:
+        lines.append(f"waits for a mesh: {project.stale_figure.name!r}")
+    lines += _shown(project)
+    lines.append(f"settled: {promises.is_settled(project)}")
+    lines.append(f"failing: {sorted(session.failing)}")
+    lines += [f"message: {toast.text!r}" for toast in session.toasts]
+    return "\n".join(lines)
+
+
+def is_shown(session: Session) -> bool:
+    """Tell whether every layer shows what the document has."""
+    return session.project is not None and not _shown(session.project)
+
+
+def _shown(project: Project) -> list[str]:
+    lines = []
+    for identity, puppet in project.puppets.items():
+        clip, shown, store = clip_of(project.document, identity), puppet.shown, puppet.store
+        if shown is None:
+            lines.append(f"layer {clip.figure.name!r}: nothing is shown")
+        elif not shown.is_current or shown.clip != clip:
+            lines.append(
+                f"layer {clip.figure.name!r}: shows frame {shown.frame} of frames "
+                f"{shown.clip.frames.first} to {shown.clip.frames.last}, and the document has "
+                f"{clip.frames.first} to {clip.frames.last}; same clip {shown.clip == clip}, same "
+                f"figure {shown.clip.figure is clip.figure}, stand-in "
+                f"{type(shown.stand_in).__name__}, rough {shown.is_rough}, still "
+                f"{clip.figure.still}, mesh of its domain {store.mesh.source is clip.figure.domain}"
+                f", failed {[part for part in PARTS if store.has_failed(clip, part)]}"
+            )
+    return lines
+
+
+PARTS = ("frame", "in-betweens", "fine", "series")
