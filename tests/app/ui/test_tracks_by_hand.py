@@ -13,6 +13,7 @@ from app.document.commands import scene_commands, track_commands
 from app.document.timing import Track, TrackKey
 from app.editor.actions import editing, playback, posing, tracking
 from app.editor.actions.timing import tracks
+from app.editor.actions.tracking.solving import COMPLAINT
 from app.ui.bars.status import limit_of_pose
 from app.ui.viewport.marks import unreached
 from engine.errors import EngineError
@@ -489,8 +490,7 @@ def test_a_pose_elsewhere_comes_to_rest_where_frames_cannot_be_corrected(
     def broken(*_):
         raise EngineError("no way")
 
-    for name in ("_find",):
-        monkeypatch.setattr(f"app.motion.corrected_frames.{name}", broken)
+    monkeypatch.setattr("app.motion.corrected_frames._find", broken)
     keyed.chosen_track = None
     playback.scrub(window.session, LAST)
     place = complex(keyed.figure.key(LAST).pose.targets[END].position)
@@ -498,4 +498,4 @@ def test_a_pose_elsewhere_comes_to_rest_where_frames_cannot_be_corrected(
     posing.let_go(window.session)
     playback.scrub(window.session, EARLIER)
     window.until(lambda: not keyed.pending)
-    assert any("held still, or on their tracks" in toast.text for toast in window.session.toasts)
+    assert any(COMPLAINT in toast.text for toast in window.session.toasts)

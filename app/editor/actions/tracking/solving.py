@@ -10,7 +10,7 @@ from app.editor.session import Session
 from app.editor.work import Job, Kind, Puppet
 from app.motion import CorrectedFrames, FoundCorrections
 
-COMPLAINT = "The handles cannot be held still, or on their tracks"
+COMPLAINT = "The handles cannot follow their tracks"
 CORRECTING = Kind("Corrections", COMPLAINT)
 FOLLOWING = Kind("FrameCorrection", COMPLAINT, "hand")
 # What the tracks of handles that a hand may carry are relative to.
