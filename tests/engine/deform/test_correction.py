@@ -184,6 +184,21 @@ def test_periods_around_holes_are_closed():
     assert found.misses.max() < 1e-9
 
 
+def test_a_stiff_part_changes_less():
+    known = corrector("bar")
+    right = known.boundary.points.real > 0
+    stiff = known.boundary.stiffened_at_samples(np.where(right, 30.0, 1.0))
+    other = corrector_of(stiff, 0.05 + 0.02j, known.points)
+    moves, changes = moves_of(known.points, 0.1j), []
+    for each in (known, other):
+        targets = Targets(moves, np.ones(3), is_anchored=False)
+        found = solve(each, bent(each.paths.nodes), targets)
+        assert found.misses.max() < 1e-9
+        stretch = each.variables.at_samples.h_of(found.x).real
+        changes.append(np.abs(stretch[right]).mean() / np.abs(stretch[~right]).mean())
+    assert changes[1] < 0.6 * changes[0]
+
+
 def test_nothing_asked_changes_nothing():
     known = corrector("bar")
     moves = np.zeros(3, dtype=np.complex128)

@@ -1,8 +1,8 @@
 """The unknowns of corrections: h and q as sums of few functions, so that their size is |x|.
 
-    |x|² = mean over ∂Ω of (Re h)² + |q|² + ε |h|² + ε' L² (|h'|² + |q'|²).
+    |x|² = mean over ∂Ω of s ((Re h)² + |q|² + ε |h|² + ε' L² (|h'|² + |q'|²)),
 
-Four times it is, to second order, the symmetric Dirichlet energy of what a correction changes.
+s the stiffness. Four times it is, to second order, the symmetric Dirichlet energy of what a correction changes.
 """
 
 from dataclasses import dataclass
@@ -64,10 +64,10 @@ class Variables:
     @classmethod
     def of(cls, boundary: Boundary, nodes: Complexes) -> Self:
         """Make the functions of a domain orthonormal in the size of corrections."""
-        span, lengths = boundary.span, boundary.lengths
+        span, weights = boundary.span, boundary.weights
         count = len(span.vertices)  # logarithms are not single-valued functions
         samples = span.coordinates(boundary.points)[:, :count]
-        root = np.sqrt(lengths)[:, None]
+        root = np.sqrt(weights)[:, None]
         _, sizes, directions = scipy.linalg.svd(root * samples, full_matrices=False)
         kept = sizes > RANK * sizes[0]
         own = directions[kept].conj().T / sizes[kept]
