@@ -230,7 +230,7 @@ def test_notices_tell_what_the_person_should_know(project, tmp_path, capsys):
         (["--out", "frames", "--size", "0x10"], "1 to 65,535"),
         (["--out", "frames", "--size", "65535x65535"], "too large"),
         (["--out", "frames", "--background", "red"], "#rrggbb"),
-        (["--out", "frames", "--fps", "0"], "above 0"),
+        (["--out", "frames", "--fps", "0"], "from 1/60 to 1,000"),
         (["--out", "frames", "--fps", "fast"], "fast"),
         (["--out", "frames", "--format", "avi"], "spritesheet"),
         (["--out", "frames", "--framing", "wide"], "canvas"),

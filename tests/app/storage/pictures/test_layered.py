@@ -17,7 +17,6 @@ from app.errors import LissomError
 from app.storage.pictures import Names, read_openraster, read_photoshop
 from app.storage.pictures.layered import GROUPS_DEEP, LONGEST_NAME, MOST_GROUPS
 from app.storage.pictures.openraster import DAMAGED_STACK
-from app.storage.project.archive import MEMBER_TOO_LARGE
 
 HEAD = '<layer name="head" src="data/0.png" x="10" y="20"/>'
 BODY = '<layer name="body" src="data/1.png" x="5" y="40" opacity="0.5" visibility="hidden"/>'
@@ -163,7 +162,7 @@ def test_a_member_that_would_unpack_to_too_much_is_refused_before_it_is_unpacked
         archive.writestr("mimetype", "image/openraster")
         archive.writestr("stack.xml", f'<image w="9" h="9"><stack>{HEAD}</stack></image>')
         archive.writestr("data/0.png", bytes(10_000_000))
-    with pytest.raises(LissomError, match=says(MEMBER_TOO_LARGE, name="data/0.png")):
+    with pytest.raises(LissomError, match="data/0.png is too large"):
         read_openraster(file.getvalue())
 
 
