@@ -162,7 +162,7 @@ def test_a_member_that_would_unpack_to_too_much_is_refused_before_it_is_unpacked
         archive.writestr("mimetype", "image/openraster")
         archive.writestr("stack.xml", f'<image w="9" h="9"><stack>{HEAD}</stack></image>')
         archive.writestr("data/0.png", bytes(10_000_000))
-    with pytest.raises(LissomError, match="data/0.png is too large"):
+    with pytest.raises(LissomError, match=r"data/0\.png is too large"):
         read_openraster(file.getvalue())
 
 
