@@ -29,9 +29,10 @@ from engine.interpolation import (
 
 BESIDE = 0.03  # of the diagonal: handles nearer to an anchor that stays give way
 FIRM = 1e-6  # of full firmness: what a handle far from the anchor may lack
-# The one-sided difference of fourth order: in time, in-betweens are analytic from key to key.
+# The one-sided difference of fourth order: in time, in-betweens are analytic between keys. Around
+# holes they may jump at the key itself, where nothing is looked at.
 STEP = 2e-3
-FORWARD = (-25 / 12, 4.0, -3.0, 4 / 3, -1 / 4)
+FORWARD = (-77 / 12, 107 / 6, -39 / 2, 61 / 6, -25 / 12)
 SLOWEST = 1e-9  # pace below which a segment begins at rest
 
 
@@ -126,7 +127,7 @@ class AutoPins:
     def _velocity(self, number: int, side: int, sampler: PoseSampler) -> Complexes:
         """Return how fast points leave a segment's first key, or reach its second one, by time."""
         base, sign = self._base(number, sampler), -1.0 if side else 1.0
-        steps = [base.frame(side + sign * i * STEP).positions for i in range(len(FORWARD))]
+        steps = [base.frame(side + sign * (i + 1) * STEP).positions for i in range(len(FORWARD))]
         weights = sign / STEP * np.array(FORWARD, dtype=np.complex128)
         velocity: Complexes = weights @ np.array(steps)
         return velocity

@@ -9,7 +9,15 @@ from holed_shapes import ring
 from numpy.testing import assert_allclose
 from scipy.optimize import minimize
 
-from engine.deform.relative.correction import BaseFrame, LimitWalls, Targets, corrector_of, solve
+from engine.deform.relative.correction import (
+    BaseFrame,
+    Targets,
+    corrector_of,
+    extremes,
+    largest_share,
+    limits_of,
+    solve,
+)
 from engine.deform.relative.correction.frame import CorrectedFrame
 from engine.deform.relative.correction.paths import PointPaths
 from engine.maps import Boundary, Bounds
@@ -80,7 +88,6 @@ def test_points_come_to_their_targets(name, sign):
     found = solve(known, base, Targets(moves, np.ones(len(moves)), is_anchored=False))
     assert np.abs(lack_of(known, base, found, moves)).max() < 1e-10 * known.boundary.size
     assert found.misses.max() < 1e-10 * known.boundary.size
-    assert not found.is_held_back
     assert found.steps <= 5
 
 
@@ -217,28 +224,36 @@ def test_the_same_is_found_elsewhere_and_turned():
         fz=factor * base.fz, g=factor.conjugate() * base.g, by=factor.conjugate() * base.by
     )
     other = solve(known, turned, Targets(factor * moves, np.ones(6), is_anchored=False))
-    assert_allclose(np.abs(other.x @ other.x), np.abs(found.x @ found.x), rtol=1e-8)
-    assert other.shift == pytest.approx(factor * found.shift, abs=1e-9)
+    assert_allclose(np.abs(other.x @ other.x), np.abs(found.x @ found.x), rtol=1e-6)
+    assert other.shift == pytest.approx(factor * found.shift, abs=1e-7)
 
 
-def test_limits_are_kept_out_of_reach():
+def test_a_share_of_a_correction_keeps_the_limits():
     known, bounds = corrector("bar"), Bounds(k=0.3, sigma_a=1.3, sigma_b=0.75)
     base, samples = (bent(z, amount=0.02) for z in (known.paths.nodes, known.boundary.points))
-    walls = LimitWalls.of(known, samples, bounds)
-    moves = moves_of(known.points, 1.5j)
-    found = solve(known, base, Targets(moves, np.ones(3), is_anchored=False), walls)
-    assert found.is_held_back
-    conformal, own, factor = samples.corrected(known.variables.at_samples, found.x)
-    a = np.abs(conformal)
-    b = np.abs(own + factor * known.variables.at_samples.q_of(found.x))
-    assert (a + b).max() <= bounds.sigma_a
-    assert (a - b).min() >= bounds.sigma_b
-    assert (b / a).max() <= bounds.k
-    # It goes a good part of the way, and within reach nothing is held back.
-    assert found.misses[1] < 1.4
-    near = solve(known, base, Targets(moves / 100, np.ones(3), is_anchored=False), walls)
-    assert not near.is_held_back
-    assert near.misses.max() < 1e-9
+    moves = moves_of(known.points, 0.9j)
+    found = solve(known, base, Targets(moves, np.ones(3), is_anchored=False))
+    limits = limits_of(bounds)
+    share = largest_share(known, samples, found.x, limits)
+    assert 0.05 < share < 0.95
+
+    def moduli(s):
+        values = known.variables.at_samples
+        conformal, own, factor = samples.corrected(values, s * found.x)
+        return np.abs(conformal), np.abs(own + factor * values.q_of(s * found.x))
+
+    def are_kept(a, b):
+        k = (b / a).max() <= bounds.k
+        return k and (a + b).max() <= bounds.sigma_a and (a - b).min() >= bounds.sigma_b
+
+    assert are_kept(*moduli(share))
+    assert not are_kept(*moduli(share + 0.03))
+    # Within the limits all of it is taken; where the base is beyond, little that goes farther.
+    assert largest_share(known, samples, 0.1 * share * found.x, limits) == 1.0
+    tight = limits_of(Bounds(k=0.001, sigma_a=1.3, sigma_b=0.75))
+    assert largest_share(known, samples, found.x, tight) < 0.2 * share
+    own = extremes(known, samples, found.x)
+    assert largest_share(known, samples, found.x, limits_of(bounds, own)) == 1.0
 
 
 def test_a_start_changes_nothing_but_the_steps():

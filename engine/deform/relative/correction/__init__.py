@@ -11,7 +11,11 @@ from engine.deform.relative.correction.corrector import (
     corrector_of as corrector_of,
 )
 from engine.deform.relative.correction.frame import BaseFrame as BaseFrame
-from engine.deform.relative.correction.limits import LimitWalls as LimitWalls
+from engine.deform.relative.correction.limits import (
+    extremes as extremes,
+    largest_share as largest_share,
+    limits_of as limits_of,
+)
 from engine.deform.relative.correction.solver import (
     PointSolution as PointSolution,
     Targets as Targets,

@@ -2,7 +2,8 @@
 
     |x|² = mean over ∂Ω of s ((Re h)² + |q|² + ε |h|² + ε' L² (|h'|² + |q'|²)),
 
-s the stiffness. Four times it is, to second order, the symmetric Dirichlet energy of what a correction changes.
+s the stiffness. Four times it is, to second order, the symmetric Dirichlet energy of what a
+correction changes.
 """
 
 from dataclasses import dataclass

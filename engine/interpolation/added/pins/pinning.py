@@ -9,9 +9,11 @@ import numpy as np
 from engine.arrays import Complexes, Floats, freeze
 from engine.deform.relative.correction import (
     BaseFrame,
-    LimitWalls,
     PointCorrector,
     PointSolution,
+    extremes,
+    largest_share,
+    limits_of,
     solve,
 )
 from engine.interpolation.added.pins.targets import SegmentPins
@@ -21,7 +23,7 @@ from engine.maps import Bounds
 # Of the series and of what they leave out, where unknowns are about |h| and places over the size
 # of the domain: some thousandths of a pixel of a thousand.
 TOLERANCE, LEFT_OUT = 5e-6, 1e-6
-SHORTEST = 2.0**-5  # pieces of time are not halved below this
+SHORTEST = 2.0**-3  # pieces of time are not halved below this
 DEGREES = (8, 16)
 
 
@@ -58,10 +60,8 @@ class PinSeries:
         Whether K is L² / F, with L the exponential of the keyframes' blended logarithms; else L.
     largest : float
         The largest |h| or |q| on the boundary at the times that were looked at.
-    miss : float
-        The farthest that a handle is from where it is wanted, at these times.
-    is_held_back : bool
-        Whether a limit was reached.
+    share : float
+        Which part of what the handles ask for keeps the limits; 1 where all of it does.
     """
 
     series: PiecewiseSeries
@@ -71,8 +71,7 @@ class PinSeries:
     sign: int
     is_squared: bool
     largest: float
-    miss: float
-    is_held_back: bool
+    share: float
 
     def shift(self, times: Floats) -> Complexes:
         """Return the translation at times (t,)."""
@@ -99,20 +98,24 @@ def pin(
         Returns the base at a time in [0, 1].
     pins : SegmentPins
     bounds : Bounds
-        Limits that are kept at the samples, as far as the base keeps them.
+        Limits that are kept at the samples, or those that the keyframes have beyond them.
     sign, is_squared
         As in `PinSeries`.
     """
     known, size = corrector.variables, corrector.boundary.size
     solved: dict[float, PointSolution] = {}
+    nothing, share = np.zeros(2 * known.count), 1.0
+    ends = [extremes(corrector, base_at(time).samples, nothing) for time in (0.0, 1.0)]
+    limits = limits_of(bounds, *ends)
 
     def at(time: float) -> Floats:
+        nonlocal share
         base = base_at(time)
         targets = pins.targets(time, base.places, base.anchor)
         near = min(solved, key=lambda other: abs(other - time), default=None)
-        walls = LimitWalls.of(corrector, base.samples, bounds)
-        found = solve(corrector, base.nodes, targets, walls, None if near is None else solved[near])
-        solved[time] = found
+        start = None if near is None else solved[near]
+        solved[time] = found = solve(corrector, base.nodes, targets, start)
+        share = min(share, largest_share(corrector, base.samples, found.x, limits))
         return np.append(found.x, [found.shift.real / size, found.shift.imag / size])
 
     def values(times: Floats) -> Floats:
@@ -121,6 +124,8 @@ def pin(
     forms, series = separate(
         values, tolerance=TOLERANCE, left_out=LEFT_OUT, shortest=SHORTEST, degrees=DEGREES
     )
+    # One share for all of the segment: a limit that is reached for a moment makes no jolt.
+    forms *= share
     count = known.count
     found = tuple(solved.values())
     return PinSeries(
@@ -130,9 +135,8 @@ def pin(
         shifts=freeze(size * (forms[-2] + 1j * forms[-1])),
         sign=sign,
         is_squared=is_squared,
-        largest=max(_largest(corrector, each.x) for each in found),
-        miss=max(float((each.misses * (pins.firmness == 1.0)).max(initial=0.0)) for each in found),
-        is_held_back=any(each.is_held_back for each in found),
+        largest=share * max(_largest(corrector, each.x) for each in found),
+        share=share,
     )
 
 
