@@ -16,10 +16,8 @@ from engine.maps import Boundary, Certificate, certify
 
 TIMES = 65  # in each interval, at which in-betweens are measured
 CLOSER = 15  # more, between the neighbours of each worst one
-# Of the larger k, σ_a or σ_b: what the quadrature and the integral equation may add.
-ACCURACY = 1e-6
-# By how much proven values may be beyond the limits and count as within: of k, and as a share of
-# σ_a and of σ_b. By as much enclosures are wider than what they enclose.
+# By how much values may be beyond the limits and count as within: of k, and as a share of σ_a and of
+# σ_b. By as much enclosures are wider than what they enclose.
 BEYOND = 0.002
 
 
@@ -84,17 +82,11 @@ class IntervalReport:
         """What is known of the interval."""
         if self.may_fold or not self.is_within:
             return Verdict.OVER
-        limits, excess = self.limits, self.excess
-        is_proven = (
-            excess.k <= BEYOND
-            and excess.sigma_a <= BEYOND * limits.sigma_a
-            and excess.sigma_b <= BEYOND * limits.sigma_b
-        )
-        return Verdict.PROVEN if is_proven else Verdict.MEASURED
+        return Verdict.PROVEN if _are_within(self._proven, self.limits) else Verdict.MEASURED
 
     @property
     def is_within(self) -> bool:
-        """Whether the in-betweens as measured keep the limits, but for rounding."""
+        """Whether the in-betweens as measured keep the limits."""
         return _are_within(self.reached, self.limits)
 
 
@@ -136,11 +128,11 @@ class Report:
 
 
 def _are_within(reached: Extremes, limits: Extremes) -> bool:
-    """Tell whether measured extremes keep limits, but for rounding."""
+    """Tell whether extremes keep limits; of whatever kind they are, with one tolerance."""
     return (
-        reached.k <= limits.k + ACCURACY
-        and reached.sigma_a <= limits.sigma_a * (1 + ACCURACY)
-        and reached.sigma_b >= limits.sigma_b * (1 - ACCURACY)
+        reached.k <= limits.k + BEYOND
+        and reached.sigma_a <= limits.sigma_a * (1 + BEYOND)
+        and reached.sigma_b >= limits.sigma_b * (1 - BEYOND)
     )
 
 

@@ -23,9 +23,9 @@ In-betweens are proven with the handles that stay between keys. Frames in which 
 move handles are solved one by one. Each is proven, with the metric variant only measured, at some
 thousand points of the outline; halfway between two of them the drawing is measured. Handles that
 cannot reach their tracks are named, with frames and pixels.
-Proven values are enclosures, and count as within up to .002 (k) or .2 % (both sigmas) beyond. Where
-a key is held, nothing but that key counts until the next one. Around holes the metric variant meets
-its Equation (13) by least squares only.
+Proven and measured values count as within up to .002 (k) or .2 % (both sigmas) beyond. Where a key
+is held, nothing but that key counts until the next one. Around holes the metric variant meets its
+Equation (13) by least squares only.
 
 examples:
   lissom certify wave.lissom

@@ -21,7 +21,7 @@ from app.document import (
     UnreadMotion,
     new_figure,
 )
-from app.reports import IntervalReport, Report, certification
+from app.reports import CorrectedReport, IntervalReport, Report, certification
 from app.storage import load_project, save_project
 from engine.interpolation import Proof
 from engine.maps import Certificate
@@ -149,6 +149,28 @@ def interval(k=0.5, sigma_a=2.0, sigma_b=0.5, *, reached=(0.4, 1.8, 0.6), unsett
 
 
 @pytest.mark.parametrize(
+    ("reached", "proven", "verdict"),
+    [
+        ((0.5015, 2.003, 0.4993), 4, "proven"),
+        ((0.5015, 2.003, 0.4993), 3, "measured"),
+        ((0.503, 1.8, 0.6), 4, "over"),
+    ],
+)
+def test_tracked_frames_are_judged_with_the_same_tolerance(reached, proven, verdict):
+    limits = Extremes(0.5, 2.0, 0.5)
+    tracked = CorrectedReport(
+        frames=4,
+        proven=proven,
+        points=900,
+        reached=Extremes(*reached),
+        between=Extremes(0.4, 1.5, 0.7),
+        limits=limits,
+        short=(),
+    )
+    assert Report(keys=(), intervals=(), corrected=tracked).corrected_verdict == verdict
+
+
+@pytest.mark.parametrize(
     ("made", "verdict"),
     [
         (interval(), "proven"),
@@ -157,6 +179,7 @@ def interval(k=0.5, sigma_a=2.0, sigma_b=0.5, *, reached=(0.4, 1.8, 0.6), unsett
         (interval(0.503), "measured"),
         (interval(sigma_a=2.005), "measured"),
         (interval(sigma_b=0.4989), "measured"),
+        (interval(reached=(0.501, 1.8, 0.6), k=0.5015), "proven"),
         (interval(reached=(0.51, 1.8, 0.6), k=0.52), "over"),
         (interval(reached=(0.4, 1.8, 0.45), sigma_b=0.44), "over"),
         (interval(k=inf, sigma_a=inf, sigma_b=0.0, unsettled=(5,), loose=(3,)), "over"),
