@@ -16,7 +16,7 @@ from engine.maps import Boundary, Certificate, certify
 
 TIMES = 65  # in each interval, at which in-betweens are measured
 CLOSER = 15  # more, between the neighbours of each worst one
-# By how much values may be beyond the limits and count as within: of k, and as a share of σ_a and of
+# By how much values may be beyond the limits and count as within: of k, and as a share of σ_a and
 # σ_b. By as much enclosures are wider than what they enclose.
 BEYOND = 0.002
 

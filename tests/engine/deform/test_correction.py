@@ -69,15 +69,16 @@ def test_paths_integrate_holomorphic_functions(name):
     z0 = boundary.cage[3]
     exact = [(p - z0) * (np.log((p - z0) / (anchor - z0)) - 1) + (anchor - z0) for p in points]
     values = np.log((paths.nodes - z0) / (anchor - z0))
-    assert_allclose(paths.weights @ np.exp(paths.nodes), np.exp(points) - np.exp(anchor), atol=1e-6)
-    found = paths.weights @ values
-    assert_allclose(found, exact, atol=2e-5)
+    found = paths.integrals(np.exp(paths.nodes))
+    assert_allclose(found, np.exp(points) - np.exp(anchor), atol=1e-6)
+    assert_allclose(paths.integrals(values), exact, atol=2e-5)
+    pulls = np.arange(len(points)) + 1j
+    assert paths.spread(pulls) @ values == pytest.approx(pulls @ paths.integrals(values))
 
 
 def test_paths_lead_around_holes():
     paths = holed().paths
-    around = paths.weights[2:] @ (1 / paths.nodes)
-    assert_allclose(around, [-2j * np.pi], atol=1e-9)
+    assert_allclose(paths.integrals(1 / paths.nodes)[2:], [-2j * np.pi], atol=1e-9)
 
 
 @pytest.mark.parametrize(("name", "sign"), [("bar", -1), ("star", 1)])
@@ -183,8 +184,8 @@ def test_periods_around_holes_are_closed():
     # With a period of its own, which is closed, too.
     base = bent(known.paths.nodes)
     base = base._replace(g=base.g + 0.01 / known.paths.nodes)
-    opened = known.paths.weights[2:] @ base.fz + (known.paths.weights[2:] @ base.g).conj()
-    assert np.abs(opened).max() > 0.05
+    opened = known.paths.integrals(base.fz) + known.paths.integrals(base.g).conj()
+    assert np.abs(opened[2:]).max() > 0.05
     found = solve(known, base, Targets(moves, np.ones(2), is_anchored=False))
     frame = CorrectedFrame.of(known, base, found.x)
     assert np.abs(frame.places()[2:]).max() < 1e-9

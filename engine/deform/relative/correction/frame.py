@@ -80,24 +80,21 @@ class CorrectedFrame:
 
     def places(self) -> Complexes:
         """Return the integrals from the anchor to each point, then around each hole."""
-        weights = self.corrector.paths.weights
-        both = weights @ np.column_stack([self.conformal, self.own + self.mixed])
-        return np.asarray(both[:, 0] + both[:, 1].conj())
+        both = self.corrector.paths.integrals(np.stack([self.conformal, self.own + self.mixed]))
+        return np.asarray(both[0] + both[1].conj())
 
     def rows(self) -> Floats:
         """Return the derivatives of these by the unknowns: real parts, then imaginary ones."""
-        values, weights = self.corrector.variables.at_nodes, self.corrector.paths.weights
-        count = len(weights)
-        both = [weights * self.conformal, weights * (self.base.sign * self.own + self.mixed)]
-        by_h = np.vstack(both) @ values.h.T
-        by_q = (weights * self.factor) @ values.q.T
-        rows = np.hstack([by_h[:count] + by_h[count:].conj(), by_q.conj()])
+        values, integrals = self.corrector.variables.at_nodes, self.corrector.paths.integrals
+        by_h = integrals(values.h * self.conformal)
+        by_h += integrals(values.h * (self.base.sign * self.own + self.mixed)).conj()
+        rows = np.vstack([by_h, integrals(values.q * self.factor).conj()]).T
         return np.vstack([rows.real, rows.imag])
 
     def bending(self, pulls: Complexes) -> "Bending":
         """Return the second derivative of Re Σ conj(pull_i) place_i by the unknowns."""
-        weights = self.corrector.paths.weights
-        back, through = pulls.conj() @ weights, pulls @ weights
+        paths = self.corrector.paths
+        back, through = paths.spread(pulls.conj()), paths.spread(pulls)
         twice = back * self.conformal + through * (self.own + self.mixed)
         return Bending(self.corrector.variables.at_nodes, twice, through * self.factor)
 

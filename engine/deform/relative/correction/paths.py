@@ -28,13 +28,18 @@ class PointPaths:
 
     Parameters
     ----------
-    nodes : complex128, shape (s,)
-    weights : complex128, shape (m + holes, s)
-        dz at the nodes of the way to each point, then of the loop around each hole; 0 elsewhere.
+    nodes, steps : complex128, shape (s,)
+        The nodes of one leg after the other, and dz there.
+    starts : intp, shape (l,)
+        The first node of each leg.
+    passes : float64, shape (m + holes, l)
+        1 where the way to a point, or the loop around a hole, has the leg.
     """
 
     nodes: Complexes
-    weights: Complexes
+    steps: Complexes
+    starts: Indices
+    passes: Floats
 
     @classmethod
     def of(cls, boundary: Boundary, anchor: complex, points: Complexes) -> Self:
@@ -50,20 +55,28 @@ class PointPaths:
         spans = (pieces.ends - pieces.starts)[:, None]
         nodes = (pieces.starts[:, None] + spans * (1 + x) / 2).ravel()
         lengths = (spans * w / 2).ravel()
-        leg_of = np.repeat(pieces.segment, GAUSS)
         number = {leg: i for i, leg in enumerate(legs)}
-        weights = np.array(
-            [np.where(np.isin(leg_of, [number[leg] for leg in way]), lengths, 0) for way in ways]
-        ).reshape(len(points), len(nodes))
+        passes = np.zeros((len(points), len(legs)))
+        for row, way in zip(passes, ways, strict=True):
+            row[[number[leg] for leg in way]] = 1.0
         around = Loops.around(outline, holes, singular)
-        if holes:
-            ends_of = around.starts + around.counts
-            rings = np.zeros((len(holes), len(around.nodes)), dtype=np.complex128)
-            for ring, start, end in zip(rings, around.starts, ends_of, strict=True):
-                ring[start:end] = around.differentials[start:end]
-            weights = scipy.linalg.block_diag(weights, rings)
-            nodes = np.concatenate([nodes, around.nodes])
-        return cls(nodes=freeze(nodes), weights=freeze(weights))
+        own = GAUSS * np.searchsorted(pieces.segment, np.arange(len(legs)))
+        return cls(
+            nodes=freeze(np.concatenate([nodes, around.nodes])),
+            steps=freeze(np.concatenate([lengths, around.differentials])),
+            starts=freeze(np.concatenate([own, len(nodes) + around.starts])),
+            passes=freeze(scipy.linalg.block_diag(passes, np.eye(len(holes)))),
+        )
+
+    def integrals(self, values: Complexes) -> Complexes:
+        """Integrate values (..., s) along the ways and loops, (..., m + holes)."""
+        legs = np.add.reduceat(values * self.steps, self.starts, axis=-1)
+        return np.asarray(legs @ self.passes.T)
+
+    def spread(self, pulls: Complexes) -> Complexes:
+        """Return dz times the sum of the pulls (m + holes,) whose ways pass each node, (s,)."""
+        counts = np.diff(self.starts, append=len(self.nodes))
+        return np.asarray(np.repeat(pulls @ self.passes, counts) * self.steps)
 
 
 PathLeg = tuple[complex, complex]
