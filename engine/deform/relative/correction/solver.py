@@ -22,10 +22,11 @@ from engine.deform.relative.correction.frame import BaseFrame, CorrectedFrame
 from engine.deform.relative.correction.step_model import PointRows, StepModel
 
 SMALL = 1e-6  # a step in h: where the iteration ends
-MET = 1e-11  # of the diagonal: points that are where they are wanted
+MET = 1e-9  # of the diagonal: points that are where they are wanted
 LONGEST = 1.0  # step in h
 MOST_STEPS, MOST_HALVINGS, MOST_RETURNS = 25, 7, 3
 NEARER = 0.7  # of the gap: what a step back to the points leaves of it, at most
+GAINS = 0.99  # of the merit: what a part of a step leaves of it, at most
 FIRMEST = 1.5  # times the largest pull: what the merit takes for each point off its target
 
 
@@ -157,10 +158,12 @@ class _Problem:
                 if self._merit(tried, model.soft, firm) <= now * (1 + 1e-12):
                     break
                 share /= 2
+            # What only parts of steps bring on is out of reach.
+            is_stuck = share < 1.0 and self._merit(tried, model.soft, firm) > GAINS * now
             moved = self._length(tried.frame.x - at.frame.x)
             off = np.abs(tried.lack)[held].max(initial=0.0)
             at = tried
-            if moved < SMALL and (off < MET * size or share < 1.0):
+            if is_stuck or (moved < SMALL and (off < MET * size or share < 1.0)):
                 break
         misses = np.abs(at.frame.places() + at.shift - self.wanted)[: self.count]
         return PointSolution(x=at.frame.x, shift=at.shift, misses=misses, steps=steps)
@@ -178,7 +181,7 @@ class _Problem:
         for _ in range(MOST_RETURNS):
             gap = np.where(held, aim - tried.lack, 0)
             worst = np.abs(gap).max(initial=0.0)
-            if worst < MET / 10 * self.corrector.boundary.size:
+            if worst < MET / 100 * self.corrector.boundary.size:
                 break
             back, along = model.restoring(gap)
             nearer = self.state(tried.frame.x + back, tried.shift + along)
