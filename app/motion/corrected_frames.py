@@ -45,6 +45,10 @@ class CorrectedFrames:
     def __init__(self, clip: Clip, earlier: "CorrectedFrames | None" = None) -> None:
         self.clip = clip
         self._is_asked = is_corrected(clip)
+        moving = (*clip.figure.tracks, *clip.figure.springs)
+        self._moves = any(each.enabled for each in moving)
+        # A frame, and whether it rests.
+        self._rested: tuple[int | None, bool] = None, False
         self._corrections: Corrections | None = None
         self._exact: dict[int, FrameCorrection | None] = {}
         self._rough: dict[int, FrameCorrection | None] = {}
@@ -96,11 +100,14 @@ class CorrectedFrames:
 
     def _is_resting(self, frame: int) -> bool:
         """Whether a frame shows a key's pose, to which neither tracks nor springs add anything."""
-        figure = self.clip.figure
-        enabled = [each.enabled for each in figure.tracks]
-        if any(enabled) or any(each.enabled for each in figure.springs):
+        if self._moves:
             return False
-        return resting_pose(self.clip, time_of(self.clip, frame)) is not None
+        # Asked of the same frame time and again, as long as the playhead rests.
+        known, is_resting = self._rested
+        if known != frame:
+            is_resting = resting_pose(self.clip, time_of(self.clip, frame)) is not None
+            self._rested = frame, is_resting
+        return is_resting
 
     def ground(self, frame: int) -> Ground | None:
         """Return what tracks are relative to at a frame, if that is known."""
