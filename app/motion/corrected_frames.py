@@ -45,8 +45,8 @@ class CorrectedFrames:
     def __init__(self, clip: Clip, earlier: "CorrectedFrames | None" = None) -> None:
         self.clip = clip
         self._is_asked = is_corrected(clip)
-        moving = (*clip.figure.tracks, *clip.figure.springs)
-        self._moves = any(each.enabled for each in moving)
+        self._moves = any(each.enabled for each in clip.figure.tracks)
+        self._moves |= any(each.enabled for each in clip.figure.springs)
         # A frame, and whether it rests.
         self._rested: tuple[int | None, bool] = None, False
         self._corrections: Corrections | None = None
