@@ -48,7 +48,7 @@ REMEMBERED = 20  # actions that are told where the walk fails
 LOOKED_AT, SAVED, RESTED = 10, 50, 250
 USUAL, SMALL = (1280, 800), (800, 560)
 MOST_HANDLES, MOST_KEYS, MOST_LAYERS = 6, 8, 4
-LAST = 90  # frame beyond which the walk does not go
+LAST = 48  # frame beyond which the walk does not go
 # What ends the project is left out; what asks first is answered by Escape.
 LEAVING = {"close", "quit"}
 NAMED = [name for name in BINDINGS if name not in {*LEAVING, "manual", "first animation"}]
