@@ -27,3 +27,9 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         default=60,
         help="of each random walk through the window; many walk farther, and take longer",
     )
+    parser.addoption(
+        "--walks",
+        metavar="N",
+        type=int,
+        help="random walks through the window with the seeds 1 to N, in place of the usual ones",
+    )

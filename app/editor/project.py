@@ -171,6 +171,10 @@ class Project:
     # Layers that were posed, and whose rows stay until the pointer is over the drawing again.
     lingering: frozenset[int] = frozenset()
     listed: int | None = None  # the figure that the list of layers was scrolled to
+    # Those of the list of layers; of a document, what is toggled in it, and what is kept in it.
+    tree_rows: Derived[tuple[Document, frozenset[str], frozenset[int]], tuple[TreeRow, ...]] = (
+        field(default_factory=lambda: Derived(()))
+    )
 
     @property
     def document(self) -> Document:
@@ -190,7 +194,10 @@ class Project:
     @property
     def tree(self) -> tuple[TreeRow, ...]:
         """The rows of the layers that are listed, the one in front on top."""
-        return layer_tree(self.document, self.toggled, self.lingering | {self.active})
+        source = self.document, self.toggled, self.lingering | {self.active}
+        if not self.tree_rows.follows(source):
+            self.tree_rows.set(source, layer_tree(*source))
+        return self.tree_rows.value
 
     @property
     def layers(self) -> tuple[int, ...]:

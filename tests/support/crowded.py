@@ -6,12 +6,20 @@ from scenes import drawn
 
 from app.document.commands import handle_commands
 from app.document.keyframe import Keyframe
-from app.document.layering import CameraKey, MoveKey, OpacityKey, Placing, Switch
+from app.document.layering import (
+    CameraKey,
+    Choice,
+    MoveKey,
+    OpacityKey,
+    Placing,
+    Switch,
+    Turn,
+)
 from app.document.model import Document
 from app.document.settings import FrameRange, Marker
 from app.document.timing import Cycle, Track, TrackKey
 
-KINDS = ("keys", "tracks", "switches", "cycles", "changes", "markers", "camera")
+KINDS = ("keys", "tracks", "switches", "cycles", "changes", "turns", "markers", "camera")
 
 
 def crowded(kind: str, count: int) -> Document:
@@ -38,6 +46,11 @@ def crowded(kind: str, count: int) -> Document:
                 opacities=tuple(OpacityKey(frame=at, opacity=0.5) for at in frames),
                 placings=tuple(Placing(frame=at, beside=None) for at in frames),
             )
+        case "turns":
+            turns = tuple(Turn(at, at % 2) for at in frames)
+            choice = Choice(name="mouth", figures=(0, 1), turns=turns)
+            other = replace(figure, id=1, name="other")
+            return replace(document, figures=(figure, other), choices=(choice,))
         case "markers":
             row = tuple(Marker(frame=at, name=f"marker {at}") for at in frames)
             document = replace(document, markers=row)

@@ -572,7 +572,8 @@ def clocked_document() -> Document:
 def differences(first: object, second: object, where: str = "document") -> list[str]:
     """Return the places at which two values are not the same to the last bit.
 
-    Certificates are left out: they follow from the maps, but for the last bits.
+    Certificates are left out: they follow from the maps, but for the last bits. So is the sign of a
+    zero, which a field that equals its default loses.
     """
     if type(first) is not type(second) and not isinstance(first, Mapping):
         return [where]
@@ -603,7 +604,7 @@ def _parts(value: object) -> dict[object, object]:
 def _bits(value: object) -> object:
     """Return something that is equal for equal bits only, and for empty containers."""
     if isinstance(value, complex):
-        return struct.pack("<dd", value.real, value.imag)
+        return struct.pack("<dd", value.real + 0.0, value.imag + 0.0)
     if isinstance(value, float):
-        return struct.pack("<d", value)
+        return struct.pack("<d", value + 0.0)
     return dict(value) if isinstance(value, Mapping) else value

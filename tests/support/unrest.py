@@ -4,6 +4,7 @@ from app.document import clip_of
 from app.editor import promises
 from app.editor.project import Project
 from app.editor.session import Session
+from app.motion import Shown
 
 
 def unrest(session: Session) -> str:
@@ -39,7 +40,7 @@ def _shown(project: Project) -> list[str]:
         clip, shown, store = clip_of(project.document, identity), puppet.shown, puppet.store
         if shown is None:
             lines.append(f"layer {clip.figure.name!r}: nothing is shown")
-        elif not shown.is_current or shown.clip != clip:
+        elif not (shown.is_current or _plays(project, shown)) or shown.clip != clip:
             lines.append(
                 f"layer {clip.figure.name!r}: shows frame {shown.frame} of frames "
                 f"{shown.clip.frames.first} to {shown.clip.frames.last}, and the document has "
@@ -50,6 +51,11 @@ def _shown(project: Project) -> list[str]:
                 f", failed {[part for part in PARTS if store.has_failed(clip, part)]}"
             )
     return lines
+
+
+def _plays(project: Project, shown: Shown) -> bool:
+    """Tell whether a frame only plays, so that nothing finds its corrections."""
+    return project.playhead.since is not None and shown.stand_in is None
 
 
 PARTS = ("frame", "in-betweens", "fine", "series")

@@ -4,6 +4,7 @@ from bisect import bisect_right
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
+from operator import attrgetter
 from typing import NamedTuple, Self
 
 from app.document.checks import NOTHING, Unknown, require, require_distinct, require_frame
@@ -76,5 +77,9 @@ class Choice:
 
     def at(self, frame: float) -> int:
         """Return the id of the figure that is seen at a frame."""
-        count = bisect_right(self.turns, frame, key=lambda turn: turn.frame)
+        count = self.count_until(frame)
         return self.turns[max(count - 1, 0)].figure if self.turns else self.figures[0]
+
+    def count_until(self, frame: float) -> int:
+        """Return how many turns have begun at a frame."""
+        return bisect_right(self.turns, frame, key=attrgetter("frame"))

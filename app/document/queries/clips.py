@@ -1,6 +1,6 @@
 """A figure in the time of its scene."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from app.document.figure import Figure
 from app.document.keyframe import Keyframe
@@ -43,8 +43,14 @@ def clip_of(document: Document, figure: int) -> Clip:
     feels = [each.enabled for each in own.springs]
     feels += [each.enabled and each.planted for each in own.tracks]
 
-    def by_itself(each: Figure) -> Clip:
-        return Clip(figure=each, frames=document.frames, loop=document.loop, fps=document.fps)
+    def clip(each: Figure, carriers: tuple[Clip, ...] = ()) -> Clip:
+        return Clip(
+            figure=each,
+            frames=document.frames,
+            loop=document.loop,
+            fps=document.fps,
+            carriers=carriers,
+        )
 
     carriers = document.all_carriers(figure) if any(feels) else ()
-    return replace(by_itself(own), carriers=tuple(by_itself(each) for each in carriers))
+    return clip(own, tuple(map(clip, carriers)))

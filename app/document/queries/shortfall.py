@@ -116,7 +116,12 @@ class Shortfall:
 
 def falls_short(figure: Figure, lag: float) -> bool:
     """Tell whether a handle so many pixels from its target has not arrived there."""
-    return lag > LAG * box_diagonal(figure.domain.outline)
+    return lag > _least_lag(figure)
+
+
+@remembered
+def _least_lag(figure: Figure) -> float:
+    return LAG * box_diagonal(figure.domain.outline)
 
 
 @remembered

@@ -458,14 +458,16 @@ def _show(session: Session, project: Project) -> None:
     if project.take is not None and project.puppet.corrected is not None:
         project.puppet.corrected.lead(frame)
     shown, twins, poses = {}, {}, {}
+    if any(each.shown and each.shown.frame != frame for each in project.puppets.values()):
+        project.moved_at = session.clock()
+    is_moving = _is_moving(session, project)
     for clip, puppet in _clips(project):
         figure, twin = clip.figure.id, puppet.twin
-        if puppet.shown is not None and puppet.shown.frame != frame:
-            project.moved_at = session.clock()
         pose = project.unkeyed if figure == project.active else None
         if pose is not None:
             poses[figure] = pose
-        stores = _stores(session, project, puppet)
+        fine = [puppet.fine] if puppet.fine is not None and not is_moving else []
+        stores = [*fine, puppet.store]
         shown[figure] = show(clip, frame, pose, stores, puppet.shown, puppet.corrected)
         if twin is not None:
             earlier, other = twin.shown or shown[figure], twin.clip(document)
@@ -480,10 +482,8 @@ def _show(session: Session, project: Project) -> None:
             twin.shown = hung
 
 
-def _stores(session: Session, project: Project, puppet: Puppet) -> list[IntervalStore]:
-    """Return where to look for what is drawn of a figure, the preferred mesh first."""
+def _is_moving(session: Session, project: Project) -> bool:
+    """Tell whether what is shown changes too fast for fine meshes."""
     is_scrubbed = session.clock() - project.moved_at < STILL
     is_moving = project.pull is not None or project.playhead.since is not None or is_scrubbed
-    if puppet.fine is None or (is_moving and not session.full_detail):
-        return [puppet.store]
-    return [puppet.fine, puppet.store]
+    return is_moving and not session.full_detail

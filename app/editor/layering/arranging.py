@@ -40,14 +40,17 @@ def figure_at(
     """
     shown = project.puppet.shown
     frame = project.playhead.frame if shown is None else shown.frame
-    found = [
+    found = (
         each.id
         for each in reversed(in_order(project.document, frame))
         if each.id != besides and not (each.still or each.locked) and is_at(project, each.id, place)
-    ]
-    if below in found:
-        return found[(found.index(below) + 1) % len(found)]
-    return found[0] if found else None
+    )
+    if below is None:
+        return next(found, None)
+    there = list(found)
+    if below in there:
+        return there[(there.index(below) + 1) % len(there)]
+    return there[0] if there else None
 
 
 def is_at(project: Project, identity: int, place: complex) -> bool:
@@ -59,7 +62,12 @@ def is_at(project: Project, identity: int, place: complex) -> bool:
     if project.solo and identity not in project.solo:
         return False
     outline = shown.positions[: len(shown.mesh.domain.outline)]
-    return bool(contains(outline, np.array([shown.placement.back(place)]))[0])
+    place = shown.placement.back(place)
+    # Most layers are elsewhere, which their boxes tell at once.
+    x, y = outline.real, outline.imag
+    if not (x.min() <= place.real <= x.max() and y.min() <= place.imag <= y.max()):
+        return False
+    return bool(contains(outline, np.array([place]))[0])
 
 
 def rename(session: Session, identity: int, name: str) -> None:

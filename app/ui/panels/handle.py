@@ -95,37 +95,47 @@ def _heading_with_delete(session: Session, look: Look, project: Project) -> list
 
 def _list(look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
-    figure, palette = project.figure, look.palette
+    figure = project.figure
     lags = _shortfall(project).lags
     style = imgui.get_style()
     rows = min(len(figure.handles), MOST_ROWS) * imgui.get_text_line_height_with_spacing()
     height = rows - style.item_spacing.y + 2 * style.window_padding.y
     imgui.begin_child("handles", ImVec2(0, height), imgui.ChildFlags_.borders)
-    for handle in figure.handles:
-        is_anchor = handle.position == figure.anchor
-        clicked, _ = imgui.selectable(
-            f"###handle {handle.id}",
-            handle.id in project.selected,
-            imgui.SelectableFlags_.allow_overlap,
-        )
-        if clicked:
-            chosen = frozenset({handle.id})
-            keeps = imgui.get_io().key_shift or imgui.get_io().key_ctrl
-            actions.append(do(editing.select, project.selected ^ chosen if keeps else chosen))
-        imgui.same_line(0.8 * look.em)
-        usual = icons.ICON_FA_LOCK if handle.locked else icons.ICON_FA_CIRCLE_DOT
-        icon = icons.ICON_FA_ANCHOR if is_anchor else usual
-        imgui.text_colored(palette.anchor if is_anchor else palette.dim, icon)
-        imgui.same_line(2.6 * look.em)
-        lag = f"{lags[handle.id]:.0f} px" if handle.id in lags else ""
-        text = lag or handle.group
-        beside = imgui.calc_text_size(text).x + 0.6 * look.em
-        room = imgui.get_content_region_avail().x - beside
-        imgui.text_unformatted(shortened(handle.name, room))
-        if text:
-            at_end(beside - 0.3 * look.em)
-            imgui.text_colored(palette.warning if lag else palette.dim, text)
+    clipper = imgui.ListClipper()
+    clipper.begin(len(figure.handles), imgui.get_text_line_height_with_spacing())
+    while clipper.step():
+        for handle in figure.handles[clipper.display_start : clipper.display_end]:
+            actions += _row(look, project, handle, lags.get(handle.id))
     imgui.end_child()
+    return actions
+
+
+def _row(look: Look, project: Project, handle: Handle, lag: float | None) -> list[Action]:
+    """Draw a row of the list: the handle's name, and by how many pixels it falls short."""
+    actions: list[Action] = []
+    palette = look.palette
+    is_anchor = handle.position == project.figure.anchor
+    clicked, _ = imgui.selectable(
+        f"###handle {handle.id}",
+        handle.id in project.selected,
+        imgui.SelectableFlags_.allow_overlap,
+    )
+    if clicked:
+        chosen = frozenset({handle.id})
+        keeps = imgui.get_io().key_shift or imgui.get_io().key_ctrl
+        actions.append(do(editing.select, project.selected ^ chosen if keeps else chosen))
+    imgui.same_line(0.8 * look.em)
+    usual = icons.ICON_FA_LOCK if handle.locked else icons.ICON_FA_CIRCLE_DOT
+    icon = icons.ICON_FA_ANCHOR if is_anchor else usual
+    imgui.text_colored(palette.anchor if is_anchor else palette.dim, icon)
+    imgui.same_line(2.6 * look.em)
+    text = handle.group if lag is None else f"{lag:.0f} px"
+    beside = imgui.calc_text_size(text).x + 0.6 * look.em
+    room = imgui.get_content_region_avail().x - beside
+    imgui.text_unformatted(shortened(handle.name, room))
+    if text:
+        at_end(beside - 0.3 * look.em)
+        imgui.text_colored(palette.dim if lag is None else palette.warning, text)
     return actions
 
 

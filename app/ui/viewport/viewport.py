@@ -3,6 +3,7 @@
 from dataclasses import replace
 from typing import NamedTuple
 
+import numpy as np
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui, imgui_ctx
 
 from app.document import HOLDS, Handle, handle_commands
@@ -172,12 +173,14 @@ def _lay_handles(session: Session, look: Look, screen: Screen) -> _Handles:
         return _Handles(hovered, at_target, pressed, actions)
     radius, shown = ImVec2(GRIP * look.em, GRIP * look.em), screen.shown
     identities = [handle.id for handle in shown.clip.figure.handles]
-    places = zip(identities, shown.handle_places.tolist(), strict=True)
-    grips = [("target", *target) for target in unreached(screen.project, shown).items()]
-    grips += [("handle", *place) for place in places]
+    targets = unreached(screen.project, shown)
+    grips = [("target", identity) for identity in targets]
+    grips += [("handle", identity) for identity in identities]
+    places = np.array([*targets.values(), *shown.handle_places], np.complex128)
+    points = screen.points(shown.placement.on(places))
     # The one that is drawn last lies on top.
-    for what, identity, place in reversed(grips):
-        imgui.set_cursor_screen_pos(screen.point(place) - radius)
+    for (what, identity), point in reversed(list(zip(grips, points, strict=True))):
+        imgui.set_cursor_screen_pos(point - radius)
         imgui.invisible_button(f"{what} {identity}", radius * 2, LEFT_OR_RIGHT)
         if in_hand():
             hovered, at_target = identity, what == "target"

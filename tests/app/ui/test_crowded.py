@@ -2,18 +2,22 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from crowded import KINDS, crowded
 from imgui_bundle import imgui
 from projects import project_of
 from scenes import PICTURE, drawn
 
+from app.document.figure import Handle
+from app.document.keyframe import Target
 from app.editor.actions import saving
+from app.editor.layering import arranging
 from app.editor.timeline_view import Strip
 
 MANY = 10_000
 CORNERS = 12_000  # more than those of the rest of the window, at most
-ROWS = 20  # of the list of layers that are in view, at most
+ROWS = 20  # of a list that are in view, at most
 
 
 def show(window, document, strip=None):
@@ -39,9 +43,34 @@ def test_timeline_draws_no_more_for_more_keys(window, kind):
     assert beyond - few < CORNERS // 2
 
 
-def test_list_of_layers_draws_the_rows_in_view_alone(window, monkeypatch):
+def many_layers():
     (figure,) = drawn().figures
     figures = tuple(replace(figure, id=number, name=f"layer {number}") for number in range(60))
+    return replace(drawn(), figures=figures)
+
+
+def many_handles():
+    document = drawn()
+    (figure,) = document.figures
+    places = figure.domain.mesh.vertices[:60].tolist()
+    handles = tuple(
+        Handle(id=number, name=f"handle {number}", position=complex(place))
+        for number, place in enumerate(places)
+    )
+    (key,) = figure.keys
+    targets = {handle.id: Target(position=handle.position) for handle in handles}
+    key = replace(key, pose=replace(key.pose, targets=targets))
+    return replace(
+        document, figures=(replace(figure, handles=handles, next_handle=60, keys=(key,)),)
+    )
+
+
+@pytest.mark.parametrize(
+    ("tab", "document", "row"),
+    [("Layers", many_layers, "row"), ("Handle", many_handles, "###handle")],
+    ids=["layers", "handles"],
+)
+def test_lists_draw_the_rows_in_view_alone(window, monkeypatch, tab, document, row):
     asked, select = [], imgui.selectable
 
     def selectable(name, *rest):
@@ -49,10 +78,31 @@ def test_list_of_layers_draws_the_rows_in_view_alone(window, monkeypatch):
         return select(name, *rest)
 
     with window.session.jobs.held():
-        show(window, replace(drawn(), figures=figures))
-        window.show_tab("Layers")
+        show(window, document())
+        window.show_tab(tab)
         monkeypatch.setattr(imgui, "selectable", selectable)
         window.frames(1)
         saving.put_project(window.session, None)
-    rows = [name for name in asked if "row" in name]
+    rows = [name for name in asked if row in name]
     assert 1 < len(rows) < ROWS
+
+
+def test_rows_of_layers_stay_until_the_document_changes():
+    project = project_of(many_layers(), PICTURE, "crowded")
+    rows = project.tree
+    assert project.tree is rows
+    project.toggled = frozenset({"group body"})
+    assert project.tree is not rows
+
+
+def test_layer_under_the_pointer_is_sought_among_those_there(window, monkeypatch):
+    asked = []
+    monkeypatch.setattr(arranging, "contains", lambda *_: asked.append(1) or np.array([False]))
+    with window.session.jobs.held():
+        show(window, many_layers())
+        project = window.session.project
+        assert arranging.figure_at(project, -1000 - 1000j) is None
+        assert not asked
+        arranging.figure_at(project, 60 + 47j)
+        assert len(asked) == 60
+        saving.put_project(window.session, None)

@@ -23,6 +23,7 @@ from app.editor.actions import (
     viewing,
 )
 from app.editor.actions.posing.inserting import INSERTING
+from app.editor.actions.posing.solving import is_there
 from app.editor.dialogs import Question
 from app.editor.poses import copying, library, pasting
 from app.storage import load_project
@@ -64,6 +65,25 @@ def test_drag_comes_to_rest_whatever_follows(window, loose, name):
     while loose.document is not start:
         assert loose.history.undo_label is not None
         editing.undo(window.session)
+    assert not loose.pulls
+
+
+def test_drag_goes_on_while_rough_frames_play(window, loose):
+    session = window.session
+    loose.puppet.shown = replace(loose.puppet.shown, is_rough=True)
+    assert not is_there(session, loose)
+    loose.playhead = loose.playhead.play(loose.document, session.clock())
+    assert is_there(session, loose)
+    loose.puppet.shown = replace(loose.puppet.shown, stand_in=loose.figure.domain)
+    assert not is_there(session, loose)
+
+
+def test_drag_that_has_ended_can_be_given_up(window, loose):
+    with window.session.jobs.held(posing.POSING):
+        drag_bar(window, loose)
+        (pull,) = loose.pulls
+        for _ in range(2):
+            posing.give_up(window.session, loose, pull)
     assert not loose.pulls
 
 

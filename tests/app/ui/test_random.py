@@ -44,10 +44,11 @@ SEEDS = (1, 2, *(pytest.param(seed, marks=pytest.mark.long) for seed in (15, 3))
 FAR = {3: 1_000}  # steps of walks that go farther than the others
 MOST_FRAMES = 400  # until the worker has caught up
 REMEMBERED = 20  # actions that are told where the walk fails
-LOOKED_AT, SAVED = 25, 50  # steps between two looks at the invariants, and between two saves
+# Steps between two looks at the invariants, between two saves, and until all work is done.
+LOOKED_AT, SAVED, RESTED = 10, 50, 250
 USUAL, SMALL = (1280, 800), (800, 560)
 MOST_HANDLES, MOST_KEYS, MOST_LAYERS = 6, 8, 4
-LAST = 90  # frame beyond which the walk does not go
+LAST = 48  # frame beyond which the walk does not go
 # What ends the project is left out; what asks first is answered by Escape.
 LEAVING = {"close", "quit"}
 NAMED = [name for name in BINDINGS if name not in {*LEAVING, "manual", "first animation"}]
@@ -168,6 +169,8 @@ class Walk:
             if (kinds := self.session.jobs.kinds) and self.chance(1 / 3):
                 self.workers.do(self.choice(kinds))
             self.window.frames(int(self.choice((0, 0, 1, 4))))
+        if number % RESTED == 0:
+            self.catch_up(wholly=True)
         self.look(thorough=number % LOOKED_AT == 0, saves=number % SAVED == 0)
 
     def catch_up(self, *, wholly: bool = False) -> None:
@@ -649,7 +652,6 @@ class Walk:
             check_invariants(session)
         if not saves:
             return
-        self.catch_up(wholly=True)
         save_project(self.path, self.document)
         assert not differences(self.document, load_project(self.path))
 
@@ -746,7 +748,12 @@ def workers(small_window):
     workers.release()
 
 
-@pytest.mark.parametrize("seed", SEEDS)
+def pytest_generate_tests(metafunc):
+    if "seed" in metafunc.fixturenames:
+        walks = metafunc.config.getoption("--walks")
+        metafunc.parametrize("seed", range(1, walks + 1) if walks else SEEDS)
+
+
 def test_random_walk_ends_where_it_began(small_window, workers, tmp_path, seed, request):
     window, monkeypatch = small_window, request.getfixturevalue("monkeypatch")
     drawing = draw_bones if seed % 2 else draw_bone
@@ -778,4 +785,5 @@ def test_random_walk_ends_where_it_began(small_window, workers, tmp_path, seed, 
     for _ in range(steps):
         window.act(editing.redo)
     assert (project.document, project.history.unkeyed) == last
+    walk.catch_up(wholly=True)
     walk.look(thorough=True, saves=True)

@@ -408,6 +408,22 @@ def test_in_a_loop_a_recording_goes_on_over_the_seam_at_most_once_round(window, 
     assert abs(track.keys[0].place - track.keys[-1].place) < 1e-9, "it comes round"
 
 
+@pytest.mark.parametrize("is_over", [False, True])
+def test_deleting_a_handle_ends_its_recording(window, brief, is_over):
+    session, place = window.session, complex(brief.puppet.shown.handle_places[-1])
+    with session.jobs.held():
+        tracking.begin_take(session, END, place, gesture=object())
+        window.clock.now += 0.2
+        window.frames(3)
+        if is_over:
+            tracking.end_take(session)
+        window.act(posing.remove_handles, frozenset({END}))
+        window.frames(2)
+        assert brief.take is None
+        assert END not in [handle.id for handle in brief.figure.handles]
+        assert not [toast for toast in session.toasts if toast.details]
+
+
 def test_a_click_records_nothing(window, brief):
     before = brief.document
     record(window, brief, [])

@@ -1,37 +1,30 @@
-"""The window over documents with many keys and markers."""
+"""The window over documents with much of every kind."""
 
+from copy import copy
 from dataclasses import replace
 from pathlib import Path
 
-from app.document import Document, FrameRange, Keyframe, clip_of
+from app.document import Choice, Document, FrameRange, Handle, Keyframe, Target, Turn, clip_of
 from app.document.settings import Marker
 from app.editor import Puppet
 from app.editor.actions import files, saving
 from app.storage import decode_picture, load_project, sample_images
+from engine.deform import MOST_HANDLES
+from engine.domain import Domain, mesh_inside
 from tests.bench.stage.driver import Driver
 from tests.bench.table import Table, row_of
 
+LAYERS, TRIANGLES = 500, 500  # at most, and of each of them
 SETTLING = 3  # frames until all panels are laid out
 
 
 def table(stage: Driver, folder: Path, count: int, frames: int) -> Table:
-    """Measure the interface's own part of a frame with few and many keys and markers."""
+    """Measure the interface's own part of a frame with few and many of what a document can hold."""
     path = sample_images() / "ring.lissom"
-    document = load_project(path)
-    document = replace(document, frames=FrameRange(0, max(count, document.frames.last)))
-    figure = document.figures[0]
-    keys = tuple(Keyframe(frame=at, pose=figure.keys[0].pose) for at in range(count))
-    markers = tuple(Marker(frame=at, name=f"marker {at}") for at in range(count))
-    figures = (replace(figure, keys=keys, cycles=(), tracks=(), motions=()), *document.figures[1:])
-    documents = {
-        "as it is": document,
-        f"{count:,} markers": replace(document, markers=markers),
-        f"{count:,} keys of poses": replace(document, figures=figures),
-    }
     rows = []
-    for name, each in documents.items():
+    for name, document in _documents(load_project(path), count).items():
         with stage.session.jobs.held():
-            files.show(stage.session, folder / path.name, _opened(each))
+            files.show(stage.session, folder / path.name, _opened(document))
             for _ in range(SETTLING):
                 stage.refresh()
             rows.append(row_of(name, [stage.frame().own for _ in range(frames)]))
@@ -39,16 +32,59 @@ def table(stage: Driver, folder: Path, count: int, frames: int) -> Table:
             for kind in stage.session.jobs.kinds:
                 stage.session.jobs.drop(kind)
     return Table(
-        title="The interface's own part of a frame, many keys in view, nothing prepared",
+        title="The interface's own part of a frame, with much in view and nothing prepared",
         rows=tuple(rows),
     )
 
 
-def _opened(document: Document) -> files.Opened:
-    puppets = {
-        figure.id: Puppet.of(
-            clip_of(document, figure.id), decode_picture(figure.picture.data, figure.name)
-        )
-        for figure in document.figures
+def _documents(sample: Document, count: int) -> dict[str, Document]:
+    """Return a sample as it is, and with many of each kind, by what they have."""
+    document = replace(sample, frames=FrameRange(0, max(count, sample.frames.last)))
+    figure = document.figures[0]
+    bare = replace(figure, cycles=(), tracks=(), motions=())
+    pose = figure.keys[0].pose
+    layers, handles = min(count, LAYERS), min(count, MOST_HANDLES)
+    keys = tuple(Keyframe(frame=at, pose=pose) for at in range(count))
+    turns = tuple(Turn(at, at % 2) for at in range(count))
+    vertices = figure.domain.mesh.vertices.tolist()
+    spread = [
+        Handle(id=each, name=f"handle {each}", position=vertices[each % len(vertices)])
+        for each in range(handles)
+    ]
+    targets = {each.id: Target(position=each.position) for each in spread}
+    posed = replace(
+        bare,
+        handles=tuple(spread),
+        next_handle=handles,
+        keys=(Keyframe(frame=0, pose=replace(pose, targets=targets)),),
+    )
+    mesh = mesh_inside(*figure.domain.loops, triangles=TRIANGLES)
+    small = replace(bare, domain=replace(figure.domain, mesh=mesh))
+    copies = [replace(small, id=each, name=f"layer {each}", joints=()) for each in range(layers)]
+    return {
+        "as it is": document,
+        f"{count:,} markers": replace(
+            document, markers=tuple(Marker(frame=at, name=f"marker {at}") for at in range(count))
+        ),
+        f"{count:,} keys of poses": replace(
+            document, figures=(replace(bare, keys=keys), *document.figures[1:])
+        ),
+        f"{count:,} turns of a switch": replace(
+            document,
+            figures=tuple(copies[:2]),
+            choices=(Choice(name="mouth", figures=(0, 1), turns=turns),),
+        ),
+        f"{handles:,} handles": replace(document, figures=(posed, *document.figures[1:])),
+        f"{layers:,} layers": replace(document, figures=tuple(copies)),
     }
+
+
+def _opened(document: Document) -> files.Opened:
+    """Return a document as files are opened; layers with the same domain share what is known."""
+    made: dict[Domain, Puppet] = {}
+    for figure in document.figures:
+        if figure.domain not in made:
+            picture = decode_picture(figure.picture.data, figure.name)
+            made[figure.domain] = Puppet.of(clip_of(document, figure.id), picture)
+    puppets = {figure.id: copy(made[figure.domain]) for figure in document.figures}
     return files.Opened(document, puppets, ())

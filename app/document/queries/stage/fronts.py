@@ -33,6 +33,8 @@ def fronts_at(clip: Clip, frame: float) -> tuple[Front, ...]:
     for key in clip.keys:
         if key.fronts and (is_before_all or _has_been(figure, key.frame, frame)):
             depths.update(key.fronts)
+    if not any(depths.values()):
+        return ()
     usual = USUAL_EXTENT * box_diagonal(figure.domain.outline)
     return tuple(
         Front(handle.position, depths[handle.id], handle.extent or usual)

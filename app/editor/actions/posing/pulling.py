@@ -145,6 +145,9 @@ def take_back(session: Session, project: Project, gesture: object) -> None:
 
 def give_up(session: Session, project: Project, pull: Pull) -> None:
     """End a pull, whose pose stays as it is in the document, or never gets there."""
+    if pull not in project.pending:
+        # It has ended with another one that was given up.
+        return
     project.pending.remove(pull)
     # What comes of it is not taken.
     session.jobs.drop(POSING)

@@ -75,11 +75,12 @@ def is_there(session: Session, project: Project) -> bool:
     has_failed = store.has_failed(project.clip) or store.has_failed(project.clip, "correction")
     if project.unkeyed is not None or has_failed:
         return True
-    if shown is None or not shown.is_current:
+    if shown is None or shown.stand_in is not None:
         return False
-    # While it plays, what is shown is always that of a moment ago.
-    is_playing = project.playhead.since is not None
-    return is_playing or shown.frame == playback.current_frame(session, project)
+    if project.playhead.since is not None:
+        # What is shown is always that of a moment ago, and nothing finds its own corrections.
+        return True
+    return not shown.is_rough and shown.frame == playback.current_frame(session, project)
 
 
 class _Pace(NamedTuple):

@@ -133,9 +133,10 @@ def maintain(session: Session, project: Project) -> None:
     take = project.take
     if take is None:
         return
-    if take.figure != project.active or (
-        take.after is not None and take.after is not project.document
-    ):
+    is_here = take.figure == project.active and any(
+        take.handle == each.id for each in project.figure.handles
+    )
+    if not is_here or (take.after is not None and take.after is not project.document):
         # What was done since, even that it was taken back, is what the person goes on with.
         keep(session)
     elif not take.is_over:

@@ -130,10 +130,11 @@ def _turns(
 def _joint(project: Project, look: Look, figure: Figure, frame: int) -> list[Action]:
     """Draw what a layer hangs on at the present frame, and from which frames on."""
     document = project.document
-    others = [
-        other for other in document.figures if not layering.hangs_on(project, other.id, figure.id)
-    ]
-    if not others and not figure.joints:
+
+    def can_carry(other: Figure) -> bool:
+        return not layering.hangs_on(project, other.id, figure.id)
+
+    if not figure.joints and not any(map(can_carry, document.figures)):
         return []
     actions = []
     joint = document.joint_at(figure, frame)
@@ -144,7 +145,7 @@ def _joint(project: Project, look: Look, figure: Figure, frame: int) -> list[Act
             actions.append(do(layering.let_hang, figure.id))
         actions += [
             do(layering.hang, figure.id, other.id)
-            for other in others
+            for other in filter(can_carry, document.figures)
             if imgui.selectable(f"{other.name}###parent {other.id}", other is parent)[0]
         ]
         imgui.end_combo()

@@ -100,10 +100,9 @@ def _turns(bands: Bands, lane: StageLane, choice: Choice) -> list[Action]:
     actions: list[Action] = []
     document, em = bands.project.document, bands.look.em
     palette, draw_list = bands.look.palette, imgui.get_window_draw_list()
-    first, last = document.frames.first, document.frames.last
-    own, choice = {turn.frame for turn in choice.turns}, with_repeats(document, choice)
-    starts = sorted({first, *(turn.frame for turn in choice.turns if turn.frame > first)})
-    for number, (start, end) in enumerate(zip(starts, [*starts[1:], last], strict=True)):
+    own, choice = choice, with_repeats(document, choice)
+    starts = _starts(bands, choice)
+    for start, end in zip(starts, [*starts[1:], document.frames.last], strict=True):
         left, right = max(bands.x(start), bands.left), min(bands.x(max(end, start)), bands.right)
         if right <= left:
             continue
@@ -114,6 +113,7 @@ def _turns(bands: Bands, lane: StageLane, choice: Choice) -> list[Action]:
             imgui.open_popup(f"menu of turn {start}")
         elif imgui.is_item_clicked():
             actions.append(do(layering.choose, seen))
+        number = choice.count_until(start)
         strength = 0.34 if in_hand() else 0.24 - 0.08 * (number % 2)
         draw_list.add_rect_filled(low, high, ink(palette.accent, strength), 0.2 * em)
         with sized(SMALL):
@@ -126,10 +126,19 @@ def _turns(bands: Bands, lane: StageLane, choice: Choice) -> list[Action]:
             imgui.end_tooltip()
         actions += _menu(bands, choice, start)
     for start in starts[1:]:
-        if start not in own:
-            continue  # of a repeat, which goes with its stretch
-        actions += _edge(bands, lane, choice, start)
+        # Those of a repeat go with its stretch.
+        if own.count_until(start) > own.count_until(start - 1):
+            actions += _edge(bands, lane, choice, start)
     return actions
+
+
+def _starts(bands: Bands, choice: Choice) -> list[int]:
+    """Return where the turns begin that are in view, the one that reaches into the view first."""
+    first = bands.project.document.frames.first
+    seen = list(bands.in_view(choice.turns))
+    before = seen[0] if seen else choice.count_until(bands.frame(bands.left))
+    reaching = choice.turns[before - 1].frame if before else first
+    return sorted({max(reaching, first), *(max(choice.turns[i].frame, first) for i in seen)})
 
 
 def _menu(bands: Bands, choice: Choice, start: int) -> list[Action]:
