@@ -13,6 +13,7 @@ from app.document import (
     RUBBERY,
     Attachment,
     Extremes,
+    FrameRange,
     Spring,
     Track,
     TrackKey,
@@ -33,7 +34,10 @@ from app.motion import (
     trace_paths,
 )
 from app.motion.corrected_frames import CorrectedFrames
+from app.motion.inbetweens.swings import FARTHEST_SWING, PIECE, Swings
 from app.reports import Verdict, certify_clip
+from engine.geometry import HERE, box_diagonal
+from engine.geometry.kinematics import swing
 
 IDS = {name: number for number, name in enumerate(PLACES)}
 SHORT = 4  # frames between two keys, and
@@ -234,6 +238,41 @@ def test_spring_moves_nothing_without_strength_or_under_a_track():
     }
     sizes = [abs(each) for each in offset.values()]
     assert sizes[0] == pytest.approx(sizes[1], abs=0.1)
+
+
+@pytest.mark.parametrize("loop", [False, True])
+def test_pieces_of_a_swing_are_those_of_the_whole(loop):
+    document = springy(loop=loop, damping=0.2, lag=2.5)
+    clip = clip_of(replace(document, frames=FrameRange(0, 300)), 0)
+    (spring,) = clip.figure.springs
+    places = np.cumsum(np.random.default_rng(0).normal(0, 20, (301, 4, 2)) @ [1, 1j], axis=0)
+    places[40:100] = places[40]  # where the swing fades
+    places[-1] = places[0]
+    swings = Swings(clip, lambda _: HERE)
+    assert PIECE < swings.run_up < 300 - 2 * PIECE
+    settings = {"frequency": spring.frequency, "damping": spring.damping, "lag": spring.lag}
+    limit = FARTHEST_SWING * box_diagonal(clip.figure.domain.outline)
+    whole = swing(places[:, IDS["top"]], clip.fps, limit=limit, loop=loop, **settings)
+    for frame in (299.5, 150, 63.9, 64, 0.5, 98, 299, *range(0, 301, 7)):
+        found = swings.offset(spring, frame, lambda at: places[at])
+        assert abs(found - whole.at(frame)) < 1e-9
+
+
+@pytest.mark.parametrize("damping", [0.0, 0.2])
+def test_spring_is_worked_out_around_the_frame_it_is_asked_for(damping):
+    document = springy(damping=damping)
+    clip = clip_of(replace(document, frames=FrameRange(0, 999_999), loop=damping > 0), 0)
+    (spring,) = clip.figure.springs
+    asked = []
+
+    def at(frame):
+        asked.append(frame)
+        return np.full(4, np.exp(1j * frame))
+
+    swings = Swings(clip, lambda _: HERE)
+    for frame in (3, *[500_000] * (damping > 0)):
+        swings.offset(spring, frame, at)
+    assert len(asked) < 1_000
 
 
 def test_attached_spring_swings_with_its_parent():
