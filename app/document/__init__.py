@@ -90,6 +90,7 @@ from app.document.queries import (
     TrackPlace as TrackPlace,
     Transit as Transit,
     TreeRow as TreeRow,
+    acting_frames as acting_frames,
     alternates as alternates,
     are_as_stiff as are_as_stiff,
     brushed_stiffness as brushed_stiffness,

@@ -5,6 +5,7 @@ Out: answers; nothing is changed.
 Imports: the values of `app.document`.
 """
 
+from app.document.queries.acting import acting_frames as acting_frames
 from app.document.queries.auto_pins import (
     PinnedSegment as PinnedSegment,
     pinned_handles as pinned_handles,

@@ -12,13 +12,16 @@ from still_poses import PLACES, animate, animated, posed, with_figure
 from app.document import (
     RUBBERY,
     Attachment,
+    Cycle,
     Extremes,
     FrameRange,
     Spring,
     Track,
     TrackKey,
+    acting_frames,
     clip_of,
     handle_commands,
+    time_of,
     track_at,
 )
 from app.motion import (
@@ -35,7 +38,7 @@ from app.motion import (
 )
 from app.motion.corrected_frames import CorrectedFrames
 from app.motion.inbetweens.swings import FARTHEST_SWING, PIECE, Swings
-from app.reports import Verdict, certify_clip
+from app.reports import Verdict, certify_clip, corrected_frames
 from engine.geometry import HERE, box_diagonal
 from engine.geometry.kinematics import swing
 
@@ -183,6 +186,47 @@ def test_corrected_frames_are_proven_in_closed_variants(variant, wish):
         shown = animation.frame(frame)
         found = Extremes.measured(shown.fz, shown.fzbar)
         assert found.beyond(corrected.reached) == Extremes(0, 0, 0)
+
+
+def test_repeats_of_a_track_are_proven_once_however_many():
+    cycles = (Cycle(first=0, last=10),)
+    document = pulled(8j, keys=posed(1).figures[0].keys, cycles=cycles)
+    clip = clip_of(replace(document, frames=FrameRange(0, 999_999)), 0)
+    frames, counts = acting_frames(clip)
+    assert_array_equal(frames, range(1, 8))
+    assert_array_equal(counts, 100_000)
+    report = certify_clip(clip)
+    assert report.verdict is Verdict.PROVEN
+    assert report.corrected.frames == report.corrected.proven > 400_000
+
+
+@pytest.mark.parametrize("loop", [False, True])
+def test_acting_frames_are_those_of_the_tracks(loop):
+    late = track(keys=((2, 0), (6, 8j), (9, 0)), delay=7)
+    cycle = Cycle(first=0, last=11, until=20)
+    for cycles in ((), (cycle,)):
+        document = tracked(late, track("top", ((22, 0), (24, 3))), loop=loop, cycles=cycles)
+        clip = clip_of(document, 0)
+        shown = {
+            frame: (
+                time_of(clip, frame),
+                *(track_at(each, clip, frame) for each in clip.figure.tracks),
+            )
+            for frame in range(clip.frames.first, clip.frames.last + 1)
+        }
+        acting = {frame: places for frame, places in shown.items() if any(places[1:])}
+        frames, counts = acting_frames(clip)
+        assert {acting[frame] for frame in frames.tolist()} == set(acting.values())
+        assert counts.sum() == len(acting)
+
+
+def test_certify_looks_at_few_of_very_many_frames(monkeypatch):
+    monkeypatch.setattr(corrected_frames, "MOST_LOOKED_AT", 5)
+    monkeypatch.setattr(corrected_frames, "SPREAD", 3)
+    corrected = (report := certify_clip(clip_of(pulled(8j), 0))).corrected
+    assert (corrected.looked_at, corrected.left_out) == (3, 4)
+    assert corrected.proven == corrected.frames
+    assert report.corrected_verdict is report.verdict is Verdict.MEASURED
 
 
 def test_track_out_of_reach_keeps_limits_and_reports_its_error():
