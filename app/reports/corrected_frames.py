@@ -24,7 +24,7 @@ from engine.maps import Boundary, Bounds, Certificate, certify
 NOTHING = Extremes(0.0, 1.0, 1.0)
 MOST_LOOKED_AT: Final = 1_000  # frames; up to so many are all looked at
 SPREAD: Final = 150  # frames that are looked at of more
-MOST_DRIVEN: Final = 20_000  # frames whose motion is worked out, since springs follow it
+MOST_DRIVEN: Final = 8_000  # frames whose motion is worked out, since springs follow it
 BETWEEN = (0.25, 0.5, 0.75)  # of each segment of the outline: where it is measured beside its ends
 
 

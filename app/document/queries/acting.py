@@ -7,6 +7,7 @@ from app.document.queries.spans import layout
 from app.document.queries.tracks import cycle_of
 from app.document.timing import Track
 from engine.arrays import Floats, Indices
+from engine.geometry.kinematics import FADE, frames_to_settle
 
 
 def acting_frames(clip: Clip, *, is_carried: bool = False) -> tuple[Indices, Indices]:
@@ -17,9 +18,15 @@ def acting_frames(clip: Clip, *, is_carried: bool = False) -> tuple[Indices, Ind
     """
     figure = clip.figure
     frames = np.arange(clip.frames.first, clip.frames.last + 1)
-    springs = any(spring.enabled for spring in figure.springs)
+    springs = [spring for spring in figure.springs if spring.enabled]
     tracks = [track for track in figure.tracks if track.enabled]
-    acts = np.full(len(frames), springs)
+    acts = np.full(len(frames), bool(springs) and (is_carried or clip.loop))
+    # Where nothing moves they come to rest.
+    end = max([clip.keys[-1].frame, *(ring.end for ring in layout(clip).rings)])
+    for spring in springs:
+        settled = frames_to_settle(clip.fps, spring.frequency, spring.damping)
+        rests = end + spring.lag + settled + FADE
+        acts |= (clip.keys[0].frame <= frames) & (frames <= rests)
     for track in tracks:
         acts |= np.isfinite(_times(track, clip, frames))
     frames = frames[acts]

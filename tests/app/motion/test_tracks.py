@@ -319,6 +319,24 @@ def test_spring_is_worked_out_around_the_frame_it_is_asked_for(damping):
     assert len(asked) < 1_000
 
 
+def test_spring_acts_until_it_has_settled():
+    document = replace(springy(damping=1.0), frames=FrameRange(0, 999_999))
+    clip = clip_of(document, 0)
+    frames, _ = acting_frames(clip)
+    assert frames[0] == 0
+    assert 3 * SHORT < frames[-1] < 50
+    swings = Swings(clip, None)
+    (spring,) = clip.figure.springs
+    animation = animate(document)
+    offsets = [
+        swings.offset(spring, frame, lambda at: animation.base.frame(at).positions)
+        for frame in range(3 * SHORT, 60)
+    ]
+    assert offsets[0]
+    assert not any(offsets[frames[-1] - 3 * SHORT :])
+    assert len(acting_frames(clip, is_carried=True)[0]) == 1_000_000
+
+
 def test_attached_spring_swings_with_its_parent():
     document = posed(FEW, drawn=SHORT)
     spring = Spring(handle=IDS["top"], frequency=5.0, damping=0.2)
