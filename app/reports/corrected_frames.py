@@ -12,12 +12,12 @@ from app.document import (
     Clip,
     Extremes,
     Variant,
-    acting_frames,
     falls_short,
     resting_pose,
     time_of,
 )
 from app.motion import Animation, Carried
+from app.reports.acting_frames import acting_frames
 from engine.interpolation import prove_frame
 from engine.maps import Boundary, Bounds, Certificate, certify
 

@@ -18,7 +18,6 @@ from app.document import (
     Spring,
     Track,
     TrackKey,
-    acting_frames,
     clip_of,
     handle_commands,
     time_of,
@@ -39,6 +38,7 @@ from app.motion import (
 from app.motion.corrected_frames import CorrectedFrames
 from app.motion.inbetweens.swings import FARTHEST_SWING, PIECE, Swings
 from app.reports import Verdict, certify_clip, corrected_frames
+from app.reports.acting_frames import acting_frames
 from engine.geometry import HERE, box_diagonal
 from engine.geometry.kinematics import swing
 

@@ -2,10 +2,7 @@
 
 import numpy as np
 
-from app.document.queries.clips import Clip
-from app.document.queries.spans import layout
-from app.document.queries.tracks import cycle_of
-from app.document.timing import Track
+from app.document import Clip, Track, cycle_of, layout
 from engine.arrays import Floats, Indices
 from engine.geometry.kinematics import FADE, frames_to_settle
 
