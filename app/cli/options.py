@@ -5,10 +5,12 @@ told at once; a test compares them with it.
 """
 
 import argparse
+import os
 import re
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import NamedTuple
 
 from app.errors import LissomError
 from app.export_formats import full_colour
@@ -23,6 +25,7 @@ DEFAULT_TOLERANCE = 18
 VARIANTS = tuple(variant.value for variant in Variant)
 METHODS = (*VARIANTS, *(method.value for method in Baseline))
 FRAMINGS = ("canvas", "fit")
+NAMED_LIKE_FOLDER = "cannot write {name}: its name ends as that of a folder; name a file"
 NO_STANDARD_OUTPUT = "standard output is not offered; name a file instead of -"
 
 
@@ -42,8 +45,21 @@ def input_file(text: str) -> Path:
     return path
 
 
-def output(text: str) -> Path:
-    """Return the path of what is written; it may not be there yet.
+class Output(NamedTuple):
+    """Where to write."""
+
+    path: Path
+    text: str  # as it was said
+
+    def as_file(self) -> Path:
+        """Return the path of a file; raise a `LissomError` if only folders are named so."""
+        if os.path.basename(self.text) in {"", "."}:  # noqa: PTH119 - paths end without a slash
+            raise LissomError(NAMED_LIKE_FOLDER.format(name=self.text))
+        return self.path
+
+
+def output(text: str) -> Output:
+    """Return where a file or folder is written; it may not be there yet.
 
     Raises
     ------
@@ -52,7 +68,12 @@ def output(text: str) -> Path:
     """
     if text == "-":
         raise LissomError(NO_STANDARD_OUTPUT)
-    return Path(_named(text))
+    return Output(Path(_named(text)), text)
+
+
+def output_file(text: str) -> Path:
+    """Return the path of a file that is written, as `output`."""
+    return output(text).as_file()
 
 
 def _named(text: str) -> str:
@@ -79,9 +100,15 @@ def add_project(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("project", metavar="PROJECT", type=input_file, help="the .lissom file")
 
 
-def add_out(parser: argparse.ArgumentParser, metavar: str, about: str = "where to write") -> None:
+def add_out(
+    parser: argparse.ArgumentParser,
+    metavar: str,
+    about: str = "where to write",
+    *,
+    place: Callable[[str], Path | Output] = output_file,
+) -> None:
     """Declare where to write."""
-    parser.add_argument("--out", metavar=metavar, type=output, required=True, help=about)
+    parser.add_argument("--out", metavar=metavar, type=place, required=True, help=about)
 
 
 def add_meshing_options(parser: argparse.ArgumentParser) -> None:

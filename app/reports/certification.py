@@ -118,12 +118,12 @@ class Report:
     @property
     def corrected_verdict(self) -> Verdict:
         """What is known of the frames that are corrected."""
-        if self.corrected is None or not self.corrected.frames:
-            return Verdict.PROVEN
         corrected = self.corrected
+        if corrected is None or not (corrected.frames or corrected.left_out):
+            return Verdict.PROVEN
         if not _are_within(corrected.reached.joined(corrected.between), corrected.limits):
             return Verdict.OVER
-        is_proven = corrected.proven == corrected.frames
+        is_proven = corrected.proven == corrected.frames and not corrected.left_out
         return Verdict.PROVEN if is_proven else Verdict.MEASURED
 
 
@@ -234,7 +234,7 @@ def _frames(
     span, transit = spans(clip)[interval], transits(clip)[interval]
     start, end = span.start, span.start + span.frames
     found = []
-    for frame in range(start, end + 1):
+    for frame in range(start, end + 1) if stretches else ():
         ends = (span.share(max(frame - 0.5, start)), span.share(min(frame + 0.5, end)))
         since, until = (transit.weight(clip.keys[span.first].easing(share)) for share in ends)
         if any(first <= until and last >= since for first, last in stretches):

@@ -4,15 +4,27 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import reduce
 from itertools import groupby
+from typing import Final
 
 import numpy as np
 
-from app.document import Clip, Extremes, Variant, falls_short, resting_pose, time_of
+from app.document import (
+    Clip,
+    Extremes,
+    Variant,
+    falls_short,
+    resting_pose,
+    time_of,
+)
 from app.motion import Animation, Carried
+from app.reports.acting_frames import acting_frames
 from engine.interpolation import prove_frame
 from engine.maps import Boundary, Bounds, Certificate, certify
 
 NOTHING = Extremes(0.0, 1.0, 1.0)
+MOST_LOOKED_AT: Final = 1_000  # frames; up to so many are all looked at
+SPREAD: Final = 150  # frames that are looked at of more
+MOST_DRIVEN: Final = 8_000  # frames whose motion is worked out, since springs follow it
 BETWEEN = (0.25, 0.5, 0.75)  # of each segment of the outline: where it is measured beside its ends
 
 
@@ -33,7 +45,7 @@ class CorrectedReport:
     Parameters
     ----------
     frames : int
-        How many.
+        How many, of those that were looked at and their repeats.
     proven : int
         How many of them are proven, over all of the domain; the others are measured.
     points : int
@@ -46,6 +58,9 @@ class CorrectedReport:
         What they are to keep: the figure's bounds, or what its keys have beyond them.
     short : tuple of Short
         What is out of reach.
+    looked_at, left_out : int
+        Frames at which tracks and springs act, with repeats once: those that were looked at, at
+        equal steps, and those that were not.
     """
 
     frames: int
@@ -55,6 +70,8 @@ class CorrectedReport:
     between: Extremes
     limits: Extremes
     short: tuple[Short, ...]
+    looked_at: int
+    left_out: int
 
     @property
     def excess(self) -> Extremes:
@@ -90,10 +107,13 @@ def report_corrected(
     animation = Animation(clip, variant, points=points, carried=carried)
     if animation.corrections is None:
         return None
-    frames = range(clip.frames.first, clip.frames.last + 1)
-    corrections = {frame: animation.corrections.at(frame) for frame in frames}
+    acting, counts = acting_frames(clip, is_carried=carried is not None)
+    step = _step(len(acting), animation.corrections.run_up)
+    looked_at = acting[::step].tolist()
+    corrections = {frame: animation.corrections.at(frame) for frame in looked_at}
     found = {frame: each for frame, each in corrections.items() if each is not None}
-    # Repeats of a cycle have the very same corrections; each is looked at once.
+    repeats = dict(zip(looked_at, counts[::step].tolist(), strict=True))
+    # Those that come to the very same are looked at once.
     same = {frame: (id(found[frame]), time_of(clip, frame)) for frame in found}
     once = {each: frame for frame, each in reversed(same.items())}
     proofs = {at: _proven(animation, boundary, frame, limits) for at, frame in once.items()}
@@ -102,14 +122,24 @@ def report_corrected(
     ]
     between = [frame + 0.5 for frame in once.values() if frame < clip.frames.last]
     return CorrectedReport(
-        frames=len(found),
-        proven=sum(proofs[each] is not None for each in same.values()),
+        frames=sum(repeats[frame] for frame in found),
+        proven=sum(repeats[frame] for frame, at in same.items() if proofs[at] is not None),
         points=len(points),
         reached=reduce(Extremes.joined, reached, NOTHING),
         between=reduce(Extremes.joined, (_measured(animation, at) for at in between), NOTHING),
         limits=limits,
-        short=_short(clip, {frame: each.misses for frame, each in found.items()}),
+        short=_short(clip, step, {frame: each.misses for frame, each in found.items()}),
+        looked_at=len(looked_at),
+        left_out=len(acting) - len(looked_at),
     )
+
+
+def _step(count: int, run_up: int) -> int:
+    """Return by how many of a number of frames to go on, so that there is time to look at them."""
+    if count <= MOST_LOOKED_AT:
+        return 1
+    # Each takes as many more as springs need before it.
+    return -(-count // max(min(SPREAD, MOST_DRIVEN // (run_up + 1)), 1))
 
 
 def _proven(
@@ -138,8 +168,8 @@ def _measured(animation: Animation, at: float) -> Extremes:
     return Extremes.measured(frame.fz, frame.fzbar)
 
 
-def _short(clip: Clip, misses: Mapping[int, Mapping[int, float]]) -> tuple[Short, ...]:
-    """Return the runs of frames in which handles fall short."""
+def _short(clip: Clip, step: int, misses: Mapping[int, Mapping[int, float]]) -> tuple[Short, ...]:
+    """Return the runs of frames, looked at by steps, in which handles fall short."""
     found = []
     for handle in clip.figure.handles:
         lags = {
@@ -147,8 +177,8 @@ def _short(clip: Clip, misses: Mapping[int, Mapping[int, float]]) -> tuple[Short
             for frame, miss in misses.items()
             if handle.id in miss and falls_short(clip.figure, miss[handle.id])
         }
-        # Frames of one run are as far ahead of their number in it.
-        for _, run in groupby(enumerate(lags), key=lambda each: each[1] - each[0]):
+        # Frames of one run are as many steps ahead of their number in it.
+        for _, run in groupby(enumerate(lags), key=lambda each: each[1] - step * each[0]):
             frames = [frame for _, frame in run]
             lag = max(lags[frame] for frame in frames)
             found.append(Short(handle=handle.name, first=frames[0], last=frames[-1], lag=lag))

@@ -28,6 +28,7 @@ from app.storage.autosave import (
     take_news as take_news,
 )
 from app.storage.files import (
+    IS_FILE as IS_FILE,
     IS_FOLDER as IS_FOLDER,
     NO_ARRAYS as NO_ARRAYS,
     NO_FOLDER as NO_FOLDER,
@@ -41,6 +42,7 @@ from app.storage.files import (
     check_writable as check_writable,
     clear_abandoned as clear_abandoned,
     lock as lock,
+    make_folder as make_folder,
     passing_picture as passing_picture,
     read_arrays as read_arrays,
     read_file as read_file,

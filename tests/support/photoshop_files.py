@@ -62,8 +62,13 @@ class _Written:
     channels: list[bytes] = field(default_factory=list)
 
 
-def photoshop_file(size: tuple[int, int], layers: Sequence[Drawn | Folder]) -> bytes:
-    """Return a file of a canvas of this width and height, and its layers from back to front."""
+def photoshop_file(
+    size: tuple[int, int], layers: Sequence[Drawn | Folder], *, in_block: bool = False
+) -> bytes:
+    """Return a file of a canvas of this width and height, and its layers from back to front.
+
+    They stand where layers of 16 bits a channel do, if that is wanted.
+    """
     width, height = size
     written = _Written()
     for layer in layers:
@@ -72,6 +77,9 @@ def photoshop_file(size: tuple[int, int], layers: Sequence[Drawn | Folder]) -> b
     info += b"".join(written.records) + b"".join(written.channels)
     info += bytes(len(info) % 2)
     section = struct.pack(">I", len(info)) + info + struct.pack(">I", 0)
+    if in_block:
+        info += bytes(-len(info) % 4)
+        section = struct.pack(">II4s4sI", 0, 0, b"8BIM", b"Lr16", len(info)) + info
     header = b"8BPS" + struct.pack(">H6xHIIHH", 1, 3, height, width, 8, 3)
     return b"".join(
         [

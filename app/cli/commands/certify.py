@@ -123,6 +123,8 @@ def _corrected_block(report: Report) -> dict[str, Any] | None:
         "frames": corrected.frames,
         "proven": corrected.proven,
         "points": corrected.points,
+        "looked_at": corrected.looked_at,
+        "left_out": corrected.left_out,
         **_named(corrected.reached),
         "between": _named(corrected.between),
         "excess": list(_named(corrected.excess).values()),
@@ -202,7 +204,7 @@ def _as_table(report: Report) -> str:
 def _corrected_lines(report: Report) -> list[str]:
     """Return what is known of frames in which tracks and springs move handles."""
     corrected = report.corrected
-    if corrected is None or not corrected.frames:
+    if corrected is None or not (corrected.frames or corrected.left_out):
         return []
     reached = zip(_numbers(corrected.reached), ("+", "+", "-"), corrected.excess, strict=True)
     cells = [f"{value:.4f} ({sign}{by:.4f})" for value, sign, by in reached]
@@ -213,6 +215,12 @@ def _corrected_lines(report: Report) -> list[str]:
         f"proven, and {measured} are measured at {corrected.points:,} points of the outline each"
         f"{BY_METRIC if measured else ''}. Halfway between two of them the drawing is measured."
     )
+    if corrected.left_out:
+        every = corrected.looked_at + corrected.left_out
+        lines.append(
+            f"Tracks and springs act in {every:,} frames, repeats told once. "
+            f"{corrected.looked_at:,} of them were looked at, at equal steps."
+        )
     lines += [
         f"{shortened(repr(short.handle))} is out of reach of its track by up to {short.lag:.1f} px "
         "in frame"

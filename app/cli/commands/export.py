@@ -46,7 +46,8 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.figure is not None:
         document = _alone(document, arguments.figure)
     name = arguments.project.stem
-    out = arguments.out.parent / arguments.out.name.replace(PROJECT, name)
+    named: Path = arguments.out.path
+    out = named.parent / named.name.replace(PROJECT, name)
     request = ExportRequest(
         out=out,
         settings=_settings(document.export, arguments, out),
@@ -54,6 +55,8 @@ def run(arguments: argparse.Namespace) -> int:
         fps=arguments.fps,
         sources=(arguments.project,),
     )
+    if EXPORT_FORMATS[request.settings.format].suffixes:
+        arguments.out.as_file()
     check_request(document, request)
     _check_options(request.settings.format, arguments)
     source = f"the picture of {arguments.project}"

@@ -5,24 +5,25 @@ from pathlib import Path
 
 from app.cli.console import StatusLine, say
 from app.cli.figures import MAKERS, Easel, Plate, Studio, lay_out, require_matplotlib
-from app.storage import write_atomically
+from app.storage import make_folder, write_atomically
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Make the figures and print what was measured."""
     require_matplotlib()
-    arguments.out.mkdir(parents=True, exist_ok=True)
+    out: Path = arguments.out.path
+    make_folder(out)
     plates = {}
     with StatusLine() as status, Easel() as easel:
         studio = Studio(easel=easel, triangles=arguments.triangles, largest=arguments.largest)
         for number in sorted(set(arguments.only or MAKERS)):
             status.show(f"making figure {number}")
             plates[number] = plate = MAKERS[number](studio)
-            _write(arguments.out / f"figure_{number}.png", plate.picture)
-    _write(arguments.out / "figures.html", lay_out(plates).encode())
+            _write(out / f"figure_{number}.png", plate.picture)
+    _write(out / "figures.html", lay_out(plates).encode())
     for number, plate in plates.items():
         print(f"\nFigure {number}: {plate.title}\n{_as_table(plate)}")
-    say(f"\n{arguments.out}: {len(plates)} figures")
+    say(f"\n{out}: {len(plates)} figures")
     return 0
 
 

@@ -4,20 +4,21 @@ import argparse
 from pathlib import Path
 
 from app.cli.console import say
-from app.storage import check_writable, manual_page, write_atomically
+from app.storage import check_writable, make_folder, manual_page, write_atomically
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Copy the manual into a folder."""
+    out: Path = arguments.out.path
     first = manual_page()
     sources = sorted(path for path in first.parent.rglob("*") if path.is_file())
-    copies = [arguments.out / source.relative_to(first.parent) for source in sources]
+    copies = [out / source.relative_to(first.parent) for source in sources]
     for copy in copies:
-        copy.parent.mkdir(parents=True, exist_ok=True)
+        make_folder(copy.parent)
     check_writable(*copies, sources=sources)
     for source, copy in zip(sources, copies, strict=True):
         _write(copy, source.read_bytes())
-    say(f"{arguments.out / first.name}: the first page of the manual")
+    say(f"{out / first.name}: the first page of the manual")
     return 0
 
 

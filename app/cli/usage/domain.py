@@ -3,7 +3,13 @@
 import argparse
 from math import isfinite
 
-from app.cli.options import add_cut_out_options, add_meshing_options, add_out, input_file, output
+from app.cli.options import (
+    add_cut_out_options,
+    add_meshing_options,
+    add_out,
+    input_file,
+    output_file,
+)
 
 EPILOG = """\
 The picture may be a PNG, JPEG, GIF, WebP, AVIF, TIFF, BMP, TGA, PPM or ICO, or a layer of an
@@ -66,7 +72,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--preview",
         metavar="PREVIEW.png",
-        type=output,
+        type=output_file,
         help="also draw picture, outline, cage and mesh",
     )
 

@@ -5,7 +5,7 @@ import re
 import textwrap
 from typing import Any
 
-from app.cli.options import FRAMINGS, add_out, add_project, add_variant_option
+from app.cli.options import FRAMINGS, add_out, add_project, add_variant_option, output
 from app.export_formats import EXPORT_FORMATS, FormatSettings, format_by_suffix
 
 COLUMN = max(map(len, EXPORT_FORMATS)) + 4
@@ -42,7 +42,12 @@ examples:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options of `lissom export`."""
     add_project(parser)
-    add_out(parser, "DIR_OR_FILE", "a folder for PNG frames, a file for every other format")
+    add_out(
+        parser,
+        "DIR_OR_FILE",
+        "a folder for PNG frames, a file for every other format",
+        place=output,
+    )
     either = parser.add_mutually_exclusive_group()
     either.add_argument(
         "--frames", metavar="A:B", type=_frames, help="frames of the timeline, both ends included"

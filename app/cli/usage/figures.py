@@ -2,7 +2,7 @@
 
 import argparse
 
-from app.cli.options import add_out, whole_number
+from app.cli.options import add_out, output, whole_number
 
 FIGURES = (1, 3, 4, 5, 6, 7, 8, 9, 10, 11)
 
@@ -22,7 +22,7 @@ examples:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options of `lissom figures`."""
-    add_out(parser, "DIR")
+    add_out(parser, "DIR", place=output)
     parser.add_argument(
         "--only",
         metavar="N",

@@ -2,7 +2,7 @@
 
 import argparse
 
-from app.cli.options import add_out
+from app.cli.options import add_out, output
 
 EPILOG = """\
 Pages, pictures and all, are written into DIR, which is made if it is missing: open DIR/index.html
@@ -16,4 +16,4 @@ examples:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options of `lissom manual`."""
-    add_out(parser, "DIR")
+    add_out(parser, "DIR", place=output)

@@ -6,7 +6,7 @@ from app.cli.options import (
     add_cut_out_options,
     add_meshing_options,
     input_file,
-    output,
+    output_file,
 )
 
 EPILOG = """\
@@ -51,7 +51,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--list", action="store_true", help="name the motions, with the kinds that they fit"
     )
     parser.add_argument("--motion", metavar="NAME", help="which motion it is given")
-    parser.add_argument("--out", metavar="PROJECT.lissom", type=output, help="where to write")
+    parser.add_argument("--out", metavar="PROJECT.lissom", type=output_file, help="where to write")
     parser.add_argument("--kind", metavar="KIND", help="what kind of body it is")
     parser.add_argument(
         "--joints", metavar="JOINTS.json", type=input_file, help="where its joints are"

@@ -37,6 +37,7 @@ from app.document.queries.spans import (
     KeySpan as KeySpan,
     closing_span as closing_span,
     intervals as intervals,
+    layout as layout,
     place_at as place_at,
     spans as spans,
 )
@@ -80,6 +81,7 @@ from app.document.queries.timeline import (
 )
 from app.document.queries.tracks import (
     TrackPlace as TrackPlace,
+    cycle_of as cycle_of,
     track_at as track_at,
     velocity_at as velocity_at,
 )

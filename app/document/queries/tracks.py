@@ -69,7 +69,7 @@ TURN = Moved[TrackKey, float](lambda key: key.turn, SAME_TURN)
 def _time(track: Track, clip: Clip, frame: float) -> float | None:
     """Return the frame among the track's keys that a frame of the scene shows, if there is one."""
     first, last = track.keys[0].frame, track.keys[-1].frame
-    cycle, period = _cycle(track, clip), clip.period if clip.loop else 0
+    cycle, period = cycle_of(track, clip), clip.period if clip.loop else 0
     if period and frame not in clip.frames:
         frame = clip.frames.first + (frame - clip.frames.first) % period
     time = frame - track.delay
@@ -83,7 +83,7 @@ def _time(track: Track, clip: Clip, frame: float) -> float | None:
     return None
 
 
-def _cycle(track: Track, clip: Clip) -> Cycle | None:
+def cycle_of(track: Track, clip: Clip) -> Cycle | None:
     """Return the cycle with which a track repeats, if there is one."""
     return next((cycle for cycle in clip.figure.cycles if cycle.takes(track.keys)), None)
 
@@ -95,7 +95,7 @@ def _interval(track: Track, time: float) -> int:
 
 def _passages(track: Track, clip: Clip, moved: Moved[TrackKey, Value]) -> Passages[TrackKey]:
     keys = track.keys
-    cycle = _cycle(track, clip)
+    cycle = cycle_of(track, clip)
     period = cycle.period if cycle else clip.period if clip.loop else 0
     is_whole = 0 < keys[-1].frame - keys[0].frame == period
     gap = 0 if is_whole and moved.is_same(keys[0], keys[-1]) else None

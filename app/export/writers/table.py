@@ -5,7 +5,6 @@ from contextlib import closing, contextmanager
 from types import MappingProxyType
 from typing import IO, Final
 
-from app.errors import LissomError
 from app.export.destination import data_file
 from app.export.moving_shape import MovingScene
 from app.export.plan import ExportPlan
@@ -17,7 +16,7 @@ from app.export.writers.html import html_page
 from app.export.writers.png import PngPicture, PngSequence
 from app.export.writers.spritesheet import SpritesheetWriter
 from app.export.writers.webp import WebpWriter
-from app.storage import Cancellation, atomic_file, atomic_files
+from app.storage import Cancellation, atomic_file, atomic_files, make_folder
 
 
 def _video(file: IO[bytes], plan: ExportPlan) -> FrameWriter:
@@ -65,10 +64,7 @@ def open_writer(plan: ExportPlan, cancellation: Cancellation) -> Iterator[FrameW
         If the folder or the file cannot be made, or the format cannot hold such frames.
     """
     if plan.format in FOLDER_WRITERS:
-        try:
-            plan.out.mkdir(exist_ok=True)
-        except OSError as error:
-            raise LissomError(f"cannot make the folder {plan.out}: {error.strerror}") from error
+        make_folder(plan.out)
         with closing(FOLDER_WRITERS[plan.format](plan, cancellation)) as writer:
             yield writer
     elif (beside := data_file(plan.out, plan.format)) is not None:

@@ -14,6 +14,6 @@ from app.motion.inbetweens.corrections import (
     have_one_ground as have_one_ground,
     is_corrected as is_corrected,
 )
-from app.motion.inbetweens.own_clocks import Carried as Carried
 from app.motion.inbetweens.pairs import Pair as Pair, pair_of as pair_of, poses_of as poses_of
 from app.motion.inbetweens.pose_sampler import PoseSampler as PoseSampler
+from app.motion.inbetweens.swings import Carried as Carried

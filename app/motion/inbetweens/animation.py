@@ -3,8 +3,8 @@
 from app.document import Clip, Variant
 from app.motion.inbetweens.base_motion import BaseMotion
 from app.motion.inbetweens.corrections import Corrections, is_corrected
-from app.motion.inbetweens.own_clocks import Carried
 from app.motion.inbetweens.pose_sampler import PoseSampler
+from app.motion.inbetweens.swings import Carried
 from engine.arrays import Complexes
 from engine.interpolation import Frame
 from engine.maps import Span

@@ -22,9 +22,10 @@ from app.document import (
 )
 from app.motion.inbetweens.base_motion import BaseMotion
 from app.motion.inbetweens.correction import FrameCorrection
-from app.motion.inbetweens.own_clocks import Carried, OwnClocks, Wanted
+from app.motion.inbetweens.own_clocks import OwnClocks, Wanted
 from app.motion.inbetweens.pairs import pair_of, poses_of
 from app.motion.inbetweens.pose_sampler import PoseSampler
+from app.motion.inbetweens.swings import Carried
 from engine.arrays import Complexes, Floats, Indices
 from engine.deform.model import Jet
 from engine.deform.relative import Corrected, Corrector, Pins
@@ -122,6 +123,11 @@ class Corrections:
             # has it.
             wanted = self._own.wanted(frame, places, fz, self._places)
             return None if wanted is None else self._gone(frame, base, wanted)
+
+    @property
+    def run_up(self) -> int:
+        """Frames before a frame from which its correction follows."""
+        return self._own.run_up
 
     @property
     def nbytes(self) -> int:

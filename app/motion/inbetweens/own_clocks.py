@@ -1,21 +1,15 @@
 """Where springs and tracks want their handles at a frame, over the motion of the figure."""
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from app.document import Clip, Track, TrackPlace, track_at
+from app.motion.inbetweens.swings import Carried, PlacesAt, Swings
 from engine.arrays import Complexes, Floats
-from engine.geometry import HERE, RigidMotion, box_diagonal
-from engine.geometry.kinematics import Swing, swing
+from engine.geometry import HERE, RigidMotion
 
-FARTHEST_SWING = 0.3  # of the figure's diagonal
 TURNED = 50.0  # pixels that count as much as a turn by one radian
-# Where a figure is that hangs on others, at a frame.
-Carried = Callable[[float], RigidMotion]
-# Where the handles (h,) of a figure are, at a frame.
-PlacesAt = Callable[[float], Complexes]
 
 
 class Wanted(NamedTuple):
@@ -44,13 +38,12 @@ class OwnClocks:
     def __init__(self, clip: Clip, carried: Carried | None = None) -> None:
         figure = clip.figure
         self._clip, self._carried = clip, carried
-        self._springs = [spring for spring in figure.springs if spring.enabled]
-        self._swings: dict[int, Swing] | None = None
+        self._swings = Swings(clip, carried)
         self._index = {handle.id: number for number, handle in enumerate(figure.handles)}
         self._tracks = [track for track in figure.tracks if track.enabled]
         # These are held as firmly wherever others go their own ways: nothing gives when they begin.
         own = [identity for track in self._tracks for identity in track.handles]
-        own += [spring.handle for spring in self._springs]
+        own += [spring.handle for spring in self._swings.springs]
         self._firmness = np.zeros(len(figure.handles))
         self._firmness[[self._index[identity] for identity in own]] = 1.0
 
@@ -60,9 +53,14 @@ class OwnClocks:
         changed._swings = self._swings
         return changed
 
+    @property
+    def run_up(self) -> int:
+        """Frames before a frame from which what is wanted there follows."""
+        return self._swings.run_up
+
     def acts(self, frame: float) -> bool:
         """Tell whether anything may be wanted at a frame."""
-        return bool(self._springs) or any(
+        return bool(self._swings.springs) or any(
             track_at(track, self._clip, frame) is not None for track in self._tracks
         )
 
@@ -79,10 +77,10 @@ class OwnClocks:
         """
         wanted, turns = places.copy(), np.full(len(places), np.nan)
         reaches, sizes, tracked = [], [], set()
-        for identity, swung in self._swings_of(at).items():
-            offset = complex(swung.at(frame - self._clip.frames.first))
+        for spring in self._swings.springs:
+            offset = self._swings.offset(spring, frame, at)
             offset *= self._hung(frame).factor.conjugate()
-            wanted[self._index[identity]] += offset
+            wanted[self._index[spring.handle]] += offset
             reaches.append(1.0)
             sizes.append(abs(offset))
         for track in self._tracks:
@@ -102,30 +100,6 @@ class OwnClocks:
         # By how far each leads, so that none jumps in as it begins.
         reach = float(np.average(reaches, weights=sizes)) if np.any(sizes) else 1.0
         return Wanted(wanted, self._firmness, turns, reach, frozenset(tracked))
-
-    def _swings_of(self, at: PlacesAt) -> dict[int, Swing]:
-        """Return the swings of handles, by their ids; in the axes of the scene."""
-        if self._swings is None:
-            self._swings = self._swung(at) if self._springs else {}
-        return self._swings
-
-    def _swung(self, at: PlacesAt) -> dict[int, Swing]:
-        clip = self._clip
-        frames = range(clip.frames.first, clip.frames.last + 1)
-        places = np.array([self._hung(frame).on(at(frame)) for frame in frames])
-        return {
-            spring.handle: swing(
-                places[:, self._index[spring.handle]],
-                clip.fps,
-                frequency=spring.frequency,
-                damping=spring.damping,
-                lag=spring.lag,
-                strength=spring.strength,
-                limit=FARTHEST_SWING * box_diagonal(clip.figure.domain.outline),
-                loop=clip.loop and len(frames) > 1,
-            )
-            for spring in self._springs
-        }
 
     def _hung(self, frame: float) -> RigidMotion:
         return self._carried(frame) if self._carried else HERE

@@ -22,10 +22,12 @@ from app.storage.files.cancellation import Cancellation as Cancellation
 from app.storage.files.hold import Hold as Hold, HoldError as HoldError
 from app.storage.files.locks import is_locked as is_locked, lock as lock
 from app.storage.files.outputs import (
+    IS_FILE as IS_FILE,
     IS_FOLDER as IS_FOLDER,
     NO_FOLDER as NO_FOLDER,
     SAME_FILE as SAME_FILE,
     check_writable as check_writable,
+    make_folder as make_folder,
 )
 from app.storage.files.reading import (
     DAMAGED_ZIP as DAMAGED_ZIP,

@@ -14,6 +14,8 @@ Identity = tuple[int, int, str]
 STREAMS = (0, 1, 2)  # descriptors
 NO_FOLDER = "the folder {folder} does not exist"
 SAME_FILE = "it is the same file as"
+NO_PLACE = "cannot make the folder {folder}: {reason}"
+IS_FILE = "{file} is there and is no folder; choose another name"
 IS_FOLDER = "it is a folder; name a file"
 
 
@@ -47,6 +49,26 @@ def check_writable(*outs: Path, sources: Iterable[Path] = ()) -> None:
         if own in taken:
             raise LissomError(f"cannot write {out}: {SAME_FILE} {taken[own]}; name another one")
         taken[own] = f"{out}, which is written as well"
+
+
+def make_folder(folder: Path) -> None:
+    """Make a folder for what is written, and those around it, where they are not there.
+
+    Raises
+    ------
+    LissomError
+        If that cannot be done.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except (FileExistsError, NotADirectoryError) as error:
+        around = (folder, *folder.parents)
+        file = next(each for each in around if os.path.lexists(each))
+        reason = IS_FILE.format(file=file)
+        raise LissomError(NO_PLACE.format(folder=folder, reason=reason)) from error
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise LissomError(NO_PLACE.format(folder=folder, reason=reason)) from error
 
 
 def _check_place(path: Path) -> None:

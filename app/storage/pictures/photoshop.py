@@ -32,6 +32,8 @@ MEBIBYTE = 1024 * 1024
 SIGNATURE = b"8BPS"
 HEADER: Final = 26  # bytes
 MOST_RECORDS: Final = 1_000
+# Where files of more than 8 bits a channel list their layers.
+DEEP_LAYERS: Final = re.compile(rb"8B(IM|64)Lr(16|32)")
 # What is drawn, and by which name psd-tools knows it. Shapes, placed pictures and texts come with
 # pixels.
 DRAWN: Final = {"pixel", "shape", "smartobject", "type"}
@@ -114,10 +116,12 @@ def _require_few_records(data: bytes) -> None:
         at += 4 + struct.unpack_from(">I", data, at)[0]
     # After the lengths of all that is on layers, and of what is said of them.
     at += 2 * 4 * version
-    (count,) = struct.unpack_from(">h", data, at) if at < len(data) else (0,)
-    if abs(count) > MOST_RECORDS:
+    starts = [at] if at < len(data) else []
+    starts += [block.end() + 4 * version for block in DEEP_LAYERS.finditer(data)]
+    count = sum(abs(struct.unpack_from(">h", data, start)[0]) for start in starts)
+    if count > MOST_RECORDS:
         raise LissomError(
-            f"it has {abs(count):,} layers and ends of groups; Lissom takes up to "
+            f"it has {count:,} layers and ends of groups; Lissom takes up to "
             f"{MOST_RECORDS:,}: merge some of them"
         )
 

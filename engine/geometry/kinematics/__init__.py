@@ -6,4 +6,9 @@ Imports: `engine.arrays`, `engine.errors`.
 """
 
 from engine.geometry.kinematics.recordings import FittedKeys as FittedKeys, fit_keys as fit_keys
-from engine.geometry.kinematics.springs import Swing as Swing, swing as swing
+from engine.geometry.kinematics.springs import (
+    FADE as FADE,
+    Swing as Swing,
+    frames_to_settle as frames_to_settle,
+    swing as swing,
+)

@@ -14,6 +14,8 @@ GONE = 0.01  # pixels: a swing that stays below is not seen, and ends
 FADE = 6  # frames in which it ends
 # Pixels to which a jump of the base's velocity would make it swing: less is what rounding leaves.
 SILENT = 1e-9
+FORGOTTEN = 1e-12  # share of a swing that is left when it has settled
+LONGEST = 2**20  # frames in which a spring may settle
 CLOSED = 1e-12  # smallest singular value of the equation of a loop that can be solved
 
 
@@ -173,6 +175,16 @@ def swing(
         states=freeze(run.states),
         fading=freeze(run.fading),
     )
+
+
+def frames_to_settle(fps: float, frequency: float, damping: float) -> float:
+    """Return after how many frames a free swing is over but for `FORGOTTEN`; ∞ if it never is.
+
+    The norm of the flow never grows, so that it stays over.
+    """
+    frames = np.ceil(np.geomspace(1, LONGEST, 200))
+    left = np.linalg.norm(flow(2 * np.pi * frequency / fps * frames, damping), 2, axis=(1, 2))
+    return float(np.append(frames[left < FORGOTTEN], np.inf)[0])
 
 
 def flow(angles: Floats, damping: float) -> Floats:

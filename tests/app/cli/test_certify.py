@@ -18,10 +18,18 @@ from app.document import (
     FrameRange,
     Meshing,
     Passing,
+    Track,
+    TrackKey,
     UnreadMotion,
     new_figure,
 )
-from app.reports import CorrectedReport, IntervalReport, Report, certification
+from app.reports import (
+    CorrectedReport,
+    IntervalReport,
+    Report,
+    certification,
+    corrected_frames,
+)
 from app.storage import load_project, save_project
 from engine.interpolation import Proof
 from engine.maps import Certificate
@@ -166,6 +174,8 @@ def test_tracked_frames_are_judged_with_the_same_tolerance(reached, proven, verd
         between=Extremes(0.4, 1.5, 0.7),
         limits=limits,
         short=(),
+        looked_at=4,
+        left_out=0,
     )
     assert Report(keys=(), intervals=(), corrected=tracked).corrected_verdict == verdict
 
@@ -216,3 +226,16 @@ def test_what_is_measured_is_the_maximum_between_the_steps_too():
             return SimpleNamespace(fz=np.array([1.0 + 0j]), fzbar=np.array([k + 0j]))
 
     assert certification._measured(Peaked()).k == pytest.approx(0.5, abs=2e-3)
+
+
+def test_certify_says_how_many_frames_it_looked_at(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(corrected_frames, "MOST_LOOKED_AT", 5)
+    monkeypatch.setattr(corrected_frames, "SPREAD", 3)
+    document = posed(1)
+    keys = tuple(TrackKey(frame=frame, place=place) for frame, place in ((1, 0j), (4, 8j), (7, 0j)))
+    track = Track(handles=(document.figures[0].handles[0].id,), keys=keys)
+    project = tmp_path / "still.lissom"
+    save_project(project, with_figure(replace(document, frames=FrameRange(0, 9)), tracks=(track,)))
+    status, text = certified(capsys, project=project)
+    assert status == 3
+    assert "act in 7 frames, repeats told once. 3 of them were looked at" in text

@@ -8,8 +8,8 @@ import pytest
 from animations import moving_document
 from refusals import refusal
 
-from app.cli.options import NO_STANDARD_OUTPUT
-from app.storage import SAME_FILE
+from app.cli.options import NAMED_LIKE_FOLDER, NO_STANDARD_OUTPUT
+from app.storage import IS_FILE, SAME_FILE
 from app.storage.project_file import save_project
 
 # Of each command, how it is called with an input and an output in places of its own.
@@ -135,3 +135,23 @@ def test_names_that_no_file_can_have_are_refused_in_words(capsys, name):
     for call in ("thumbnail", "domain", "preview"):
         words = [{"INPUT": "other", "OUT": name}.get(word, word) for word in CALLS[call]]
         assert "cannot write" in refusal(capsys, *words)
+
+
+@pytest.mark.parametrize("command", ["manual", "figures"])
+@pytest.mark.parametrize("name", ["other", "other/within"])
+@pytest.mark.usefixtures("here")
+def test_a_file_in_the_place_of_a_folder_is_told(capsys, command, name):
+    assert IS_FILE.format(file="other") in refusal(capsys, command, "--out", name)
+
+
+@pytest.mark.parametrize("ending", ["/", "/."])
+@pytest.mark.parametrize("call", [*CALLS, "webp", "html"])
+@pytest.mark.usefixtures("here")
+def test_a_file_that_is_named_like_a_folder_is_refused(capsys, call, ending, project):
+    Path("walk.lissom").write_bytes(project)
+    name = f"new.gif{ending}"
+    given = CALLS.get(call, ["export", "INPUT", "--format", call, "--out", "OUT"])
+    source = "walk.lissom" if given[0] == "export" else "other"
+    words = [{"INPUT": source, "OUT": name}.get(word, word) for word in given]
+    assert NAMED_LIKE_FOLDER.format(name=name) in refusal(capsys, *words)
+    assert not Path("new.gif").exists()

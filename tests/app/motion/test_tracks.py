@@ -12,12 +12,15 @@ from still_poses import PLACES, animate, animated, posed, with_figure
 from app.document import (
     RUBBERY,
     Attachment,
+    Cycle,
     Extremes,
+    FrameRange,
     Spring,
     Track,
     TrackKey,
     clip_of,
     handle_commands,
+    time_of,
     track_at,
 )
 from app.motion import (
@@ -33,7 +36,11 @@ from app.motion import (
     trace_paths,
 )
 from app.motion.corrected_frames import CorrectedFrames
-from app.reports import Verdict, certify_clip
+from app.motion.inbetweens.swings import FARTHEST_SWING, PIECE, Swings
+from app.reports import Verdict, certify_clip, corrected_frames
+from app.reports.acting_frames import acting_frames
+from engine.geometry import HERE, box_diagonal
+from engine.geometry.kinematics import swing
 
 IDS = {name: number for number, name in enumerate(PLACES)}
 SHORT = 4  # frames between two keys, and
@@ -181,6 +188,47 @@ def test_corrected_frames_are_proven_in_closed_variants(variant, wish):
         assert found.beyond(corrected.reached) == Extremes(0, 0, 0)
 
 
+def test_repeats_of_a_track_are_proven_once_however_many():
+    cycles = (Cycle(first=0, last=10),)
+    document = pulled(8j, keys=posed(1).figures[0].keys, cycles=cycles)
+    clip = clip_of(replace(document, frames=FrameRange(0, 999_999)), 0)
+    frames, counts = acting_frames(clip)
+    assert_array_equal(frames, range(1, 8))
+    assert_array_equal(counts, 100_000)
+    report = certify_clip(clip)
+    assert report.verdict is Verdict.PROVEN
+    assert report.corrected.frames == report.corrected.proven > 400_000
+
+
+@pytest.mark.parametrize("loop", [False, True])
+def test_acting_frames_are_those_of_the_tracks(loop):
+    late = track(keys=((2, 0), (6, 8j), (9, 0)), delay=7)
+    cycle = Cycle(first=0, last=11, until=20)
+    for cycles in ((), (cycle,)):
+        document = tracked(late, track("top", ((22, 0), (24, 3))), loop=loop, cycles=cycles)
+        clip = clip_of(document, 0)
+        shown = {
+            frame: (
+                time_of(clip, frame),
+                *(track_at(each, clip, frame) for each in clip.figure.tracks),
+            )
+            for frame in range(clip.frames.first, clip.frames.last + 1)
+        }
+        acting = {frame: places for frame, places in shown.items() if any(places[1:])}
+        frames, counts = acting_frames(clip)
+        assert {acting[frame] for frame in frames.tolist()} == set(acting.values())
+        assert counts.sum() == len(acting)
+
+
+def test_certify_looks_at_few_of_very_many_frames(monkeypatch):
+    monkeypatch.setattr(corrected_frames, "MOST_LOOKED_AT", 5)
+    monkeypatch.setattr(corrected_frames, "SPREAD", 3)
+    corrected = (report := certify_clip(clip_of(pulled(8j), 0))).corrected
+    assert (corrected.looked_at, corrected.left_out) == (3, 4)
+    assert corrected.proven == corrected.frames
+    assert report.corrected_verdict is report.verdict is Verdict.MEASURED
+
+
 def test_track_out_of_reach_keeps_limits_and_reports_its_error():
     document = pulled(300 + 200j, "metric", stillness=False)
     report = certify_clip(clip_of(document, 0))
@@ -234,6 +282,59 @@ def test_spring_moves_nothing_without_strength_or_under_a_track():
     }
     sizes = [abs(each) for each in offset.values()]
     assert sizes[0] == pytest.approx(sizes[1], abs=0.1)
+
+
+@pytest.mark.parametrize("loop", [False, True])
+def test_pieces_of_a_swing_are_those_of_the_whole(loop):
+    document = springy(loop=loop, damping=0.2, lag=2.5)
+    clip = clip_of(replace(document, frames=FrameRange(0, 300)), 0)
+    (spring,) = clip.figure.springs
+    places = np.cumsum(np.random.default_rng(0).normal(0, 20, (301, 4, 2)) @ [1, 1j], axis=0)
+    places[40:100] = places[40]  # where the swing fades
+    places[-1] = places[0]
+    swings = Swings(clip, lambda _: HERE)
+    assert PIECE < swings.run_up < 300 - 2 * PIECE
+    settings = {"frequency": spring.frequency, "damping": spring.damping, "lag": spring.lag}
+    limit = FARTHEST_SWING * box_diagonal(clip.figure.domain.outline)
+    whole = swing(places[:, IDS["top"]], clip.fps, limit=limit, loop=loop, **settings)
+    for frame in (299.5, 150, 63.9, 64, 0.5, 98, 299, *range(0, 301, 7)):
+        found = swings.offset(spring, frame, lambda at: places[at])
+        assert abs(found - whole.at(frame)) < 1e-9
+
+
+@pytest.mark.parametrize("damping", [0.0, 0.2])
+def test_spring_is_worked_out_around_the_frame_it_is_asked_for(damping):
+    document = springy(damping=damping)
+    clip = clip_of(replace(document, frames=FrameRange(0, 999_999), loop=damping > 0), 0)
+    (spring,) = clip.figure.springs
+    asked = []
+
+    def at(frame):
+        asked.append(frame)
+        return np.full(4, np.exp(1j * frame))
+
+    swings = Swings(clip, lambda _: HERE)
+    for frame in (3, *[500_000] * (damping > 0)):
+        swings.offset(spring, frame, at)
+    assert len(asked) < 1_000
+
+
+def test_spring_acts_until_it_has_settled():
+    document = replace(springy(damping=1.0), frames=FrameRange(0, 999_999))
+    clip = clip_of(document, 0)
+    frames, _ = acting_frames(clip)
+    assert frames[0] == 0
+    assert 3 * SHORT < frames[-1] < 50
+    swings = Swings(clip, None)
+    (spring,) = clip.figure.springs
+    animation = animate(document)
+    offsets = [
+        swings.offset(spring, frame, lambda at: animation.base.frame(at).positions)
+        for frame in range(3 * SHORT, 60)
+    ]
+    assert offsets[0]
+    assert not any(offsets[frames[-1] - 3 * SHORT :])
+    assert len(acting_frames(clip, is_carried=True)[0]) == 1_000_000
 
 
 def test_attached_spring_swings_with_its_parent():

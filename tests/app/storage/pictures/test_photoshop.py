@@ -266,7 +266,10 @@ def test_damaged_files_are_refused_without_a_librarys_words(seed, capfd):
     assert capfd.readouterr() == ("", "")
 
 
-def test_more_layers_than_there_is_time_for_are_refused_at_once():
+@pytest.mark.parametrize("in_block", [False, True])
+def test_more_layers_than_there_is_time_for_are_refused_at_once(in_block):
     layer = Drawn(name="a", pixels=np.full((1, 1, 4), 200, np.uint8))
+    few = read_photoshop(photoshop_file((9, 9), [layer] * 2, in_block=in_block))
+    assert len(few.layers) == 2
     with pytest.raises(LissomError, match=f"up to {MOST_RECORDS:,}"):
-        read_photoshop(photoshop_file((9, 9), [layer] * (MOST_RECORDS + 1)))
+        read_photoshop(photoshop_file((9, 9), [layer] * (MOST_RECORDS + 1), in_block=in_block))

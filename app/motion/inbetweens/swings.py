@@ -1,0 +1,116 @@
+"""How the springs of a clip swing: worked out in pieces, around the frames that are asked for."""
+
+from collections.abc import Callable
+from typing import Final, TypeVar
+
+from app.document import Clip, Spring, time_of
+from engine.arrays import Complexes
+from engine.geometry import HERE, RigidMotion, box_diagonal
+from engine.geometry.kinematics import FADE, Swing, frames_to_settle, swing
+
+FARTHEST_SWING: Final = 0.3  # of the figure's diagonal
+PIECE: Final = 64  # frames of a swing, at least
+KEPT_PIECES: Final = 1_024
+KEPT_PLACES: Final = 2**14
+Key = TypeVar("Key")
+Value = TypeVar("Value")
+# Where a figure is that hangs on others, at a frame.
+Carried = Callable[[float], RigidMotion]
+# Where the handles (h,) of a figure are, at a frame.
+PlacesAt = Callable[[float], Complexes]
+
+
+class Swings:
+    """The swings of a clip's springs, in the axes of the scene.
+
+    A damped spring forgets: a piece is worked out from rest, so many frames before it begins as the
+    spring takes to settle. A loop that is over sooner is worked out whole, so that it closes.
+
+    Attributes
+    ----------
+    springs : tuple of Spring
+        Those that are enabled.
+    run_up : int
+        Frames before a frame from which its swings follow.
+    """
+
+    def __init__(self, clip: Clip, carried: Carried | None) -> None:
+        self._clip, self._carried = clip, carried
+        self.springs = tuple(spring for spring in clip.figure.springs if spring.enabled)
+        self._index = {handle.id: number for number, handle in enumerate(clip.figure.handles)}
+        self._count = clip.frames.last - clip.frames.first + 1
+        self._settling = {
+            each.handle: int(
+                min(frames_to_settle(clip.fps, each.frequency, each.damping), self._count)
+            )
+            for each in self.springs
+        }
+        self.run_up = max(self._settling.values(), default=0)
+        # Each with the frame from which it is, and the one before which it ends.
+        self._pieces: dict[tuple[int, int], tuple[int, int, Swing]] = {}
+        self._places: dict[object, Complexes] = {}
+
+    def offset(self, spring: Spring, frame: float, at: PlacesAt) -> complex:
+        """Return by how much a spring moves its handle at a frame.
+
+        Parameters
+        ----------
+        spring : Spring
+        frame : float
+        at : callable
+            Returns where the handles are at any frame before springs and tracks, (h,).
+        """
+        last, settling = self._count - 1, self._settling[spring.handle]
+        time = frame - self._clip.frames.first - spring.lag
+        is_loop = self._clip.loop and last > 0
+        time = time % last if is_loop else min(max(time, 0.0), last)
+        is_whole = is_loop and settling >= last
+        size = self._count if is_whole else max(PIECE, settling // 4)
+        number = int(time // size)
+        start, end, known = self._pieces.get((spring.handle, number), (0, 0, None))
+        if known is None or time >= end:
+            # Twice as long as before, so that whoever goes on pays for each frame twice at most.
+            length = PIECE
+            while number * size + length <= time:
+                length *= 2
+            start, end = number * size - settling, number * size + min(length, size)
+            # A fade depends on what comes after it.
+            frames = range(start, end + FADE + 1)
+            if is_whole:
+                start, end, frames = 0, self._count, range(self._count)
+            elif not is_loop:
+                start = max(start, 0)
+                frames = range(start, min(end + FADE + 1, self._count))
+            own = [i % last if is_loop and not is_whole else i for i in frames]
+            known = self._swung(spring, own, at, loop=is_whole)
+            _keep(self._pieces, (spring.handle, number), (start, end, known), KEPT_PIECES)
+        return complex(known.at(time - start))
+
+    def _swung(self, spring: Spring, frames: list[int], at: PlacesAt, *, loop: bool) -> Swing:
+        clip, number = self._clip, self._index[spring.handle]
+        return swing(
+            [self._driving(clip.frames.first + frame, at)[number] for frame in frames],
+            clip.fps,
+            frequency=spring.frequency,
+            damping=spring.damping,
+            strength=spring.strength,
+            limit=FARTHEST_SWING * box_diagonal(clip.figure.domain.outline),
+            loop=loop,
+        )
+
+    def _driving(self, frame: int, at: PlacesAt) -> Complexes:
+        """Return where the handles (h,) are in the scene; frames that show the same do once."""
+        key = frame if self._carried else time_of(self._clip, frame)
+        found = self._places.get(key)
+        if found is None:
+            found = (self._carried(frame) if self._carried else HERE).on(at(frame))
+            _keep(self._places, key, found, KEPT_PLACES)
+        return found
+
+
+def _keep(kept: dict[Key, Value], key: Key, value: Value, most: int) -> None:
+    """Keep a value, and at most so many: the oldest ones go."""
+    kept.pop(key, None)
+    kept[key] = value
+    while len(kept) > most:
+        del kept[next(iter(kept))]

@@ -1,0 +1,74 @@
+"""At which frames of a clip its tracks and springs act, each of those that repeat once."""
+
+import numpy as np
+
+from app.document import Clip, Track, cycle_of, layout
+from engine.arrays import Floats, Indices
+from engine.geometry.kinematics import FADE, frames_to_settle
+
+
+def acting_frames(clip: Clip, *, is_carried: bool = False) -> tuple[Indices, Indices]:
+    """Return the frames (n,) at which tracks or springs act, and how often each repeats (n,).
+
+    Frames at which the poses and all tracks are alike are told once, by the first of them. Springs,
+    and tracks of a figure that hangs, go on from repeat to repeat: there each frame is one.
+    """
+    figure = clip.figure
+    frames = np.arange(clip.frames.first, clip.frames.last + 1)
+    springs = [spring for spring in figure.springs if spring.enabled]
+    tracks = [track for track in figure.tracks if track.enabled]
+    acts = np.full(len(frames), bool(springs) and (is_carried or clip.loop))
+    # Where nothing moves they come to rest.
+    end = max([clip.keys[-1].frame, *(ring.end for ring in layout(clip).rings)])
+    for spring in springs:
+        settled = frames_to_settle(clip.fps, spring.frequency, spring.damping)
+        rests = end + spring.lag + settled + FADE
+        acts |= (clip.keys[0].frame <= frames) & (frames <= rests)
+    for track in tracks:
+        acts |= np.isfinite(_times(track, clip, frames))
+    frames = frames[acts]
+    if springs or is_carried:
+        return frames, np.ones_like(frames)
+    _, alike = np.unique(_posed(clip, frames), return_inverse=True)
+    for track in tracks:
+        _, own = np.unique(_times(track, clip, frames), return_inverse=True)
+        _, alike = np.unique(alike * (len(frames) + 1) + own, return_inverse=True)
+    _, first, counts = np.unique(alike, return_index=True, return_counts=True)
+    order = np.argsort(first)
+    return frames[first[order]], counts[order]
+
+
+def _times(track: Track, clip: Clip, frames: Indices) -> Floats:
+    """Return the frame among a track's keys that each frame shows, ∞ where it does not act."""
+    first, last = track.keys[0].frame, track.keys[-1].frame
+    cycle, period = cycle_of(track, clip), clip.period if clip.loop else 0
+    times, covered = frames - track.delay, np.ones(len(frames), bool)
+    if cycle is not None:
+        end = clip.frames.last if cycle.until is None else cycle.until
+        covered = (cycle.first <= frames) & (frames <= end)
+        period = cycle.period
+        times = cycle.first + (times - cycle.first) % period
+    found = np.full(len(frames), np.inf)
+    for at in (times - period, times + period, times):
+        is_on = covered & (first <= at) & (at <= last)
+        found[is_on] = at[is_on]
+    return found
+
+
+def _posed(clip: Clip, frames: Indices) -> Indices:
+    """Return the first frame that shows what each frame shows of the poses."""
+    keys = clip.keys
+    if len(keys) == 1:
+        return np.zeros_like(frames)
+    rings = layout(clip).rings
+    shown = frames
+    if not clip.loop and not rings:
+        shown = np.clip(frames, keys[0].frame, keys[-1].frame)
+    for ring in rings:
+        first, period = ring.cycle.first, ring.cycle.period
+        within = (first <= frames) & (frames < ring.end)
+        if ring.spans:
+            shown = np.where(within, first + (frames - first) % period, shown)
+        else:
+            shown = np.where(within, keys[ring.keys[0]].frame, shown)
+    return shown
