@@ -27,8 +27,8 @@ from engine.interpolation import (
     solve_pins,
 )
 
-BESIDE = 0.03  # of the diagonal: handles nearer to an anchor that stays give way
-FIRM = 1e-6  # of full firmness: what a handle far from the anchor may lack
+BESIDE = 0.03  # of the diagonal: nearer to an anchor or a handle that stays, handles give way
+FIRM = 1e-6  # of full firmness: what a handle far from these may lack
 # The one-sided difference of fourth order: in time, in-betweens are analytic between keys. Around
 # holes they may jump at the key itself, where nothing is looked at.
 STEP = 2e-3
@@ -113,7 +113,7 @@ class AutoPins:
             ends=np.array(ends),
             slopes=np.where(segment.fading, slopes, 0.0),
             weights=segment.fading.astype(np.float64),
-            firmness=np.ones(count) if anchor is None else self._firmness(anchor),
+            firmness=self._firmness(segment, anchor),
             is_anchored=anchor is not None,
         )
 
@@ -132,11 +132,20 @@ class AutoPins:
         velocity: Complexes = weights @ np.array(steps)
         return velocity
 
-    def _firmness(self, anchor: complex) -> Floats:
-        """Return how firmly handles are held beside an anchor that stays: 0 there, 1 if far."""
+    def _firmness(self, segment: PinnedSegment, anchor: complex | None) -> Floats:
+        """Return how firmly handles are held: 0 on what stays more than they do, 1 far from it.
+
+        The anchor stays more than pinned handles, these more than fading ones, and the others give
+        way to all: two points of one place that are wanted apart would tear the drawing.
+        """
         figure = self.clip.figure
         places = np.array([each.position for each in figure.handles], dtype=np.complex128)
+        rank = 2 * segment.is_pinned + segment.fading.any(axis=0)
+        apart = np.abs(places[:, None] - places)
+        near = np.where(rank > rank[:, None], apart, np.inf).min(axis=1)
+        if anchor is not None:
+            near = np.minimum(near, np.abs(places - anchor))
         size = BESIDE * box_diagonal(figure.domain.outline)
-        far = -np.expm1(-((np.abs(places - anchor) / size) ** 2))
+        far = -np.expm1(-((near / size) ** 2))
         firmness: Floats = np.where(far > 1 - FIRM, 1.0, far)
         return firmness

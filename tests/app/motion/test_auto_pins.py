@@ -12,6 +12,7 @@ from app.document import (
     Attachment,
     Passing,
     Spring,
+    Target,
     clip_of,
     pinned_handles,
 )
@@ -80,6 +81,32 @@ def test_corrected_motion_does_not_jolt():
     moved = [np.array([animation.positions(t) for t in times]) for animation in both]
     jolts = [np.abs(np.diff(places, 2, axis=0)).max() for places in moved]
     assert jolts[0] <= 2 * jolts[1]
+
+
+def test_free_handle_gives_way_beside_a_pinned_one():
+    document = posed()
+    figure = document.figures[0]
+    top = figure.handles[-1]
+    # A twin of the top that is pinned in every segment, at the place to which the poses bring it.
+    twin = replace(top, id=top.id + 1, name="twin", position=top.position + 0.02)
+    keys = tuple(
+        replace(
+            key,
+            pose=replace(
+                key.pose, targets={**key.pose.targets, twin.id: Target(position=twin.position)}
+            ),
+        )
+        for key in figure.keys
+    )
+    doubled = with_figure(
+        document, handles=(*figure.handles, twin), keys=keys, next_handle=twin.id + 1
+    )
+    assert pinned_handles(clip_of(doubled, 0))[:, -2:].tolist() == [[False, True]] * 3
+    animation = animate(doubled)
+    places = np.array([animation.positions(t) for t in np.arange(0, 30.01, 0.5)])
+    assert np.abs(places[:, 3] - places[:, 4]).max() < 0.1
+    assert drift(doubled) < 0.05
+    assert np.abs(np.diff(places, 2, axis=0)).max() < 1.0
 
 
 def test_corrected_frames_are_the_same_in_any_order():
