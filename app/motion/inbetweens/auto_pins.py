@@ -28,7 +28,7 @@ from engine.interpolation import (
 )
 
 BESIDE = 0.03  # of the diagonal: nearer to an anchor or a handle that stays, handles give way
-FIRM = 1e-6  # of full firmness: what a handle far from these may lack
+FIRM = 0.01  # of full firmness: a handle that lacks less is held fully
 # The one-sided difference of fourth order: in time, in-betweens are analytic between keys. Around
 # holes they may jump at the key itself, where nothing is looked at.
 STEP = 2e-3
