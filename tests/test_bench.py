@@ -82,7 +82,7 @@ def test_all_parts_are_tried_though_some_fail(tmp_path):
     (tmp_path / "PIL.py").write_text("raise ImportError('Pillow is broken')")
     done = bench("domain", "deform", "export", PYTHONPATH=str(tmp_path))
     assert done.returncode == 1
-    assert rows_of_tables(done.stdout) == [6]
+    assert rows_of_tables(done.stdout) == [9]
     assert done.stderr.count("\nImportError: Pillow is broken") == 2
     assert done.stderr.splitlines()[-1] == "failed: domain, export"
 

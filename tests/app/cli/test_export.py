@@ -14,9 +14,10 @@ from numpy.testing import assert_array_equal
 from PIL import Image, ImageSequence
 
 from app.cli.main import main
+from app.cli.options import NAMED_LIKE_FOLDER
 from app.document.settings import ExportSettings, FrameRange
 from app.export_formats import EXPORT_FORMATS
-from app.storage import IS_FOLDER, NO_FOLDER
+from app.storage import NO_FOLDER
 from app.storage.project import NO_PROJECT
 from app.storage.project_file import save_project
 from engine.arrays import Bytes
@@ -174,7 +175,7 @@ def test_frames_go_where_one_is_and_files_have_a_name(project, tmp_path, monkeyp
         with pytest.raises(SystemExit) as leaving:
             main(["export", str(project), "--out", here, "--format", name])
         assert leaving.value.code == 2
-        assert IS_FOLDER in capsys.readouterr().err
+        assert NAMED_LIKE_FOLDER.format(name=here) in capsys.readouterr().err
 
 
 def test_a_model_needs_no_graphics_and_tells_how_good_it_is(project, tmp_path, capsys, monkeypatch):
