@@ -82,12 +82,8 @@ class Passage:
         first = self.course.first
         return self.keyframes[first], self.keyframes[first + 1]
 
-    def anchor_position(self, time: float) -> complex:
-        """Return the blended position of the anchor."""
-        return complex(self.anchor_positions(np.array(time)))
-
     def anchor_positions(self, times: Floats) -> Complexes:
-        """Return the same at times (t,)."""
+        """Return the blended position of the anchor at times (t,)."""
         known = np.array([key.anchor_position for key in self.keyframes])
         positions: Complexes = self.course.at(times).T @ known
         return positions

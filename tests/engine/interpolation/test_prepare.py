@@ -68,7 +68,7 @@ def test_intervals_are_prepared_one_at_a_time_and_keyframes_shared(variant):
         frame = interval.frame(0.4)
         expected = whole.frame(i + 0.4)
         assert_allclose(frame.positions, expected.positions, rtol=0, atol=1e-12)
-        position = interval.passage.anchor_position(0.4)
+        position = interval.anchor_position(0.4)
         assert_allclose(position + interval.offsets(0.4), frame.positions, rtol=0, atol=1e-13)
         held = interval.nbytes
         # The keyframes' own arrays are not counted again.

@@ -58,8 +58,6 @@ class PinSeries:
         Whether η or ν is kept where q = 0.
     is_squared : bool
         Whether K is L² / F, with L the exponential of the keyframes' blended logarithms; else L.
-    largest : float
-        The largest |h| or |q| on the boundary at the times that were looked at.
     share : float
         Which part of what the handles ask for keeps the limits; 1 where all of it does.
     """
@@ -70,7 +68,6 @@ class PinSeries:
     shifts: Complexes
     sign: int
     is_squared: bool
-    largest: float
     share: float
 
     def shift(self, times: Floats) -> Complexes:
@@ -127,7 +124,6 @@ def pin(
     # One share for all of the segment: a limit that is reached for a moment makes no jolt.
     forms *= share
     count = known.count
-    found = tuple(solved.values())
     return PinSeries(
         series=series,
         h=freeze(known.h @ forms[:count]),
@@ -135,11 +131,5 @@ def pin(
         shifts=freeze(size * (forms[-2] + 1j * forms[-1])),
         sign=sign,
         is_squared=is_squared,
-        largest=share * max(_largest(corrector, each.x) for each in found),
         share=share,
     )
-
-
-def _largest(corrector: PointCorrector, x: Floats) -> float:
-    values = corrector.variables.at_samples
-    return float(max(np.abs(values.h_of(x)).max(), np.abs(values.q_of(x)).max()))
