@@ -15,6 +15,7 @@ from engine.deform.relative.correction.limits import (
     extremes as extremes,
     largest_share as largest_share,
     limits_of as limits_of,
+    solve_within as solve_within,
 )
 from engine.deform.relative.correction.solver import (
     PointSolution as PointSolution,

@@ -39,5 +39,5 @@ def corrector_of(boundary: Boundary, anchor: complex, points: Complexes) -> Poin
         boundary=boundary,
         points=points,
         paths=paths,
-        variables=Variables.of(boundary, paths.nodes),
+        variables=Variables.of(boundary, paths.nodes, points),
     )

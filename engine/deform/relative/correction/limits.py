@@ -1,31 +1,75 @@
-"""Which share of a correction keeps the limits of the distortion at samples of the boundary."""
+"""Corrections that keep the limits of the distortion at the samples of the boundary."""
 
-from math import inf
+from dataclasses import replace
 
 import numpy as np
 
 from engine.arrays import Floats
 from engine.deform.relative.correction.corrector import PointCorrector
 from engine.deform.relative.correction.frame import BaseFrame
+from engine.deform.relative.correction.solver import PointSolution, Targets, solve
+from engine.deform.relative.correction.walls import Walls, quantities
 from engine.maps import Bounds
 
 INSIDE = 0.002  # of the limits: how far inside a correction ends, as between samples it is more
+# How far inside the walls are, and how stiff: one after the other, from soft to firm, since the
+# first leads near the solution in few long steps.
+MARGIN, STIFFNESSES = 0.02, (1e2, 1e3, 1e4)
 HALVINGS = 20
 TINY = 1e-300
 
 
-def limits_of(bounds: Bounds, *known: Floats) -> Floats:
-    """Return the largest ln σ_a, −ln σ_b and k that bounds allow, or frames that are given have.
+def limits_of(bounds: Bounds, *known: Floats, inside: float = INSIDE) -> Floats:
+    """Return the largest ln σ_a, −ln σ_b and k that bounds allow, or known frames have, (3,).
 
     Parameters
     ----------
     bounds : Bounds
     *known : float64, shape (3,)
         Extremes of frames.
+    inside : float
+        How far inside the bounds.
     """
     stretch, squeeze = np.log([bounds.sigma_a, max(bounds.sigma_b, TINY)])
-    inside = np.array([stretch - INSIDE, -squeeze - INSIDE, bounds.k * (1 - INSIDE)])
-    return np.asarray(np.max([inside, *known], axis=0))
+    within = np.array([stretch - inside, -squeeze - inside, bounds.k * (1 - inside)])
+    return np.asarray(np.max([within, *known], axis=0))
+
+
+def solve_within(
+    corrector: PointCorrector,
+    nodes: BaseFrame,
+    samples: BaseFrame,
+    targets: Targets,
+    bounds: Bounds,
+) -> PointSolution:
+    """Find the correction of one frame within bounds, from zero.
+
+    Where the smallest correction exceeds a limit, walls push it back, and targets out of reach are
+    approached with their largest forces. A base beyond a limit stays within its own distortion.
+
+    Parameters
+    ----------
+    corrector : PointCorrector
+    nodes, samples : BaseFrame
+        The frame at the nodes of the corrector's paths, and at the samples of the boundary.
+    targets : Targets
+        Without a largest force, a target is met even where that breaks a limit.
+    bounds : Bounds
+    """
+    found = solve(corrector, nodes, targets)
+    own = extremes(corrector, samples, 0.0 * found.x)
+    limits = limits_of(bounds, own)
+    if (extremes(corrector, samples, found.x) <= limits).all():
+        return found
+    walls = Walls.around(corrector, samples, limits_of(bounds, inside=MARGIN))
+    # Far outside, the nearest way back may lead through folds.
+    share = largest_share(corrector, samples, found.x, limits)
+    near = replace(found, x=share * found.x, shift=share * found.shift)
+    steps = found.steps
+    for stiffness in STIFFNESSES:
+        near = solve(corrector, nodes, targets, near, replace(walls, stiffness=stiffness))
+        steps += near.steps
+    return replace(near, steps=steps, is_held_back=True)
 
 
 def largest_share(corrector: PointCorrector, base: BaseFrame, x: Floats, limits: Floats) -> float:
@@ -57,10 +101,8 @@ def largest_share(corrector: PointCorrector, base: BaseFrame, x: Floats, limits:
 
 
 def extremes(corrector: PointCorrector, base: BaseFrame, x: Floats) -> Floats:
-    """Return the largest ln σ_a, −ln σ_b and k of a corrected frame, infinite where it folds."""
+    """Return the largest ln σ_a, −ln σ_b and k of a corrected frame at the samples, (3,)."""
     values = corrector.variables.at_samples
     conformal, own, factor = base.corrected(values, x)
     a, b = np.abs(conformal), np.abs(own + factor * values.q_of(x))
-    if not (b < a).all():
-        return np.full(3, inf)
-    return np.array([np.log(a + b).max(), -np.log(a - b).min(), (b / a).max()])
+    return np.asarray(quantities(a, b).max(axis=1))

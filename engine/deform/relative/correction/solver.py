@@ -16,17 +16,24 @@ from typing import NamedTuple
 
 import numpy as np
 
-from engine.arrays import Complexes, Floats
+from engine.arrays import Complexes, Floats, Indices
 from engine.deform.relative.correction.corrector import PointCorrector
 from engine.deform.relative.correction.frame import BaseFrame, CorrectedFrame
-from engine.deform.relative.correction.step_model import PointRows, StepModel
+from engine.deform.relative.correction.step_model import Form, Rows, StepModel
+from engine.deform.relative.correction.walls import Walls, WallState
 
 SMALL = 1e-6  # a step in h: where the iteration ends
 MET = 1e-9  # of the diagonal: points that are where they are wanted
-LONGEST = 1.0  # step in h
+LONGEST, LONGEST_AT_WALLS = 1.0, 0.3  # step in h
 MOST_STEPS, MOST_HALVINGS, MOST_RETURNS = 25, 7, 3
 NEARER = 0.7  # of the gap: what a step back to the points leaves of it, at most
-GAINS = 0.99  # of the merit: what a part of a step leaves of it, at most
+CALM = 1e-4
+GAINS, GAINS_AT_WALLS = 0.99, 0.999  # of the merit: what a part of a step leaves of it, at most
+ARM = 0.02  # of the diagonal: at what distance a turn is as firm as a point
+TRACE = True
+ARM = 0.02  # of the diagonal: the distance at which a turn is as firm as a point
+TINY = 1e-300
+NOTHING_NEAR = np.zeros(0, np.intp), np.zeros(0, np.intp)
 FIRMEST = 1.5  # times the largest pull: what the merit takes for each point off its target
 
 
@@ -41,11 +48,20 @@ class Targets(NamedTuple):
         From 0, free, to 1, held.
     is_anchored : bool
         Whether the anchor stays where it is.
+    forces : float64, shape (m,), optional
+        With how much each is pulled at most; without, whatever it takes.
+    turns : float64, shape (m,), optional
+        By how much the shape is turned there, in radians; NaN where it turns as it likes.
+    give : float64, shape (m,), optional
+        By how much points give in, over their pulls, beside what their weights say.
     """
 
     moves: Complexes
     weights: Floats
     is_anchored: bool
+    forces: Floats | None = None
+    turns: Floats | None = None
+    give: Floats | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -61,12 +77,15 @@ class PointSolution:
     misses : float64, shape (m,)
         How far points are from where they are wanted.
     steps : int
+    is_held_back : bool
+        Whether limits stop it.
     """
 
     x: Floats
     shift: complex
     misses: Floats
     steps: int
+    is_held_back: bool = False
 
 
 def solve(
@@ -74,6 +93,7 @@ def solve(
     base: BaseFrame,
     targets: Targets,
     start: PointSolution | None = None,
+    walls: Walls | None = None,
 ) -> PointSolution:
     """Find the correction of one frame.
 
@@ -85,8 +105,10 @@ def solve(
     targets : Targets
     start : PointSolution, optional
         Of a frame that is much the same.
+    walls : Walls, optional
+        What the correction is to keep.
     """
-    problem = _Problem(corrector, base, targets)
+    problem = _Problem(corrector, base, targets, walls)
     if not problem.is_asked:
         nothing = np.zeros(2 * corrector.variables.count)
         return PointSolution(x=nothing, shift=0j, misses=np.abs(targets.moves), steps=0)
@@ -98,75 +120,136 @@ def solve(
 
 
 class _State(NamedTuple):
-    """A corrected frame, and what its points lack, (m + holes,), by the roots of their weights."""
+    """A corrected frame, and what the rows of its points and turns lack, (r,)."""
 
     frame: CorrectedFrame
     shift: complex
-    lack: Complexes
+    lack: Floats
+    walls: WallState | None
 
 
 class _Problem:
     """One frame: its points as rows that are scaled by the roots of their weights."""
 
-    def __init__(self, corrector: PointCorrector, base: BaseFrame, targets: Targets) -> None:
-        self.corrector, self.base = corrector, base
+    def __init__(
+        self, corrector: PointCorrector, base: BaseFrame, targets: Targets, walls: Walls | None
+    ) -> None:
+        self.corrector, self.base, self.walls = corrector, base, walls
+        self.longest = LONGEST if walls is None else LONGEST_AT_WALLS
+        self.gains = GAINS if walls is None else GAINS_AT_WALLS
         holes = len(corrector.boundary.holes)
-        self.count = len(targets.moves)
-        self.weights = np.concatenate([targets.weights, np.ones(holes)])
-        self.roots = np.sqrt(self.weights)
-        self.of_points = np.concatenate([np.ones(self.count), np.zeros(holes)])
-        at_rest = np.zeros(2 * corrector.variables.count)
-        places = CorrectedFrame.of(corrector, base, at_rest).places()
+        self.count = count = len(targets.moves)
+        nothing = np.zeros(2 * corrector.variables.count)
+        places = CorrectedFrame.of(corrector, base, nothing).places()
+        self.of_points = np.concatenate([np.ones(count), np.zeros(holes)])
         # Points are moved from the base's places; periods are closed.
         self.wanted = places * self.of_points
-        self.wanted[: self.count] += targets.moves
+        self.wanted[:count] += targets.moves
+        turns = np.zeros(0) if targets.turns is None else targets.turns
+        self.turned = np.flatnonzero(~np.isnan(turns))
+        self.turns = turns[self.turned]
+        weights = np.concatenate([targets.weights, np.ones(holes)])
+        self.roots = np.sqrt(weights)
+        give = np.zeros(count) if targets.give is None else targets.give
+        self.loose = np.concatenate([1.0 - weights, 1.0 - weights, 0 * self.turns])
+        self.give = np.concatenate([give, np.zeros(holes), give, np.zeros(holes), 0 * self.turns])
+        forces = np.full(count, np.inf) if targets.forces is None else targets.forces
+        size = corrector.boundary.size
+        self.forces = np.concatenate(
+            [forces, np.full(holes, np.inf), ARM * size * forces[self.turned]]
+        )
+        own = np.arange(count + holes)
+        self.group = np.concatenate([own, own, count + holes + np.arange(len(self.turned))])
         self.is_asked = bool(
             (targets.weights * np.abs(targets.moves)).any()
-            or np.abs(places[self.count :]).max(initial=0.0) > MET * corrector.boundary.size
+            or self.turns.any()
+            or np.abs(places[count:]).max(initial=0.0) > MET * size
         )
         along = (self.roots * self.of_points)[:, None]
         still = np.zeros_like(along)
         both = np.vstack([np.hstack([along, still]), np.hstack([still, along])])
+        both = np.vstack([both, np.zeros((len(self.turned), 2))])
         is_free = not targets.is_anchored and bool(targets.weights.any())
-        self.rows = PointRows(self.weights, both if is_free else both[:, :0])
+        self.translations = both if is_free else both[:, :0]
+        # What is met at any price.
+        self.held = (self.loose == 0) & (self.give == 0) & np.isinf(self.forces)[self.group]
 
     def state(self, x: Floats, shift: complex) -> _State:
         """Work out what the points lack."""
         frame = CorrectedFrame.of(self.corrector, self.base, x)
-        return _State(
-            frame, shift, self.roots * (frame.places() + shift * self.of_points - self.wanted)
-        )
+        lack = self.roots * (frame.places() + shift * self.of_points - self.wanted)
+        turned = self.corrector.variables.at_points.h_of(x).imag[self.turned] - self.turns
+        walls = None if self.walls is None else self.walls.state(x)
+        return _State(frame, shift, np.concatenate([lack.real, lack.imag, turned]), walls)
+
+    def rows(self, at: _State, near: tuple[Indices, Indices]) -> Rows:
+        """Return what is wanted around a state, walls last."""
+        h = self.corrector.variables.at_points.h[:, self.turned]
+        turning = np.hstack([h.imag.T, np.zeros_like(h.imag.T)])
+        slopes = np.vstack([np.tile(self.roots, 2)[:, None] * at.frame.rows(), turning])
+        points = slopes[: 2 * len(self.roots)]
+        scale = float(np.vdot(points, points)) / len(points)
+        soft = self.loose * scale + self.give
+        group, forces, lack = self.group, self.forces, at.lack
+        pushes, translations = np.zeros(len(lack), np.bool_), self.translations
+        if self.walls is not None and at.walls is not None and len(near[0]):
+            more = len(near[0])
+            lack = np.concatenate([lack, at.walls.beyond[near]])
+            slopes = np.vstack([slopes, self.walls.rows(at.walls, near)])
+            soft = np.concatenate([soft, self.walls.soft(near[1])])
+            group = np.concatenate([group, len(forces) + np.arange(more)])
+            forces = np.concatenate([forces, np.full(more, np.inf)])
+            pushes = np.concatenate([pushes, np.ones(more, np.bool_)])
+            translations = np.vstack([translations, np.zeros((more, translations.shape[1]))])
+        return Rows(lack, slopes, soft, group, forces, pushes, translations)
 
     def solved(self, at: _State) -> PointSolution:
         """Take steps from a state until they are small."""
         size, firm = self.corrector.boundary.size, 0.0
-        held = self.weights == 1.0
-        steps = 0
+        small = SMALL if self.walls is None else CALM
+        steps, known = 0, len(self.group)
         while steps < MOST_STEPS:
             steps += 1
-            model = StepModel(at.frame.x, at.lack, at.frame.rows(), self.rows)
+            near = NOTHING_NEAR if at.walls is None or not self.walls else self.walls.near(at.walls)
+            rows = self.rows(at, near)
+            model = StepModel(at.frame.x, rows)
             change, shift = model.step()
-            if self._length(change) > SMALL:
-                bending = at.frame.bending(-self.roots * model.pulls)
-                more, along = model.bent(bending, change)
-                change, shift = change + more, shift + along
-            firm = max(firm, FIRMEST * float(np.abs(model.pulls).max(initial=0.0)))
-            share = min(1.0, LONGEST / max(self._length(change), 1e-300))
-            now = self._merit(at, model.soft, firm)
+            length = self._length(change)
+            if length > SMALL:
+                more, along = model.bent(self._bending(at, near, model.pulls), change)
+                # What changes a step by more than itself is not to be trusted.
+                part = min(1.0, length / max(self._length(more), TINY))
+                change, shift = change + part * more, shift + part * along
+            firm = max(firm, FIRMEST * float(rows.sizes(model.pulls)[: len(self.forces)].max()))
+            soft = rows.soft[:known]
+            share = min(1.0, self.longest / max(self._length(change), TINY))
+            now = self._merit(at, soft, firm)
             for _ in range(MOST_HALVINGS):
                 tried = self._tried(at, model, change * share, shift * share, share)
-                if self._merit(tried, model.soft, firm) <= now * (1 + 1e-12):
+                merit = self._merit(tried, soft, firm)
+                if merit <= now * (1 + 1e-12):
                     break
                 share /= 2
             # What only parts of steps bring on is out of reach.
-            is_stuck = share < 1.0 and self._merit(tried, model.soft, firm) > GAINS * now
+            is_stuck = share < 1.0 and merit > self.gains * now
             moved = self._length(tried.frame.x - at.frame.x)
-            off = np.abs(tried.lack)[held].max(initial=0.0)
+            off = np.abs(tried.lack)[self.held].max(initial=0.0)
             at = tried
-            if is_stuck or (moved < SMALL and (off < MET * size or share < 1.0)):
+            if is_stuck or (moved < small and (off < MET * size or share < 1.0)):
                 break
         misses = np.abs(at.frame.places() + at.shift - self.wanted)[: self.count]
         return PointSolution(x=at.frame.x, shift=at.shift, misses=misses, steps=steps)
+
+    def _bending(self, at: _State, near: tuple[Indices, Indices], pulls: Floats) -> Form:
+        """Return how the rows are curved that are pulled at."""
+        known = len(self.roots)
+        both = -self.roots * (pulls[:known] + 1j * pulls[known : 2 * known])
+        of_points = at.frame.bending(both)
+        pushed = -pulls[len(self.group) :]
+        if self.walls is None or at.walls is None or not pushed.any():
+            return of_points.__call__
+        of_walls = self.walls.bending(at.walls, near, pushed)
+        return lambda x: of_points(x) + of_walls(x)
 
     def _length(self, change: Floats) -> float:
         return float(np.abs(self.corrector.variables.at_nodes.h_of(change)).max())
@@ -177,23 +260,28 @@ class _Problem:
         """Return the state after a step, with points back on where the model has them."""
         tried = self.state(at.frame.x + change, at.shift + shift)
         aim = (1 - share) * at.lack
-        held = self.weights == 1.0
         for _ in range(MOST_RETURNS):
-            gap = np.where(held, aim - tried.lack, 0)
+            gap = np.where(self.held, aim - tried.lack, 0)
             worst = np.abs(gap).max(initial=0.0)
             if worst < MET / 100 * self.corrector.boundary.size:
                 break
             back, along = model.restoring(gap)
             nearer = self.state(tried.frame.x + back, tried.shift + along)
-            if np.abs(np.where(held, aim - nearer.lack, 0)).max() > NEARER * worst:
+            if np.abs(np.where(self.held, aim - nearer.lack, 0)).max() > NEARER * worst:
                 break
             tried = nearer
         return tried
 
-    @staticmethod
-    def _merit(at: _State, soft: Floats, firm: float) -> float:
+    def _merit(self, at: _State, soft: Floats, firm: float) -> float:
         """Return ½ |x|² and what points lack: by their softness, and from some pull on as much."""
-        lack, give = np.abs(at.lack), firm * soft
-        near = lack**2 / (2 * np.maximum(soft, 1e-300))
-        pulled = np.where(lack <= give, near, firm * (lack - give / 2))
-        return 0.5 * float(at.frame.x @ at.frame.x) + float(pulled.sum())
+        squares = np.bincount(self.group, at.lack**2, minlength=len(self.forces))
+        lack, forces = np.sqrt(squares), np.minimum(firm, self.forces)
+        own = np.zeros(len(forces))
+        own[self.group] = soft
+        give = forces * own
+        near = lack**2 / (2 * np.maximum(own, TINY))
+        pulled = np.where(lack <= give, near, forces * (lack - give / 2))
+        total = 0.5 * float(at.frame.x @ at.frame.x) + float(pulled.sum())
+        if self.walls is not None and at.walls is not None:
+            total += self.walls.energy(at.walls)
+        return total

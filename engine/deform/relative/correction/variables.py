@@ -53,17 +53,18 @@ class Variables:
     ----------
     h, q : complex128, shape (n, N)
         Coefficients of the functions in the domain's span.
-    at_nodes, at_samples : Values
-        At the nodes of paths, and at the samples of the boundary.
+    at_nodes, at_samples, at_points : Values
+        At the nodes of paths, at the samples of the boundary and at points.
     """
 
     h: Complexes
     q: Complexes
     at_nodes: Values
     at_samples: Values
+    at_points: Values
 
     @classmethod
-    def of(cls, boundary: Boundary, nodes: Complexes) -> Self:
+    def of(cls, boundary: Boundary, nodes: Complexes, points: Complexes) -> Self:
         """Make the functions of a domain orthonormal in the size of corrections."""
         span, weights = boundary.span, boundary.weights
         count = len(span.vertices)  # logarithms are not single-valued functions
@@ -78,14 +79,17 @@ class Variables:
         stretch = np.hstack([values.real, -values.imag])
         to_h = _whitened(stretch.T @ stretch + OF_SIZE * of_values + of_slopes)
         to_q = _whitened(of_values + of_slopes)
-        at_nodes = span.coordinates(nodes)[:, :count]
+        places = [span.coordinates(each)[:, :count] for each in (nodes, points)]
         coefficients = [own @ to for to in (to_h, to_q)]
         padded = [np.pad(each, ((0, len(span) - count), (0, 0))) for each in coefficients]
         on = [
             Values(*(freeze(np.ascontiguousarray((rows @ each).T)) for each in coefficients))
-            for rows in (at_nodes, samples)
+            for rows in (places[0], samples, places[1])
         ]
-        return cls(h=freeze(padded[0]), q=freeze(padded[1]), at_nodes=on[0], at_samples=on[1])
+        of_q, of_h = padded[1], padded[0]
+        return cls(
+            h=freeze(of_h), q=freeze(of_q), at_nodes=on[0], at_samples=on[1], at_points=on[2]
+        )
 
     @property
     def count(self) -> int:
