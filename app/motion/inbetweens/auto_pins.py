@@ -23,8 +23,8 @@ from engine.interpolation import (
     Inbetweens,
     PinSeries,
     SegmentPins,
-    points_for_pins,
     solve_pins,
+    value_points_for_pins,
 )
 
 BESIDE = 0.03  # of the diagonal: nearer to an anchor or a handle that stays, handles give way
@@ -81,15 +81,18 @@ class AutoPins:
         return solve_pins(self._base(number, sampler), corrector, pins, bounds)
 
     def _prepare(self) -> tuple[PointCorrector, PoseSampler]:
-        """Return what corrects the handles, and a sampler of all points that this looks at."""
+        """Return what corrects the handles, and a sampler of these with the values it takes."""
         if self._prepared is None:
             figure, sites = self.clip.figure, self._known.sites
             handles = np.array([each.position for each in figure.handles], dtype=np.complex128)
             boundary = stiffened(figure, sites.boundary)
             corrector = corrector_for(boundary, sites.anchor, handles)
-            points = points_for_pins(corrector)
             sampler = PoseSampler(
-                figure.domain, anchor=figure.anchor, points=points, sibling=self._known
+                figure.domain,
+                anchor=figure.anchor,
+                points=handles,
+                values_at=value_points_for_pins(corrector),
+                sibling=self._known,
             )
             self._prepared = corrector, sampler
         return self._prepared
@@ -97,15 +100,15 @@ class AutoPins:
     def _pins(self, number: int, segment: PinnedSegment, sampler: PoseSampler) -> SegmentPins:
         """Return where the handles are wanted during a segment."""
         clip, figure = self.clip, self.clip.figure
-        count, own = len(figure.handles), spans(clip)[number]
+        own = spans(clip)[number]
         keys = [clip.keys[index] for index in (own.first, own.last)]
-        ends = [sampler.samples(key.pose).positions[:count] for key in keys]
-        slopes = np.zeros((2, count), dtype=np.complex128)
+        ends = [sampler.samples(key.pose).positions for key in keys]
+        slopes = np.zeros((2, len(figure.handles)), dtype=np.complex128)
         for side, other in enumerate(segment.beyond):
             pace = self._pace(number, side)
             if other is not None and SLOWEST < pace < np.inf:
                 # Pixels a frame there, against the velocity of the motion that has to stay.
-                away = self._velocity(other, 1 - side, sampler)[:count]
+                away = self._velocity(other, 1 - side, sampler)
                 slopes[side] = -self._pace(other, 1 - side) * away / pace
         anchor = figure.anchor if figure.hangs else None
         return SegmentPins(

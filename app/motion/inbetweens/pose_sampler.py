@@ -125,6 +125,8 @@ class PoseSampler:
         None lets the engine choose it.
     points : complex128, shape (m,), optional
         By default the vertices of the domain's mesh.
+    values_at : complex128, shape (v,), optional
+        Beside points that are given: where only values are wanted.
     sibling : PoseSampler, optional
         With the same outline and cage; what depends on them alone is shared with it.
 
@@ -147,6 +149,7 @@ class PoseSampler:
         *,
         anchor: complex | None,
         points: Complexes | None = None,
+        values_at: Complexes | None = None,
         sibling: "PoseSampler | None" = None,
     ) -> None:
         self.domain = domain
@@ -155,7 +158,8 @@ class PoseSampler:
         triangles = mesh.triangles if points is None else None
         points = mesh.vertices if points is None else points
         # What all that is sampled here depends on.
-        self._content = digest(*domain.loops, *domain.cages, points, triangles), anchor
+        content = digest(*domain.loops, *domain.cages, points, triangles, values_at)
+        self._content = content, anchor
         prepare = partial(
             prepare_sites,
             domain.outline,
@@ -164,6 +168,7 @@ class PoseSampler:
             holes=domain.holes,
             triangles=triangles,
             anchor=anchor,
+            values_at=() if values_at is None else values_at,
         )
         self.sites: Sites = _SAMPLED.find(("sites", *self._content), prepare, _nbytes)
         self._lock = threading.RLock()
