@@ -3,6 +3,7 @@
 import threading
 from collections.abc import Callable, Sequence, Set as AbstractSet
 from functools import partial
+from typing import Protocol
 
 import numpy as np
 
@@ -44,8 +45,13 @@ _SAMPLED = ContentCache(64 * 2**20)
 MOST_PINNED = 512  # segments of one outline whose pins are kept
 
 
-def _nbytes(value: Sites | HilbertTransform | Extension | KeyframeSamples | PointCorrector) -> int:
-    return value.nbytes
+class _Sized(Protocol):
+    @property
+    def nbytes(self) -> int: ...
+
+
+def _nbytes(value: _Sized | None) -> int:
+    return 0 if value is None else value.nbytes
 
 
 def corrector_for(boundary: Boundary, anchor: complex, points: Complexes) -> PointCorrector:
@@ -228,11 +234,11 @@ class PoseSampler:
         samples = [self.samples(first), self.samples(second)]
         sheets = root_sheets(np.array([sample.anchor_fz for sample in samples]), (turns,))
         interval = self._interval(Passage.of(samples, sheets), variant, Bounds())
-        return prepare_inbetweens(variant, interval)
+        return self._prepared(interval, variant)
 
     def inbetweens_of(self, transit: Transit, bounds: Bounds, variant: Variant) -> Inbetweens:
         """Return the in-betweens of a clip's interval; the motion through keys obeys the bounds."""
-        return prepare_inbetweens(variant, self._interval_of(transit, bounds, variant))
+        return self._prepared(self._interval_of(transit, bounds, variant), variant)
 
     def makes_single_frames(self, variant: Variant) -> bool:
         """Tell whether one in-between alone takes less time than all of its interval."""
@@ -309,6 +315,21 @@ class PoseSampler:
                 sheets.append(sheets[middle] + (change if side == 0 else -change))
         passage = Passage.of(samples, freeze(np.array(sheets, np.int32)), course)
         return self._interval(passage, variant, bounds)
+
+    def _prepared(self, interval: Interval, variant: Variant) -> Inbetweens:
+        """Prepare in-betweens; what is solved on the boundary serves all samplers of the domain."""
+        if not variant.needs_transform:
+            return prepare_inbetweens(variant, interval)
+        course, maps = interval.passage.course, [key.map for key in interval.passage.keyframes]
+        content = digest(
+            *self.domain.loops,
+            *self.domain.cages,
+            *(each for f in maps for each in (f.phi, f.psi, f.logs)),
+        )
+        key = "residual", content, course.ends, course.apart, interval.bounds
+        solve = partial(BLENDS[variant].on_boundary, interval)
+        residual = _SAMPLED.find(key, solve, _nbytes)
+        return prepare_inbetweens(variant, interval._replace(residual=residual))
 
     def _interval(self, passage: Passage, variant: Variant, bounds: Bounds) -> Interval:
         return Interval(
