@@ -119,6 +119,7 @@ def prepare_sites(
     triangles: npt.ArrayLike | None = None,
     anchor: npt.ArrayLike | None = None,
     values_at: npt.ArrayLike = (),
+    boundary: Boundary | None = None,
 ) -> Sites:
     """Find paths inside the domain from the anchor to every point.
 
@@ -141,6 +142,8 @@ def prepare_sites(
     values_at : complex, shape (v,), optional
         Further points, without triangles, at which only derivatives are wanted. Each costs one
         node where its neighbour in order can be reached straight.
+    boundary : Boundary, optional
+        That of earlier sites of the same domain.
 
     Raises
     ------
@@ -148,9 +151,9 @@ def prepare_sites(
         If a polygon, a point, a triangle or the anchor is not as said.
     """
     points = as_points(points, "points", at_least=1)
-    boundary = Boundary.sample(
-        as_points(outline, "outline", at_least=3), as_points(cage, "cage", at_least=3), holes
-    )
+    if boundary is None:
+        outline, cage = as_points(outline, "outline"), as_points(cage, "cage")
+        boundary = Boundary.sample(outline, cage, holes)
     outline, *inner = boundary.loops
     tolerance = ON_OUTLINE * diameter(outline)
     root = np.array([deepest_point(outline, inner)]) if anchor is None else _single(anchor)

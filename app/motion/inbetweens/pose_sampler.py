@@ -69,6 +69,8 @@ class OutlineKnowledge:
     corrections : dict
         Of frames, by all that they follow from; those that were wanted longest ago first. It is
         read and changed under `guard`: several threads may.
+    tangents : dict
+        Of the motion through keys, by the poses and what else they follow from; under `guard`, too.
     nbytes : int
         The bytes that `forget_transform` lets go.
     """
@@ -81,6 +83,7 @@ class OutlineKnowledge:
         self._transform: HilbertTransform | None = None
         self.nbytes = 0
         self.corrections: dict[object, FrameCorrection] = {}
+        self.tangents: dict[tuple[tuple[Pose, ...], Joint, Bounds, Variant], Tangent] = {}
         self.guard = threading.Lock()
         # With the poses that keep the identities in their keys.
         self._pins: dict[Pair, tuple[PinSeries, tuple[Pose, ...]]] = {}
@@ -175,11 +178,11 @@ class PoseSampler:
             triangles=triangles,
             anchor=anchor,
             values_at=() if values_at is None else values_at,
+            boundary=None if sibling is None else sibling.sites.boundary,
         )
         self.sites: Sites = _SAMPLED.find(("sites", *self._content), prepare, _nbytes)
         self._lock = threading.RLock()
         self._samples: dict[Pose, KeyframeSamples] = {}
-        self._tangents: dict[tuple[tuple[Pose, ...], Joint, Bounds, Variant], Tangent] = {}
         self._extension: Extension | None = None
         self.extension_bytes = 0
         # Of its own, so that nothing else waits for it.
@@ -209,7 +212,9 @@ class PoseSampler:
         """Forget what was kept for other poses."""
         with self._lock:
             self._samples = {p: s for p, s in self._samples.items() if p in poses}
-            self._tangents = {k: t for k, t in self._tangents.items() if poses >= set(k[0])}
+        known = self.known
+        with known.guard:
+            known.tangents = {k: t for k, t in known.tangents.items() if poses >= set(k[0])}
 
     def samples(self, pose: Pose) -> KeyframeSamples:
         """Return the samples of a pose's map."""
@@ -287,14 +292,15 @@ class PoseSampler:
     def _tangent(
         self, poses: Sequence[Pose], joint: Joint, bounds: Bounds, variant: Variant
     ) -> Tangent:
-        with self._lock:
-            key = tuple(poses), joint, bounds, variant
-            if key not in self._tangents:
-                maps = [self.samples(pose).map for pose in poses]
-                self._tangents[key] = BLENDS[variant].tangent(
-                    maps, joint, bounds, self.sites.boundary
-                )
-            return self._tangents[key]
+        key = tuple(poses), joint, bounds, variant
+        with self.known.guard:
+            found = self.known.tangents.get(key)
+        if found is None:
+            maps = [self.samples(pose).map for pose in poses]
+            found = BLENDS[variant].tangent(maps, joint, bounds, self.sites.boundary)
+            with self.known.guard:
+                self.known.tangents[key] = found
+        return found
 
     def _interval_of(self, transit: Transit, bounds: Bounds, variant: Variant) -> Interval:
         samples = [self.samples(key.pose) for key in transit.keys]
