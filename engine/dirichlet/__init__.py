@@ -6,4 +6,4 @@ Imports: `engine.maps`, `engine.geometry`.
 """
 
 from engine.dirichlet.hilbert import Extension as Extension, HilbertTransform as HilbertTransform
-from engine.dirichlet.refinement import Refinement as Refinement
+from engine.dirichlet.refinement import Densities as Densities, Refinement as Refinement

@@ -11,12 +11,12 @@ and nothing is factorised anew.
 
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Self
+from typing import NamedTuple, Self
 
 import numpy as np
 
 from engine.arrays import Booleans, Complexes, Floats, Indices
-from engine.dirichlet.hilbert import Extended, Extension
+from engine.dirichlet.hilbert import Extended, Extension, HilbertTransform
 from engine.dirichlet.near_field import near_matrix
 from engine.dirichlet.panels import NODES, Panels, end_values
 from engine.dirichlet.product_integration import near_distance
@@ -27,40 +27,40 @@ FIRM = 1e4  # how much more the ends of a panel weigh than a node, so that they 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Refinement:
-    """An extension from real parts that are given at the nodes of panels, some of them cut.
+    """A transform of real parts that are given at the nodes of panels, some of them cut.
 
     Parameters
     ----------
-    extension : Extension
-        From the whole panels.
+    transform : HilbertTransform
+        Of the whole panels.
     panels : Panels
         Length p.
     whole : intp, shape (p,)
         The number of the whole panel that each is a part of.
     """
 
-    extension: Extension
+    transform: HilbertTransform
     panels: Panels
     whole: Indices
 
     @classmethod
-    def of(cls, extension: Extension) -> Self:
-        """Return an extension's own panels, none of them cut."""
-        panels = extension.transform.panels
-        return cls(extension=extension, panels=panels, whole=np.arange(len(panels)))
+    def of(cls, transform: HilbertTransform) -> Self:
+        """Return a transform's own panels, none of them cut."""
+        panels = transform.panels
+        return cls(transform=transform, panels=panels, whole=np.arange(len(panels)))
 
     def halved(self, chosen: Booleans) -> Self:
         """Return panels of which the chosen ones (p,) are cut in the middle."""
         whole = np.repeat(self.whole, 1 + chosen)
-        return type(self)(extension=self.extension, panels=self.panels.halved(chosen), whole=whole)
+        return type(self)(transform=self.transform, panels=self.panels.halved(chosen), whole=whole)
 
     @property
     def nodes(self) -> Complexes:
         """Points of the boundary (N,) at which real parts are given."""
-        return self.extension.transform.centre + self.panels.nodes.ravel()
+        return self.transform.centre + self.panels.nodes.ravel()
 
-    def extend(self, real_parts: Floats) -> Extended:
-        """Return holomorphic functions with given real parts on the boundary.
+    def solve(self, real_parts: Floats) -> "Densities":
+        """Find the holomorphic functions with given real parts on the boundary.
 
         Parameters
         ----------
@@ -69,12 +69,13 @@ class Refinement:
 
         Notes
         -----
-        As `Extension.extend`; time grows with the product of points and cut panels.
+        As `Extension.extend`, which needs the points; this serves any.
         """
         is_cut = np.bincount(self.whole)[self.whole] > 1
+        transform, columns = self.transform, real_parts.shape[1]
         if not is_cut.any():
-            return self.extension.extend(real_parts)
-        transform, columns = self.extension.transform, real_parts.shape[1]
+            densities = transform.solver(real_parts)
+            return Densities(densities, transform.means @ densities, None)
         given = real_parts.reshape(len(self.panels), NODES, columns)
         smooth = np.empty((len(transform.panels), NODES, columns))
         smooth[self.whole[~is_cut]] = given[~is_cut]
@@ -85,7 +86,7 @@ class Refinement:
             smooth[number], lacking[own] = _projected(
                 transform.panels, number, parts.nodes[own], given[own]
             )
-        local = _Local(parts=parts, whole=whole, densities=2 * lacking)
+        local = LocalDensities(parts=parts, whole=whole, densities=2 * lacking)
         right = smooth.reshape(-1, columns)
         right -= local.at(transform.panels.nodes.ravel(), np.repeat(np.arange(len(smooth)), NODES))[
             0
@@ -93,11 +94,7 @@ class Refinement:
         means = local.means(transform.panels)
         right -= (transform.means > 0).T @ means
         densities = transform.solver(right)
-        values, derivatives = self.extension.integral(densities)
-        added = local.at(self.extension.inside)
-        return Extended(
-            values + added[0], derivatives + added[1], transform.means @ densities + means
-        )
+        return Densities(densities, transform.means @ densities + means, local)
 
 
 def _projected(
@@ -127,8 +124,37 @@ def _legendre(tau: Floats) -> Floats:
     return np.asarray(values, dtype=np.float64)
 
 
+class Densities(NamedTuple):
+    """Holomorphic functions by what is on the boundary: they can be had at any points.
+
+    Parameters
+    ----------
+    whole : float64, shape (N, j)
+        Densities at the nodes of the whole panels.
+    lacking : float64, shape (holes, j)
+        As in `Extended`.
+    local : LocalDensities or None
+        What is added on parts of panels.
+    """
+
+    whole: Floats
+    lacking: Floats
+    local: "LocalDensities | None"
+
+    def at(self, extension: Extension) -> Extended:
+        """Return the functions at the points of an extension.
+
+        Time grows with the product of points and cut panels.
+        """
+        values, derivatives = extension.integral(self.whole)
+        if self.local is not None:
+            more, steeper = self.local.at(extension.inside)
+            values, derivatives = values + more, derivatives + steeper
+        return Extended(values, derivatives, self.lacking)
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class _Local:
+class LocalDensities:
     """Densities (p, NODES, j) on parts of a few whole panels, 0 on all others."""
 
     parts: Panels

@@ -18,9 +18,9 @@ from engine.interpolation.courses import (
 from engine.interpolation.inbetweens import Frame as Frame, Inbetweens as Inbetweens
 from engine.interpolation.one_interval import (
     frame_at as frame_at,
-    points_for_pins as points_for_pins,
     prepare_inbetweens as prepare_inbetweens,
     solve_pins as solve_pins,
+    value_points_for_pins as value_points_for_pins,
 )
 from engine.interpolation.passage import (
     Interval as Interval,

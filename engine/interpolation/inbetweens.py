@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Self
+from typing import NamedTuple, Self
 
 import numpy as np
 
@@ -33,6 +33,22 @@ class Frame:
     fz: Complexes
     fzbar: Complexes
     rho: float | None
+
+
+class PointValues(NamedTuple):
+    """An in-between at the sites' value points (v,), or at times (t,) those at each, (t, v).
+
+    Parameters
+    ----------
+    fz, g : complex128
+        f_z and conj(f_z̄).
+    plain_log_fz : complex128
+        The blend of the keyframes' log f_z, without what a variant or pins add.
+    """
+
+    fz: Complexes
+    g: Complexes
+    plain_log_fz: Complexes
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -116,11 +132,32 @@ class Inbetweens:
 
     def derivatives_at(self, which: Indices) -> Callable[[Floats], tuple[Complexes, Complexes]]:
         """Return f_z and f_z̄ of some of the points (p,) as functions of times (t,), (t, p) each."""
-        nodes = self.sites.paths.places[which]
+        values = self._values_at(self.sites.paths.places[which])
+
+        def derivatives(times: Floats) -> tuple[Complexes, Complexes]:
+            fz, g = values(times)
+            return fz, np.conj(g, out=g)
+
+        return derivatives
+
+    def values_at(self, times: Floats) -> PointValues:
+        """Return the values at the sites' value points and times (t,), (t, v) each."""
+        nodes = self.sites.paths.beside
+        plain = self.passage.at(nodes).plain_log_fz_at(times)
+        return PointValues(*self._values_at(nodes)(times), plain)
+
+    def frame_with_values(self, time: float) -> tuple[Frame, PointValues]:
+        """Return a frame, and the values at the sites' value points for little more."""
+        blended, beside = self._blended(time), self.sites.paths.beside
+        plain = self.passage.plain_log_fz(time)[0][beside]
+        return self._frame(blended, time), PointValues(blended.fz[beside], blended.g[beside], plain)
+
+    def _values_at(self, nodes: Indices) -> Callable[[Floats], tuple[Complexes, Complexes]]:
+        """Return f_z and conj(f_z̄) at nodes (p,) as functions of times (t,), (t, p) each."""
         blend, conformal = self.blend.at(nodes), self._conformal and self._conformal.at(nodes)
         pins = None if self.pins is None else self.pins.at(nodes)
 
-        def derivatives(times: Floats) -> tuple[Complexes, Complexes]:
+        def values(times: Floats) -> tuple[Complexes, Complexes]:
             fz, g = blend.values(times)
             if self.scale is not None:
                 rho = self.scale.at(times)[:, None]
@@ -129,9 +166,9 @@ class Inbetweens:
                     fz *= rho + (1.0 - rho) * np.exp(conformal.at_times(times))
             if pins is not None:
                 fz, g = pins.changed_values(fz, g, blend.passage, times)
-            return fz, np.conj(g, out=g)
+            return fz, g
 
-        return derivatives
+        return values
 
     def offsets(self, time: float) -> Complexes:
         """Return f − f(anchor) at the points, (m,)."""
@@ -139,7 +176,9 @@ class Inbetweens:
 
     def frame(self, time: float) -> Frame:
         """Return the in-between at a time in [0, 1]."""
-        blended = self._blended(time)
+        return self._frame(self._blended(time), time)
+
+    def _frame(self, blended: Derivatives, time: float) -> Frame:
         places = self.sites.paths.places
         return Frame(
             positions=self.anchor_position(time) + self._offsets(blended, time),

@@ -53,9 +53,9 @@ def frame_at(
     return (found if pins is None else found.pinned(pins)).frame(time)
 
 
-def points_for_pins(corrector: PointCorrector) -> Complexes:
-    """Return at which points in-betweens tell what pins need: handles, nodes and samples."""
-    return np.concatenate([corrector.points, corrector.paths.nodes, corrector.boundary.points])
+def value_points_for_pins(corrector: PointCorrector) -> Complexes:
+    """Return at which points pins need values: nodes of ways to handles, and samples."""
+    return np.concatenate([corrector.paths.nodes, corrector.boundary.points])
 
 
 def solve_pins(
@@ -66,28 +66,23 @@ def solve_pins(
     Parameters
     ----------
     base : Inbetweens
-        Without pins, at `points_for_pins`.
+        Without pins, at the handles, and at `value_points_for_pins`.
     corrector : PointCorrector
         For the handles.
     pins : SegmentPins
     bounds : Bounds
         Limits that are kept at the samples, as far as the base keeps them.
     """
-    count, nodes = len(corrector.points), len(corrector.paths.nodes)
-    parts = slice(count, count + nodes), slice(count + nodes, None)
-    places, blend = base.sites.paths.places, base.blend
+    nodes, blend = len(corrector.paths.nodes), base.blend
+    parts = slice(nodes), slice(nodes, None)
     # The linear blend has zeros of f_z, where L² / F would be infinite.
     sign, is_squared = blend.sign or -1, blend.sign != 0
 
     def base_at(time: float) -> BaseAt:
-        frame = base.frame(time)
-        by = np.exp(base.passage.plain_log_fz(time)[0][places])
-        if is_squared:
-            by = by * by / frame.fz
-        of_nodes, of_samples = (
-            BaseFrame(frame.fz[part], frame.fzbar[part].conj(), by[part], sign) for part in parts
-        )
-        return BaseAt(frame.positions[:count], base.anchor_position(time), of_nodes, of_samples)
+        frame, (fz, g, logarithm) = base.frame_with_values(time)
+        by = np.exp(2.0 * logarithm) / fz if is_squared else np.exp(logarithm)
+        of_nodes, of_samples = (BaseFrame(fz[part], g[part], by[part], sign) for part in parts)
+        return BaseAt(frame.positions, base.anchor_position(time), of_nodes, of_samples)
 
     return pin(corrector, base_at, pins, bounds, sign=sign, is_squared=is_squared)
 

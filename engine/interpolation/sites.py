@@ -1,7 +1,7 @@
 """Where in-betweens are wanted: what belongs to the domain and the points, not to a keyframe."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
@@ -15,10 +15,12 @@ from engine.maps import Boundary
 from engine.paths import (
     IntegrationPaths,
     Loops,
+    chain_starts,
     continue_logarithm,
     lay_paths,
     mesh_network,
     scattered_network,
+    with_chains,
     with_loops,
 )
 
@@ -30,6 +32,13 @@ OTHER_OUTLINE = (
     "The Hilbert transform is of another outline, of {others} vertices, than the points', of "
     "{own}; build it anew for this one."
 )
+VALUES_OR_TRIANGLES = (
+    "Values alone are wanted at points beside those of triangles; prepare sites of their own."
+)
+
+
+def _none() -> Complexes:
+    return np.empty(0, dtype=np.complex128)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -53,6 +62,8 @@ class Sites:
         Of z − c_j at the anchor and the points, continued along the paths.
     period_basis : PeriodBasis or None
         Of corrections around the holes; None where there are none.
+    value_points : complex128, shape (v,)
+        At which in-betweens have derivatives only, and no positions.
     """
 
     diameter: float
@@ -62,6 +73,7 @@ class Sites:
     loops: Loops
     arguments: Floats
     period_basis: PeriodBasis | None
+    value_points: Complexes = field(default_factory=_none)
 
     @property
     def outline(self) -> Complexes:
@@ -106,6 +118,8 @@ def prepare_sites(
     holes: Sequence[Hole] = (),
     triangles: npt.ArrayLike | None = None,
     anchor: npt.ArrayLike | None = None,
+    values_at: npt.ArrayLike = (),
+    boundary: Boundary | None = None,
 ) -> Sites:
     """Find paths inside the domain from the anchor to every point.
 
@@ -125,6 +139,11 @@ def prepare_sites(
     anchor : complex, optional
         By default the centre of the largest disc in the domain: farthest from the cage, where the
         maps are smoothest and their arguments least extreme.
+    values_at : complex, shape (v,), optional
+        Further points, without triangles, at which only derivatives are wanted. Each costs one
+        node where its neighbour in order can be reached straight.
+    boundary : Boundary, optional
+        That of earlier sites of the same domain.
 
     Raises
     ------
@@ -132,21 +151,28 @@ def prepare_sites(
         If a polygon, a point, a triangle or the anchor is not as said.
     """
     points = as_points(points, "points", at_least=1)
-    boundary = Boundary.sample(
-        as_points(outline, "outline", at_least=3), as_points(cage, "cage", at_least=3), holes
-    )
+    if boundary is None:
+        outline, cage = as_points(outline, "outline"), as_points(cage, "cage")
+        boundary = Boundary.sample(outline, cage, holes)
     outline, *inner = boundary.loops
     tolerance = ON_OUTLINE * diameter(outline)
     root = np.array([deepest_point(outline, inner)]) if anchor is None else _single(anchor)
     require_inside(outline, root, "anchor", holes=inner, tolerance=tolerance)
     require_inside(outline, points, "point", holes=inner, tolerance=tolerance)
+    beside = as_points(values_at, "values_at")
+    require_inside(outline, beside, "point for values", holes=inner, tolerance=tolerance)
     corners, cages = np.concatenate(boundary.loops), boundary.span.vertices
     loops = Loops.around(outline, inner, np.concatenate([corners, cages]))
     if triangles is None:
         # Without a mesh nothing else may come near a hole.
-        everything = np.concatenate([points, loops.nodes[loops.starts]])
-        network = scattered_network(outline, everything, root, holes=inner)
+        starts = chain_starts(boundary.loops, beside)
+        everything = np.concatenate([points, loops.nodes[loops.starts], beside[starts]])
+        network = with_chains(
+            scattered_network(outline, everything, root, holes=inner), beside, starts
+        )
         network = replace(network, places=network.places[: len(points)])
+    elif len(beside):
+        raise EngineError(VALUES_OR_TRIANGLES)
     else:
         network = mesh_network(outline, points, _as_triangles(triangles), root, holes=inner)
     if inner:
@@ -160,6 +186,7 @@ def prepare_sites(
         loops=loops,
         arguments=freeze(_arguments(paths, boundary.span.centres)),
         period_basis=PeriodBasis.of(boundary, loops, paths.nodes) if inner else None,
+        value_points=beside,
     )
 
 

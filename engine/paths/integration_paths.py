@@ -16,6 +16,9 @@ STEP_PER_SIZE = 1 / 125  # longest step, over the box diagonal of the outline
 # c h (h/d)^4 / 120; nearer to the singularity steps are so much shorter that each errs as much.
 STEP_PER_DISTANCE = 0.25
 SHORTEST_PER_SIZE = 2e-5  # steps are not cut below this, over the box diagonal
+# Longest step where nothing is integrated, over the box diagonal: it serves only to go on with
+# branches of logarithms.
+PLAIN_STEP_PER_SIZE = 1 / 50
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -33,6 +36,9 @@ class IntegrationPaths:
         The node of each point.
     around : intp, shape (c,)
         Those of loops around holes.
+    beside : intp, shape (v,)
+        Those of points at which only the integrand is wanted. On ways that lead to these or to
+        loops alone, steps are too long for integrals.
     cornered : bool, shape (s,)
         Nodes at a corner of the outline, where the derivative of a solution of the Dirichlet
         problem is unbounded or cannot be had.
@@ -43,6 +49,7 @@ class IntegrationPaths:
     tree: SpanningTree
     places: Indices
     around: Indices
+    beside: Indices
     cornered: Booleans
 
     def step_integrals(self, values: Complexes, derivatives: Complexes) -> Complexes:
@@ -76,7 +83,7 @@ class IntegrationPaths:
 
 
 def lay_paths(network: Network, outline: Complexes, cage: Complexes) -> IntegrationPaths:
-    """Cut the legs of a network into steps that the Hermite rule integrates accurately.
+    """Cut the legs of a network that lead to its places into steps for the Hermite rule.
 
     A step is no longer than a fixed part of the shape, nor than a part of its distance to the
     nearest singularity: the vertices of the cage, where Φ' is log-singular, and those of the
@@ -91,6 +98,7 @@ def lay_paths(network: Network, outline: Complexes, cage: Complexes) -> Integrat
     scale = box_diagonal(outline)
     singular = cKDTree(as_xy(np.concatenate([cage, outline])))
     children = np.flatnonzero(network.parents >= 0)[1:]
+    is_integrated = network.lead_to(network.places)[children]
     legs = Pieces.whole(network.nodes[network.parents[children]], network.nodes[children])
 
     def is_fine(steps: Pieces) -> Booleans:
@@ -101,8 +109,9 @@ def lay_paths(network: Network, outline: Complexes, cage: Complexes) -> Integrat
         distance, _ = singular.query(middles, distance_upper_bound=farthest)
         room = np.maximum(distance - lengths / 2, 0.0) / scale
         near = (STEP_PER_SIZE * (STEP_PER_DISTANCE * room) ** 4) ** 0.2
-        longest = scale * np.clip(near, SHORTEST_PER_SIZE, STEP_PER_SIZE)
-        return np.asarray(lengths <= longest)
+        longest = np.clip(near, SHORTEST_PER_SIZE, STEP_PER_SIZE)
+        longest = np.where(is_integrated[steps.segment], longest, PLAIN_STEP_PER_SIZE)
+        return np.asarray(lengths <= scale * longest)
 
     nodes, parents = _chain(network, children, bisect(legs, is_fine))
     numbering = depth_first_numbering(parents, 0)
@@ -118,6 +127,7 @@ def lay_paths(network: Network, outline: Complexes, cage: Complexes) -> Integrat
         tree=SpanningTree.of_parents(parents),
         places=freeze(new[network.places]),
         around=freeze(new[network.around]),
+        beside=freeze(new[network.beside]),
         cornered=freeze(cornered),
     )
 

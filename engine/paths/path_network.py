@@ -75,12 +75,19 @@ class Network:
         The node of each point.
     around : intp, shape (c,)
         Those of loops around holes.
+    beside : intp, shape (v,)
+        Those of points at which only the integrand is wanted.
     """
 
     nodes: Complexes
     parents: Indices
     places: Indices
     around: Indices = field(default_factory=_none)
+    beside: Indices = field(default_factory=_none)
+
+    def lead_to(self, ends: Indices) -> Booleans:
+        """Tell which nodes (s,) some of them, and the ways to these, pass."""
+        return _ways(self.parents, ends)
 
 
 def mesh_network(
@@ -163,7 +170,34 @@ def scattered_network(
     legs.append(np.column_stack([np.zeros_like(beside), beside]))
     nodes = np.concatenate([ends, portals])
     parents = breadth_first_parents(len(nodes), np.concatenate(legs), 0)
-    return Network(nodes=nodes, parents=_prune(parents, len(ends)), places=np.arange(1, len(ends)))
+    passed = _ways(parents, np.arange(len(ends)))
+    parents = np.where(passed, parents, -1)
+    return Network(nodes=nodes, parents=parents, places=np.arange(1, len(ends)))
+
+
+def chain_starts(loops: Sequence[Complexes], points: Complexes) -> Booleans:
+    """Tell which of some points (v,) cannot be reached straight from the one before them."""
+    starts = leave_region(loops, np.roll(points, 1), points)
+    starts[:1] = True
+    return starts
+
+
+def with_chains(network: Network, points: Complexes, starts: Booleans) -> Network:
+    """Return a network that leads on along chains of points (v,), too.
+
+    The last nodes that it leads to are where the chains start.
+    """
+    first, count = len(network.nodes), int(np.count_nonzero(starts))
+    places, heads = np.split(network.places, [len(network.places) - count])
+    beside = np.empty(len(points), dtype=np.intp)
+    beside[starts], beside[~starts] = heads, first + np.arange(len(points) - count)
+    return replace(
+        network,
+        nodes=np.concatenate([network.nodes, points[~starts]]),
+        parents=np.concatenate([network.parents, np.roll(beside, 1)[~starts]]),
+        places=places,
+        beside=beside,
+    )
 
 
 def with_loops(
@@ -210,6 +244,8 @@ def _directed(triangles: Integers, count: int) -> tuple[csr_array, csr_array]:
 
 def leave_region(loops: Sequence[Complexes], starts: Complexes, ends: Complexes) -> Booleans:
     """Tell for each segment whether it leaves the region by more than rounding."""
+    if not len(starts):
+        return np.empty(0, dtype=np.bool_)
     tolerance = 2 * ON_OUTLINE * box_diagonal(loops[0])
     # Nearly all segments stay away from the boundary; only the others need the exact test.
     near = np.flatnonzero(_near_boundary(loops, starts, ends))
@@ -285,12 +321,12 @@ def _portals(corners: Complexes, triangles: Indices) -> tuple[Complexes, Indices
     return corners[sides[shared]].mean(axis=1), portal[numbers]
 
 
-def _prune(parents: Indices, count: int) -> Indices:
-    """Keep the first `count` nodes and their ancestors; the others' parent becomes −1."""
-    wanted = np.zeros(len(parents), dtype=np.bool_)
-    new = np.arange(count)
+def _ways(parents: Indices, ends: Indices) -> Booleans:
+    """Tell which nodes (s,) are ends, or on the way from the anchor to one."""
+    passed = np.zeros(len(parents), dtype=np.bool_)
+    new = ends
     while len(new):
-        wanted[new] = True
+        passed[new] = True
         new = np.unique(parents[new])
-        new = new[~wanted[new]]
-    return np.where(wanted, parents, -1)
+        new = new[~passed[new]]
+    return passed

@@ -25,6 +25,7 @@ from engine.maps.harmonic_map import HarmonicMap
 from engine.paths import root_sheets
 
 Shape = tuple[Complexes, Complexes]
+NOWHERE = np.empty(0, dtype=np.complex128)
 
 
 def subdivided(polygon, longest):
@@ -112,14 +113,23 @@ def _transform(outline: bytes, cage: bytes) -> HilbertTransform:
 
 
 @cache
-def _stage(outline: bytes, cage: bytes, points: bytes, anchor: complex | None) -> Stage:
+def _stage(
+    outline: bytes, cage: bytes, points: bytes, values_at: bytes, anchor: complex | None
+) -> Stage:
     arrays = (np.frombuffer(each, complex) for each in (outline, cage, points))
-    return Stage(prepare_sites(*arrays, anchor=anchor))
+    beside = np.frombuffer(values_at, complex)
+    return Stage(prepare_sites(*arrays, anchor=anchor, values_at=beside))
 
 
-def stage_of(shape: Shape, points: Complexes, anchor: complex | None = None) -> Stage:
+def stage_of(
+    shape: Shape,
+    points: Complexes,
+    anchor: complex | None = None,
+    values_at: Complexes = NOWHERE,
+) -> Stage:
     """Return the stage of a shape and points, which is prepared once."""
-    return _stage(*(z.tobytes() for z in shape), points.tobytes(), anchor)
+    arrays = (*shape, points, values_at)
+    return _stage(*(z.tobytes() for z in arrays), anchor)
 
 
 def outline_samples(shape: Shape) -> Complexes:

@@ -23,8 +23,8 @@ from engine.interpolation import (
     Inbetweens,
     PinSeries,
     SegmentPins,
-    points_for_pins,
     solve_pins,
+    value_points_for_pins,
 )
 
 BESIDE = 0.03  # of the diagonal: nearer to an anchor or a handle that stays, handles give way
@@ -33,6 +33,7 @@ FIRM = 0.01  # of full firmness: a handle that lacks less is held fully
 # holes they may jump at the key itself, where nothing is looked at.
 STEP = 2e-3
 FORWARD = (-77 / 12, 107 / 6, -39 / 2, 61 / 6, -25 / 12)
+KEPT = 3  # segments that stay prepared for pins: one, with those on both sides
 SLOWEST = 1e-9  # pace below which a segment begins at rest
 
 
@@ -51,6 +52,7 @@ class AutoPins:
         self.clip, self._variant, self._known = clip, variant, sampler
         self._segments = pinned_segments(clip)
         self._prepared: tuple[PointCorrector, PoseSampler] | None = None
+        self._looked_at: dict[int, Inbetweens] = {}  # at its own sampler, the latest last
 
     def inbetweens(self, number: int, sampler: PoseSampler) -> Inbetweens:
         """Return the in-betweens of a segment at the points of a sampler."""
@@ -78,18 +80,29 @@ class AutoPins:
     def _solved(self, number: int, segment: PinnedSegment) -> PinSeries:
         corrector, sampler = self._prepare()
         pins, bounds = self._pins(number, segment, sampler), self.clip.figure.bounds
-        return solve_pins(self._base(number, sampler), corrector, pins, bounds)
+        return solve_pins(self._own_base(number), corrector, pins, bounds)
+
+    def _own_base(self, number: int) -> Inbetweens:
+        """Return a segment without pins at the sampler of these, which its neighbours ask for."""
+        base = self._looked_at.pop(number, None) or self._base(number, self._prepare()[1])
+        self._looked_at[number] = base
+        for oldest in list(self._looked_at)[:-KEPT]:
+            del self._looked_at[oldest]
+        return base
 
     def _prepare(self) -> tuple[PointCorrector, PoseSampler]:
-        """Return what corrects the handles, and a sampler of all points that this looks at."""
+        """Return what corrects the handles, and a sampler of these with the values it takes."""
         if self._prepared is None:
             figure, sites = self.clip.figure, self._known.sites
             handles = np.array([each.position for each in figure.handles], dtype=np.complex128)
             boundary = stiffened(figure, sites.boundary)
             corrector = corrector_for(boundary, sites.anchor, handles)
-            points = points_for_pins(corrector)
             sampler = PoseSampler(
-                figure.domain, anchor=figure.anchor, points=points, sibling=self._known
+                figure.domain,
+                anchor=figure.anchor,
+                points=handles,
+                values_at=value_points_for_pins(corrector),
+                sibling=self._known,
             )
             self._prepared = corrector, sampler
         return self._prepared
@@ -97,15 +110,15 @@ class AutoPins:
     def _pins(self, number: int, segment: PinnedSegment, sampler: PoseSampler) -> SegmentPins:
         """Return where the handles are wanted during a segment."""
         clip, figure = self.clip, self.clip.figure
-        count, own = len(figure.handles), spans(clip)[number]
+        own = spans(clip)[number]
         keys = [clip.keys[index] for index in (own.first, own.last)]
-        ends = [sampler.samples(key.pose).positions[:count] for key in keys]
-        slopes = np.zeros((2, count), dtype=np.complex128)
+        ends = [sampler.samples(key.pose).positions for key in keys]
+        slopes = np.zeros((2, len(figure.handles)), dtype=np.complex128)
         for side, other in enumerate(segment.beyond):
             pace = self._pace(number, side)
             if other is not None and SLOWEST < pace < np.inf:
                 # Pixels a frame there, against the velocity of the motion that has to stay.
-                away = self._velocity(other, 1 - side, sampler)[:count]
+                away = self._velocity(other, 1 - side)
                 slopes[side] = -self._pace(other, 1 - side) * away / pace
         anchor = figure.anchor if figure.hangs else None
         return SegmentPins(
@@ -124,9 +137,9 @@ class AutoPins:
         pace = transit.paces[side] * easing[side] / span.frames
         return pace if np.isfinite(pace) else 0.0
 
-    def _velocity(self, number: int, side: int, sampler: PoseSampler) -> Complexes:
+    def _velocity(self, number: int, side: int) -> Complexes:
         """Return how fast points leave a segment's first key, or reach its second one, by time."""
-        base, sign = self._base(number, sampler), -1.0 if side else 1.0
+        base, sign = self._own_base(number), -1.0 if side else 1.0
         steps = [base.frame(side + sign * (i + 1) * STEP).positions for i in range(len(FORWARD))]
         weights = sign / STEP * np.array(FORWARD, dtype=np.complex128)
         velocity: Complexes = weights @ np.array(steps)

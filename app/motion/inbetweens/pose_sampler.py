@@ -3,6 +3,7 @@
 import threading
 from collections.abc import Callable, Sequence, Set as AbstractSet
 from functools import partial
+from typing import Protocol
 
 import numpy as np
 
@@ -44,8 +45,13 @@ _SAMPLED = ContentCache(64 * 2**20)
 MOST_PINNED = 512  # segments of one outline whose pins are kept
 
 
-def _nbytes(value: Sites | HilbertTransform | Extension | KeyframeSamples | PointCorrector) -> int:
-    return value.nbytes
+class _Sized(Protocol):
+    @property
+    def nbytes(self) -> int: ...
+
+
+def _nbytes(value: _Sized | None) -> int:
+    return 0 if value is None else value.nbytes
 
 
 def corrector_for(boundary: Boundary, anchor: complex, points: Complexes) -> PointCorrector:
@@ -63,6 +69,8 @@ class OutlineKnowledge:
     corrections : dict
         Of frames, by all that they follow from; those that were wanted longest ago first. It is
         read and changed under `guard`: several threads may.
+    tangents : dict
+        Of the motion through keys, by the poses and what else they follow from; under `guard`, too.
     nbytes : int
         The bytes that `forget_transform` lets go.
     """
@@ -75,6 +83,7 @@ class OutlineKnowledge:
         self._transform: HilbertTransform | None = None
         self.nbytes = 0
         self.corrections: dict[object, FrameCorrection] = {}
+        self.tangents: dict[tuple[tuple[Pose, ...], Joint, Bounds, Variant], Tangent] = {}
         self.guard = threading.Lock()
         # With the poses that keep the identities in their keys.
         self._pins: dict[Pair, tuple[PinSeries, tuple[Pose, ...]]] = {}
@@ -125,6 +134,8 @@ class PoseSampler:
         None lets the engine choose it.
     points : complex128, shape (m,), optional
         By default the vertices of the domain's mesh.
+    values_at : complex128, shape (v,), optional
+        Beside points that are given: where only values are wanted.
     sibling : PoseSampler, optional
         With the same outline and cage; what depends on them alone is shared with it.
 
@@ -147,6 +158,7 @@ class PoseSampler:
         *,
         anchor: complex | None,
         points: Complexes | None = None,
+        values_at: Complexes | None = None,
         sibling: "PoseSampler | None" = None,
     ) -> None:
         self.domain = domain
@@ -155,7 +167,8 @@ class PoseSampler:
         triangles = mesh.triangles if points is None else None
         points = mesh.vertices if points is None else points
         # What all that is sampled here depends on.
-        self._content = digest(*domain.loops, *domain.cages, points, triangles), anchor
+        content = digest(*domain.loops, *domain.cages, points, triangles, values_at)
+        self._content = content, anchor
         prepare = partial(
             prepare_sites,
             domain.outline,
@@ -164,11 +177,12 @@ class PoseSampler:
             holes=domain.holes,
             triangles=triangles,
             anchor=anchor,
+            values_at=() if values_at is None else values_at,
+            boundary=None if sibling is None else sibling.sites.boundary,
         )
         self.sites: Sites = _SAMPLED.find(("sites", *self._content), prepare, _nbytes)
         self._lock = threading.RLock()
         self._samples: dict[Pose, KeyframeSamples] = {}
-        self._tangents: dict[tuple[tuple[Pose, ...], Joint, Bounds, Variant], Tangent] = {}
         self._extension: Extension | None = None
         self.extension_bytes = 0
         # Of its own, so that nothing else waits for it.
@@ -198,7 +212,9 @@ class PoseSampler:
         """Forget what was kept for other poses."""
         with self._lock:
             self._samples = {p: s for p, s in self._samples.items() if p in poses}
-            self._tangents = {k: t for k, t in self._tangents.items() if poses >= set(k[0])}
+        known = self.known
+        with known.guard:
+            known.tangents = {k: t for k, t in known.tangents.items() if poses >= set(k[0])}
 
     def samples(self, pose: Pose) -> KeyframeSamples:
         """Return the samples of a pose's map."""
@@ -223,11 +239,11 @@ class PoseSampler:
         samples = [self.samples(first), self.samples(second)]
         sheets = root_sheets(np.array([sample.anchor_fz for sample in samples]), (turns,))
         interval = self._interval(Passage.of(samples, sheets), variant, Bounds())
-        return prepare_inbetweens(variant, interval)
+        return self._prepared(interval, variant)
 
     def inbetweens_of(self, transit: Transit, bounds: Bounds, variant: Variant) -> Inbetweens:
         """Return the in-betweens of a clip's interval; the motion through keys obeys the bounds."""
-        return prepare_inbetweens(variant, self._interval_of(transit, bounds, variant))
+        return self._prepared(self._interval_of(transit, bounds, variant), variant)
 
     def makes_single_frames(self, variant: Variant) -> bool:
         """Tell whether one in-between alone takes less time than all of its interval."""
@@ -276,14 +292,15 @@ class PoseSampler:
     def _tangent(
         self, poses: Sequence[Pose], joint: Joint, bounds: Bounds, variant: Variant
     ) -> Tangent:
-        with self._lock:
-            key = tuple(poses), joint, bounds, variant
-            if key not in self._tangents:
-                maps = [self.samples(pose).map for pose in poses]
-                self._tangents[key] = BLENDS[variant].tangent(
-                    maps, joint, bounds, self.sites.boundary
-                )
-            return self._tangents[key]
+        key = tuple(poses), joint, bounds, variant
+        with self.known.guard:
+            found = self.known.tangents.get(key)
+        if found is None:
+            maps = [self.samples(pose).map for pose in poses]
+            found = BLENDS[variant].tangent(maps, joint, bounds, self.sites.boundary)
+            with self.known.guard:
+                self.known.tangents[key] = found
+        return found
 
     def _interval_of(self, transit: Transit, bounds: Bounds, variant: Variant) -> Interval:
         samples = [self.samples(key.pose) for key in transit.keys]
@@ -304,6 +321,21 @@ class PoseSampler:
                 sheets.append(sheets[middle] + (change if side == 0 else -change))
         passage = Passage.of(samples, freeze(np.array(sheets, np.int32)), course)
         return self._interval(passage, variant, bounds)
+
+    def _prepared(self, interval: Interval, variant: Variant) -> Inbetweens:
+        """Prepare in-betweens; what is solved on the boundary serves all samplers of the domain."""
+        if not variant.needs_transform:
+            return prepare_inbetweens(variant, interval)
+        course, maps = interval.passage.course, [key.map for key in interval.passage.keyframes]
+        content = digest(
+            *self.domain.loops,
+            *self.domain.cages,
+            *(each for f in maps for each in (f.phi, f.psi, f.logs)),
+        )
+        key = "residual", content, course.ends, course.apart, interval.bounds
+        solve = partial(BLENDS[variant].on_boundary, interval)
+        residual = _SAMPLED.find(key, solve, _nbytes)
+        return prepare_inbetweens(variant, interval._replace(residual=residual))
 
     def _interval(self, passage: Passage, variant: Variant, bounds: Bounds) -> Interval:
         return Interval(

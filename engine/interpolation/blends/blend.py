@@ -18,7 +18,7 @@ from engine.interpolation.courses import (
     shortened,
 )
 from engine.interpolation.enclosing import Changes, Chord, EdgeCurves, EndValues, Patch
-from engine.interpolation.passage import Derivatives, Interval, Passage
+from engine.interpolation.passage import BoundaryResidual, Derivatives, Interval, Passage
 from engine.interpolation.series import HoleConstants, Residual
 from engine.interpolation.sites import Sites
 from engine.maps import Boundary, Bounds, Enclosures, HarmonicMap
@@ -55,6 +55,11 @@ class Blend(ABC):
     @abstractmethod
     def of(cls, interval: Interval) -> Self:
         """Prepare the blend of an interval."""
+
+    @classmethod
+    def on_boundary(cls, _interval: Interval, /) -> BoundaryResidual | None:
+        """Return what is solved for on the boundary, whatever the points are."""
+        return None
 
     @classmethod
     def only_at(cls, _time: float, interval: Interval, /) -> Self:

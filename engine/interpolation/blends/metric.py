@@ -38,7 +38,7 @@ from engine.interpolation.enclosing import (
     changed_metric,
     from_metric,
 )
-from engine.interpolation.passage import Interval
+from engine.interpolation.passage import BoundaryResidual, Interval
 from engine.interpolation.scaling import Worst, allowed
 from engine.interpolation.series import HoleConstants, PiecewiseSeries, Residual, one, separate
 from engine.interpolation.sites import Sites
@@ -95,26 +95,31 @@ class MetricBlend(EtaBlend):
         EngineError
             If the transform is missing, or of another domain.
         """
+        return cls._extended(interval, interval.residual or cls.on_boundary(interval))
+
+    @classmethod
+    def on_boundary(cls, interval: Interval, /) -> BoundaryResidual:
+        """Solve them, and leave them on the boundary."""
         metric, panels = _resolved(interval, np.array(LOOKED_AT))
-        forms = separate(
+        forms, series = separate(
             metric.residuals,
             tolerance=TOLERANCE,
             left_out=LEFT_OUT if interval.passage.course.is_straight else LEFT_OUT_PASSING,
         )
-        return cls._extended(interval, panels, *forms)
+        return BoundaryResidual(panels.solve(forms), series)
 
     @classmethod
     def only_at(cls, time: float, interval: Interval, /) -> Self:
         """Solve the one Dirichlet problem of a time in [0, 1]."""
         times = np.array([time])
         metric, panels = _resolved(interval, times)
-        return cls._extended(interval, panels, metric.residuals(times), one())
+        residual = BoundaryResidual(panels.solve(metric.residuals(times)), one())
+        return cls._extended(interval, residual)
 
     @classmethod
-    def _extended(
-        cls, interval: Interval, panels: Refinement, real_parts: Floats, series: PiecewiseSeries
-    ) -> Self:
-        modes, modes_z, lost = panels.extend(real_parts)
+    def _extended(cls, interval: Interval, residual: BoundaryResidual) -> Self:
+        densities, series = residual
+        modes, modes_z, lost = densities.at(_matching(interval))
         modes.imag -= modes[0].imag
         # Unbounded there; the steps beside these nodes are so short that it is not missed.
         modes_z[interval.sites.paths.cornered] = 0.0
@@ -197,9 +202,9 @@ def _resolved(interval: Interval, times: Floats) -> tuple[OutlineMetric, Refinem
     The nodes follow the shape. Keyframes at extreme bounds vary faster still beside a vertex of the
     cage, and for them panels are halved there.
     """
-    _, passage, bounds, _ = interval
+    passage, bounds = interval.passage, interval.bounds
     maps = [key.map for key in passage.keyframes]
-    panels = Refinement.of(_matching(interval))
+    panels = Refinement.of(_matching(interval).transform)
     metric = OutlineMetric.of(*derivatives_of(maps, panels.nodes), passage.course, bounds)
     for _ in range(MOST_HALVINGS):
         coarse = panels.panels.unresolved(metric.residuals(times), RESOLVED)

@@ -11,7 +11,10 @@ from engine.interpolation.passage.derivatives import (
     Passage as Passage,
     weighted as weighted,
 )
-from engine.interpolation.passage.interval import Interval as Interval
+from engine.interpolation.passage.interval import (
+    BoundaryResidual as BoundaryResidual,
+    Interval as Interval,
+)
 from engine.interpolation.passage.keyframe_samples import (
     KeyframeSamples as KeyframeSamples,
     sample_keyframes as sample_keyframes,

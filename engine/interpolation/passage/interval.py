@@ -2,10 +2,32 @@
 
 from typing import NamedTuple
 
-from engine.dirichlet import Extension
+from engine.arrays import held_bytes
+from engine.dirichlet import Densities, Extension
 from engine.interpolation.passage.derivatives import Passage
+from engine.interpolation.series import PiecewiseSeries
 from engine.interpolation.sites import Sites
 from engine.maps import Bounds
+
+
+class BoundaryResidual(NamedTuple):
+    """What the metric variant adds to log f_z, known on the boundary: it serves any points.
+
+    Parameters
+    ----------
+    densities : Densities
+        Of few holomorphic functions (j,).
+    series : PiecewiseSeries
+        What they are multiplied by.
+    """
+
+    densities: Densities
+    series: PiecewiseSeries
+
+    @property
+    def nbytes(self) -> int:
+        """Memory that the arrays take, in bytes."""
+        return held_bytes(self)
 
 
 class Interval(NamedTuple):
@@ -25,9 +47,12 @@ class Interval(NamedTuple):
     transform : Extension or None
         Of the sites' outline, at the nodes of their paths; variants that `needs_transform` says so
         of need it.
+    residual : BoundaryResidual or None
+        What `Blend.on_boundary` returned for these keyframes at any sites of the domain.
     """
 
     sites: Sites
     passage: Passage
     bounds: Bounds
     transform: Extension | None = None
+    residual: BoundaryResidual | None = None
