@@ -22,6 +22,7 @@ from app.motion.inbetweens import (
     Carried as Carried,
     Ground as Ground,
     PoseSampler as PoseSampler,
+    is_corrected as is_corrected,
 )
 from app.motion.interval_store import IntervalPart as IntervalPart, IntervalStore as IntervalStore
 from app.motion.intervals import (

@@ -7,9 +7,9 @@ from typing import NamedTuple
 from app.document import Clip, Document, clip_of
 from app.motion.inbetweens import (
     Corrections,
-    FrameCorrection,
     Ground,
     PoseSampler,
+    SolvedTracks,
     have_one_ground,
     is_corrected,
 )
@@ -18,7 +18,7 @@ from app.motion.joints import carried_in
 BATCH = 2  # frames that are solved before a worker looks for more urgent work
 GROUNDS = 6  # the same of frames of which only the ground is wanted
 
-Found = Mapping[int, FrameCorrection | None]
+Found = Mapping[int, SolvedTracks | None]
 
 
 class FoundCorrections(NamedTuple):
@@ -43,11 +43,11 @@ class CorrectedFrames:
         self.clip = clip
         self._is_asked = is_corrected(clip)
         self._corrections: Corrections | None = None
-        self._exact: dict[int, FrameCorrection | None] = {}
-        self._rough: dict[int, FrameCorrection | None] = {}
+        self._exact: dict[int, SolvedTracks | None] = {}
+        self._rough: dict[int, SolvedTracks | None] = {}
         self._grounds: dict[int, Ground] = {}
         # Of the frame that was watched last.
-        self._latest: FrameCorrection | None = None
+        self._latest: SolvedTracks | None = None
         if earlier is not None:
             self._take_over(earlier)
 
@@ -61,7 +61,7 @@ class CorrectedFrames:
             return
         self._rough = {**earlier._rough, **earlier._exact}  # noqa: SLF001
 
-    def at(self, clip: Clip, frame: int) -> FrameCorrection | None:
+    def at(self, clip: Clip, frame: int) -> SolvedTracks | None:
         """Return the best that is known of a frame of a clip; of another one there is nothing."""
         if clip != self.clip or not self._is_asked:
             return None

@@ -7,8 +7,10 @@ from functools import partial
 from itertools import chain
 from typing import Literal
 
+import numpy as np
+
 from app.document import Clip, Moment, Pose, intervals, resting_pose, time_of, transits
-from app.motion.inbetweens import FrameCorrection, Pair, PoseSampler, pair_of
+from app.motion.inbetweens import Pair, PoseSampler, SolvedTracks, is_corrected, pair_of
 from app.motion.intervals import (
     AnyInbetweens,
     Build,
@@ -21,7 +23,7 @@ from app.motion.intervals import (
 from app.motion.posable_mesh import PosableMesh
 from app.motion.vertices import Placed, Streamed, Vertices
 from engine.arrays import Complexes
-from engine.interpolation import Joint
+from engine.interpolation import Inbetweens, Joint
 
 BUDGET = 2**30  # bytes of one store
 SPARE = 64  # the part of it that may be taken by what no present clip needs: a 64th
@@ -57,6 +59,8 @@ class IntervalStore:
     _nearby: dict[Clip, tuple[Pair, ...]] = field(init=False, default_factory=dict)
     _failures: set[tuple[IntervalPart, tuple[Pair, ...]]] = field(init=False, default_factory=set)
     _frame: float = field(init=False, default=0)
+    # By how much a correction moves the vertices: of the one that was asked for last.
+    _moved: tuple[SolvedTracks, Complexes] | None = field(init=False, default=None)
 
     def interval(self, clip: Clip, number: int) -> KnownInterval | None:
         """Return what is known of one of a clip's intervals."""
@@ -74,8 +78,14 @@ class IntervalStore:
         """Tell whether all in-betweens of a clip can be shown."""
         if clip.figure.domain is not self.mesh.source:
             return False
+        if self.lacks_sampler(clip):
+            return False
         known = (self._known.get(pair) for pair in self._pairs(clip))
-        return all(each is not None and each.is_there for each in known)
+        return all(each is not None and _shows(each, clip) for each in known)
+
+    def lacks_sampler(self, clip: Clip) -> bool:
+        """Tell whether frames of a clip cannot be corrected yet."""
+        return self.sampler is None and is_corrected(clip)
 
     def is_exact(self, clip: Clip, frame: float) -> bool:
         """Tell whether what belongs to a frame is there, and nothing has to stand in for it."""
@@ -86,7 +96,7 @@ class IntervalStore:
         clip: Clip,
         frame: float,
         instead: Pose | OneFrame | None = None,
-        correction: FrameCorrection | None = None,
+        correction: SolvedTracks | None = None,
     ) -> Vertices | None:
         """Return where the vertices are at a frame, or what is shown instead; None if not there.
 
@@ -95,14 +105,45 @@ class IntervalStore:
         clip : Clip
         frame : float
         instead : Pose or OneFrame, optional
-        correction : FrameCorrection, optional
+        correction : SolvedTracks, optional
             Of the frame.
         """
+        if correction is not None and instead is None:
+            return self._corrected(clip, frame, correction)
         vertices = self._uncorrected(clip, frame, instead)
         if vertices is None or correction is None:
             return vertices
-        positions = correction.on(vertices.positions, self.mesh.coordinates)
+        positions = vertices.positions + self._displacement(clip, frame, correction)
         return Placed(positions=positions, triangles=vertices.triangles)
+
+    def _corrected(self, clip: Clip, frame: float, correction: SolvedTracks) -> Placed | None:
+        moment = time_of(clip, frame)
+        resting, sampler = resting_pose(clip, moment), self.sampler
+        if sampler is None:
+            return None
+        if resting is not None:
+            inbetweens, time = sampler.still(resting, clip.figure.variant), 0.0
+        else:
+            known = self.interval(clip, moment.interval)
+            if known is None or not isinstance(known.inbetweens, Inbetweens):
+                return None
+            inbetweens, time = known.inbetweens, moment.weight
+        moved = inbetweens.corrected(correction.known, sampler.basis).frame(time)
+        triangles = self.mesh.order.triangles(clip, frame)
+        return Placed(positions=moved.positions, triangles=triangles)
+
+    def _displacement(self, clip: Clip, frame: float, correction: SolvedTracks) -> Complexes:
+        """Return by how much a correction moves the vertices of its own frame, (v,).
+
+        It stands in for that of a pose which is still under the hand.
+        """
+        if self._moved is None or self._moved[0] is not correction:
+            after, before = (self._corrected(clip, frame, correction), self.vertices(clip, frame))
+            moved = np.zeros(len(self.mesh.domain.mesh.vertices), np.complex128)
+            if after is not None and before is not None:
+                moved = after.positions - before.positions
+            self._moved = correction, moved
+        return self._moved[1]
 
     def _uncorrected(
         self, clip: Clip, frame: float, instead: Pose | OneFrame | None
@@ -128,14 +169,16 @@ class IntervalStore:
         """Return what shows a moment exactly."""
         if clip.figure.domain is not self.mesh.source:
             return None
+        if self.lacks_sampler(clip):
+            return None
         resting = resting_pose(clip, moment)
         known = self.interval(clip, moment.interval) if resting is None else None
-        if known is None or known.is_there:
+        if known is None or _shows(known, clip):
             return known or resting
         return known.one if known.one and known.one.weight == moment.weight else None
 
     def positions(
-        self, clip: Clip, frame: float, correction: FrameCorrection | None = None
+        self, clip: Clip, frame: float, correction: SolvedTracks | None = None
     ) -> Complexes | None:
         """Return the same, worked out."""
         vertices = self.vertices(clip, frame, correction=correction)
@@ -187,7 +230,8 @@ class IntervalStore:
         pairs, nearest = self._pairs(clip), dict[Pair, int]()
         for number in _by_nearness(clip, frame):
             known = self._known.get(pairs[number])
-            if known is None or not (known.inbetweens or (known.is_streamed and not is_edited)):
+            is_kept = is_edited or is_corrected(clip)
+            if known is None or not (known.inbetweens or (known.is_streamed and not is_kept)):
                 nearest.setdefault(pairs[number], number)
         return list(nearest.values())
 
@@ -278,7 +322,7 @@ class IntervalStore:
 
     def passing_bytes(self, clip: Clip) -> int:
         """Return how many bytes `rest` lets go once series show a clip, all of which is there."""
-        if not self.has(clip):
+        if not self.has(clip) or is_corrected(clip):
             return 0
         passing = [
             pair
@@ -351,6 +395,11 @@ class IntervalStore:
         prepared = (known.poses for known in self._known.values() if known.inbetweens)
         present = (key.pose for clip in self._present for key in clip.keys)
         return frozenset(chain(*prepared, present))
+
+
+def _shows(known: KnownInterval, clip: Clip) -> bool:
+    """Tell whether frames of a clip can be shown; corrections need what is prepared."""
+    return known.inbetweens is not None if is_corrected(clip) else known.is_there
 
 
 def _by_nearness(clip: Clip, frame: float) -> list[int]:

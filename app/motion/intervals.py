@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from app.document import Clip, Pose, time_of, transits
 from app.motion.compared import RememberedFrames, prepare_compared
-from app.motion.inbetweens import AutoPins, Pair, PoseSampler, pair_of, poses_of
+from app.motion.inbetweens import AutoPins, Pair, PoseSampler, is_corrected, pair_of, poses_of
 from app.motion.posable_mesh import PosableMesh
 from engine.arrays import Complexes
 from engine.interpolation import Inbetweens, Sites
@@ -126,6 +126,9 @@ def prepare_intervals(
         for number in wanted
     }
     sampler.keep_only(keep.union(key.pose for key in clip.keys))
+    if is_corrected(clip):
+        # Here, so that the first corrected frame does not wait for it.
+        _ = sampler.basis
     return FoundIntervals(sampler=sampler, intervals=intervals)
 
 

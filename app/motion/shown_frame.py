@@ -17,7 +17,7 @@ from app.document import (
     time_of,
 )
 from app.motion.corrected_frames import CorrectedFrames
-from app.motion.inbetweens import FrameCorrection
+from app.motion.inbetweens import SolvedTracks
 from app.motion.interval_store import IntervalStore
 from app.motion.intervals import OneFrame
 from app.motion.joints import Hinge, Joints, along, chain_of
@@ -41,7 +41,7 @@ class Shown:
     # What is shown instead until the in-between is there: one of its two keys, or another of their
     # in-betweens; or what was drawn of another domain.
     stand_in: Pose | OneFrame | Domain | None = None
-    correction: FrameCorrection | None = None  # what tracks and springs add
+    correction: SolvedTracks | None = None  # what tracks and springs add
     is_rough: bool = False  # whether that only stands in for the frame's own
     # Where the figure is in the scene; all else is where it is by itself.
     placement: RigidMotion = HERE

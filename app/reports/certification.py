@@ -150,8 +150,8 @@ def certify_clip(
     outline; there it is measured at graded samples, some hundred an edge, the same for keys and
     in-betweens. The proof leaves nothing out between samples and times, and is of the in-betweens
     as they are defined, with the handles that stay; what is measured is as they are worked out.
-    Frames in which tracks and springs move handles are solved one by one; each is proven but with
-    the metric variant, and what is between two of them is measured.
+    Frames in which tracks and springs move handles are solved and proven one by one; what is
+    between two of them is measured.
     """
     figure, domain = clip.figure, clip.figure.domain
     boundary = Boundary.sample(domain.outline, domain.cage, domain.holes)
@@ -191,7 +191,7 @@ def _interval_report(
         else animation.base.inbetweens(number)
     )
     limits = bound
-    if transit.is_joined or inbetweens.pins is not None:
+    if transit.is_joined or inbetweens.corrections:
         bounds = figure.bounds
         limits = reduce(Extremes.joined, ends, Extremes(bounds.k, bounds.sigma_a, bounds.sigma_b))
     proof = prove(inbetweens)

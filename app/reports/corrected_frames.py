@@ -13,13 +13,12 @@ from app.document import (
     Extremes,
     Variant,
     falls_short,
-    resting_pose,
     time_of,
 )
 from app.motion import Animation, Carried
 from app.reports.acting_frames import acting_frames
-from engine.interpolation import prove_frame
-from engine.maps import Boundary, Bounds, Certificate, certify
+from engine.interpolation import prove
+from engine.maps import Boundary
 
 NOTHING = Extremes(0.0, 1.0, 1.0)
 MOST_LOOKED_AT: Final = 1_000  # frames; up to so many are all looked at
@@ -116,7 +115,7 @@ def report_corrected(
     # Those that come to the very same are looked at once.
     same = {frame: (id(found[frame]), time_of(clip, frame)) for frame in found}
     once = {each: frame for frame, each in reversed(same.items())}
-    proofs = {at: _proven(animation, boundary, frame, limits) for at, frame in once.items()}
+    proofs = {at: _proven(animation, frame) for at, frame in once.items()}
     reached = [
         _measured(animation, once[at]) if proof is None else proof for at, proof in proofs.items()
     ]
@@ -142,25 +141,15 @@ def _step(count: int, run_up: int) -> int:
     return -(-count // max(min(SPREAD, MOST_DRIVEN // (run_up + 1)), 1))
 
 
-def _proven(
-    animation: Animation, boundary: Boundary, frame: int, limits: Extremes
-) -> Extremes | None:
-    """Return what is proven of a solved frame; None of a variant that allows no proof."""
-    clip, corrections = animation.clip, animation.corrections
+def _proven(animation: Animation, frame: int) -> Extremes | None:
+    """Return the proof of a corrected frame; None if nothing is proven of it."""
+    corrections = animation.corrections
     correction = None if corrections is None else corrections.at(frame)
     if correction is None:
         return None
-    bounds = Bounds(**limits._asdict()) if limits.k < 1 else clip.figure.bounds
-    added = np.column_stack([correction.phi, correction.psi]).astype(np.complex128)
-    moment = time_of(clip, frame)
-    resting = resting_pose(clip, moment)
-    if resting is not None:
-        f = clip.figure.map_of(resting).changed(*added.T)
-        proof: Certificate | None = certify(f, boundary, bounds)
-    else:
-        inbetweens = animation.base.inbetweens(moment.interval)
-        proof = prove_frame(inbetweens, moment.weight, added, bounds)
-    return None if proof is None else Extremes(proof.k, proof.sigma_a, proof.sigma_b)
+    inbetweens, time = animation.base.at(frame)
+    proof = prove(inbetweens.corrected(correction.known, animation.sampler.basis), time)
+    return Extremes(proof.k, proof.sigma_a, proof.sigma_b) if proof.never_folds else None
 
 
 def _measured(animation: Animation, at: float) -> Extremes:

@@ -10,10 +10,10 @@ import numpy as np
 from app.document import Clip, Extremes, spans, transits
 from app.motion import AnyInbetweens, CorrectedFrames
 from app.storage import write_atomically
-from engine.arrays import Complexes, Floats
+from engine.arrays import Floats
 from engine.baselines import MeshFrame
-from engine.interpolation import Frame
-from engine.maps import Span, distortion
+from engine.interpolation import Frame, Inbetweens, SpanBasis
+from engine.maps import distortion
 
 POINTS = 100
 TIMES = 24  # in each interval
@@ -45,26 +45,27 @@ class Curves:
 
 
 class CorrectedAt(NamedTuple):
-    """What is added to the frames at some points, where handles stay or go their own ways.
+    """The corrections of frames at some points, where handles have tracks and springs.
 
     Parameters
     ----------
     frames : CorrectedFrames
         Whole.
-    points : complex128, shape (m,)
-        Those at which the in-betweens are.
+    basis : SpanBasis
+        At the nodes of the in-betweens.
     """
 
     frames: CorrectedFrames
-    points: Complexes
+    basis: SpanBasis
 
-    def of(self, clip: Clip, frame: int, blended: Frame | MeshFrame) -> Frame | MeshFrame:
+    def frame(
+        self, clip: Clip, frame: int, between: AnyInbetweens, time: float
+    ) -> Frame | MeshFrame:
         """Return an in-between as it is shown at a whole frame."""
         correction = self.frames.at(clip, frame)
-        if correction is None or isinstance(blended, MeshFrame):
-            return blended
-        domain = clip.figure.domain
-        return correction.of(blended, Span(cage=domain.cage, holes=domain.holes), self.points)
+        if correction is None or not isinstance(between, Inbetweens):
+            return between.frame(time)
+        return between.corrected(correction.known, self.basis).frame(time)
 
 
 def measure_curves(
@@ -87,12 +88,13 @@ def measure_curves(
             if corrected is not None:
                 share = round(share * span.frames) / span.frames  # noqa: PLW2901
             t = transit.weight(clip.keys[span.first].easing(float(share)))
-            blended = between.frame(t)
             frames.append(span.start + share * span.frames)
-            if corrected is not None:
+            if corrected is None:
+                blended = between.frame(t)
+            else:
                 shown = round(frames[-1])
                 shown -= clip.period if shown > clip.frames.last else 0
-                blended = corrected.of(clip, shown, blended)
+                blended = corrected.frame(clip, shown, between, t)
             ks.append(distortion.k(blended.fz, blended.fzbar))
             taus.append(distortion.tau(blended.fz, blended.fzbar))
             extremes.append(Extremes.measured(blended.fz, blended.fzbar))

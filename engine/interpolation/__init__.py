@@ -6,7 +6,12 @@ proof that they keep their bounds.
 Imports: `engine.paths`, `engine.dirichlet`, `engine.maps`.
 """
 
-from engine.interpolation.added.pins import PinSeries as PinSeries, SegmentPins as SegmentPins
+from engine.interpolation.added.pins import (
+    BaseAt as BaseAt,
+    CorrectionSeries as CorrectionSeries,
+    SegmentPins as SegmentPins,
+    SpanBasis as SpanBasis,
+)
 from engine.interpolation.blends import BLENDS as BLENDS
 from engine.interpolation.courses import (
     Course as Course,
@@ -15,12 +20,17 @@ from engine.interpolation.courses import (
     Tangent as Tangent,
     windows_of as windows_of,
 )
+from engine.interpolation.frame_correction import (
+    FrameCorrection as FrameCorrection,
+    correct_frame as correct_frame,
+)
 from engine.interpolation.inbetweens import Frame as Frame, Inbetweens as Inbetweens
 from engine.interpolation.one_interval import (
+    base_at as base_at,
     frame_at as frame_at,
     prepare_inbetweens as prepare_inbetweens,
     solve_pins as solve_pins,
-    value_points_for_pins as value_points_for_pins,
+    value_points_for_corrections as value_points_for_corrections,
 )
 from engine.interpolation.passage import (
     Interval as Interval,
@@ -35,7 +45,7 @@ from engine.interpolation.preparation import (
     prepare as prepare,
     require_keyframes as require_keyframes,
 )
-from engine.interpolation.proof import Proof as Proof, prove as prove, prove_frame as prove_frame
+from engine.interpolation.proof import Proof as Proof, prove as prove
 from engine.interpolation.scaling import (
     PointSamples as PointSamples,
     Scaling as Scaling,

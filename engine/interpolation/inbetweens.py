@@ -8,7 +8,7 @@ import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices, held_bytes
 from engine.interpolation.added.periods import Closing
-from engine.interpolation.added.pins import FoldedPins, PinSeries
+from engine.interpolation.added.pins import CorrectionSeries, FoldedCorrection, Mixing, SpanBasis
 from engine.interpolation.blends import Blend
 from engine.interpolation.passage import Derivatives, Passage, weighted
 from engine.interpolation.scaling import Scaling
@@ -42,13 +42,13 @@ class PointValues(NamedTuple):
     ----------
     fz, g : complex128
         f_z and conj(f_z̄).
-    plain_log_fz : complex128
-        The blend of the keyframes' log f_z, without what a variant or pins add.
+    k : complex128
+        K, which multiplies the q of a further correction (`engine.correction.BaseFrame`).
     """
 
     fz: Complexes
     g: Complexes
-    plain_log_fz: Complexes
+    k: Complexes
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -71,8 +71,8 @@ class Inbetweens:
     conformal_closing : Closing or None
         Around holes, where Ψ is scaled: of d, which leads on to closed periods without any Ψ
         (`engine.interpolation.scaling.pointwise`).
-    pins : FoldedPins or None
-        Of handles that stay; what they add comes last.
+    corrections : tuple of FoldedCorrection
+        Of handles that stay, then of tracks; each corrects what the one before leaves.
     """
 
     sites: Sites
@@ -80,7 +80,7 @@ class Inbetweens:
     scale: Scaling | None = None
     closing: Closing | None = None
     conformal_closing: Closing | None = None
-    pins: FoldedPins | None = None
+    corrections: tuple[FoldedCorrection, ...] = ()
 
     @property
     def passage(self) -> Passage:
@@ -116,10 +116,16 @@ class Inbetweens:
         """Return ρ; 1 where Ψ is not scaled."""
         return 1.0 if self.scale is None else self.scale(time)
 
-    def pinned(self, pins: PinSeries) -> Self:
-        """Return the same with handles that stay."""
+    def corrected(self, known: CorrectionSeries, basis: SpanBasis | None = None) -> Self:
+        """Return the same with one more correction; a basis at the nodes saves time."""
         sites = self.sites
-        return replace(self, pins=FoldedPins.of(pins, sites.boundary.span, sites.paths.nodes))
+        more = FoldedCorrection.of(known, sites.boundary.span, sites.paths.nodes, basis)
+        return replace(self, corrections=(*self.corrections, more))
+
+    @property
+    def sign(self) -> int:
+        """σ of the corrections: −1 where η is kept without a q, 1 where ν is."""
+        return self.blend.sign or -1
 
     def anchor_position(self, time: float) -> complex:
         """Return where the anchor is."""
@@ -128,45 +134,44 @@ class Inbetweens:
     def anchor_positions(self, times: Floats) -> Complexes:
         """Return the same at times (t,)."""
         positions = self.passage.anchor_positions(times)
-        return positions if self.pins is None else positions + self.pins.pins.shift(times)
+        return sum((each.known.shift(times) for each in self.corrections), positions)
 
     def derivatives_at(self, which: Indices) -> Callable[[Floats], tuple[Complexes, Complexes]]:
         """Return f_z and f_z̄ of some of the points (p,) as functions of times (t,), (t, p) each."""
         values = self._values_at(self.sites.paths.places[which])
 
         def derivatives(times: Floats) -> tuple[Complexes, Complexes]:
-            fz, g = values(times)
+            fz, g, _ = values(times)
             return fz, np.conj(g, out=g)
 
         return derivatives
 
     def values_at(self, times: Floats) -> PointValues:
         """Return the values at the sites' value points and times (t,), (t, v) each."""
-        nodes = self.sites.paths.beside
-        plain = self.passage.at(nodes).plain_log_fz_at(times)
-        return PointValues(*self._values_at(nodes)(times), plain)
+        return self._values_at(self.sites.paths.beside)(times)
 
     def frame_with_values(self, time: float) -> tuple[Frame, PointValues]:
         """Return a frame, and the values at the sites' value points for little more."""
-        blended, beside = self._blended(time), self.sites.paths.beside
-        plain = self.passage.plain_log_fz(time)[0][beside]
-        return self._frame(blended, time), PointValues(blended.fz[beside], blended.g[beside], plain)
+        (blended, mixing), beside = self._mixed(time), self.sites.paths.beside
+        values = PointValues(blended.fz[beside], blended.g[beside], mixing.k[beside])
+        return self._frame(blended, time), values
 
-    def _values_at(self, nodes: Indices) -> Callable[[Floats], tuple[Complexes, Complexes]]:
-        """Return f_z and conj(f_z̄) at nodes (p,) as functions of times (t,), (t, p) each."""
+    def _values_at(self, nodes: Indices) -> Callable[[Floats], PointValues]:
+        """Return values at nodes (p,) as functions of times (t,), (t, p) each."""
         blend, conformal = self.blend.at(nodes), self._conformal and self._conformal.at(nodes)
-        pins = None if self.pins is None else self.pins.at(nodes)
+        corrections = [each.at(nodes) for each in self.corrections]
 
-        def values(times: Floats) -> tuple[Complexes, Complexes]:
+        def values(times: Floats) -> PointValues:
             fz, g = blend.values(times)
             if self.scale is not None:
                 rho = self.scale.at(times)[:, None]
                 g *= rho
                 if conformal is not None:
                     fz *= rho + (1.0 - rho) * np.exp(conformal.at_times(times))
-            if pins is not None:
-                fz, g = pins.changed_values(fz, g, blend.passage, times)
-            return fz, g
+            k = self._factor(blend.passage.plain_log_fz_at(times), fz)
+            for each in corrections:
+                fz, g, k = each.changed_values(fz, g, k, self.sign, times)
+            return PointValues(fz, g, k)
 
         return values
 
@@ -187,8 +192,30 @@ class Inbetweens:
             rho=None if self.scale is None else self.rho(time),
         )
 
+    def _factor(self, plain_log_fz: Complexes, fz: Complexes) -> Complexes:
+        """Return K = L² / F before corrections, L the exponential of the blended logarithms.
+
+        The linear blend has zeros of f_z, where that is infinite: there K = L.
+        """
+        return np.exp(2.0 * plain_log_fz) / fz if self.blend.sign else np.exp(plain_log_fz)
+
+    def _mixed(self, time: float) -> tuple[Derivatives, Mixing]:
+        """Return the derivatives of a frame after all corrections, and K."""
+        blended = self._uncorrected(time)
+        log_l, log_k_z = self.passage.plain_log_fz(time)
+        if self.blend.sign:
+            log_k_z = 2.0 * log_k_z - blended.fzz / blended.fz
+        mixing = Mixing(self._factor(log_l, blended.fz), log_k_z)
+        for each in self.corrections:
+            blended, mixing = each.changed(blended, mixing, self.sign, time)
+        return blended, mixing
+
     def _blended(self, time: float) -> Derivatives:
-        """Return the derivatives of a frame.
+        """Return the derivatives of a frame."""
+        return self._mixed(time)[0] if self.corrections else self._uncorrected(time)
+
+    def _uncorrected(self, time: float) -> Derivatives:
+        """Return the derivatives of a frame before corrections.
 
         Around holes ρ scales Φ a little, too: Φ' is the mean of that for ρ = 0, F e^d, and that for
         ρ = 1, F (`engine.interpolation.scaling.pointwise`).
@@ -205,7 +232,7 @@ class Inbetweens:
                 blended = blended._replace(
                     fz=blended.fz * share, fzz=blended.fzz * share + blended.fz * alone * d_z
                 )
-        return blended if self.pins is None else self.pins.changed(blended, self.passage, time)
+        return blended
 
     def _offsets(self, blended: Derivatives, time: float) -> Complexes:
         """Return Φ + conj(Ψ), both 0 at the anchor; one sum along the paths serves both."""

@@ -1,12 +1,14 @@
 """The in-betweens of two neighbouring keyframes, whatever their variant."""
 
+from functools import partial
+
 import numpy as np
 
 from engine.arrays import Complexes, Floats
-from engine.deform.relative.correction import BaseFrame, PointCorrector
+from engine.correction import BaseFrame, PointCorrector
 from engine.errors import EngineError
 from engine.interpolation.added.periods import Unclosed, close, to_conformal
-from engine.interpolation.added.pins import BaseAt, PinSeries, SegmentPins, pin
+from engine.interpolation.added.pins import BaseAt, CorrectionSeries, SegmentPins, pin
 from engine.interpolation.blends import BLENDS, Blend
 from engine.interpolation.inbetweens import Frame, Inbetweens
 from engine.interpolation.passage import Interval
@@ -31,7 +33,7 @@ def prepare_inbetweens(variant: Variant, interval: Interval) -> Inbetweens:
 
 
 def frame_at(
-    time: float, variant: Variant, interval: Interval, pins: PinSeries | None = None
+    time: float, variant: Variant, interval: Interval, pins: CorrectionSeries | None = None
 ) -> Frame:
     """Return one in-between, where no other is wanted yet: what `prepare_inbetweens` gives then.
 
@@ -50,41 +52,49 @@ def frame_at(
         found = prepare_inbetweens(variant, interval)
     else:
         found = _closed(BLENDS[variant].only_at(time, interval), interval.sites)
-    return (found if pins is None else found.pinned(pins)).frame(time)
+    return (found if pins is None else found.corrected(pins)).frame(time)
 
 
-def value_points_for_pins(corrector: PointCorrector) -> Complexes:
-    """Return at which points pins need values: nodes of ways to handles, and samples."""
+def value_points_for_corrections(corrector: PointCorrector) -> Complexes:
+    """Return where corrections need values: nodes of the paths to handles, and the samples."""
     return np.concatenate([corrector.paths.nodes, corrector.boundary.points])
+
+
+def base_at(inbetweens: Inbetweens, corrector: PointCorrector, time: float) -> BaseAt:
+    """Return an in-between as a correction of it needs it.
+
+    Parameters
+    ----------
+    inbetweens : Inbetweens
+        At the handles, with values at `value_points_for_corrections`.
+    corrector : PointCorrector
+        For the handles.
+    time : float
+    """
+    frame, (fz, g, k) = inbetweens.frame_with_values(time)
+    nodes = len(corrector.paths.nodes)
+    parts = slice(nodes), slice(nodes, None)
+    of_nodes, of_samples = (BaseFrame(fz[p], g[p], k[p], inbetweens.sign) for p in parts)
+    anchor = inbetweens.anchor_position(time)
+    return BaseAt(frame.positions, frame.fz, anchor, of_nodes, of_samples)
 
 
 def solve_pins(
     base: Inbetweens, corrector: PointCorrector, pins: SegmentPins, bounds: Bounds
-) -> PinSeries:
+) -> CorrectionSeries:
     """Find the corrections of a segment.
 
     Parameters
     ----------
     base : Inbetweens
-        Without pins, at the handles, and at `value_points_for_pins`.
+        As `base_at` wants it, without pins.
     corrector : PointCorrector
         For the handles.
     pins : SegmentPins
     bounds : Bounds
         Limits that are kept at the samples, as far as the base keeps them.
     """
-    nodes, blend = len(corrector.paths.nodes), base.blend
-    parts = slice(nodes), slice(nodes, None)
-    # The linear blend has zeros of f_z, where L² / F would be infinite.
-    sign, is_squared = blend.sign or -1, blend.sign != 0
-
-    def base_at(time: float) -> BaseAt:
-        frame, (fz, g, logarithm) = base.frame_with_values(time)
-        by = np.exp(2.0 * logarithm) / fz if is_squared else np.exp(logarithm)
-        of_nodes, of_samples = (BaseFrame(fz[part], g[part], by[part], sign) for part in parts)
-        return BaseAt(frame.positions, base.anchor_position(time), of_nodes, of_samples)
-
-    return pin(corrector, base_at, pins, bounds, sign=sign, is_squared=is_squared)
+    return pin(corrector, partial(base_at, base, corrector), pins, bounds)
 
 
 def _closed(blend: Blend, sites: Sites) -> Inbetweens:

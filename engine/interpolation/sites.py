@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 import numpy.typing as npt
 
-from engine.arrays import Complexes, Floats, as_points, freeze, held_bytes
+from engine.arrays import Complexes, Floats, Indices, as_points, freeze, held_bytes
 from engine.errors import EngineError
 from engine.geometry import ON_OUTLINE, Hole, deepest_point, diameter, require_inside
 from engine.interpolation.added.periods import PeriodBasis
@@ -31,6 +31,9 @@ ONE_ANCHOR = (
 OTHER_OUTLINE = (
     "The Hilbert transform is of another outline, of {others} vertices, than the points', of "
     "{own}; build it anew for this one."
+)
+NO_SAMPLES = (
+    "A proof needs the samples of the boundary: as the first points, or as the last value points."
 )
 VALUES_OR_TRIANGLES = (
     "Values alone are wanted at points beside those of triangles; prepare sites of their own."
@@ -103,6 +106,22 @@ class Sites:
             raise EngineError(
                 OTHER_OUTLINE.format(others=sum(map(len, loops)), own=sum(map(len, own)))
             )
+
+    def sample_nodes(self) -> Indices:
+        """Return the nodes at the samples of the boundary, (p,).
+
+        Raises
+        ------
+        EngineError
+            If neither the points begin nor the value points end with them.
+        """
+        samples = self.boundary.points
+        count = len(samples)
+        if np.array_equal(self.points[:count], samples):
+            return self.paths.places[:count]
+        if np.array_equal(self.value_points[-count:], samples):
+            return self.paths.beside[-count:]
+        raise EngineError(NO_SAMPLES)
 
     @property
     def nbytes(self) -> int:

@@ -7,7 +7,7 @@ import numpy as np
 
 from app.document import Clip, Spring, Track, TrackKey, clip_of, pinned_segments
 from app.motion import Animation
-from app.motion.inbetweens import AutoPins, FrameCorrection, PoseSampler
+from app.motion.inbetweens import AutoPins, PoseSampler, SolvedTracks
 from app.storage import load_project, sample_images
 from engine.interpolation import finish
 from engine.streaming import Positions, Series, build_series
@@ -95,7 +95,7 @@ def _row(name: str, clip: Clip, frames: int) -> Row:
     if corrections is None:
         raise ValueError(f"nothing of {name} is corrected")
     corrections.at(0.0)  # what is prepared once
-    found: list[FrameCorrection | None] = []
+    found: list[SolvedTracks | None] = []
 
     def play() -> None:
         animation.sampler.known.corrections.clear()

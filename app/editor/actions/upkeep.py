@@ -294,7 +294,12 @@ def _prepare(
         return _interval_job(session, kind, puppet, clip, work=partial(make, domain), done=begin)
     is_edited = puppet is project.puppet and not is_fine
     lacking = store.missing(clip, frame, is_edited=is_edited)
-    if not lacking or (is_fine and not store.has_room()):
+    if store.lacks_sampler(clip):
+        # A frame at a key needs no in-betweens to be corrected.
+        lacking = []
+    elif not lacking:
+        return None
+    if is_fine and not store.has_room():
         return None
     # All at once where the hand has changed those around one key, and the ghosts are to stay
     # together; else what is wanted next need not wait long.
@@ -425,7 +430,9 @@ def _measure(session: Session, project: Project) -> Iterator[Job]:
         inbetweens = store.prepared(clip)
         own = corrected if corrected is not None and corrected.corrects(clip) else None
         if inbetweens and (own is None or own.is_whole):
-            at = None if own is None else CorrectedAt(own, store.mesh.domain.mesh.vertices)
+            at = None
+            if own is not None and store.sampler is not None:
+                at = CorrectedAt(own, store.sampler.basis)
             measure = partial(measure_curves, clip, inbetweens, at)
             yield from _derive(session, MEASURING, curves, clip, measure)
 

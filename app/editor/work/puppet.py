@@ -5,7 +5,7 @@ from typing import Self
 
 from app.document import Baseline, Clip, Document, Figure, PictureFile, Variant, clip_of
 from app.editor.work.derived import Derived
-from app.motion import CorrectedFrames, IntervalStore, PosableMesh, Shown
+from app.motion import CorrectedFrames, IntervalStore, PosableMesh, Shown, is_corrected
 from app.solving import Rig
 from app.storage import Cut, Picture, cut_picture
 from engine.arrays import Bytes
@@ -77,7 +77,7 @@ class Puppet:
         It is most of what a figure with keys takes.
         """
         stores = [store for store in (self.store, self.fine) if store is not None]
-        if not all(store.has(clip) for store in stores):
+        if is_corrected(clip) or not all(store.has(clip) for store in stores):
             return
         for store in stores:
             store.rest()

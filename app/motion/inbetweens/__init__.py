@@ -7,7 +7,7 @@ Imports: `app.document`, `app.errors`.
 
 from app.motion.inbetweens.animation import Animation as Animation
 from app.motion.inbetweens.auto_pins import AutoPins as AutoPins
-from app.motion.inbetweens.correction import FrameCorrection as FrameCorrection
+from app.motion.inbetweens.correction import SolvedTracks as SolvedTracks
 from app.motion.inbetweens.corrections import (
     Corrections as Corrections,
     Ground as Ground,

@@ -7,7 +7,6 @@ from app.motion.inbetweens.pose_sampler import PoseSampler
 from app.motion.inbetweens.swings import Carried
 from engine.arrays import Complexes
 from engine.interpolation import Frame
-from engine.maps import Span
 
 
 class Animation:
@@ -68,10 +67,8 @@ class Animation:
 
     def frame(self, frame: float) -> Frame:
         """Return positions and derivatives of the points at a frame."""
-        base, corrections = self.base.frame(frame), self.corrections
-        correction = None if corrections is None else corrections.at(frame)
+        correction = None if self.corrections is None else self.corrections.at(frame)
         if correction is None:
-            return base
-        domain = self.clip.figure.domain
-        span = Span(cage=domain.cage, holes=domain.holes)
-        return correction.of(base, span, self.sampler.sites.points)
+            return self.base.frame(frame)
+        inbetweens, time = self.base.at(frame)
+        return inbetweens.corrected(correction.known, self.sampler.basis).frame(time)

@@ -10,21 +10,19 @@ from app.document import (
     Variant,
     pinned_segments,
     spans,
-    stiffened,
     transits,
 )
 from app.motion.inbetweens.pairs import pair_of
-from app.motion.inbetweens.pose_sampler import PoseSampler, corrector_for
+from app.motion.inbetweens.pose_sampler import PoseSampler, prepare_corrector
 from engine.arrays import Complexes, Floats
-from engine.deform.relative.correction import PointCorrector
+from engine.correction import PointCorrector
 from engine.geometry import box_diagonal
 from engine.interpolation import (
+    CorrectionSeries,
     Frame,
     Inbetweens,
-    PinSeries,
     SegmentPins,
     solve_pins,
-    value_points_for_pins,
 )
 
 BESIDE = 0.03  # of the diagonal: nearer to an anchor or a handle that stays, handles give way
@@ -58,14 +56,14 @@ class AutoPins:
         """Return the in-betweens of a segment at the points of a sampler."""
         base = self._base(number, sampler)
         pins = self.series(number)
-        return base if pins is None else base.pinned(pins)
+        return base if pins is None else base.corrected(pins)
 
     def frame(self, number: int, sampler: PoseSampler, time: float) -> Frame:
         """Return one of these; of a variant that makes single frames."""
         transit, bounds = transits(self.clip)[number], self.clip.figure.bounds
         return sampler.frame_of(transit, bounds, self._variant, time, self.series(number))
 
-    def series(self, number: int) -> PinSeries | None:
+    def series(self, number: int) -> CorrectionSeries | None:
         """Return the corrections of a segment; None where nothing is pinned."""
         segment = self._segments[number]
         if segment is None:
@@ -77,34 +75,23 @@ class AutoPins:
         bounds = self.clip.figure.bounds
         return sampler.inbetweens_of(transits(self.clip)[number], bounds, self._variant)
 
-    def _solved(self, number: int, segment: PinnedSegment) -> PinSeries:
-        corrector, sampler = self._prepare()
+    def _solved(self, number: int, segment: PinnedSegment) -> CorrectionSeries:
+        corrector, sampler = self.prepare()
         pins, bounds = self._pins(number, segment, sampler), self.clip.figure.bounds
         return solve_pins(self._own_base(number), corrector, pins, bounds)
 
     def _own_base(self, number: int) -> Inbetweens:
         """Return a segment without pins at the sampler of these, which its neighbours ask for."""
-        base = self._looked_at.pop(number, None) or self._base(number, self._prepare()[1])
+        base = self._looked_at.pop(number, None) or self._base(number, self.prepare()[1])
         self._looked_at[number] = base
         for oldest in list(self._looked_at)[:-KEPT]:
             del self._looked_at[oldest]
         return base
 
-    def _prepare(self) -> tuple[PointCorrector, PoseSampler]:
+    def prepare(self) -> tuple[PointCorrector, PoseSampler]:
         """Return what corrects the handles, and a sampler of these with the values it takes."""
         if self._prepared is None:
-            figure, sites = self.clip.figure, self._known.sites
-            handles = np.array([each.position for each in figure.handles], dtype=np.complex128)
-            boundary = stiffened(figure, sites.boundary)
-            corrector = corrector_for(boundary, sites.anchor, handles)
-            sampler = PoseSampler(
-                figure.domain,
-                anchor=figure.anchor,
-                points=handles,
-                values_at=value_points_for_pins(corrector),
-                sibling=self._known,
-            )
-            self._prepared = corrector, sampler
+            self._prepared = prepare_corrector(self.clip.figure, self._known)
         return self._prepared
 
     def _pins(self, number: int, segment: PinnedSegment, sampler: PoseSampler) -> SegmentPins:
@@ -158,7 +145,11 @@ class AutoPins:
         near = np.where(rank > rank[:, None], apart, np.inf).min(axis=1)
         if anchor is not None:
             near = np.minimum(near, np.abs(places - anchor))
-        size = BESIDE * box_diagonal(figure.domain.outline)
-        far = -np.expm1(-((near / size) ** 2))
-        firmness: Floats = np.where(far > 1 - FIRM, 1.0, far)
-        return firmness
+        return firmness_at(near / box_diagonal(figure.domain.outline))
+
+
+def firmness_at(distances: Floats) -> Floats:
+    """Return how firmly handles are held at distances, over the diagonal, from what stays more."""
+    far = -np.expm1(-((distances / BESIDE) ** 2))
+    firmness: Floats = np.where(far > 1 - FIRM, 1.0, far)
+    return firmness

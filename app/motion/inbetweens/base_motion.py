@@ -1,6 +1,8 @@
 """The motion of a clip from key to key, before handles go their own ways."""
 
-from app.document import Clip, Variant, resting_pose, time_of
+from collections.abc import Callable
+
+from app.document import Clip, Pose, Variant, resting_pose, time_of
 from app.motion.inbetweens.auto_pins import AutoPins
 from app.motion.inbetweens.pose_sampler import PoseSampler
 from engine.interpolation import Frame, Inbetweens
@@ -17,18 +19,22 @@ class BaseMotion:
     variant : Variant
     sampler : PoseSampler
         Of the figure's domain and anchor.
+    pins : AutoPins, optional
+        Of the same clip and variant.
 
     Of intervals, those that were asked for last stay prepared: frames come one after the other.
     """
 
-    def __init__(self, clip: Clip, variant: Variant, sampler: PoseSampler) -> None:
+    def __init__(
+        self, clip: Clip, variant: Variant, sampler: PoseSampler, pins: AutoPins | None = None
+    ) -> None:
         self.clip = clip
         self.variant = variant
         self.sampler = sampler
-        self._pins = AutoPins(clip, variant, sampler)
+        self._pins = pins or AutoPins(clip, variant, sampler)
         sampler.keep_only({key.pose for key in clip.keys})
         # By their numbers, the latest last, with their bytes.
-        self._prepared: dict[int, tuple[Inbetweens, int]] = {}
+        self._prepared: dict[int | Pose, tuple[Inbetweens, int]] = {}
 
     @property
     def nbytes(self) -> int:
@@ -45,13 +51,27 @@ class BaseMotion:
         fz, fzbar = self.clip.figure.map_of(resting).derivatives(self.sampler.sites.points)
         return Frame(positions=positions, fz=fz, fzbar=fzbar, rho=None)
 
+    def at(self, frame: float) -> tuple[Inbetweens, float]:
+        """Return the in-betweens that have a frame, and its time among them.
+
+        At a key they are those of its pose with itself, which can be corrected like all others.
+        """
+        moment = time_of(self.clip, frame)
+        resting = resting_pose(self.clip, moment)
+        if resting is None:
+            return self.inbetweens(moment.interval), moment.weight
+        return self._kept(resting, lambda: self.sampler.still(resting, self.variant)), 0.0
+
     def inbetweens(self, interval: int) -> Inbetweens:
         """Return the in-betweens of one of the clip's intervals."""
-        known = self._prepared.pop(interval, None)
+        return self._kept(interval, lambda: self._pins.inbetweens(interval, self.sampler))
+
+    def _kept(self, key: int | Pose, prepare: Callable[[], Inbetweens]) -> Inbetweens:
+        known = self._prepared.pop(key, None)
         if known is None:
-            prepared = self._pins.inbetweens(interval, self.sampler)
+            prepared = prepare()
             known = prepared, prepared.nbytes
-        self._prepared[interval] = known
+        self._prepared[key] = known
         for oldest in list(self._prepared)[:-KEPT]:
             self._prepared.pop(oldest, None)
         return known[0]

@@ -11,27 +11,23 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.document import (
-    Clip,
-    Extremes,
-    Variant,
-    pinned_segments,
-    resting_pose,
-    stiffened,
-    time_of,
-)
+from app.document import Clip, Extremes, Variant, resting_pose, time_of
+from app.motion.inbetweens.auto_pins import AutoPins, firmness_at
 from app.motion.inbetweens.base_motion import BaseMotion
-from app.motion.inbetweens.correction import FrameCorrection
+from app.motion.inbetweens.correction import SolvedTracks
 from app.motion.inbetweens.own_clocks import OwnClocks, Wanted
 from app.motion.inbetweens.pairs import pair_of, poses_of
-from app.motion.inbetweens.pose_sampler import PoseSampler
+from app.motion.inbetweens.pose_sampler import PoseSampler, prepare_corrector
 from app.motion.inbetweens.swings import Carried
-from engine.arrays import Complexes, Floats, Indices
-from engine.deform.model import Jet
-from engine.deform.relative import Corrected, Corrector, Pins
+from engine.arrays import Complexes, Floats
+from engine.correction import Targets
+from engine.interpolation import BaseAt, base_at, correct_frame
 
-BESIDE = 0.03  # of the diagonal: handles nearer to an anchor, or to one that goes, give way
 KEPT = 2**26  # bytes of corrections of one outline that are kept
+FORCE = 8.0  # per L: the largest pull of a track; within the limits hardly anything takes more
+# Points of the outline that hold it where a track does not reach far, how firmly at most, and at
+# least: there they count for nothing.
+HELD, HELD_BY, LEAST_HELD = 64, 75.0, 1e-9
 
 
 class Ground(NamedTuple):
@@ -93,35 +89,30 @@ class Corrections:
         self.clip, self._variant = clip, variant
         self._known, self._guard = sampler.known.corrections, sampler.known.guard
         self._lock = threading.RLock()
-        self._handles = slice(0, len(figure.handles))
-        points = [handle.position for handle in figure.handles]
-        # What hangs is held by its anchor.
-        self._is_hung = figure.hangs and figure.anchor is not None
-        if figure.anchor is not None and self._is_hung:
-            points.append(figure.anchor)
-        self._points = np.array(points, dtype=np.complex128)
-        boundary = stiffened(figure, sampler.sites.boundary)
-        self._of_what = (self._points.tobytes(), boundary.stiffness.tobytes(), figure.bounds)
-        self._corrector = Corrector(boundary=boundary, points=self._points)
-        own = PoseSampler(
-            figure.domain,
-            anchor=figure.anchor,
-            points=np.concatenate([self._points, boundary.points]),
-            sibling=sampler,
-        )
-        self._motion = BaseMotion(clip, variant, own)
+        self._is_anchored = figure.hangs and figure.anchor is not None
+        self._points = np.array([each.position for each in figure.handles], dtype=np.complex128)
+        pins = AutoPins(clip, variant, sampler)
+        gives = any(track.enabled and track.reach < 1.0 for track in figure.tracks)
+        if gives:
+            outline = figure.domain.outline
+            held = outline[np.linspace(0, len(outline), HELD, endpoint=False).astype(np.intp)]
+            self._corrector, own = prepare_corrector(figure, sampler, held)
+        else:
+            self._corrector, own = pins.prepare()
+        stiffness = self._corrector.boundary.stiffness
+        self._of_what = self._corrector.points.tobytes(), stiffness.tobytes(), figure.bounds
+        self._motion = BaseMotion(clip, variant, own, pins)
         self._own = OwnClocks(clip, carried)
 
-    def at(self, frame: float) -> FrameCorrection | None:
+    def at(self, frame: float) -> SolvedTracks | None:
         """Return what is added to the motion at a frame; None where that is nothing."""
         with self._lock:
             if not self._own.acts(frame):
                 return None
-            base = self._base(frame)
-            places, fz = base.positions[self._handles], base.fz[self._handles]
+            base, count = self._base(frame), len(self._points)
             # Told only now: if it were kept, nothing of this would go away with the last one who
             # has it.
-            wanted = self._own.wanted(frame, places, fz, self._places)
+            wanted = self._own.wanted(frame, base.places[:count], base.fz[:count], self._places)
             return None if wanted is None else self._gone(frame, base, wanted)
 
     @property
@@ -144,88 +135,69 @@ class Corrections:
     def ground_at(self, frame: float) -> Ground:
         """Return what tracks are relative to at a frame."""
         with self._lock:
-            base = self._base(frame)
-            fz = base.fz[self._handles]
-            return Ground(base.positions[self._handles], fz / np.abs(fz))
+            found, count = self._motion.frame(frame), len(self._points)
+            fz = found.fz[:count]
+            return Ground(found.positions[:count], fz / np.abs(fz))
 
     def _places(self, frame: float) -> Complexes:
         """Return where the handles are at a frame before springs and tracks, (h,)."""
-        return self._base(frame).positions[self._handles]
+        return self._motion.frame(frame).positions[: len(self._points)]
 
-    def _base(self, frame: float) -> Jet:
-        found, count = self._motion.frame(frame), len(self._points)
-        return Jet(
-            f=found.fz[count:],
-            g=found.fzbar[count:].conj(),
-            positions=found.positions[:count],
-            fz=found.fz[:count],
-        )
+    def _base(self, frame: float) -> BaseAt:
+        inbetweens, time = self._motion.at(frame)
+        return base_at(inbetweens, self._corrector, time)
 
-    def _gone(self, frame: float, base: Jet, wanted: Wanted) -> FrameCorrection:
+    def _gone(self, frame: float, base: BaseAt, wanted: Wanted) -> SolvedTracks:
         """Return the correction by which handles go their own ways."""
-        # Those beside one that goes its own way give way: held as firmly, they tear at it.
-        away, held = self._away_from(np.flatnonzero(wanted.firmness)), self._held(frame)
-        firmness = np.where(wanted.firmness > 0, wanted.firmness, away * (1.0 + held) - 1.0)
-        places = base.positions.copy()
-        places[self._handles] = wanted.places
-        pins = self._pins(places, firmness, wanted.turns, wanted.reach)
+        targets, bounds = self._targets(base, wanted), self.clip.figure.bounds
 
-        def solve() -> FrameCorrection:
-            found = self._corrector.correct(base, pins, self.clip.figure.bounds)
-            phi, psi = self._anchored(found)
+        def solve() -> SolvedTracks:
+            inbetweens, time = self._motion.at(frame)
+            found = correct_frame(inbetweens, self._corrector, base, time, targets, bounds)
             handles = self.clip.figure.handles
             tracked = [i for i, handle in enumerate(handles) if handle.id in wanted.tracked]
-            return FrameCorrection(
-                phi=phi,
-                psi=psi,
+            reached = Extremes(*found.reached)
+            return SolvedTracks(
+                known=found.known,
                 misses={handles[i].id: float(found.misses[i]) for i in tracked},
                 wishes={handles[i].id: complex(wanted.places[i]) for i in tracked},
-                limits=self._limits(base, found),
+                limits=reached.reached(bounds) if found.is_held_back else (),
                 steps=found.steps,
             )
 
         return self._remembered((*self._whose(frame), *_content(wanted)), solve)
 
-    def _held(self, frame: float) -> Floats:
-        """Return how much auto-pins hold the handles at a frame, from 0 to 1, (h,)."""
-        moment = time_of(self.clip, frame)
-        segments = pinned_segments(self.clip)
-        segment = segments[moment.interval] if segments else None
-        count = len(self.clip.figure.handles)
-        return np.zeros(count) if segment is None else segment.weights(moment.weight)
+    def _targets(self, base: BaseAt, wanted: Wanted) -> Targets:
+        """Return the targets of handles with tracks and springs; the others stay.
 
-    def _limits(self, base: Jet, found: Corrected) -> tuple[str, ...]:
-        """Return what the bounds hold back of a correction that is found of a base."""
-        if not found.is_held_back:
-            return ()
-        at = base.advanced(1.0, found.change)
-        return Extremes.measured(at.f, at.g).reached(self.clip.figure.bounds)
-
-    def _pins(self, places: Complexes, firmness: Floats, turns: Floats, reach: float) -> Pins:
-        """Return what is wanted of the points; what hangs is held by its anchor.
-
-        A handle next to the anchor hardly goes anywhere: held as firmly, it would tear at it.
+        Those beside them, and those beside an anchor that stays, give way: held as firmly, they
+        would tear at it.
         """
-        more = len(places) - len(firmness)
-        if more:
-            firmness = firmness * self._away_from(np.array([len(places) - 1]))
-        return Pins(
-            places,
-            np.concatenate([firmness, np.ones(more)]),
-            np.concatenate([turns, np.full(more, np.nan)]),
-            reach,
+        count, more = len(self._points), len(base.places) - len(self._points)
+        size = self._corrector.boundary.size
+        weights = np.where(wanted.is_own, 1.0, self._away_from(self._points[wanted.is_own]))
+        if self._is_anchored:
+            weights = weights * self._away_from(np.array([self.clip.figure.anchor]))
+        # The rest of the outline is held the more, the less far a track reaches.
+        held = HELD_BY * (1.0 - wanted.reach) ** 2
+        give = more * size**2 / max(held, LEAST_HELD)
+        return Targets(
+            moves=np.append(wanted.places - base.places[:count], np.zeros(more)),
+            weights=np.append(weights, np.ones(more)),
+            is_anchored=self._is_anchored,
+            forces=np.append(np.where(wanted.is_own, FORCE / size, np.inf), np.full(more, np.inf)),
+            turns=np.append(wanted.turns, np.full(more, np.nan)),
+            give=np.append(np.zeros(count), np.full(more, give)),
         )
 
-    def _away_from(self, others: Indices) -> Floats:
+    def _away_from(self, others: Complexes) -> Floats:
         """Return how far the handles are from some points, (h,): 0 at the nearest, 1 if far."""
-        away = np.abs(self._points[self._handles, None] - self._points[others]).min(axis=1)
-        size = self._corrector.boundary.size
-        far: Floats = -np.expm1(-((away / (BESIDE * size)) ** 2))
-        return far
+        away = np.abs(self._points[:, None] - others).min(axis=1, initial=np.inf)
+        return firmness_at(away / self._corrector.boundary.size)
 
     def _remembered(
-        self, key: tuple[object, ...], solve: Callable[[], FrameCorrection]
-    ) -> FrameCorrection:
+        self, key: tuple[object, ...], solve: Callable[[], SolvedTracks]
+    ) -> SolvedTracks:
         """Return the correction that is known by a key, solved where it is not."""
         with self._guard:
             known = self._known.pop(key, None)
@@ -236,14 +208,6 @@ class Corrections:
                 del self._known[next(iter(self._known))]
             self._known[key] = known
         return known
-
-    def _anchored(self, corrected: Corrected) -> tuple[Complexes, Complexes]:
-        """Return the coefficients of a correction that leaves the anchor of what hangs in place."""
-        phi = corrected.phi
-        if self._is_hung:
-            phi = phi.copy()
-            phi[: len(self.clip.figure.domain.cage)] -= corrected.change.positions[-1]
-        return phi, corrected.psi
 
     def _whose(self, frame: float) -> tuple[object, ...]:
         """Return what the motion of a frame follows from; the poses stay alive with it."""

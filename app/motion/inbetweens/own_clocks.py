@@ -6,20 +6,30 @@ import numpy as np
 
 from app.document import Clip, Track, TrackPlace, track_at
 from app.motion.inbetweens.swings import Carried, PlacesAt, Swings
-from engine.arrays import Complexes, Floats
+from engine.arrays import Booleans, Complexes, Floats
 from engine.geometry import HERE, RigidMotion
 
 TURNED = 50.0  # pixels that count as much as a turn by one radian
 
 
 class Wanted(NamedTuple):
-    """Where the handles (h,) are wanted, as `engine.deform.relative.Pins` has it.
+    """Where the handles (h,) are wanted.
 
-    `tracked` are the ids of those that a track wants somewhere.
+    Parameters
+    ----------
+    places : complex128, shape (h,)
+    is_own : bool, shape (h,)
+        The handles with tracks and springs.
+    turns : float64, shape (h,)
+        By how much the shape is turned there, in radians from −π to π; NaN where it is free.
+    reach : float
+        How far around the handles the shape gives, from 0 to 1, as it likes.
+    tracked : frozenset of int
+        The ids of handles with a target by a track.
     """
 
     places: Complexes
-    firmness: Floats
+    is_own: Booleans
     turns: Floats
     reach: float
     tracked: frozenset[int]
@@ -41,11 +51,11 @@ class OwnClocks:
         self._swings = Swings(clip, carried)
         self._index = {handle.id: number for number, handle in enumerate(figure.handles)}
         self._tracks = [track for track in figure.tracks if track.enabled]
-        # These are held as firmly wherever others go their own ways: nothing gives when they begin.
+        # Held as firmly wherever others go their own ways: nothing gives when they begin.
         own = [identity for track in self._tracks for identity in track.handles]
         own += [spring.handle for spring in self._swings.springs]
-        self._firmness = np.zeros(len(figure.handles))
-        self._firmness[[self._index[identity] for identity in own]] = 1.0
+        self._is_own = np.zeros(len(figure.handles), np.bool_)
+        self._is_own[[self._index[identity] for identity in own]] = True
 
     def with_tracks(self, clip: Clip) -> "OwnClocks":
         """Return those of a clip that differs in its tracks alone: the springs swing alike."""
@@ -91,15 +101,15 @@ class OwnClocks:
             offset = self._offset(track, own, frame, complex(places[numbers[0]]), fz[numbers[0]])
             wanted[numbers] = places[numbers] + offset
             if track.turns:
-                turns[numbers] = np.angle(fz[numbers]) + own.turn
+                turns[numbers] = np.angle(np.exp(1j * own.turn))
             reaches.append(track.reach)
             sizes.append(abs(offset) + TURNED * abs(own.turn))
             tracked |= set(track.handles)
-        if np.array_equal(wanted, places) and np.isnan(turns).all():
+        if np.array_equal(wanted, places) and not np.nan_to_num(turns).any():
             return None
         # By how far each leads, so that none jumps in as it begins.
         reach = float(np.average(reaches, weights=sizes)) if np.any(sizes) else 1.0
-        return Wanted(wanted, self._firmness, turns, reach, frozenset(tracked))
+        return Wanted(wanted, self._is_own, turns, reach, frozenset(tracked))
 
     def _hung(self, frame: float) -> RigidMotion:
         return self._carried(frame) if self._carried else HERE

@@ -7,17 +7,18 @@ from typing import Protocol
 
 import numpy as np
 
-from app.document import Pose, Transit, Variant
+from app.document import Figure, Pose, Transit, Variant, stiffened
 from app.errors import tell
 from app.motion.inbetweens.content_cache import ContentCache, digest
-from app.motion.inbetweens.correction import FrameCorrection
+from app.motion.inbetweens.correction import SolvedTracks
 from app.motion.inbetweens.pairs import Pair
 from engine.arrays import Complexes, freeze
-from engine.deform.relative.correction import PointCorrector, corrector_of
+from engine.correction import PointCorrector, corrector_of
 from engine.dirichlet import Extension, HilbertTransform
 from engine.domain import Domain
 from engine.interpolation import (
     BLENDS,
+    CorrectionSeries,
     Course,
     End,
     Frame,
@@ -26,13 +27,14 @@ from engine.interpolation import (
     Joint,
     KeyframeSamples,
     Passage,
-    PinSeries,
     Sites,
+    SpanBasis,
     Tangent,
     frame_at,
     prepare_inbetweens,
     prepare_sites,
     sample_keyframes,
+    value_points_for_corrections,
 )
 from engine.maps import Boundary, Bounds, HarmonicMap
 from engine.paths import root_sheets
@@ -61,6 +63,34 @@ def corrector_for(boundary: Boundary, anchor: complex, points: Complexes) -> Poi
     return _SAMPLED.find(("corrector", content, anchor), make, _nbytes)
 
 
+def prepare_corrector(
+    figure: Figure, sibling: "PoseSampler", more: Complexes | None = None
+) -> tuple[PointCorrector, "PoseSampler"]:
+    """Return what corrects a figure's handles, and a sampler of these with the values it takes.
+
+    Parameters
+    ----------
+    figure : Figure
+    sibling : PoseSampler
+        Of its outline, cage and anchor.
+    more : complex128, shape (p,), optional
+        Further points that are corrected, after the handles.
+    """
+    sites = sibling.sites
+    points = np.array([each.position for each in figure.handles], dtype=np.complex128)
+    if more is not None:
+        points = np.append(points, more)
+    corrector = corrector_for(stiffened(figure, sites.boundary), sites.anchor, points)
+    sampler = PoseSampler(
+        figure.domain,
+        anchor=figure.anchor,
+        points=points,
+        values_at=value_points_for_corrections(corrector),
+        sibling=sibling,
+    )
+    return corrector, sampler
+
+
 class OutlineKnowledge:
     """What samplers of one outline and cage share, worked out when it is asked for first.
 
@@ -82,15 +112,15 @@ class OutlineKnowledge:
         self._lock = threading.RLock()
         self._transform: HilbertTransform | None = None
         self.nbytes = 0
-        self.corrections: dict[object, FrameCorrection] = {}
+        self.corrections: dict[object, SolvedTracks] = {}
         self.tangents: dict[tuple[tuple[Pose, ...], Joint, Bounds, Variant], Tangent] = {}
         self.guard = threading.Lock()
         # With the poses that keep the identities in their keys.
-        self._pins: dict[Pair, tuple[PinSeries, tuple[Pose, ...]]] = {}
+        self._pins: dict[Pair, tuple[CorrectionSeries, tuple[Pose, ...]]] = {}
 
     def pins_of(
-        self, pair: Pair, poses: tuple[Pose, ...], solve: Callable[[], PinSeries]
-    ) -> PinSeries:
+        self, pair: Pair, poses: tuple[Pose, ...], solve: Callable[[], CorrectionSeries]
+    ) -> CorrectionSeries:
         """Return the pins of a segment, solved where they are not known."""
         with self.guard:
             known = self._pins.pop(pair, None)
@@ -183,6 +213,8 @@ class PoseSampler:
         self.sites: Sites = _SAMPLED.find(("sites", *self._content), prepare, _nbytes)
         self._lock = threading.RLock()
         self._samples: dict[Pose, KeyframeSamples] = {}
+        self._basis: SpanBasis | None = None
+        self._basis_lock = threading.Lock()
         self._extension: Extension | None = None
         self.extension_bytes = 0
         # Of its own, so that nothing else waits for it.
@@ -241,6 +273,23 @@ class PoseSampler:
         interval = self._interval(Passage.of(samples, sheets), variant, Bounds())
         return self._prepared(interval, variant)
 
+    def still(self, pose: Pose, variant: Variant) -> Inbetweens:
+        """Return the in-betweens of a pose with itself, which are corrected as its neighbours are.
+
+        Of a variant that needs a transform or a scale those of η are the same.
+        """
+        kind = Variant.ETA if variant.needs_transform or variant.is_scaled else variant
+        return self.inbetweens(pose, pose, kind)
+
+    @property
+    def basis(self) -> SpanBasis:
+        """The functions of the domain's span at the nodes, prepared when it is asked for first."""
+        with self._basis_lock:
+            if self._basis is None:
+                sites = self.sites
+                self._basis = SpanBasis.of(sites.boundary.span, sites.paths.nodes)
+            return self._basis
+
     def inbetweens_of(self, transit: Transit, bounds: Bounds, variant: Variant) -> Inbetweens:
         """Return the in-betweens of a clip's interval; the motion through keys obeys the bounds."""
         return self._prepared(self._interval_of(transit, bounds, variant), variant)
@@ -255,7 +304,7 @@ class PoseSampler:
         bounds: Bounds,
         variant: Variant,
         weight: float,
-        pins: PinSeries | None = None,
+        pins: CorrectionSeries | None = None,
     ) -> Frame:
         """Return one of these in-betweens; a variant that `makes_single_frames` says so.
 
@@ -265,7 +314,7 @@ class PoseSampler:
             As in `inbetweens_of`.
         weight : float
             Its time from one key to the other, in [0, 1].
-        pins : PinSeries, optional
+        pins : CorrectionSeries, optional
             Of handles that stay.
         """
         return frame_at(weight, variant, self._interval_of(transit, bounds, variant), pins)

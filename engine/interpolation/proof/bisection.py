@@ -14,11 +14,11 @@ from math import inf
 
 import numpy as np
 
-from engine.arrays import Booleans
+from engine.arrays import Booleans, Floats
 from engine.interpolation.enclosing import Subdivision
 from engine.interpolation.inbetweens import Inbetweens
+from engine.interpolation.proof.corrected_cells import CorrectedCellEnclosures
 from engine.interpolation.proof.enclosing_cells import CellEnclosures, Cells
-from engine.interpolation.proof.pinned_cells import PinnedCellEnclosures
 from engine.maps import Enclosures
 
 # Cells are cut until the enclosure is this close to what is attained: of k, and as a share of σ_a
@@ -58,21 +58,29 @@ class Proof:
         return self.k < 1 and self.sigma_b > 0
 
 
-def prove(inbetweens: Inbetweens) -> Proof:
-    """Enclose the distortion of in-betweens: cut cells until they are tight."""
+def prove(inbetweens: Inbetweens, time: float | None = None) -> Proof:
+    """Enclose the distortion of in-betweens, or of one frame: cut cells until they are tight.
+
+    Parameters
+    ----------
+    inbetweens : Inbetweens
+        With corrections their sites have the samples of the boundary (`Sites.sample_nodes`).
+    time : float, optional
+        In [0, 1]; the proof is of this frame alone.
+    """
     keyframes = inbetweens.passage.keyframes
     pieces = Subdivision.of([key.map.coefficients for key in keyframes], inbetweens.boundary)
     with np.errstate(over="ignore", invalid="ignore"):
-        if inbetweens.pins is None:
-            return _bisect(pieces, CellEnclosures(inbetweens, pieces))
-        return _bisect(pieces, PinnedCellEnclosures(inbetweens, pieces, inbetweens.pins))
+        kind = CorrectedCellEnclosures if inbetweens.corrections else CellEnclosures
+        enclosures = kind(inbetweens, pieces)
+        cuts = enclosures.cuts if time is None else np.array([time, time])
+        return _bisect(pieces, enclosures, cuts)
 
 
-def _bisect(pieces: Subdivision, enclosures: CellEnclosures) -> Proof:
+def _bisect(pieces: Subdivision, enclosures: CellEnclosures, cuts: Floats) -> Proof:
     """Cut cells until they are tight."""
     none = np.array([0.0])
     attained = proven = Enclosures(none, none, none + inf)
-    cuts = enclosures.cuts
     count = len(pieces.halves)
     pending = Cells(
         np.tile(np.arange(count), len(cuts) - 1),

@@ -147,11 +147,14 @@ class ScalingEnclosures:
         owner, place = ragged(counts)
         strip = first[owner] + place
         beside = np.clip(self.times[[strip, strip + 1]], pairs[0][owner], pairs[1][owner])
-        share = (beside - pairs[0][owner]) / (pairs[1] - pairs[0])[owner]
+        length = pairs[1] - pairs[0]
+        share = (beside - pairs[0][owner]) / np.where(length > 0, length, 1.0)[owner]
         chord = values[owner, 0] + share * np.diff(values, axis=1)[owner, 0]
         above = self.highest[strip] - chord.min(axis=0)
         off = np.maximum(above, chord.max(axis=0) - self.lowest[strip])
         errors = np.maximum(np.maximum.reduceat(off, counts.cumsum() - counts), 0.0)
+        # At a single time nothing lies between the ends.
+        errors = np.where(length > 0, errors, 0.0)
         return values[which], errors[which]
 
     def _strip(self, times: Floats) -> Indices:

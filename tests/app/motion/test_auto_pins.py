@@ -55,7 +55,7 @@ def test_handles_stay_when_two_keys_have_them_at_one_place(loop, variant):
 def test_motion_is_the_closed_form_without_auto_pins():
     document = with_figure(posed(), stillness=False)
     animation = animate(document)
-    assert all(animation.base.inbetweens(number).pins is None for number in range(3))
+    assert not any(animation.base.inbetweens(number).corrections for number in range(3))
     wandering = [animation.positions(float(t))[:3] for t in range(DRAWN + 1)]
     assert np.abs(np.diff(wandering, axis=0)).max() > 0.02
 

@@ -18,7 +18,6 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from engine.deform import Deformer, Hand, Handles, Objective, limits_inside
 from engine.deform.model.inner_limits import _continued
-from engine.deform.relative.energy import Rows
 from engine.dirichlet import HilbertTransform
 from engine.errors import EngineError
 from engine.maps import Boundary, Bounds, certify
@@ -135,7 +134,7 @@ def test_hands_pull_as_much_more_strongly_as_what_they_hold_is_stiff():
         handles = Handles.place(of, BAR_POINTS)
         far = handles.wish(np.array([-1.8, 0.0, 4.0]), None, [Hand([2])])
         assert_allclose(far.hands.gives, Hand([2]).pull * of.size / 2e4)
-    assert_allclose(Rows.of(boundary, BAR_POINTS).firmer, 10.0)
+    assert_allclose(boundary.stiffness_around(BAR_POINTS)[1], 10.0)
 
 
 def test_the_mean_around_a_point_is_that_of_what_is_near():

@@ -7,14 +7,14 @@ import pytest
 from interpolation_shapes import bar, bent, inner_points, stage_of
 from numpy.testing import assert_allclose
 
-from engine.deform.relative.correction import corrector_of, solve
+from engine.correction import corrector_of, solve
 from engine.interpolation import (
     SegmentPins,
     Variant,
     finish,
     prove,
     solve_pins,
-    value_points_for_pins,
+    value_points_for_corrections,
 )
 from engine.interpolation.added.pins import pinning
 from engine.maps import Bounds
@@ -50,16 +50,18 @@ def pinned(variant, *, anchored=False, bounds=WIDE):
     maps = keyframes()
     stage = stage_of(SHAPE, HANDLES, ANCHOR)
     corrector = corrector_of(stage.sites.boundary, ANCHOR, HANDLES)
-    base = stage_of(SHAPE, HANDLES, ANCHOR, value_points_for_pins(corrector)).between(maps, variant)
+    base = stage_of(SHAPE, HANDLES, ANCHOR, value_points_for_corrections(corrector)).between(
+        maps, variant
+    )
     pins = pins_of(maps, anchored=anchored)
-    return base, base.pinned(solve_pins(base, corrector, pins, bounds)), pins
+    return base, base.corrected(solve_pins(base, corrector, pins, bounds)), pins
 
 
 def at(points, variant, **options):
     """The same at other points."""
     _, known, _ = pinned(variant, **options)
-    series = known.pins.pins
-    return stage_of(SHAPE, points, ANCHOR).between(keyframes(), variant).pinned(series)
+    series = known.corrections[0].known
+    return stage_of(SHAPE, points, ANCHOR).between(keyframes(), variant).corrected(series)
 
 
 @pytest.mark.parametrize("variant", list(Variant))
@@ -86,11 +88,11 @@ def test_series_is_what_is_solved_at_any_time():
     corrector = corrector_of(base.boundary, ANCHOR, HANDLES)
     nodes = slice(len(corrector.paths.nodes))
     for time in (0.21, 0.66):
-        frame, (fz, g, plain) = base.frame_with_values(time)
-        fz, g, by = (z[nodes] for z in (fz, g, np.exp(2 * plain) / fz))
+        frame, values = base.frame_with_values(time)
+        fz, g, by = (z[nodes] for z in values)
         targets = pins.targets(time, frame.positions, base.anchor_position(time))
         found = solve(corrector, pinning.BaseFrame(fz, g, by, -1), targets)
-        series = known.pins.pins
+        series = known.corrections[0].known
         values = corrector.variables.at_samples
         h = base.boundary.span.evaluate(
             series.h @ series.series(time)[:, None], base.boundary.points, orders=(0,)
@@ -163,7 +165,7 @@ def test_limits_are_kept_where_pins_ask_too_much():
     tight = Bounds(k=0.3, sigma_a=1.4, sigma_b=0.7)
     stage = stage_of(SHAPE, HANDLES, ANCHOR)
     corrector = corrector_of(stage.sites.boundary, ANCHOR, HANDLES)
-    beside = value_points_for_pins(corrector)
+    beside = value_points_for_corrections(corrector)
     base = stage_of(SHAPE, HANDLES, ANCHOR, beside).between(maps, Variant.NU)
     own = pins_of(maps)
     far = SegmentPins(
@@ -178,7 +180,7 @@ def test_limits_are_kept_where_pins_ask_too_much():
     assert (np.abs(reached.fz) + np.abs(reached.g)).max() < 1.4
     series = solve_pins(base, corrector, far, tight)
     assert 0 < series.share < 1
-    known = base.pinned(series)
+    known = base.corrected(series)
     ends = base.values_at(np.array([0.0, 1.0]))
     most = (np.abs(ends.fz) + np.abs(ends.g)).max()
     least = (np.abs(ends.fz) - np.abs(ends.g)).min()

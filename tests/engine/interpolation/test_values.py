@@ -9,7 +9,7 @@ from interpolation_shapes import bar, bent, letter_l, narrow_u, random_map
 from messages import says
 from numpy.testing import assert_allclose
 
-from engine.deform.relative.correction import corrector_of
+from engine.correction import corrector_of
 from engine.dirichlet import HilbertTransform
 from engine.errors import EngineError
 from engine.interpolation import (
@@ -19,7 +19,7 @@ from engine.interpolation import (
     prepare_inbetweens,
     prepare_sites,
     sample_keyframes,
-    value_points_for_pins,
+    value_points_for_corrections,
 )
 from engine.interpolation.sites import VALUES_OR_TRIANGLES
 from engine.maps import Boundary, Bounds
@@ -47,7 +47,7 @@ def points_of(name):
     boundary = Boundary.sample(shape.outline, shape.cage, shape.holes)
     handles = shape.anchor + 0.1 * np.array([0, 1, 1j, -1])
     corrector = corrector_of(boundary, shape.anchor, handles)
-    return handles, value_points_for_pins(corrector)
+    return handles, value_points_for_corrections(corrector)
 
 
 @cache
@@ -96,7 +96,10 @@ def test_values_are_those_of_full_paths_at_few_nodes(name, variant):
         assert_allclose(frame.positions, expected.positions[:count], rtol=0, atol=tolerance)
         assert_allclose(values.fz, expected.fz[count:], rtol=tolerance, atol=0)
         assert_allclose(values.g, expected.fzbar[count:].conj(), rtol=0, atol=tolerance)
-        assert_allclose(values.plain_log_fz, plain[count:], rtol=0, atol=1e-12)
+        known = np.exp(plain[count:])
+        # K = L² / F.
+        k = known**2 / expected.fz[count:] if full.blend.sign else known
+        assert_allclose(values.k, k, rtol=tolerance, atol=0)
         for one, several in zip(values, at_times, strict=True):
             assert_allclose(several[number], one, rtol=1e-12, atol=1e-14)
 

@@ -1,74 +1,110 @@
-"""SegmentPins folded into in-betweens: what becomes of their derivatives at any points."""
+"""Corrections folded into in-betweens: the change of their derivatives at any points."""
 
 from dataclasses import dataclass
-from typing import Self
+from typing import NamedTuple, Self
 
 import numpy as np
+import numpy.typing as npt
 
-from engine.arrays import Complexes, Floats, Indices
-from engine.interpolation.added.pins.pinning import PinSeries
-from engine.interpolation.passage import Derivatives, Passage
+from engine.arrays import Complexes, Floats, Indices, freeze
+from engine.interpolation.added.pins.pinning import CorrectionSeries
+from engine.interpolation.passage import Derivatives
 from engine.interpolation.series import Residual
 from engine.maps import Span
 
 
+class SpanBasis(NamedTuple):
+    """The functions of a span (n,) at nodes (s,), and their derivatives, in single precision.
+
+    Corrections are small beside the places, and so are their rounding errors.
+    """
+
+    values: npt.NDArray[np.complex64]
+    slopes: npt.NDArray[np.complex64]
+
+    @classmethod
+    def of(cls, span: Span, nodes: Complexes) -> Self:
+        """Evaluate them."""
+        values, slopes = span.coordinates(nodes), span.derivatives(nodes)
+        return cls(freeze(values.astype(np.complex64)), freeze(slopes.astype(np.complex64)))
+
+    @property
+    def nbytes(self) -> int:
+        """Memory that the arrays take, in bytes."""
+        return self.values.nbytes + self.slopes.nbytes
+
+    def evaluate(self, functions: Complexes) -> tuple[Complexes, Complexes]:
+        """Return functions (n, j) and their derivatives at the nodes, (s, j) each."""
+        single = functions.astype(np.complex64)
+        values, slopes = self.values @ single, self.slopes @ single
+        return values.astype(np.complex128), slopes.astype(np.complex128)
+
+
+class Mixing(NamedTuple):
+    """K, which multiplies q, at nodes (s,), and the derivative of its logarithm."""
+
+    k: Complexes
+    log_k_z: Complexes
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class FoldedPins:
-    """h and q of a segment at nodes (s,).
+class FoldedCorrection:
+    """h and q of a correction at nodes (s,).
 
     Parameters
     ----------
-    pins : PinSeries
+    known : CorrectionSeries
     h, q : Residual
     """
 
-    pins: PinSeries
+    known: CorrectionSeries
     h: Residual
     q: Residual
 
     @classmethod
-    def of(cls, pins: PinSeries, span: Span, nodes: Complexes) -> Self:
-        """Evaluate the functions of pins at nodes (s,)."""
-        count = pins.h.shape[1]
-        values, slopes = span.evaluate(np.hstack([pins.h, pins.q]), nodes, orders=(0, 1))
+    def of(
+        cls, known: CorrectionSeries, span: Span, nodes: Complexes, basis: SpanBasis | None = None
+    ) -> Self:
+        """Evaluate the functions of a correction at nodes (s,), by a basis there if it is known."""
+        count, functions = known.h.shape[1], np.hstack([known.h, known.q])
+        if basis is None:
+            values, slopes = span.evaluate(functions, nodes, orders=(0, 1))
+        else:
+            values, slopes = basis.evaluate(functions)
         return cls(
-            pins=pins,
-            h=Residual.of(pins.series, values[:, :count], slopes[:, :count]),
-            q=Residual.of(pins.series, values[:, count:], slopes[:, count:]),
+            known=known,
+            h=Residual.of(known.series, values[:, :count], slopes[:, :count]),
+            q=Residual.of(known.series, values[:, count:], slopes[:, count:]),
         )
 
     def at(self, which: Indices) -> Self:
         """Return the same at some of the nodes."""
-        return type(self)(pins=self.pins, h=self.h.at(which), q=self.q.at(which))
+        return type(self)(known=self.known, h=self.h.at(which), q=self.q.at(which))
 
-    def changed(self, base: Derivatives, passage: Passage, time: float) -> Derivatives:
-        """Return F e^h and G e^{σh} + q K e^h with their derivatives, F and G of the base."""
+    def changed(
+        self, base: Derivatives, mixing: Mixing, sign: int, time: float
+    ) -> tuple[Derivatives, Mixing]:
+        """Return F e^h, G e^{σh} + q K e^h and K e^h with their derivatives."""
         (h, h_z), (q, q_z) = (_both(each, time) for each in (self.h, self.q))
-        log_k, log_k_z = passage.plain_log_fz(time)
-        if self.pins.is_squared:
-            log_k *= 2.0
-            log_k_z = 2.0 * log_k_z - base.fzz / base.fz
-        k = np.exp(log_k + h)
-        if self.pins.is_squared:
-            k /= base.fz
-        sign, grown = self.pins.sign, np.exp(h)
+        grown = np.exp(h)
+        k, log_k_z = mixing.k * grown, mixing.log_k_z + h_z
         own = grown if sign > 0 else 1.0 / grown
-        return Derivatives(
+        after = Derivatives(
             fz=base.fz * grown,
             fzz=(base.fzz + base.fz * h_z) * grown,
             g=base.g * own + q * k,
-            gz=(base.gz + sign * base.g * h_z) * own + (q_z + q * (log_k_z + h_z)) * k,
+            gz=(base.gz + sign * base.g * h_z) * own + (q_z + q * log_k_z) * k,
         )
+        return after, Mixing(k, log_k_z)
 
     def changed_values(
-        self, fz: Complexes, g: Complexes, passage: Passage, times: Floats
-    ) -> tuple[Complexes, Complexes]:
-        """Return the same at times (t,), of F and G (t, s) and without derivatives."""
+        self, fz: Complexes, g: Complexes, k: Complexes, sign: int, times: Floats
+    ) -> tuple[Complexes, Complexes, Complexes]:
+        """Return the same at times (t,), of F, G and K (t, s), without derivatives."""
         h, q = self.h.at_times(times), self.q.at_times(times)
-        log_k = passage.plain_log_fz_at(times)
-        k = np.exp(2.0 * log_k + h) / fz if self.pins.is_squared else np.exp(log_k + h)
         grown = np.exp(h)
-        return fz * grown, g * (grown if self.pins.sign > 0 else 1.0 / grown) + q * k
+        k = k * grown
+        return fz * grown, g * (grown if sign > 0 else 1.0 / grown) + q * k, k
 
 
 def _both(function: Residual, time: float) -> tuple[Complexes, Complexes]:

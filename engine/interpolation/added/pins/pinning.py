@@ -2,12 +2,12 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 
 from engine.arrays import Complexes, Floats, freeze
-from engine.deform.relative.correction import (
+from engine.correction import (
     BaseFrame,
     PointCorrector,
     PointSolution,
@@ -17,7 +17,7 @@ from engine.deform.relative.correction import (
     solve,
 )
 from engine.interpolation.added.pins.targets import SegmentPins
-from engine.interpolation.series import PiecewiseSeries, separate
+from engine.interpolation.series import PiecewiseSeries, one, separate
 from engine.maps import Bounds
 
 # Of the series and of what they leave out, where unknowns are about |h| and places over the size
@@ -28,24 +28,27 @@ DEGREES = (8, 16)
 
 
 class BaseAt(NamedTuple):
-    """A segment's base at a time: at handles (m,), nodes (s,) and samples of the boundary (p,).
+    """An in-between that is to be corrected, at a time.
 
     Parameters
     ----------
-    places : complex128, shape (m,)
+    places, fz : complex128, shape (m,)
+        At the handles.
     anchor : complex
     nodes, samples : BaseFrame
+        At the nodes of the corrector's paths, and at the samples of the boundary.
     """
 
     places: Complexes
+    fz: Complexes
     anchor: complex
     nodes: BaseFrame
     samples: BaseFrame
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class PinSeries:
-    """h, q and a translation of a segment: few functions times series in time.
+class CorrectionSeries:
+    """h, q and a translation: few functions times series in time.
 
     Parameters
     ----------
@@ -54,21 +57,27 @@ class PinSeries:
         The functions in the domain's span.
     shifts : complex128, shape (j,)
         Of the translation.
-    sign : {-1, 1}
-        Whether η or ν is kept where q = 0.
-    is_squared : bool
-        Whether K is L² / F, with L the exponential of the keyframes' blended logarithms; else L.
     share : float
-        Which part of what the handles ask for keeps the limits; 1 where all of it does.
+        The part of the correction that keeps the limits; 1 where all of it does.
     """
 
     series: PiecewiseSeries
     h: Complexes
     q: Complexes
     shifts: Complexes
-    sign: int
-    is_squared: bool
-    share: float
+    share: float = 1.0
+
+    @classmethod
+    def of_frame(cls, corrector: PointCorrector, x: Floats, shift: complex) -> Self:
+        """Return a correction of one frame, the same at all times."""
+        known = corrector.variables
+        h, q = np.split(x, 2)
+        return cls(
+            series=one(),
+            h=freeze((known.h @ h)[:, None]),
+            q=freeze((known.q @ q)[:, None]),
+            shifts=freeze(np.array([shift])),
+        )
 
     def shift(self, times: Floats) -> Complexes:
         """Return the translation at times (t,)."""
@@ -81,10 +90,7 @@ def pin(
     base_at: Callable[[float], BaseAt],
     pins: SegmentPins,
     bounds: Bounds,
-    *,
-    sign: int,
-    is_squared: bool,
-) -> PinSeries:
+) -> CorrectionSeries:
     """Find the corrections of a segment.
 
     Parameters
@@ -96,8 +102,6 @@ def pin(
     pins : SegmentPins
     bounds : Bounds
         Limits that are kept at the samples, or those that the keyframes have beyond them.
-    sign, is_squared
-        As in `PinSeries`.
     """
     known, size = corrector.variables, corrector.boundary.size
     solved: dict[float, PointSolution] = {}
@@ -124,12 +128,10 @@ def pin(
     # One share for all of the segment: a limit that is reached for a moment makes no jolt.
     forms *= share
     count = known.count
-    return PinSeries(
+    return CorrectionSeries(
         series=series,
         h=freeze(known.h @ forms[:count]),
         q=freeze(known.q @ forms[count:-2]),
         shifts=freeze(size * (forms[-2] + 1j * forms[-1])),
-        sign=sign,
-        is_squared=is_squared,
         share=share,
     )

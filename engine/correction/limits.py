@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 
 from engine.arrays import Floats
-from engine.deform.relative.correction.corrector import PointCorrector
-from engine.deform.relative.correction.frame import BaseFrame
-from engine.deform.relative.correction.solver import PointSolution, Targets, solve
-from engine.deform.relative.correction.walls import Walls, quantities
+from engine.correction.corrector import PointCorrector
+from engine.correction.frame import BaseFrame, CorrectedFrame
+from engine.correction.solver import PointSolution, Targets, solve
+from engine.correction.walls import Walls, quantities
 from engine.maps import Bounds
 
 INSIDE = 0.002  # of the limits: how far inside a correction ends, as between samples it is more
@@ -17,6 +17,11 @@ INSIDE = 0.002  # of the limits: how far inside a correction ends, as between sa
 MARGIN, STIFFNESSES = 0.02, (1e2, 1e3, 1e4)
 HALVINGS = 20
 TINY = 1e-300
+
+
+def logarithms(sigma_a: float, sigma_b: float, k: float) -> Floats:
+    """Return ln σ_a, −ln σ_b and k, (3,)."""
+    return np.array([np.log(sigma_a), -np.log(max(sigma_b, TINY)), k])
 
 
 def limits_of(bounds: Bounds, *known: Floats, inside: float = INSIDE) -> Floats:
@@ -30,8 +35,8 @@ def limits_of(bounds: Bounds, *known: Floats, inside: float = INSIDE) -> Floats:
     inside : float
         How far inside the bounds.
     """
-    stretch, squeeze = np.log([bounds.sigma_a, max(bounds.sigma_b, TINY)])
-    within = np.array([stretch - inside, -squeeze - inside, bounds.k * (1 - inside)])
+    limits = logarithms(bounds.sigma_a, bounds.sigma_b, bounds.k)
+    within = limits - inside * np.array([1.0, 1.0, bounds.k])
     return np.asarray(np.max([within, *known], axis=0))
 
 
@@ -69,7 +74,24 @@ def solve_within(
     for stiffness in STIFFNESSES:
         near = solve(corrector, nodes, targets, near, replace(walls, stiffness=stiffness))
         steps += near.steps
-    return replace(near, steps=steps, is_held_back=True)
+    share = largest_share(corrector, samples, near.x, limits)
+    found = replace(near, steps=steps, is_held_back=True)
+    return shortened(corrector, nodes, targets, found, share) if share < 1.0 else found
+
+
+def shortened(
+    corrector: PointCorrector,
+    nodes: BaseFrame,
+    targets: Targets,
+    solution: PointSolution,
+    share: float,
+) -> PointSolution:
+    """Return a part of a correction."""
+    x, shift = share * solution.x, share * solution.shift
+    count = len(targets.moves)
+    before, after = (CorrectedFrame.of(corrector, nodes, each).places() for each in (0 * x, x))
+    moved = (after - before)[:count] + shift
+    return replace(solution, x=x, shift=shift, misses=np.abs(moved - targets.moves))
 
 
 def largest_share(corrector: PointCorrector, base: BaseFrame, x: Floats, limits: Floats) -> float:

@@ -6,18 +6,21 @@ its distortion is known from moduli.
 Imports: `engine.maps`, `engine.paths`.
 """
 
-from engine.deform.relative.correction.corrector import (
+from engine.correction.corrector import (
     PointCorrector as PointCorrector,
     corrector_of as corrector_of,
 )
-from engine.deform.relative.correction.frame import BaseFrame as BaseFrame
-from engine.deform.relative.correction.limits import (
+from engine.correction.frame import BaseFrame as BaseFrame
+from engine.correction.limits import (
+    MARGIN as MARGIN,
     extremes as extremes,
     largest_share as largest_share,
     limits_of as limits_of,
+    logarithms as logarithms,
+    shortened as shortened,
     solve_within as solve_within,
 )
-from engine.deform.relative.correction.solver import (
+from engine.correction.solver import (
     PointSolution as PointSolution,
     Targets as Targets,
     solve as solve,

@@ -17,10 +17,10 @@ from typing import NamedTuple
 import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices
-from engine.deform.relative.correction.corrector import PointCorrector
-from engine.deform.relative.correction.frame import BaseFrame, CorrectedFrame
-from engine.deform.relative.correction.step_model import Form, Rows, StepModel
-from engine.deform.relative.correction.walls import Walls, WallState
+from engine.correction.corrector import PointCorrector
+from engine.correction.frame import BaseFrame, CorrectedFrame
+from engine.correction.step_model import Form, Rows, StepModel
+from engine.correction.walls import Walls, WallState
 
 SMALL = 1e-6  # a step in h: where the iteration ends
 MET = 1e-9  # of the diagonal: points that are where they are wanted
@@ -31,7 +31,7 @@ CALM = 1e-4
 GAINS, GAINS_AT_WALLS = 0.99, 0.999  # of the merit: what a part of a step leaves of it, at most
 ARM = 0.02  # of the diagonal: at what distance a turn is as firm as a point
 TRACE = True
-ARM = 0.02  # of the diagonal: the distance at which a turn is as firm as a point
+ARM = 0.25  # of the diagonal: the distance at which a turn is as firm as a point
 TINY = 1e-300
 NOTHING_NEAR = np.zeros(0, np.intp), np.zeros(0, np.intp)
 FIRMEST = 1.5  # times the largest pull: what the merit takes for each point off its target

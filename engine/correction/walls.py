@@ -11,9 +11,9 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices
-from engine.deform.relative.correction.corrector import PointCorrector
-from engine.deform.relative.correction.frame import BaseFrame
-from engine.deform.relative.correction.variables import Values
+from engine.correction.corrector import PointCorrector
+from engine.correction.frame import BaseFrame
+from engine.correction.variables import Values
 
 NEAR = 0.01
 FOLDED = 10.0  # −ln σ_b where a map begins to fold

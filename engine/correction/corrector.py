@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 from engine.arrays import Complexes, held_bytes
-from engine.deform.relative.correction.paths import PointPaths
-from engine.deform.relative.correction.variables import Variables
+from engine.correction.paths import PointPaths
+from engine.correction.variables import Variables
 from engine.maps import Boundary
 
 

@@ -14,7 +14,6 @@ NEARLY = 1e-4  # of what the curvature changes: what may be left of it
 CURVED = 1e-2  # of the metric: the least curvature along which steps are taken
 # Rounds in which bounded and one-sided pulls are found, and how exactly.
 ROUNDS, LEFT_TO_GO = 8, 1e-3
-IDLE = 1e12  # softness of rows that count for nothing
 LEAST_LACK = 1e-9
 
 # A symmetric form of the unknowns, as its product with a vector (2N,).
@@ -82,7 +81,7 @@ class StepModel:
         give = np.zeros(len(rows.forces))
         idle = rows.pushes & (rows.lack <= 0)
         for _ in range(ROUNDS):
-            self._factor(np.where(idle, IDLE, rows.soft + give[rows.group]))
+            self._factor(~idle, rows.soft + give[rows.group])
             self.pulls, self._shift = self._solve(self._right)
             pushing = np.where(idle, self._residuals() > 0, self.pulls < 0)
             changed = rows.pushes & (idle == pushing)
@@ -146,20 +145,24 @@ class StepModel:
         pulls, shift = self._solve(-(self._rows.slopes @ v))
         return v + pulls @ self._rows.slopes, shift
 
-    def _factor(self, soft: Floats) -> None:
-        translations = self._rows.translations
+    def _factor(self, active: Booleans, soft: Floats) -> None:
+        """Factor the matrix of the pulls of some of the rows."""
+        self._active = which = np.flatnonzero(active)
+        translations = self._rows.translations[which]
         count, more = translations.shape
         matrix = np.zeros((count + more, count + more))
-        matrix[:count, :count] = self._products
+        matrix[:count, :count] = self._products[np.ix_(which, which)]
         matrix[:count, count:] = translations
         matrix[count:, :count] = translations.T
         diagonal = np.arange(count)
-        matrix[diagonal, diagonal] += self._ridge + soft
+        matrix[diagonal, diagonal] += self._ridge + soft[which]
         self._factors = scipy.linalg.lu_factor(matrix, overwrite_a=True, check_finite=False)
 
     def _solve(self, right: Floats) -> tuple[Floats, complex]:
-        count, more = self._rows.translations.shape
-        padded = np.append(right, np.zeros(more))
+        count, more = len(self._active), self._rows.translations.shape[1]
+        padded = np.append(right[self._active], np.zeros(more))
         found = scipy.linalg.lu_solve(self._factors, padded, check_finite=False)
         shift = complex(*found[count:]) if more else 0j
-        return found[:count], shift
+        pulls = np.zeros(len(right))
+        pulls[self._active] = found[:count]
+        return pulls, shift
