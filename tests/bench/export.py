@@ -31,7 +31,7 @@ from app.export_formats import EXPORT_FORMATS
 from app.motion import Animation, box_around
 from app.render import Renderer
 from app.render.gpu import RenderTarget, create_context
-from app.storage import decode_picture, sample_images, save_project
+from app.storage import decode_picture, load_project, sample_images, save_project
 from engine.arrays import Complexes
 from engine.domain import build_domain
 from tests.bench.memory import Run, run_measured
@@ -48,9 +48,13 @@ class Extent:
     frames: int = 24
     large_frames: int = 300
     formats: tuple[str, ...] = tuple(EXPORT_FORMATS)
+    pinned: tuple[str, str] = ("giraffe", "0:71")
+    repeats: int = 3
 
 
-BRIEF = Extent(triangles=1_000, frames=2, large_frames=2, formats=("glb",))
+BRIEF = Extent(
+    triangles=1_000, frames=2, large_frames=2, formats=("glb",), pinned=("ring", "1:2"), repeats=1
+)
 
 
 def tables(extent: Extent) -> Iterator[Table]:
@@ -59,6 +63,7 @@ def tables(extent: Extent) -> Iterator[Table]:
     with tempfile.TemporaryDirectory() as folder:
         yield _processes(Path(folder), extent)
         yield _formats(Path(folder), extent.formats)
+        yield _pinned(Path(folder), *extent.pinned, extent.repeats)
 
 
 def _speed(extent: Extent) -> Table:
@@ -151,6 +156,25 @@ def _formats(folder: Path, names: tuple[str, ...]) -> Table:
             note += f", {_without_texture(out.read_bytes()) / 1000:,.0f} KB without the texture"
         rows.append(Row(name=name, seconds=seconds, note=note))
     return Table(title="the giraffe's 3 s in every format, by the clock", rows=tuple(rows))
+
+
+def _pinned(folder: Path, name: str, frames: str, repeats: int) -> Table:
+    """Measure an export of a sample without auto-pins and with them, by turns."""
+    document = load_project(sample_images() / f"{name}.lissom")
+    words = {False: "without auto-pins", True: "with auto-pins"}
+    for pinned in words:
+        figures = tuple(replace(each, stillness=pinned) for each in document.figures)
+        save_project(folder / f"{pinned}.lissom", replace(document, figures=figures))
+    runs = [
+        (pinned, _export(str(folder / f"{pinned}.lissom"), "--frames", frames, "--out", str(out)))
+        for number in range(repeats)
+        for pinned, out in ((each, folder / f"{each} {number}") for each in words)
+    ]
+    rows = []
+    for pinned, row in words.items():
+        best = min((run for own, run in runs if own is pinned), key=lambda run: run.seconds)
+        rows.append(Row(name=row, seconds=best.seconds, note=best.memory))
+    return Table(title=f"PNG frames {frames} of the sample {name}, by the clock", rows=tuple(rows))
 
 
 def _without_texture(glb: bytes) -> int:

@@ -12,7 +12,7 @@ from app.errors import tell
 from app.motion.inbetweens.content_cache import ContentCache, digest
 from app.motion.inbetweens.correction import SolvedTracks
 from app.motion.inbetweens.pairs import Pair
-from engine.arrays import Complexes, freeze
+from engine.arrays import Complexes, freeze, held_bytes
 from engine.correction import PointCorrector, corrector_of
 from engine.dirichlet import Extension, HilbertTransform
 from engine.domain import Domain
@@ -39,9 +39,10 @@ from engine.interpolation import (
 from engine.maps import Boundary, Bounds, HarmonicMap
 from engine.paths import root_sheets
 
-# Outlines, transforms and keyframes that were sampled last, in bytes; what layers hold themselves
-# takes no more memory by being here, too.
-_SAMPLED = ContentCache(64 * 2**20)
+# Outlines and keyframes that were sampled last, in bytes; what layers hold themselves takes no more
+# memory by being here, too. Transforms take far longest to make, and make no room for others.
+_SAMPLED = ContentCache(96 * 2**20)
+_TRANSFORMS = ContentCache(32 * 2**20)
 
 
 MOST_PINNED = 512  # segments of one outline whose pins are kept
@@ -141,7 +142,7 @@ class OutlineKnowledge:
                 make = partial(
                     HilbertTransform.on, domain.outline, domain.cage, domain.holes, progress=tell
                 )
-                self._transform = _SAMPLED.find(self._key, make, _nbytes)
+                self._transform = _TRANSFORMS.find(self._key, make, _nbytes)
                 self.nbytes = self._transform.nbytes
             return self._transform
 
@@ -149,7 +150,7 @@ class OutlineKnowledge:
         """Let go of the transform, which is soon made again."""
         with self._lock:
             self._transform, self.nbytes = None, 0
-        _SAMPLED.forget(self._key)
+        _TRANSFORMS.forget(self._key)
 
 
 class PoseSampler:
@@ -210,7 +211,10 @@ class PoseSampler:
             values_at=() if values_at is None else values_at,
             boundary=None if sibling is None else sibling.sites.boundary,
         )
-        self.sites: Sites = _SAMPLED.find(("sites", *self._content), prepare, _nbytes)
+        known = () if sibling is None else (sibling.sites.boundary,)
+        self.sites: Sites = _SAMPLED.find(
+            ("sites", *self._content), prepare, partial(held_bytes, but=known)
+        )
         self._lock = threading.RLock()
         self._samples: dict[Pose, KeyframeSamples] = {}
         self._basis: SpanBasis | None = None

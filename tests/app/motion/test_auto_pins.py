@@ -17,6 +17,9 @@ from app.document import (
     pinned_handles,
 )
 from app.motion import Animation, Joints
+from app.motion.inbetweens import pose_sampler
+from app.motion.inbetweens.content_cache import ContentCache
+from engine.interpolation import BLENDS
 
 
 def drift(document):
@@ -58,6 +61,25 @@ def test_motion_is_the_closed_form_without_auto_pins():
     assert not any(animation.base.inbetweens(number).corrections for number in range(3))
     wandering = [animation.positions(float(t))[:3] for t in range(DRAWN + 1)]
     assert np.abs(np.diff(wandering, axis=0)).max() > 0.02
+
+
+def test_a_segment_is_solved_once_at_vertices_and_handles(monkeypatch):
+    monkeypatch.setattr(pose_sampler, "_SAMPLED", ContentCache(2**26))
+    document = posed(variant="metric")
+    clip = clip_of(document, 0)
+    blend, called = BLENDS[clip.figure.variant], []
+    for name in ("on_boundary", "tangent"):
+        own = getattr(blend, name)
+
+        def counted(*given, own=own, name=name):
+            called.append(name)
+            return own(*given)
+
+        monkeypatch.setattr(blend, name, counted)
+    animation = animate(document)
+    assert all(animation.base.inbetweens(number).pins for number in range(3))
+    assert called.count("on_boundary") == 3
+    assert called.count("tangent") == 2
 
 
 @pytest.mark.parametrize("loop", [False, True])
