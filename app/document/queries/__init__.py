@@ -27,6 +27,7 @@ from app.document.queries.material import (
     stiffened as stiffened,
 )
 from app.document.queries.remembered import remembered as remembered
+from app.document.queries.roots import root_of as root_of
 from app.document.queries.shortfall import (
     Extremes as Extremes,
     Shortfall as Shortfall,
