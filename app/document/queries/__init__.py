@@ -27,7 +27,6 @@ from app.document.queries.material import (
     stiffened as stiffened,
 )
 from app.document.queries.remembered import remembered as remembered
-from app.document.queries.roots import root_of as root_of
 from app.document.queries.shortfall import (
     Extremes as Extremes,
     Shortfall as Shortfall,
@@ -83,6 +82,7 @@ from app.document.queries.timeline import (
 from app.document.queries.tracks import (
     TrackPlace as TrackPlace,
     cycle_of as cycle_of,
+    root_of as root_of,
     track_at as track_at,
     velocity_at as velocity_at,
 )
