@@ -118,12 +118,12 @@ def again(session: Session) -> None:
 
 
 @with_project
-def smooth(session: Session, project: Project, smoothing: float) -> None:
+def smooth(_: Session, project: Project, smoothing: float) -> None:
     """Smooth what was recorded, from 0 to 1."""
     take = project.take
     if take is not None and take.after is not None:
         take.smoothing = smoothing
-        _write(session, project, take)
+        _write(project, take)
 
 
 def maintain(session: Session, project: Project) -> None:
@@ -145,9 +145,11 @@ def maintain(session: Session, project: Project) -> None:
         keep(session)
     elif not take.is_over:
         _record(session, project, take)
+    elif take.after is None and _is_click(project, take):
+        give_up(session)
     elif take.after is None:
         try:
-            _write(session, project, take)
+            _write(project, take)
         except LissomError as error:
             report(session, NO_TAKE, error)
             give_up(session)
@@ -179,15 +181,22 @@ def _record(session: Session, project: Project, take: Take) -> None:
         end_take(session)
 
 
-def _write(session: Session, project: Project, take: Take) -> None:
+def _is_click(project: Project, take: Take) -> bool:
+    """Tell whether the hand has rested on a body that has not moved, as far as that is known."""
+    if take.has_moved:
+        return False
+    times = [sample.time for sample in take.samples]
+    if not times or times[-1] < times[0] + 1.0:
+        return True
+    values = _values(project, take)
+    return values is not None and max(abs(v - values[0]) for v in values) * take.scale <= CLICK
+
+
+def _write(project: Project, take: Take) -> None:
     """Let the track have what was recorded, once it is known what that is relative to."""
     clip, before = project.clip, take.before
     values = _values(project, take)
     if values is None:
-        return
-    gone = max((abs(value - values[0]) for value in values), default=0.0)
-    if not take.has_moved and gone * take.scale <= CLICK:
-        give_up(session)
         return
     fresh = before or Track(handles=(take.handle,), keys=(TrackKey(frame=0, place=0),))
     fitted = _fitted(project, take, values)
