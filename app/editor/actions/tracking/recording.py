@@ -158,25 +158,26 @@ def maintain(session: Session, project: Project) -> None:
 def _record(session: Session, project: Project, take: Take) -> None:
     """Take note of where the handle is dragged at this moment, and show that."""
     since, now, shown = take.playhead.since, session.clock(), project.puppet.shown
-    if since is None or shown is None:
+    if since is None:
         return
     gone = (now - since) * project.document.fps * take.playhead.speed
     time = min(take.playhead.frame + gone, float(take.last))
-    frame = playback.current_frame(session, project)
-    (placement,) = project.placements([frame], shown.placement)
     sample = Sample(time, take.place)
     if take.samples and take.samples[-1].time == time:
         take.samples[-1] = sample
     else:
         take.samples.append(sample)
-    held = Carry(
-        figure=take.figure,
-        handle=take.handle,
-        frame=frame,
-        gesture=take.gesture,
-        place=placement.back(take.place),
-    )
-    put_key(session, project, held)
+    if shown is not None:
+        frame = playback.current_frame(session, project)
+        (placement,) = project.placements([frame], shown.placement)
+        held = Carry(
+            figure=take.figure,
+            handle=take.handle,
+            frame=frame,
+            gesture=take.gesture,
+            place=placement.back(take.place),
+        )
+        put_key(session, project, held)
     if project.playhead is not take.playhead or time == take.last:
         end_take(session)
 
