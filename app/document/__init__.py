@@ -126,6 +126,7 @@ from app.document.queries import (
     remembered as remembered,
     repeating as repeating,
     resting_pose as resting_pose,
+    root_of as root_of,
     seen_alone as seen_alone,
     sights_of as sights_of,
     spans as spans,

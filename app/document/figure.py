@@ -417,6 +417,8 @@ class Figure:
                     identity in known, f"A {what} is of the handle {identity}, which is not there."
                 )
             require_distinct(identities, f"Two {what}s are of the handle {{!r}}.")
+        for root in {spring.root for spring in self.springs} - {None}:
+            require(root in known, f"A spring swings about the handle {root}, which is not there.")
         require_motions(self.motions, known)
 
     def _check_material(self) -> None:

@@ -25,6 +25,7 @@ Tint = Literal["depth", "stiffness"]
 MaterialTool = Literal["stiff", "soft", "normal", "bone"]
 Tone = Literal["info", "good", "error"]
 GuideStep = Literal["handle", "time", "pose", "play", "export", "done"]
+CLICK = 3.0  # pixels of the screen that a click may wander
 P = ParamSpec("P")
 
 

@@ -189,7 +189,14 @@ def _prepared(document: Document, identity: int, part: FigureScript) -> Document
                 replace(track, handles=tuple(first + number for number in track.handles))
                 for track in part.tracks
             ),
-            springs=tuple(replace(spring, handle=first + spring.handle) for spring in part.springs),
+            springs=tuple(
+                replace(
+                    spring,
+                    handle=first + spring.handle,
+                    root=None if spring.root is None else first + spring.root,
+                )
+                for spring in part.springs
+            ),
         )
     )
     return with_joints(document, identity, part)

@@ -163,9 +163,9 @@ class Deformer(HeldShape):
         """Tell whether the last step was towards this wish, with these handles and bounds."""
         return (
             state.handles is self.handles
+            and wish.is_same(state.wish)
             and self.bounds.include(state.limits)
             and state.limits.include(self.bounds)
-            and wish.is_same(state.wish)
         )
 
     def _has_followed(self, state: State) -> bool:

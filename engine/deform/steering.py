@@ -1,7 +1,9 @@
 """What steers a drag: how far a step looks ahead, how the walls push, and where they stand."""
 
 from cmath import phase, rect
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import chain
 from math import inf, sqrt
 from typing import NamedTuple, Self
 
@@ -123,10 +125,13 @@ def cut_to_leash(
     positions = _turned(handles, jet.positions, wish.positions, most)
     pull = wish.positions - positions
     cut = distance / np.maximum(np.abs(pull), distance)
-    # Free handles have NaN, which passes through.
-    turn = np.angle(np.exp(1j * wish.rotations) * jet.fz.conj())
-    near = np.angle(jet.fz) + np.minimum(np.maximum(turn, -most), most)
-    leashed = bool(np.any(cut < 1.0) or np.any(np.abs(turn) > most))
+    near, turning = wish.rotations.copy(), np.isfinite(wish.rotations)
+    leashed = bool(cut.min(initial=1.0) < 1.0)
+    if turning.any():
+        now = np.angle(jet.fz[turning])
+        turn = np.angle(np.exp(1j * (wish.rotations[turning] - now)))
+        near[turning] = now + np.minimum(np.maximum(turn, -most), most)
+        leashed = leashed or bool(np.abs(turn).max() > most)
     return Wish(positions + cut * pull, near, wish.hands, wish.links), leashed
 
 
@@ -250,24 +255,30 @@ def place_walls(
 
     The map has `reached` these `distortions` (3, m).
     """
-    at = as_rows(limits.at(boundary))
+    at, least = as_rows(limits.at(boundary)), np.full((3, 1), LEAST_SLACK)
     inner = as_rows(limits.towards_identity(MARGIN).at(boundary))
-    least = np.full(reached.shape, LEAST_SLACK)
-    least[1:] *= reached[1]
+    least[1:] *= reached[1].max()
     # A map may start between the walls and the limits.
     walls = np.maximum(inner, reached + np.maximum((at - reached) / 4, least))
-    k, sigma_a, negative_b = walls
-    beyond, kept = walls - at, KEPT * (walls - reached)
-    outermost, required = (
-        Limits(k=limits.k + more, sigma_a=limits.sigma_a + longer, sigma_b=limits.sigma_b - shorter)
-        for more, longer, shorter in (beyond.max(axis=1), (beyond - kept).max(axis=1))
-    )
-    # Between its samples the present map may have less slack than that.
-    proven = proven_at(certificate, reached)
-    for asked in (required, outermost, limits.towards_identity(ROUNDING)):
+    beyond = walls - at
+    # Between its samples the present map may have less slack than a step is to leave.
+    required = beyond - KEPT * (walls - reached), beyond
+    widened = (_shifted(limits, each.max(axis=1).tolist()) for each in required)
+    proven, found = proven_at(certificate, reached), limits
+    for asked in chain(widened, (limits.towards_identity(ROUNDING),)):
         if limits.include(asked) and (proven <= as_rows(asked.at(boundary))).all():
-            return Walls(k, sigma_a, -negative_b), asked
-    return Walls(k, sigma_a, -negative_b), limits
+            found = asked
+            break
+    k, sigma_a, negative_b = walls
+    return Walls(k, sigma_a, -negative_b), found
+
+
+def _shifted(limits: Limits, beyond: Sequence[float]) -> Limits:
+    """Return limits that are wider by so much, where all three are no larger than."""
+    more, longer, shorter = beyond
+    return Limits(
+        k=limits.k + more, sigma_a=limits.sigma_a + longer, sigma_b=limits.sigma_b - shorter
+    )
 
 
 def proven_at(certificate: Certificate, reached: Floats) -> Floats:

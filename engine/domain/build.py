@@ -17,7 +17,7 @@ MOST_TRIANGLES = 2_000_000
 FRAME = 1.1
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, weakref_slot=True, kw_only=True, eq=False)
 class Domain:
     """Where the maps of one picture live.
 

@@ -257,6 +257,7 @@ def random_spring(rng: np.random.Generator, handle: int) -> Spring:
         damping=float(rng.choice([0.0, rng.random()])),
         lag=float(rng.integers(3)),
         strength=float(rng.choice([1.0, rng.random()])),
+        stretch=float(rng.choice([0.0, rng.random()])),
         enabled=bool(rng.integers(2)),
     )
 
@@ -528,7 +529,15 @@ def clocked_document() -> Document:
     )
     planted = Track(handles=(1,), planted=True, keys=(TrackKey(frame=1, place=70 + 90.5j),))
     spring = Spring(
-        handle=1, frequency=3.1, damping=0.2, lag=1.5, strength=0.7, enabled=False, unknown=more
+        handle=1,
+        frequency=3.1,
+        damping=0.2,
+        lag=1.5,
+        strength=0.7,
+        root=4,
+        stretch=0.25,
+        enabled=False,
+        unknown=more,
     )
     parent = dataclasses.replace(
         full.figures[1],

@@ -38,7 +38,7 @@ same at the top, or in a figure, says so of all handles. A handle has a clock of
                         {"frame": 24, "offset": [0, 0]}]},
               {"handle": "hoof", "with": "picture", "keys": [{"frame": 6, "at": [310, 40]}]}],
    "springs": [{"handle": "ear", "preset": "ear", "lag": 1, "strength": 0.5},
-               {"handle": "tail", "frequency": 1.6, "damping": 0.18}]
+               {"handle": "tail", "frequency": 1.6, "damping": 0.18, "root": "hip"}]
 
 A track acts from its first key to its last one, both included, and changes nothing elsewhere. Its
 offset is by how much the handle is beside its place in the motion of the poses, in axes that turn
@@ -53,7 +53,10 @@ or of a track, or the end of what repeats, is where the animation ends.
 
 A spring lets a handle follow the motion late and swing: frequency in Hz; damping, 1 where it comes
 back without swinging over; lag 0 frames, and strength 1. The presets are tail, ear, hair, cloth and
-jelly. Keys do not hold what follows: in poses it goes where the body carries it.
+jelly. It swings about another handle and keeps its distance to that: about its "root", or where
+that is left out about the nearest handle along bones, or else along the drawing, that has no
+spring. "stretch": from 0, which is the default, to 1, lets that distance change; 1 swings freely.
+Keys do not hold what follows: in poses it goes where the body carries it.
 
 A stretch of time repeats with
 

@@ -13,7 +13,11 @@ from app.document.timing import Track, TrackKey
 def without_handles(figure: Figure, gone: Collection[int]) -> Figure:
     """Return the figure whose tracks, springs and bones have nothing of some handles any more."""
     tracks = (left(figure, track, gone) for track in figure.tracks)
-    springs = (spring for spring in figure.springs if spring.handle not in gone)
+    springs = (
+        replace(spring, root=None) if spring.root in gone else spring
+        for spring in figure.springs
+        if spring.handle not in gone
+    )
     bones = (bone for bone in figure.bones if not set(bone.ends) & set(gone))
     return replace(
         figure,

@@ -82,6 +82,7 @@ from app.document.queries.timeline import (
 from app.document.queries.tracks import (
     TrackPlace as TrackPlace,
     cycle_of as cycle_of,
+    root_of as root_of,
     track_at as track_at,
     velocity_at as velocity_at,
 )

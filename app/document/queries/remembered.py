@@ -1,32 +1,31 @@
-"""What was found out about a figure, kept as long as the figure is there."""
+"""What was found out about a figure or a domain, kept as long as that is there."""
 
 from collections.abc import Callable
 from functools import wraps
 from typing import Final, TypeVar, TypeVarTuple
 from weakref import WeakKeyDictionary
 
-from app.document.figure import Figure
-
 Given = TypeVarTuple("Given")
 T = TypeVar("T")
-MOST: Final = 16  # answers about a figure
+Whose = TypeVar("Whose")
+MOST: Final = 16  # answers about one
 
 
-def remembered(query: Callable[[Figure, *Given], T]) -> Callable[[Figure, *Given], T]:
-    """Let a query give the last answers again; none of them may hold the figure.
+def remembered(query: Callable[[Whose, *Given], T]) -> Callable[[Whose, *Given], T]:
+    """Let a query about a figure or a domain give the last answers again; none may hold it.
 
     However many figures there are, none makes others be asked about anew, and those of a project
     that was closed go with it.
     """
-    known: WeakKeyDictionary[Figure, dict[object, T]] = WeakKeyDictionary()
+    known: WeakKeyDictionary[Whose, dict[object, T]] = WeakKeyDictionary()
 
     @wraps(query)
-    def answer(figure: Figure, *given: *Given) -> T:
+    def answer(whose: Whose, *given: *Given) -> T:
         # Workers ask, too: another thread may clear the answers at any moment.
-        answers = known.setdefault(figure, {})
+        answers = known.setdefault(whose, {})
         found = answers.get(given)
         if found is None:
-            found = query(figure, *given)
+            found = query(whose, *given)
             if len(answers) >= MOST:
                 answers.clear()
             answers[given] = found

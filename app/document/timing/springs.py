@@ -21,6 +21,10 @@ class Spring:
     damping: float  # 1 is critical: it comes back without swinging over
     lag: float = 0.0  # frames
     strength: float = 1.0  # how far it swings, 1 as the oscillator does
+    # The id of the handle about which it swings; None is the one that `root_of` finds.
+    root: int | None = None
+    # How far it may leave its distance from the root: 0 keeps it, 1 swings freely, root or not.
+    stretch: float = 0.0
     enabled: bool = True
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
@@ -42,6 +46,11 @@ class Spring:
             0 <= self.strength <= MOST_STRENGTH,
             f"The strength of a spring is from 0 to {MOST_STRENGTH:g}, not {self.strength:g}.",
         )
+        require(
+            0 <= self.stretch <= 1,
+            f"The stretch of a spring is between 0 and 1, not {self.stretch:g}.",
+        )
+        require(self.root != self.handle, "A spring swings about another handle than its own.")
 
 
 # By name: frequency and damping. Measured on the samples' tails and ears; the others are between.

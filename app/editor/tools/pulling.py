@@ -13,7 +13,7 @@ from app.editor.actions import editing, playback, posing, tracking
 from app.editor.project import Project
 from app.editor.session import EntryMark, Hint, Mark, Session
 from app.editor.tools.entry import TypedWay
-from app.editor.tools.tool import Spot, Tool
+from app.editor.tools.tool import Spot, Tool, on_scene
 from app.editor.work import Start
 from engine.deform import Hand
 
@@ -32,7 +32,8 @@ class Pulling(Tool):
     # The handle whose track takes the drag in place of the pose, and where that began.
     tracked: int | None = None
     origin: complex = 0j
-    records: bool = False  # whether the drag is recorded
+    # Whether the drag is recorded: then all places are of the scene, in which the body moves.
+    records: bool = False
     stood: int | None = None  # the frame that the playhead has left for a key of the path
 
     @classmethod
@@ -96,6 +97,9 @@ class Pulling(Tool):
             self.origin = shown.correction.wishes.get(self.tracked, self.origin)
         if session.records:
             self.records = True
+            self.start, self.origin = (
+                on_scene(project, each) for each in (self.start, self.origin)
+            )
             tracking.begin_take(session, self.tracked, self.origin, gesture=self)
 
     def _take_key(self, session: Session, handle: int, frame: int) -> None:
@@ -109,12 +113,14 @@ class Pulling(Tool):
 
     def move(self, session: Session, place: complex) -> None:
         """Pull the handles as far as the pointer goes; each keeps the turn that it wishes."""
-        self.place = place
-        self.moved = self.moved or self.is_away(session, self.start, place)
+        self.place = on_scene(self.project, place) if self.records else place
+        self.moved = self.moved or self.is_away(session, self.start, self.place)
         self._pull(session)
 
     def type(self, session: Session, characters: str) -> None:
-        """Pull them as far as is typed, or along an axis."""
+        """Pull them as far as is typed, or along an axis; what is recorded is the hand alone."""
+        if self.records:
+            return
         self.entry.type(characters)
         self.moved = self.moved or self.entry.value is not None
         self._pull(session)
@@ -150,10 +156,8 @@ class Pulling(Tool):
 
         A click selects the one that it was on alone, or its group.
         """
-        if self.records and self.moved:
-            tracking.end_take(session)
-        elif self.records:
-            tracking.give_up(session)
+        if self.records:
+            tracking.end_take(session, has_moved=self.moved)
         elif self.tracked is not None:
             pass
         elif session.insists:

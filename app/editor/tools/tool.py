@@ -8,10 +8,8 @@ import numpy as np
 
 from app.editor.actions import editing
 from app.editor.project import Project
-from app.editor.session import Hint, Mark, Session
+from app.editor.session import CLICK, Hint, Mark, Session
 from app.editor.timeline_view import KeysOf
-
-CLICK = 3.0  # pixels of the screen that a click may wander
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -39,14 +39,10 @@ class Carry(Promise):
 
 
 class Sample(NamedTuple):
-    """Where a handle was dragged: when, in frames, which go on where a loop comes round.
-
-    The place is of the figure by itself, and of the scene.
-    """
+    """Where in the scene a handle was dragged: when, in frames, which go on where a loop ends."""
 
     time: float
     place: complex
-    in_scene: complex
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
@@ -68,7 +64,7 @@ class Take:
     speed : float
         Of the playhead before.
     place : complex
-        Where the handle is wanted now, on the figure by itself.
+        Where in the scene the handle is wanted now.
     scale : float
         How many pixels of the screen one of the picture took, when it began.
     smoothing : float
@@ -76,6 +72,8 @@ class Take:
     samples : list of Sample
     is_over : bool
         Whether the hand has let go.
+    has_moved : bool
+        Whether the hand was moved. Else it was a click, unless the body moved under it.
     after : Document, optional
         The document with the recorded track; None until it has that.
     """
@@ -92,4 +90,5 @@ class Take:
     smoothing: float
     samples: list[Sample] = field(default_factory=list)
     is_over: bool = False
+    has_moved: bool = True
     after: Document | None = None

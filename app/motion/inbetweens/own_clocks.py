@@ -88,8 +88,7 @@ class OwnClocks:
         wanted, turns = places.copy(), np.full(len(places), np.nan)
         reaches, sizes, tracked = [], [], set()
         for spring in self._swings.springs:
-            offset = self._swings.offset(spring, frame, at)
-            offset *= self._hung(frame).factor.conjugate()
+            offset = self._swings.offset(spring, frame, places, at)
             wanted[self._index[spring.handle]] += offset
             reaches.append(1.0)
             sizes.append(abs(offset))
@@ -105,6 +104,15 @@ class OwnClocks:
             reaches.append(track.reach)
             sizes.append(abs(offset) + TURNED * abs(own.turn))
             tracked |= set(track.handles)
+        for spring in self._swings.springs:
+            root, tip = self._swings.roots.get(spring.handle), self._index[spring.handle]
+            if root is None or spring.handle in tracked:
+                continue
+            # The root may go its own way, too, and turn: the arm goes along.
+            turn = 0.0 if np.isnan(turns[root]) else turns[root]
+            along = wanted[root] - places[root]
+            along += (wanted[tip] - places[root]) * np.expm1(1j * turn)
+            wanted[tip] += (1 - spring.stretch) * along
         if np.array_equal(wanted, places) and not np.nan_to_num(turns).any():
             return None
         # By how far each leads, so that none jumps in as it begins.

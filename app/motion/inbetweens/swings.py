@@ -1,12 +1,15 @@
 """How the springs of a clip swing: worked out in pieces, around the frames that are asked for."""
 
 from collections.abc import Callable
-from typing import Final, TypeVar
+from functools import partial
+from typing import Final, NamedTuple, TypeVar
 
-from app.document import Clip, Spring, time_of
+import numpy as np
+
+from app.document import Clip, Spring, root_of, time_of
 from engine.arrays import Complexes
 from engine.geometry import HERE, RigidMotion, box_diagonal
-from engine.geometry.kinematics import FADE, Swing, frames_to_settle, swing
+from engine.geometry.kinematics import FADE, Swing, frames_to_settle, swing, turn_arm
 
 FARTHEST_SWING: Final = 0.3  # of the figure's diagonal
 PIECE: Final = 64  # frames of a swing, at least
@@ -20,8 +23,20 @@ Carried = Callable[[float], RigidMotion]
 PlacesAt = Callable[[float], Complexes]
 
 
+class _Piece(NamedTuple):
+    """Some frames of a spring, and those between them: as if it swung freely, and about its root.
+
+    It holds from its first frame to before its last one.
+    """
+
+    first: int
+    last: int
+    free: Swing
+    about: Swing | None  # in arcs
+
+
 class Swings:
-    """The swings of a clip's springs, in the axes of the scene.
+    """The swings of a clip's springs, which the motion in the scene drives.
 
     A damped spring forgets: a piece is worked out from rest, so many frames before it begins as the
     spring takes to settle. A loop that is over sooner is worked out whole, so that it closes.
@@ -30,6 +45,8 @@ class Swings:
     ----------
     springs : tuple of Spring
         Those that are enabled.
+    roots : dict of int to int
+        By the ids of handles, the numbers of those about which they swing.
     run_up : int
         Frames before a frame from which its swings follow.
     """
@@ -38,6 +55,8 @@ class Swings:
         self._clip, self._carried = clip, carried
         self.springs = tuple(spring for spring in clip.figure.springs if spring.enabled)
         self._index = {handle.id: number for number, handle in enumerate(clip.figure.handles)}
+        roots = {spring.handle: root_of(clip.figure, spring) for spring in self.springs}
+        self.roots = {i: self._index[root] for i, root in roots.items() if root is not None}
         self._count = clip.frames.last - clip.frames.first + 1
         self._settling = {
             each.handle: int(
@@ -46,20 +65,32 @@ class Swings:
             for each in self.springs
         }
         self.run_up = max(self._settling.values(), default=0)
-        # Each with the frame from which it is, and the one before which it ends.
-        self._pieces: dict[tuple[int, int], tuple[int, int, Swing]] = {}
+        self._pieces: dict[tuple[int, int], _Piece] = {}
         self._places: dict[object, Complexes] = {}
 
-    def offset(self, spring: Spring, frame: float, at: PlacesAt) -> complex:
-        """Return by how much a spring moves its handle at a frame.
+    def offset(self, spring: Spring, frame: float, places: Complexes, at: PlacesAt) -> complex:
+        """Return by how much a spring moves its handle at a frame, on the figure by itself.
 
         Parameters
         ----------
         spring : Spring
         frame : float
+        places : complex128, shape (h,)
+            Where the handles are at the frame before springs and tracks.
         at : callable
-            Returns where the handles are at any frame before springs and tracks, (h,).
+            Returns the same at any frame.
         """
+        piece, time = self._piece(spring, frame, at)
+        hung = self._carried(frame) if self._carried else HERE
+        free = complex(piece.free.at(time)) * hung.factor.conjugate()
+        if piece.about is None:
+            return free
+        arm = places[self._index[spring.handle]] - places[self.roots[spring.handle]]
+        turned = turn_arm(complex(arm), float(piece.about.at(time).real))
+        return (1 - spring.stretch) * turned + spring.stretch * free
+
+    def _piece(self, spring: Spring, frame: float, at: PlacesAt) -> tuple[_Piece, float]:
+        """Return the piece of a spring that shows a frame, and the time in it."""
         last, settling = self._count - 1, self._settling[spring.handle]
         time = frame - self._clip.frames.first - spring.lag
         is_loop = self._clip.loop and last > 0
@@ -67,8 +98,8 @@ class Swings:
         is_whole = is_loop and settling >= last
         size = self._count if is_whole else max(PIECE, settling // 4)
         number = int(time // size)
-        start, end, known = self._pieces.get((spring.handle, number), (0, 0, None))
-        if known is None or time >= end:
+        known = self._pieces.get((spring.handle, number))
+        if known is None or time >= known.last:
             # Twice as long as before, so that whoever goes on pays for each frame twice at most.
             length = PIECE
             while number * size + length <= time:
@@ -82,14 +113,19 @@ class Swings:
                 start = max(start, 0)
                 frames = range(start, min(end + FADE + 1, self._count))
             own = [i % last if is_loop and not is_whole else i for i in frames]
-            known = self._swung(spring, own, at, loop=is_whole)
-            _keep(self._pieces, (spring.handle, number), (start, end, known), KEPT_PIECES)
-        return complex(known.at(time - start))
+            free, about = self._swung(spring, own, at, loop=is_whole)
+            known = _Piece(start, end, free, about)
+            _keep(self._pieces, (spring.handle, number), known, KEPT_PIECES)
+        return known, time - known.first
 
-    def _swung(self, spring: Spring, frames: list[int], at: PlacesAt, *, loop: bool) -> Swing:
-        clip, number = self._clip, self._index[spring.handle]
-        return swing(
-            [self._driving(clip.frames.first + frame, at)[number] for frame in frames],
+    def _swung(
+        self, spring: Spring, frames: list[int], at: PlacesAt, *, loop: bool
+    ) -> tuple[Swing, Swing | None]:
+        clip, root = self._clip, self.roots.get(spring.handle)
+        places = np.array([self._driving(clip.frames.first + frame, at) for frame in frames]).T
+        swung = partial(
+            swing,
+            places[self._index[spring.handle]],
             clip.fps,
             frequency=spring.frequency,
             damping=spring.damping,
@@ -97,6 +133,7 @@ class Swings:
             limit=FARTHEST_SWING * box_diagonal(clip.figure.domain.outline),
             loop=loop,
         )
+        return swung(), None if root is None else swung(roots=places[root])
 
     def _driving(self, frame: int, at: PlacesAt) -> Complexes:
         """Return where the handles (h,) are in the scene; frames that show the same do once."""

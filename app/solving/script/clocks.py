@@ -27,7 +27,8 @@ from app.storage import JsonObject, as_list, as_number, as_point, as_text, as_wh
 
 TRACK_FIELDS = ("handle", "handles", "with", "keys", "delay", "reach")
 TRACK_KEY_FIELDS = ("frame", "offset", "at", "velocity", "turn", "ease", "passing")
-SPRING_FIELDS = ("handle", "preset", "frequency", "damping", "lag", "strength")
+SPRING_NUMBERS = ("frequency", "damping", "lag", "strength", "stretch")
+SPRING_FIELDS = ("handle", "preset", "root", *SPRING_NUMBERS)
 CYCLE_FIELDS = ("from", "to", "until")
 # What the places of a track's keys are called, by what it goes with.
 PLACES = {"pose": "offset", "picture": "at"}
@@ -157,7 +158,7 @@ def _spring(content: object, where: str, handles: Mapping[str, int]) -> Spring:
     spring = fields_in(content, where, SPRING_FIELDS)
     given = {
         name: as_number(spring[name], f"{where}.{name}")
-        for name in ("frequency", "damping", "lag", "strength")
+        for name in SPRING_NUMBERS
         if name in spring
     }
     if "preset" in spring:
@@ -167,9 +168,9 @@ def _spring(content: object, where: str, handles: Mapping[str, int]) -> Spring:
         given = dict(zip(("frequency", "damping"), SPRINGS[preset], strict=True)) | given
     elif not {"frequency", "damping"} <= given.keys():
         raise LissomError(NO_PRESET.format(where=where, presets=", ".join(SPRINGS)))
-    return made_of(
-        Spring, where, handle=_number(spring["handle"], f"{where}.handle", handles), **given
-    )
+    handle = _number(spring["handle"], f"{where}.handle", handles)
+    root = _number(spring["root"], f"{where}.root", handles) if "root" in spring else None
+    return made_of(Spring, where, handle=handle, root=root, **given)
 
 
 def _numbers(track: JsonObject, where: str, handles: Mapping[str, int]) -> tuple[int, ...]:

@@ -193,6 +193,9 @@ SPRING = record(
     Field("damping", NUMBER),
     Field("lag", NUMBER, usual=0.0),
     Field("strength", NUMBER, usual=1.0),
+    Field("root", optional(WHOLE), usual=None),
+    # Before springs had roots, all of them swung freely.
+    Field("stretch", NUMBER, earlier=1.0),
     Field("enabled", FLAG, usual=True),
 )
 CYCLE = record(

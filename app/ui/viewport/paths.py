@@ -31,7 +31,7 @@ def mark_path(
     """Return the path of the chosen track, and the trail of a drag that is recorded."""
     lines, discs, track, take = list[Line](), list[Disc](), _chosen(project), project.take
     if take is not None and len(take.samples) > 1:
-        trail = np.array([sample.in_scene for sample in take.samples])
+        trail = np.array([sample.place for sample in take.samples])
         lines.append(Line(points=trail, colour=(*key[:3], 0.35 * key[3]), width=3.0 * scale))
     if track is None or (take is not None and take.after is None):
         return lines, ()

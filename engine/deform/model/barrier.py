@@ -85,9 +85,11 @@ class Barrier:
     def value(self, a: Floats, b: Floats) -> Floats:
         """Return the barrier at each sample; ∞ everywhere where one sample is not within."""
         u = self.distances(a)
-        if not np.all(u > b):
+        slacks = u - b
+        if not slacks.min() > 0:
             return np.full(np.shape(a), np.inf)
-        density: Floats = -self.weight * np.log(((u - b) * (u + b)).prod(axis=0))
+        of_k, of_sigma_b, of_sigma_a = slacks * (u + b)
+        density: Floats = -self.weight * np.log(of_k * of_sigma_b * of_sigma_a)
         return density
 
     def derivatives(self, a: Floats, b: Floats) -> Radial:
@@ -123,9 +125,10 @@ class Barrier:
 
         Each is stopped before it reaches zero. `da`, `db` are the changes of a and b in the step.
         """
-        margins = self.margins(a, b)
+        u = self.distances(a)
+        margins = (u - b) * (u + b)
         duals = self._duals_at(margins)
-        ahead = margins + self.margin_changes(a, b, da, db)
+        ahead = margins + 2.0 * (u * self._slopes() * da - b * db)
         return np.maximum(duals + (self.weight - duals * ahead) / margins, 0.1 * duals)
 
     def distances(self, a: Floats) -> Floats:

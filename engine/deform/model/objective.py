@@ -15,6 +15,7 @@ them. In all there are u = 4 r − 2 − 2 q real unknowns for the r functions o
 
 from dataclasses import dataclass
 from functools import cached_property
+from math import sqrt
 
 import numpy as np
 
@@ -91,8 +92,9 @@ class Objective:
     def energy(self, jet: Jet) -> float:
         """Return the objective without its barrier."""
         with np.errstate(over="ignore", invalid="ignore"):
-            pull = np.abs(self.wish.errors(jet.positions)) ** 2
-            value = self.boundary.weights @ jet.density + self.handles.stiffness @ pull
+            errors = self.wish.errors(jet.positions)
+            value = self.boundary.weights @ jet.density
+            value += np.vdot(errors, self.handles.stiffness * errors).real
             if self.wish.hands is not None:
                 lacking = jet.positions - self.wish.positions
                 value += self.wish.hands.work(self.wish.hands.given(lacking))
@@ -104,8 +106,9 @@ class Objective:
 
     def handle_error(self, jet: Jet) -> float:
         """Return the root mean square distance of the handles from their targets, over L."""
-        errors = np.abs(jet.positions - self.wish.positions)
-        return float(np.sqrt(np.mean(errors**2))) / self.boundary.size if len(errors) else 0.0
+        errors = jet.positions - self.wish.positions
+        squares = np.vdot(errors, errors).real / max(len(errors), 1)
+        return sqrt(squares) / self.boundary.size
 
     def within(self, jet: Jet) -> bool:
         """Tell whether the samples are strictly within the walls."""

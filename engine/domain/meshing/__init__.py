@@ -6,6 +6,7 @@ Imports: `engine.geometry`.
 """
 
 from engine.domain.meshing.depth import (
+    find_distances as find_distances,
     in_depth_order as in_depth_order,
     spread_depth as spread_depth,
 )

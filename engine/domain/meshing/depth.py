@@ -60,6 +60,13 @@ def spread_depth(
     return spread
 
 
+def find_distances(mesh: Mesh, start: complex, ends: Complexes) -> Floats:
+    """Return how far it is from a point of a shape to some others (n,) inside it, likewise."""
+    first, *others = (int(np.argmin(np.abs(mesh.vertices - each))) for each in (start, *ends))
+    found: Floats = dijkstra(_ways(mesh), directed=False, indices=[first])[0][others]
+    return found
+
+
 def in_depth_order(mesh: Mesh, depths: Floats) -> Integers:
     """Return the triangles (m, 3) from back to front by the depths (v,) of their corners.
 

@@ -11,4 +11,5 @@ from engine.geometry.kinematics.springs import (
     Swing as Swing,
     frames_to_settle as frames_to_settle,
     swing as swing,
+    turn_arm as turn_arm,
 )

@@ -17,6 +17,7 @@ SILENT = 1e-9
 FORGOTTEN = 1e-12  # share of a swing that is left when it has settled
 LONGEST = 2**20  # frames in which a spring may settle
 CLOSED = 1e-12  # smallest singular value of the equation of a loop that can be solved
+WIDEST = np.pi / 2  # to which side an arm turns at most, in radians
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -95,6 +96,7 @@ def swing(
     strength: float = 1.0,
     limit: float = np.inf,
     loop: bool = False,
+    roots: npt.ArrayLike | None = None,
 ) -> Swing:
     """Return how a spring swings about a place whose motion drives it.
 
@@ -117,11 +119,14 @@ def swing(
         Pixels, above 0. Offsets o are o/√(1 + |o/limit|²), so that they stay below it.
     loop : bool
         Whether the motion comes round.
+    roots : array_like of complex, shape (n,), optional
+        r, where the root is at these frames. With it the spring turns the arm from the root to the
+        place, q − r, and what the swing returns are arcs: see `turn_arm`.
 
     Returns
     -------
     Swing
-        To be asked for offsets from q at any time.
+        To be asked for offsets from q, or for arcs, at any time.
 
     Raises
     ------
@@ -137,6 +142,9 @@ def swing(
 
     In a loop it is the periodic motion, s = (I − Mᴺ)⁻¹c, with the flow M of a frame and what one
     round c from rest leads to.
+
+    An arm's angle φ obeys φ̈ + 2ζωφ̇ + ω²φ = −Im(q̈ ē)/L, with its length L and its direction e: the
+    part of −q̈ across the arm, in axes that turn with it. The arc o = Lφ is found in place of φ.
 
     A swing ends where its amplitude, √(|o|² + |ȯ/ω|²), which never grows by itself, is below `GONE`
     and nothing drives it for `FADE` frames: in so many it fades by a cubic, and is exactly 0 until
@@ -163,6 +171,8 @@ def swing(
     )
     angle = 2 * np.pi * frequency / fps
     jumps = _jumps(q, loop=loop) * (strength / angle)
+    if roots is not None:
+        jumps = _across(jumps, q - as_points(roots, "The roots of a spring", at_least=len(q)))
     jumps[np.abs(jumps) <= SILENT] = 0
     step = flow(np.array(angle), damping)
     run = _round(jumps, step) if loop else _run(jumps, step, _until_next(jumps))
@@ -175,6 +185,16 @@ def swing(
         states=freeze(run.states),
         fading=freeze(run.fading),
     )
+
+
+def turn_arm(arm: complex, arc: float) -> complex:
+    """Return by how much the end of an arm moves that turns about its root by an arc, in pixels.
+
+    The arm keeps its length, and its angle φ = arc/length becomes φ/√(1 + (φ/`WIDEST`)²).
+    """
+    length = abs(arm)
+    angle = arc / length if length else 0.0
+    return arm * complex(np.expm1(1j * angle / hypot(1.0, angle / WIDEST)))
 
 
 def frames_to_settle(fps: float, frequency: float, damping: float) -> float:
@@ -285,6 +305,14 @@ def _jumps(places: Complexes, *, loop: bool) -> Complexes:
     if not len(velocities):
         return np.zeros(1, dtype=np.complex128)
     return velocities - np.roll(velocities, 1)
+
+
+def _across(jumps: Complexes, arms: Complexes) -> Complexes:
+    """Return the part of jumps across the arms (n,) at these frames, counter-clockwise."""
+    arms = arms[: len(jumps)]
+    lengths = np.abs(arms)
+    along = np.divide(arms, lengths, out=np.zeros_like(arms), where=lengths > 0)
+    return (jumps * along.conj()).imag.astype(np.complex128)
 
 
 def _until_next(jumps: Complexes, *, again: bool = False) -> Indices:

@@ -350,6 +350,8 @@ def test_a_deleted_handle_takes_its_track_and_spring_along_in_one_step():
     assert figure.springs == ()
     history.undo()
     assert history.document is document
+    rooted = tracked(springs=(replace(SPRING, root=1),))
+    assert handle_commands.remove_handles(0, {1})(rooted).figures[0].springs == (SPRING,)
     renamed = handle_commands.rename_handle(0, 2, "tuft")(document).figures[0]
     assert (renamed.tracks, renamed.springs) == (document.figures[0].tracks, (SPRING,))
 

@@ -20,6 +20,7 @@ from app.document import (
     TrackKey,
     clip_of,
     handle_commands,
+    root_of,
     time_of,
     track_at,
 )
@@ -40,7 +41,7 @@ from app.motion.inbetweens.swings import FARTHEST_SWING, PIECE, Swings
 from app.reports import Verdict, certify_clip, corrected_frames
 from app.reports.acting_frames import acting_frames
 from engine.geometry import HERE, box_diagonal
-from engine.geometry.kinematics import swing
+from engine.geometry.kinematics import swing, turn_arm
 
 IDS = {name: number for number, name in enumerate(PLACES)}
 SHORT = 4  # frames between two keys, and
@@ -284,9 +285,71 @@ def test_spring_moves_nothing_without_strength_or_under_a_track():
     assert sizes[0] == pytest.approx(sizes[1], abs=0.1)
 
 
+def arms(frames, **settings):
+    """Return arms from the root to the handle that swings: in the base motion, and shown."""
+    document = springy(**settings)
+    animation, root = (
+        animate(document),
+        root_of(document.figures[0], document.figures[0].springs[0]),
+    )
+    both = [(animation.base.frame(frame).positions, animation.positions(frame)) for frame in frames]
+    tip, foot = np.array([[each[[IDS["top"], root]] for each in pair] for pair in both]).T
+    return tip - foot  # (2, frames)
+
+
 @pytest.mark.parametrize("loop", [False, True])
-def test_pieces_of_a_swing_are_those_of_the_whole(loop):
-    document = springy(loop=loop, damping=0.2, lag=2.5)
+def test_spring_keeps_its_distance_to_its_root(loop):
+    frames, settings = (2, 4.3, 6, 9), {"loop": loop, "frequency": 3.0}
+    base, shown = arms(frames, **settings)
+    assert_allclose(np.abs(shown), np.abs(base), rtol=0, atol=0.05)
+    assert np.abs(np.angle(shown / base)).max() > 0.1
+    longer = [
+        np.abs(np.subtract(*np.abs(arms(frames, stretch=stretch, **settings)))).max()
+        for stretch in (0.5, 1.0)
+    ]
+    assert longer[1] > longer[0] > 0.3
+
+
+def test_spring_swings_about_the_handle_that_it_has_as_root():
+    for name in ("left", "right"):
+        base, shown = arms((4, 7), root=IDS[name], frequency=3.0)
+        assert_allclose(np.abs(shown), np.abs(base), rtol=0, atol=0.05)
+        assert np.abs(np.angle(shown / base)).max() > 0.02
+
+
+def test_slow_spring_shows_a_frame_alike_however_it_is_reached():
+    document = springy(frequency=1.0, damping=0.2)
+    document = replace(document, frames=FrameRange(0, 200))
+    points = np.array(list(PLACES.values()))
+    through = animate(document, points)
+    shown = [through.positions(frame) for frame in range(0, 120, 3)]
+    for number in (3, 11, 34):
+        alone = animate(document, points).positions(3 * number)
+        assert_allclose(alone, shown[number], rtol=0, atol=1e-6)
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.15])
+def test_what_swings_goes_along_where_a_track_moves_its_root(turn):
+    """The arm keeps its length, and turns where the track turns the shape at its root."""
+    keys = tuple(
+        TrackKey(frame=frame, place=place, turn=share * turn)
+        for frame, place, share in ((0, 0j, 0), (6, 5 - 4j, 1), (12, 0j, 0))
+    )
+    moves = Track(handles=(IDS["middle"],), keys=keys, turns=True)
+    document = springy(root=IDS["middle"])
+    frames, seen = (3, 6, 8), []
+    for tracks in ((), (moves,)):
+        animation = animate(with_figure(document, tracks=tracks))
+        places = np.array([animation.positions(frame) for frame in frames])
+        seen.append(places[:, IDS["top"]] - places[:, IDS["middle"]])
+    turns = [track_at(moves, clip_of(document, 0), frame).turn for frame in frames]
+    assert_allclose(seen[1], seen[0] * np.exp(1j * np.array(turns)), rtol=0, atol=0.2)
+
+
+@pytest.mark.parametrize("stretch", [0.0, 1.0])
+@pytest.mark.parametrize("loop", [False, True])
+def test_pieces_of_a_swing_are_those_of_the_whole(loop, stretch):
+    document = springy(loop=loop, damping=0.2, lag=2.5, stretch=stretch)
     clip = clip_of(replace(document, frames=FrameRange(0, 300)), 0)
     (spring,) = clip.figure.springs
     places = np.cumsum(np.random.default_rng(0).normal(0, 20, (301, 4, 2)) @ [1, 1j], axis=0)
@@ -296,10 +359,14 @@ def test_pieces_of_a_swing_are_those_of_the_whole(loop):
     assert PIECE < swings.run_up < 300 - 2 * PIECE
     settings = {"frequency": spring.frequency, "damping": spring.damping, "lag": spring.lag}
     limit = FARTHEST_SWING * box_diagonal(clip.figure.domain.outline)
-    whole = swing(places[:, IDS["top"]], clip.fps, limit=limit, loop=loop, **settings)
+    root = places[:, root_of(clip.figure, spring)]
+    roots = None if stretch else root
+    whole = swing(places[:, IDS["top"]], clip.fps, limit=limit, loop=loop, roots=roots, **settings)
     for frame in (299.5, 150, 63.9, 64, 0.5, 98, 299, *range(0, 301, 7)):
-        found = swings.offset(spring, frame, lambda at: places[at])
-        assert abs(found - whole.at(frame)) < 1e-9
+        here = places[int(frame)]
+        found = swings.offset(spring, frame, here, lambda at: places[at])
+        arm, at = here[IDS["top"]] - root[int(frame)], complex(whole.at(frame))
+        assert abs(found - (at if stretch else turn_arm(arm, at.real))) < 1e-9
 
 
 @pytest.mark.parametrize("damping", [0.0, 0.2])
@@ -315,7 +382,7 @@ def test_spring_is_worked_out_around_the_frame_it_is_asked_for(damping):
 
     swings = Swings(clip, lambda _: HERE)
     for frame in (3, *[500_000] * (damping > 0)):
-        swings.offset(spring, frame, at)
+        swings.offset(spring, frame, at(frame), at)
     assert len(asked) < 1_000
 
 
@@ -328,10 +395,11 @@ def test_spring_acts_until_it_has_settled():
     swings = Swings(clip, None)
     (spring,) = clip.figure.springs
     animation = animate(document)
-    offsets = [
-        swings.offset(spring, frame, lambda at: animation.base.frame(at).positions)
-        for frame in range(3 * SHORT, 60)
-    ]
+
+    def base(frame):
+        return animation.base.frame(frame).positions
+
+    offsets = [swings.offset(spring, frame, base(frame), base) for frame in range(3 * SHORT, 60)]
     assert offsets[0]
     assert not any(offsets[frames[-1] - 3 * SHORT :])
     assert len(acting_frames(clip, is_carried=True)[0]) == 1_000_000

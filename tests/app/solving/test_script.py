@@ -159,7 +159,15 @@ CLOCKED = {
     "springs": [
         {"handle": "nose", "preset": "ear"},
         {"handle": "tail", "preset": "tail", "damping": 0.5, "lag": 1.5},
-        {"handle": "hoof", "frequency": 3, "damping": 0.25, "lag": 1, "strength": 0.5},
+        {
+            "handle": "hoof",
+            "frequency": 3,
+            "damping": 0.25,
+            "lag": 1,
+            "strength": 0.5,
+            "root": "tail",
+            "stretch": 0.5,
+        },
     ],
 }
 
@@ -191,7 +199,7 @@ def test_tracks_and_springs_are_read():
     assert figure.springs == (
         Spring(handle=0, frequency=3.0, damping=0.25),
         Spring(handle=2, frequency=1.6, damping=0.5, lag=1.5),
-        Spring(handle=1, frequency=3.0, damping=0.25, lag=1.0, strength=0.5),
+        Spring(handle=1, frequency=3.0, damping=0.25, lag=1.0, strength=0.5, root=2, stretch=0.5),
     )
     # Keys of tracks make an animation as long as those of poses do.
     assert script.last == 30
@@ -288,6 +296,9 @@ def test_handles_stay_where_keys_have_them_unless_a_script_says_otherwise():
         (["springs", 2, "lag"], -1, "lag of a spring is from 0"),
         (["springs", 2, "strength"], "much", says(NOT_NUMBER, where="strength")),
         (["springs", 2, "mass"], 1, "unknown field 'mass'"),
+        (["springs", 2, "stretch"], 2, r"springs\[2\]: The stretch of a spring is between 0 and 1"),
+        (["springs", 2, "root"], "ear", r"springs\[2\].root names the handle 'ear'"),
+        (["springs", 2, "root"], "hoof", r"springs\[2\]: A spring swings about another handle"),
     ],
 )
 def test_whatever_tracks_and_springs_cannot_be_is_refused(path, value, message):
@@ -407,7 +418,7 @@ def test_a_script_gives_its_figure_tracks_springs_and_stillness():
         **CLOCKED,
         "handles": handles,
         "tracks": [{"handle": "start", "keys": [{"frame": 40, "offset": [3, 4]}]}],
-        "springs": [{"handle": "end", "preset": "tail"}],
+        "springs": [{"handle": "end", "preset": "tail", "root": "start"}],
     }
     document, _ = pose_document(opened, parse_pose_script(script), lambda _: None)
     figure = document.figures[0]
@@ -417,6 +428,7 @@ def test_a_script_gives_its_figure_tracks_springs_and_stillness():
     assert (end.free, start.free) == (False, True)
     assert figure.track_of(start.id).keys == (TrackKey(frame=40, place=3 + 4j),)
     assert figure.spring_of(end.id).frequency == 1.6
+    assert figure.spring_of(end.id).root == start.id
     loose = parse_pose_script({**script, "still": False})
     document, _ = pose_document(opened, loose, lambda _: None)
     assert not document.figures[0].stillness

@@ -276,6 +276,17 @@ def test_unknown_fields_of_tracks_and_springs_are_kept(tmp_path):
     assert json.loads(read_members(tmp_path / "b")["project.json"]) == content
 
 
+def test_springs_of_older_files_swing_as_freely_as_they_did(tmp_path):
+    save_project(tmp_path / "a", clocked_document())
+    members = read_members(tmp_path / "a")
+    content = json.loads(members["project.json"])
+    (spring,) = content["figures"][0]["springs"]
+    del spring["stretch"], spring["root"]
+    older = pack(tmp_path / "b", members | {"project.json": json.dumps(content).encode()})
+    (spring,) = load_project(older).figures[0].springs
+    assert (spring.stretch, spring.root) == (1.0, None)
+
+
 @pytest.mark.parametrize(
     ("way", "value", "message"),
     [
@@ -315,6 +326,10 @@ def test_unknown_fields_of_tracks_and_springs_are_kept(tmp_path):
         (["springs", 0, "lag"], 1e9, "lag of a spring is from 0"),
         (["springs", 0, "strength"], -0.1, "strength of a spring is from 0"),
         (["springs", 0, "damping"], "none", says(NOT_NUMBER, where="damping")),
+        (["springs", 0, "stretch"], 1.5, "stretch of a spring is between 0 and 1, not 1.5"),
+        (["springs", 0, "root"], 7, "spring swings about the handle 7, which is not there"),
+        (["springs", 0, "root"], 1, "about another handle than its own"),
+        (["springs", 0, "root"], "4", says(NOT_WHOLE, where="root")),
     ],
 )
 def test_clocks_that_make_no_sense_are_named(tmp_path, way, value, message):

@@ -542,9 +542,23 @@ def test_a_handle_follows_like_a_tail(window, bent, press):
     assert bent.figure.spring_of(RIGHT) == Spring(handle=RIGHT, frequency=4.5, damping=0.12)
     press("on##spring")
     assert not bent.figure.spring_of(RIGHT).enabled
+    window.run(
+        lambda robot: (
+            robot.set_ref("//Handle"),
+            robot.combo_click(f"##root/###about {LEFT}"),
+        )
+    )
+    assert bent.figure.spring_of(RIGHT).root == LEFT
+    window.run(
+        lambda robot: (
+            robot.set_ref("//Handle"),
+            robot.item_input_value("**/##stretch", 0.5),
+        )
+    )
+    assert bent.figure.spring_of(RIGHT).stretch == 0.5
     press("delete spring")
     assert bent.figure.spring_of(RIGHT) is None
-    for _ in range(4):
+    for _ in range(6):
         window.act(editing.undo)
     assert bent.document is before
 

@@ -5,15 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from bars import BENT, HALF, LAST, bend_bar
-from harness import MOST_FRAMES
+from harness import FRAME, MOST_FRAMES
 from numpy.testing import assert_allclose
 
-from app.document import Target, track_at
-from app.document.commands import scene_commands, track_commands
+from app.document import Keyframe, Target, clip_of, movement_at, track_at
+from app.document.commands import filming_commands, key_commands, scene_commands, track_commands
 from app.document.timing import Track, TrackKey
 from app.editor.actions import editing, playback, posing, tracking
 from app.editor.actions.timing import tracks
 from app.editor.actions.tracking.solving import COMPLAINT
+from app.motion import Animation
 from app.ui.bars.status import limit_of_pose
 from app.ui.viewport.marks import unreached
 from engine.errors import EngineError
@@ -432,6 +433,84 @@ def test_a_click_records_nothing(window, brief):
     assert brief.playhead.since is None
 
 
+HOP = 30j  # by how much the body goes up
+
+
+def hop_by_keys(project):
+    """Let the whole body hop by the keys of its poses."""
+    figure = project.figure
+    rest = figure.keys[0].pose
+    targets = {i: replace(each, position=each.position + HOP) for i, each in rest.targets.items()}
+    up = replace(rest, phi=rest.phi + HOP, targets=targets)
+    keys = tuple(
+        Keyframe(frame=frame, pose=pose) for frame, pose in ((0, rest), (HALF, up), (LAST, rest))
+    )
+    project.history.do(key_commands.put_keys(figure.id, keys))
+
+
+def hop_as_a_layer(project):
+    """Let the layer hop, as it is."""
+    for frame, shift in ((0, 0j), (HALF, HOP), (LAST, 0j)):
+        project.history.do(filming_commands.key_movement(project.active, frame, shift, 0.0))
+
+
+def in_scene(window, project, frames):
+    """Return where the handle at the end is shown in the scene at some frames."""
+    seen = []
+    for frame in frames:
+        playback.scrub(window.session, frame)
+        window.settle()
+        seen.append(complex(project.puppet.shown.placement.on(np.array([place_of(project)]))[0]))
+    return np.array(seen)
+
+
+@pytest.mark.parametrize("hop", [hop_by_keys, hop_as_a_layer])
+def test_a_still_pointer_over_a_hopping_body_records_a_still_handle(window, brief, hop):
+    hop(brief)
+    playback.scrub(window.session, 0)
+    window.settle()
+    (start,) = in_scene(window, brief, [0])
+
+    def until(robot):
+        while brief.take is None or brief.take.samples[-1:] < [(LATER,)]:
+            window.session.jobs.settle()
+            robot.yield_()
+        robot.mouse_up(0)
+
+    record(window, brief, [], until=until)
+    tracking.smooth(window.session, 0.0)
+    assert brief.figure.track_of(END).keys[-1].frame == LATER
+    places = in_scene(window, brief, range(1, LATER))
+    assert np.abs(places - start).max() < 2
+    assert abs(places[HALF - 1] - start) < 1
+
+
+@pytest.mark.parametrize("hop", [hop_by_keys, hop_as_a_layer])
+def test_a_pointer_that_goes_with_the_body_changes_no_shape(window, brief, hop):
+    hop(brief)
+    playback.scrub(window.session, 0)
+    window.settle()
+    session, document = window.session, brief.document
+    point = np.array([brief.figure.handle(END).position])
+    body = Animation(clip_of(document, brief.active), points=point)
+
+    def place():
+        """Return where in the scene the body has the handle, when the next picture is drawn."""
+        frame = min((session.clock() + FRAME - begun) * document.fps, LAST)
+        placement = movement_at(document, document.figures[0], frame)
+        return complex(placement.on(body.positions(frame))[0])
+
+    begun = session.clock()
+    tracking.begin_take(session, END, place(), gesture=object())
+    while not brief.take.is_over:
+        tracking.perform(session, place())
+        window.frames()
+    window.settle()
+    tracking.smooth(session, 0.0)
+    (track,) = brief.figure.tracks
+    assert np.abs([key.place for key in track.keys]).max() < 1.0, "it speeds up between frames"
+
+
 def test_passes_add_up_and_undo_takes_back_the_last(window, brief):
     playback.scrub(window.session, 0)
     window.settle()
@@ -457,7 +536,7 @@ def test_a_planted_track_is_recorded_in_places_of_the_picture(window, brief):
     record(window, brief, ARC)
     (track,) = brief.figure.tracks
     assert track.planted
-    places = {sample.time: sample.in_scene for sample in brief.take.samples}
+    places = {sample.time: sample.place for sample in brief.take.samples}
     for key in track.keys:
         time = min(places, key=lambda time: abs(time - key.frame))
         assert abs(key.place - places[time]) < 5

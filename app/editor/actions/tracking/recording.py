@@ -8,11 +8,12 @@ from app.editor.actions.tracking.carrying import go_on, put_key
 from app.editor.actions.tracking.places import ground_at, index_of
 from app.editor.failures import report
 from app.editor.project import Project
-from app.editor.session import Session, with_project
+from app.editor.session import CLICK, Session, with_project
 from app.editor.timeline_view import own_frame
 from app.editor.work import Carry, Sample, Take
 from app.errors import LissomError
 from app.motion import Ground, corrected_clip
+from engine.geometry import RigidMotion
 from engine.geometry.kinematics import fit_keys
 
 RECORDING_SPEEDS = (1.0, 0.5, 0.25)
@@ -46,7 +47,7 @@ def set_speed(session: Session, speed: float) -> None:
 def begin_take(
     session: Session, project: Project, handle: int, place: complex, *, gesture: object
 ) -> None:
-    """Begin to record a drag of a handle, which is at a place of the figure by itself."""
+    """Begin to record a drag of a handle, which is at a place of the scene."""
     session.records = False
     track, document, standing = project.figure.track_of(handle), project.document, project.playhead
     running = replace(standing, speed=session.recording_speed).play(document, session.clock())
@@ -70,20 +71,23 @@ def begin_take(
 
 @with_project
 def perform(_: Session, project: Project, place: complex) -> None:
-    """Want the handle that is recorded at another place of the figure by itself."""
+    """Want the handle that is recorded at another place of the scene."""
     if project.take is not None:
         project.take.place = place
 
 
 @with_project
-def end_take(session: Session, project: Project) -> None:
-    """End a recording where it is; the playhead goes back to where that began."""
+def end_take(session: Session, project: Project, *, has_moved: bool = True) -> None:
+    """End a recording where it is; the playhead goes back to where that began.
+
+    Where the hand has not moved it is kept if the body moved under it.
+    """
     take = project.take
     if take is None or take.is_over:
         return
     if session.pointer is take.gesture:
         session.pointer = None
-    take.is_over = True
+    take.is_over, take.has_moved = True, has_moved
     project.playhead = replace(take.playhead, since=None, speed=take.speed)
     if take.figure == project.active:
         project.chosen_track = take.handle
@@ -141,6 +145,8 @@ def maintain(session: Session, project: Project) -> None:
         keep(session)
     elif not take.is_over:
         _record(session, project, take)
+    elif take.after is None and _is_click(project, take):
+        give_up(session)
     elif take.after is None:
         try:
             _write(project, take)
@@ -152,27 +158,39 @@ def maintain(session: Session, project: Project) -> None:
 def _record(session: Session, project: Project, take: Take) -> None:
     """Take note of where the handle is dragged at this moment, and show that."""
     since, now, shown = take.playhead.since, session.clock(), project.puppet.shown
-    if since is None or shown is None:
+    if since is None:
         return
     gone = (now - since) * project.document.fps * take.playhead.speed
     time = min(take.playhead.frame + gone, float(take.last))
-    frame = playback.current_frame(session, project)
-    (placement,) = project.placements([frame], shown.placement)
-    sample = Sample(time, take.place, placement.factor * take.place + placement.shift)
+    sample = Sample(time, take.place)
     if take.samples and take.samples[-1].time == time:
         take.samples[-1] = sample
     else:
         take.samples.append(sample)
-    held = Carry(
-        figure=take.figure,
-        handle=take.handle,
-        frame=frame,
-        gesture=take.gesture,
-        place=take.place,
-    )
-    put_key(session, project, held)
+    if shown is not None:
+        frame = playback.current_frame(session, project)
+        (placement,) = project.placements([frame], shown.placement)
+        held = Carry(
+            figure=take.figure,
+            handle=take.handle,
+            frame=frame,
+            gesture=take.gesture,
+            place=placement.back(take.place),
+        )
+        put_key(session, project, held)
     if project.playhead is not take.playhead or time == take.last:
         end_take(session)
+
+
+def _is_click(project: Project, take: Take) -> bool:
+    """Tell whether the hand has rested on a body that has not moved, as far as that is known."""
+    if take.has_moved:
+        return False
+    times = [sample.time for sample in take.samples]
+    if not times or times[-1] < times[0] + 1.0:
+        return True
+    values = _values(project, take)
+    return values is not None and max(abs(v - values[0]) for v in values) * take.scale <= CLICK
 
 
 def _write(project: Project, take: Take) -> None:
@@ -222,22 +240,28 @@ def _fitted(
 def _values(project: Project, take: Take) -> list[complex] | None:
     """Return what was recorded as the track's keys have it; None until all of it is known."""
     if take.before is not None and take.before.planted:
-        return [sample.in_scene for sample in take.samples]
+        return [sample.place for sample in take.samples]
     index, values = index_of(project, take.handle), []
-    for time, place, _ in take.samples:
+    for time, place in take.samples:
         frame = int(time)
-        ends = [ground_at(project, _wrapped(project, each)) for each in (frame, frame + 1)]
-        if ends[0] is None or ends[1] is None:
+        ends = [_wrapped(project, each) for each in (frame, frame + 1)]
+        grounds = [each for each in (ground_at(project, end) for end in ends) if each is not None]
+        placements = project.placed_at(project.active, ends)
+        if len(grounds) < len(ends) or placements is None:
             return None
-        values.append(_relative(ends[0], ends[1], time - frame, index, place))
+        # The body moves on from frame to frame, and the place of the hand is beside it in both.
+        one, other = (
+            _beside(ground, placement, index, place)
+            for ground, placement in zip(grounds, placements, strict=True)
+        )
+        values.append(one + (time - frame) * (other - one))
     return values
 
 
-def _relative(one: Ground, other: Ground, share: float, index: int, place: complex) -> complex:
-    """Return by how much a place is beside a handle's between two frames, as the shape turns."""
-    at = (1 - share) * one.places[index] + share * other.places[index]
-    turn = (1 - share) * one.turns[index] + share * other.turns[index]
-    return complex((place - at) * turn.conjugate() / abs(turn))
+def _beside(ground: Ground, placement: RigidMotion, index: int, place: complex) -> complex:
+    """Return by how much a place of the scene is beside a handle's, in the axes of the shape."""
+    beside = placement.back(place) - ground.places[index]
+    return complex(beside * ground.turns[index].conjugate())
 
 
 def _wrapped(project: Project, frame: int) -> int:

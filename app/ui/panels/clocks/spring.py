@@ -5,7 +5,7 @@ from typing import Any
 
 from imgui_bundle import icons_fontawesome_6 as icons, imgui
 
-from app.document import SPRINGS, Handle, Spring, track_commands
+from app.document import SPRINGS, Figure, Handle, Spring, root_of, track_commands
 from app.editor import Action, Project, do
 from app.editor.actions import editing, springs
 from app.ui.style import (
@@ -27,13 +27,17 @@ FREQUENCIES = Scale(left=0.2, right=12.0, logarithmic=True)
 DAMPINGS = Scale(left=0.0, right=1.5)
 LAGS = Scale(left=0.0, right=12.0)
 STRENGTHS = Scale(left=0.0, right=2.0)
+STRETCHES = Scale(left=0.0, right=1.0)
 LEAST_FREQUENCY = 0.01  # Hz
+NEAREST = "Nearest handle"
+NO_ROOT = "It swings freely: add a handle where it hangs on, and it keeps its length."
 # Each number of a spring: its field, its label, what it spans, how it is written, what it means.
 NUMBERS = (
     ("frequency", "Frequency", FREQUENCIES, "%.2f", "How often it swings in a second, in Hz"),
     ("damping", "Damping", DAMPINGS, "%.2f", "How soon it comes to rest: 0 never, 1 at once"),
     ("lag", "Lag", LAGS, "%.1f", "By how many frames it notices later that its place moves"),
     ("strength", "Strength", STRENGTHS, "%.2f", "How far it swings: 1 as a spring does"),
+    ("stretch", "Stretch", STRETCHES, "%.2f", "How far its length changes: 0 not, 1 as it likes"),
 )
 
 
@@ -65,6 +69,7 @@ def draw_spring(look: Look, project: Project, handle: Handle) -> list[Action]:
     tip("Whether it follows so; its numbers stay")
     if changed:
         actions.append(_set(replace(spring, enabled=enabled)))
+    actions += _root(look, project.figure, spring)
     for field, text, scale, written, hint in NUMBERS:
         label(look, text)
         entered = slider(look, field, getattr(spring, field), scale, text=written, hint=hint)
@@ -87,8 +92,34 @@ def draw_spring(look: Look, project: Project, handle: Handle) -> list[Action]:
 def _allowed(field: str, value: float) -> float:
     """Return a value that a spring can have."""
     least = LEAST_FREQUENCY if field == "frequency" else 0.0
-    most = {"frequency": 1000.0, "damping": 100.0, "lag": 10_000.0, "strength": 10.0}[field]
+    most = {
+        "frequency": 1000.0,
+        "damping": 100.0,
+        "lag": 10_000.0,
+        "strength": 10.0,
+        "stretch": 1.0,
+    }[field]
     return min(max(round(value, 3), least), most)
+
+
+def _root(look: Look, figure: Figure, spring: Spring) -> list[Action]:
+    """Draw about which handle it swings, and what chooses another one."""
+    actions: list[Action] = []
+    nearest = root_of(figure, replace(spring, root=None))
+    nearest_name = NEAREST if nearest is None else f"{NEAREST}: {figure.handle(nearest).name}"
+    label(look, "Swings about")
+    imgui.set_next_item_width(-1)
+    shown = nearest_name if spring.root is None else figure.handle(spring.root).name
+    if imgui.begin_combo("##root", shown):
+        names = [(handle.id, handle.name) for handle in figure.handles]
+        for root, name in [(None, nearest_name), *names]:
+            if root != spring.handle and imgui.menu_item_simple(f"{name}###about {root}"):
+                actions.append(_set(replace(spring, root=root)))
+        imgui.end_combo()
+    tip("The handle to which it keeps its distance, as an ear's tip to the head")
+    if nearest is None and spring.root is None:
+        small(look, NO_ROOT)
+    return actions
 
 
 def _set(spring: Spring) -> Action:

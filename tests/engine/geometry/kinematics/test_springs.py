@@ -8,8 +8,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy.integrate import solve_ivp
 
 from engine.errors import EngineError
-from engine.geometry.kinematics import swing
-from engine.geometry.kinematics.springs import FADE, GONE, flow
+from engine.geometry.kinematics import swing, turn_arm
+from engine.geometry.kinematics.springs import FADE, GONE, WIDEST, flow
 
 DAMPINGS = [0.0, 1e-9, 0.2, 1 - 1e-9, 1.0, 1 + 1e-9, 1.7, 100.0]
 
@@ -243,6 +243,55 @@ def test_a_limit_is_soft_and_never_reached():
     assert np.abs(free).max() > 24
     assert 10 < np.abs(held).max() < 12
     assert_allclose(held, free / np.sqrt(1 + np.abs(free / 12) ** 2), rtol=1e-12)
+
+
+def test_what_drives_an_arm_is_what_is_across_it():
+    """Where the arm does not turn that is a part of what moves its end freely."""
+    q, times, arm = walk(25, seed=9), np.linspace(0, 24, 100), 3 + 40j
+    settings = {"frequency": 2, "damping": 0.3}
+    arcs = swing(q, 24, roots=q - arm, **settings).at(times)
+    free = swing(q, 24, **settings).at(times)
+    assert_allclose(arcs, (free * np.conj(arm)).imag / abs(arm), rtol=0, atol=1e-9)
+    assert np.abs(arcs).max() > 1
+
+
+def test_an_arm_swings_in_axes_that_turn_with_it():
+    """It obeys the equation of its angle, and not where it was when it was driven."""
+    fps, frequency, damping, count = 480, 2.0, 0.2, 480
+    seconds = np.arange(count + 1) / fps
+    turn = 3 * np.sin(np.pi * seconds) ** 4
+    found = swing(
+        80 * np.exp(1j * turn), fps, frequency=frequency, damping=damping, roots=0 * turn
+    ).at(np.arange(count + 1))
+    omega = 2 * np.pi * frequency
+    driving = np.gradient(np.gradient(turn, 1 / fps), 1 / fps)
+
+    def slope(time, state):
+        angle, pace = state
+        drive = np.interp(time, seconds, driving)
+        return [pace, -drive - 2 * damping * omega * pace - omega**2 * angle]
+
+    exact = solve_ivp(slope, (0, 1), [0, 0], t_eval=seconds, max_step=1 / fps, rtol=1e-8).y[0]
+    assert_allclose(found / 80, exact, rtol=0, atol=0.01 * np.abs(exact).max())
+
+
+def test_an_arm_that_turns_at_one_pace_does_not_swing():
+    q = 50 * np.exp(2j * np.pi * np.arange(31) / 30)
+    settings = {"frequency": 2.0, "damping": 0.2, "loop": True}
+    assert not swing(10 + q, 24, roots=np.full(31, 10), **settings).at(np.arange(30)).any()
+    assert np.abs(swing(10 + q, 24, **settings).at(np.arange(30))).min() > 1
+    # Nor one that has no length.
+    assert not swing(q, 24, roots=q, **settings).at(np.arange(30)).any()
+
+
+@pytest.mark.parametrize("arc", [-1e6, -3.0, 0.0, 1e-9, 20.0, 1e6])
+def test_a_turned_arm_keeps_its_length_and_turns_so_far_at_most(arc):
+    arm = 30 - 40j
+    end = arm + turn_arm(arm, arc)
+    assert abs(end) == pytest.approx(50, abs=1e-10)
+    assert abs(np.angle(end / arm)) <= WIDEST + 1e-9
+    assert np.sign(np.angle(end / arm).round(15)) == np.sign(arc)
+    assert turn_arm(0j, arc) == 0
 
 
 @pytest.mark.parametrize(
