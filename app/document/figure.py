@@ -53,6 +53,7 @@ from engine.variant import Variant
 Posed = TypeVar("Posed", Keyframe, KeptPose)
 NO_KEY = "There is no key at frame {frame}."
 NO_HANDLE = "There is no handle with the id {identity}."
+BONES_IN_ONE_PLACE = "Two bones are between handles {!r}."
 POSE_COUNT = "The figure has {count} poses, not {given}."
 
 
@@ -435,9 +436,7 @@ class Figure:
         for bone in self.bones:
             for end in bone.ends:
                 require(end in known, f"A bone ends at the handle {end}, which is not there.")
-        require_distinct(
-            (tuple(sorted(bone.ends)) for bone in self.bones), "Two bones are between handles {!r}."
-        )
+        require_distinct((tuple(sorted(bone.ends)) for bone in self.bones), BONES_IN_ONE_PLACE)
 
     def _check_pose(self, pose: Pose, what: str) -> None:
         require(

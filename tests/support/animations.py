@@ -2,6 +2,7 @@
 
 import io
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 from documents import altered
@@ -29,12 +30,20 @@ def still_document(
     picture: Bytes = BLOB, *, triangles: int = 1_000, cut_out: CutOut | None = None
 ) -> Document:
     """A document of a picture as it was opened, with frames 0 to 48."""
-    height, width, _ = picture.shape
+    return _still_document(picture.tobytes(), picture.shape, triangles, cut_out or CutOut())
+
+
+@cache
+def _still_document(
+    pixels: bytes, shape: tuple[int, ...], triangles: int, cut_out: CutOut
+) -> Document:
+    picture = np.frombuffer(pixels, np.uint8).reshape(shape)
+    height, width, _ = shape
     stream = io.BytesIO()
     Image.fromarray(picture).save(stream, "PNG")
     file = PictureFile(data=stream.getvalue(), suffix=".png", size=(width, height))
     domain, _ = build_domain(picture, triangles=triangles, detail="normal", cut_out=cut_out)
-    figure = new_figure(file, domain, Meshing(triangles=triangles), cut_out or CutOut())
+    figure = new_figure(file, domain, Meshing(triangles=triangles), cut_out)
     return Document(figures=(figure,))
 
 
@@ -60,6 +69,13 @@ def bar_document() -> Document:
     """That bar as it was opened, within four corners."""
     corners = np.array([18 + 18j, 222 + 18j, 222 + 62j, 18 + 62j])
     return within(still_document(bar_picture()), corners)
+
+
+@cache
+def round_document() -> Document:
+    """The blob as it was opened, within twelve corners."""
+    corners = np.exp(1j * np.linspace(0, 2 * np.pi, 13)[:-1])
+    return within(still_document(), 60 + 45j + 55 * corners.real + 40j * corners.imag)
 
 
 def moving_document(last: int = 6, cut_out: CutOut | None = None) -> Document:

@@ -4,6 +4,7 @@ import ctypes
 import functools
 import gc
 import os
+import sys
 import threading
 from pathlib import Path
 from typing import NamedTuple
@@ -36,15 +37,20 @@ class Held(NamedTuple):
 def held(gl: moderngl.Context) -> Held:
     """Return what is held now; garbage is collected before."""
     gc.collect()
-    objects = gc.get_objects()
-    caches = [each for each in objects if isinstance(each, functools._lru_cache_wrapper)]
-    ours = [cache for cache in caches if cache.__module__.startswith(OURS)]
     return Held(
         files=len(os.listdir("/dev/fd")),  # noqa: PTH208 - their number alone
         threads=threading.active_count(),
         opengl=count_opengl(gl),
-        cached=sum(cache.cache_info().currsize for cache in ours),
+        cached=sum(cache.cache_info().currsize for cache in caches()),
     )
+
+
+def caches() -> set["functools._lru_cache_wrapper[object]"]:
+    """Return the caches of all functions and methods of the program that are loaded."""
+    modules = [vars(module) for name, module in sys.modules.items() if name.startswith(OURS)]
+    classes = [vars(each) for names in modules for each in names.values() if isinstance(each, type)]
+    values = (value for names in (*modules, *classes) for value in names.values())
+    return {value for value in values if isinstance(value, functools._lru_cache_wrapper)}
 
 
 def count_opengl(gl: moderngl.Context) -> int:

@@ -33,6 +33,7 @@ DAMAGED_ZIP = (
     ValueError,
     OverflowError,
 )
+FOLDER_READ = "cannot read {path}: it is a folder"
 NOT_ORDINARY = "cannot read {path}: it is not an ordinary file; copy it into one"
 
 
@@ -60,7 +61,7 @@ def opened_file(path: Path) -> Iterator[OpenFile]:
     if not stat.S_ISREG(status.st_mode):
         os.close(descriptor)
         if stat.S_ISDIR(status.st_mode):
-            raise LissomError(f"cannot read {path}: it is a folder")
+            raise LissomError(FOLDER_READ.format(path=path))
         raise LissomError(NOT_ORDINARY.format(path=path))
     with os.fdopen(descriptor, "rb") as stream:
         yield OpenFile(stream, status.st_size)

@@ -22,7 +22,7 @@ from app.cli.main import TOO_LITTLE_MEMORY, main
 from app.cli.process import LEAST_MEMORY
 from app.errors import LONGEST_SHOWN
 from app.storage import NO_ARRAYS, sample_images, save_project
-from app.storage.files.reading import NOT_ORDINARY
+from app.storage.files.reading import FOLDER_READ, NOT_ORDINARY
 from engine.geometry.polygon import CAGE_FAR, CAGE_REPEATS, FEW_DIGITS
 
 SQUARE = np.array([0, 1, 1 + 1j, 1j])
@@ -133,7 +133,7 @@ def test_what_is_no_plain_file_is_never_waited_for(tmp_path, capsys, suffix, kin
         ".json": ("pose", __file__, path, "--out", out),
     }
     said = refusal(capsys, *calls.get(suffix, ("domain", path, "--out", out)))
-    assert re.search(says(NOT_ORDINARY), said) or "it is a folder" in said
+    assert re.search(f"{says(NOT_ORDINARY)}|{says(FOLDER_READ)}", said)
 
 
 FULL = "lissom: error: cannot use standard output: No space left on device"
@@ -251,7 +251,7 @@ def test_a_folder_in_the_place_of_a_file_is_refused(tmp_path, capsys, name):
     words = ("pose", picture, tmp_path / "a.json", "--out", tmp_path / "a.lissom")
     if not name.endswith("json"):
         (tmp_path / "a.json").write_text('{"schema": 1, "handles": {}, "keys": [{"frame": 0}]}')
-    assert "it is a folder" in refusal(capsys, *words)
+    assert re.search(says(FOLDER_READ), refusal(capsys, *words))
 
 
 def test_names_and_notices_of_a_drawing_are_printable_and_few(tmp_path, capsys):

@@ -374,7 +374,7 @@ from app.editor.work.jobs import Job, Jobs, Kind
 from app.errors import CANCELLED, tell
 
 begun = threading.Event()
-matrix = np.random.default_rng(0).random((3000, 3000))
+matrix = np.random.default_rng(0).random((2000, 2000))
 
 def factorise():
     begun.set()
@@ -385,8 +385,8 @@ jobs = Jobs()
 jobs.put(Job(kind=Kind("factors"), work=factorise, done=print, failed=print))
 begun.wait()
 # So that the end comes when the other thread is deep in its work.
-for _ in range(8):
-    np.linalg.inv(matrix[:700, :700])
+for _ in range(4):
+    np.linalg.inv(matrix[:500, :500])
 """
 
 

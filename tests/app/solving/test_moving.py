@@ -20,7 +20,7 @@ from engine.geometry.motions import Parameters
 CHAIN = MotionOrder(motion="wag", kind="chain", joints=JOINTS["chain"])
 FEW = Meshing(triangles=1000, detail="coarse")
 # Outlines of some of the drawings.
-ROUND = regular_polygon(12)
+ROUND = regular_polygon(8)
 COARSE = {
     "chain": np.array([12 + 142j, 308 + 142j, 308 + 178j, 12 + 178j]),
     "anything": 160 + 160j + 100 * ROUND.real + 130j * ROUND.imag,

@@ -171,7 +171,7 @@ def test_what_commands_make_at_limits_opens_again(tmp_path_factory, begin, seeds
 
 
 @pytest.mark.long
-@settings(max_examples=300)
+@settings(max_examples=120)
 @given(st.sampled_from(BEGINNINGS), st.lists(st.integers(0, 2**32 - 1), max_size=40))
 def test_many_commands_at_limits_open_again(tmp_path_factory, begin, seeds):
     require_reopened(tmp_path_factory.getbasetemp() / "more_limits.lissom", begin, seeds)

@@ -7,6 +7,7 @@ import numpy as np
 import pictures
 import pytest
 from documents import differences
+from harness import Harness
 from imgui_bundle import imgui
 from messages import says
 from PIL import Image
@@ -23,12 +24,17 @@ SIZE = 120
 PAPER = (214, 205, 190)
 
 
-@pytest.fixture
-def drawing(window, tmp_path):
+@pytest.fixture(scope="module")
+def ring(tmp_path_factory):
     """An opaque picture of a ring on a plain colour, whose inside is taken for drawing."""
-    rgba = pictures.on_plain(pictures.ring(SIZE), PAPER)
-    Image.fromarray(rgba).save(tmp_path / "ring.png")
-    return window.open(tmp_path / "ring.png")
+    path = tmp_path_factory.mktemp("ring") / "ring.png"
+    Image.fromarray(pictures.on_plain(pictures.ring(SIZE), PAPER)).save(path)
+    return path
+
+
+@pytest.fixture
+def drawing(window, ring):
+    return window.again(Harness.open, ring)
 
 
 def rest(window):
@@ -83,8 +89,8 @@ def test_where_nothing_is_cut_out_of_a_photo_the_brush_is_offered(window, tmp_pa
     assert not kept(project).all()
 
 
-def test_where_a_background_was_removed_no_brush_is_offered(window, drawing):
-    assert not kept(drawing).all()
+def test_where_a_background_was_removed_no_brush_is_offered(window, ring):
+    assert not kept(window.open(ring)).all()
     # Only to open what it may show through.
     assert [toast.label for toast in window.session.toasts if toast.label] == ["Show where"]
 

@@ -2,6 +2,7 @@
 
 import pytest
 from bars import open_bar
+from harness import Harness
 from imgui_bundle import imgui
 
 from app.editor import Question, do
@@ -192,7 +193,7 @@ def test_greyed_entries_tell_what_is_on_without_a_project(window):
 
 
 def test_the_layout_can_be_put_back(window):
-    window.open(sample_images() / "ring.png")
+    window.again(Harness.open, sample_images() / "ring.png")
     panel = imgui.internal.find_window_by_name("###Timeline").dock_node
     before = panel.size.y
     imgui.internal.dock_builder_set_node_size(panel.id_, imgui.ImVec2(panel.size.x, 500))
@@ -296,7 +297,7 @@ def test_the_mirror_axis_has_another_key_on_macos():
 
 
 def test_a_tab_that_is_out_of_sight_is_found_by_its_name(window):
-    window.open(sample_images() / "ring.png")
+    window.again(Harness.open, sample_images() / "ring.png")
     window.resize((1280, 800), 2.0)
 
     def choose(robot):

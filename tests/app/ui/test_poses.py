@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from animations import still_document
+from documents import altered
 from imgui_bundle import ImVec2, imgui
 from PIL import Image, ImageDraw
 from projects import project_of
@@ -33,7 +34,7 @@ def show_somebody(window):
     pen = ImageDraw.Draw(picture)
     pen.rectangle((60, 10, 99, 109), fill=(200, 120, 60, 255))
     pen.rectangle((10, 50, 149, 69), fill=(90, 140, 200, 255))
-    document = still_document(np.array(picture))
+    document = altered(still_document(np.array(picture)), variant="nu")
     for name, place in HANDLES.items():
         document = handle_commands.add_handle(0, place, name=name)(document)
     window.session.project = project_of(document, np.array(picture), "somebody")

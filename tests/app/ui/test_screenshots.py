@@ -19,10 +19,17 @@ MOVES = {16: (0.13 + 0.12j, -0.05 + 0.1j), 32: (0.02 - 0.08j, 0.02 - 0.05j)}
 
 
 @pytest.fixture
-def dragon(window):
+def wanted(request):
+    """The folder in which somebody wants to look at the screenshots, if anybody does."""
+    return request.config.getoption("--screenshots", default=None)
+
+
+@pytest.fixture
+def dragon(window, wanted):
     """The dragon with three keys that nod its head and sweep its tail."""
     session = window.session
-    session.meshing = Meshing(triangles=4_000)
+    if wanted:
+        session.meshing = Meshing(triangles=4_000)
     project = window.open(sample_images() / "dragon.png")
     size = complex(*project.document.canvas)
 
@@ -49,9 +56,8 @@ def dragon(window):
 
 
 @pytest.fixture
-def save(window, request, tmp_path):
+def save(window, wanted, tmp_path):
     """Takes a picture of a state and returns it; asked for, in all themes and sizes."""
-    wanted = request.config.getoption("--screenshots", default=None)
     folder = Path(wanted or tmp_path)
     sizes = SIZES if wanted else {"1280": SIZES["1280"]}
     themes = ("light", "dark") if wanted else ("dark",)

@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from harness import Harness
 from imgui_bundle import ImVec2, hello_imgui, imgui
 from PIL import Image
 
@@ -53,7 +54,7 @@ def test_shift_and_f1_open_the_sheet_of_keys(window):
 
 
 def test_scale_takes_docked_panels_along(window):
-    window.open(sample_images() / "ring.png")
+    window.again(Harness.open, sample_images() / "ring.png")
     tabs, timeline = _docked("Handle").size.x, _docked("Timeline").size.y
     viewing.scale_up(window.session)
     window.frames(3)
@@ -66,7 +67,7 @@ def test_scale_takes_docked_panels_along(window):
 
 
 def test_docked_panels_keep_the_size_that_a_person_gave_them(window):
-    window.open(sample_images() / "ring.png")
+    window.again(Harness.open, sample_images() / "ring.png")
     node = _docked("Timeline")
     imgui.internal.dock_builder_set_node_size(node.id_, ImVec2(node.size.x, 500))
     window.frames(3)
@@ -81,7 +82,7 @@ def test_docked_panels_keep_the_size_that_a_person_gave_them(window):
 
 
 def test_docked_panels_leave_room_in_a_small_window(window):
-    window.open(sample_images() / "ring.png")
+    window.again(Harness.open, sample_images() / "ring.png")
     window.resize((900, 640), 2.0)
     assert _docked("Timeline").size.y <= 320
     assert _docked("Handle").size.x <= 468
@@ -97,7 +98,7 @@ def test_docked_panels_leave_room_in_a_small_window(window):
     ],
 )
 def test_all_tabs_fit_and_the_one_in_front_has_its_title(window, size, scale):
-    window.open(sample_images() / "ring.png")
+    window.again(Harness.open, sample_images() / "ring.png")
     window.resize(size, scale)
     for title in ("Handle", "Distortion"):
         window.show_tab(title)
@@ -110,7 +111,7 @@ def test_all_tabs_fit_and_the_one_in_front_has_its_title(window, size, scale):
 
 
 def test_tabs_have_their_names_as_far_as_there_is_room(window):
-    window.open(sample_images() / "ring.png")
+    window.again(Harness.open, sample_images() / "ring.png")
     window.show_tab("Export")
     named = []
     for width in (430, 480, 520, 640, 800, 900):

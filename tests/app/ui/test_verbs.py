@@ -16,7 +16,7 @@ from app.ui.shortcuts import MENUS
 VERBS = {name: binding for menu in MENUS.values() for name, binding in menu.items()}
 TABS = ("Handle", "Layers", "Poses", "Motion", "Deform", "Material", "Mesh", "Export")
 DRAWN = 3  # verbs of each document after which the window is drawn
-SEEDS = (*range(4), *(pytest.param(seed, marks=pytest.mark.long) for seed in range(4, 50)))
+SEEDS = (*range(3), *(pytest.param(seed, marks=pytest.mark.long) for seed in range(3, 16)))
 EACH = 4  # documents of a seed
 CLOSES = {"close", "quit"}
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from animations import moving_document
+from animations import PARTED, moving_document
 from invariants import check_pose
 from projects import project_of
 from sessions import BLANK, go, session_of, settle
@@ -128,7 +128,7 @@ def test_a_pose_is_proven_against_the_limits_of_now(session):
 
 def test_a_pose_of_another_shape_cannot_be_pasted(session):
     copying.copy(session)
-    session.project = project_of(moving_document(), BLANK, "other")
+    session.project = project_of(moving_document(cut_out=PARTED), BLANK, "other")
     before = session.project.document
     settle(session)
     assert "no handle called" in pasting.why_not(session, session.project, "as it is")

@@ -72,12 +72,17 @@ def ways(session, name, frame):
     return {each.name: targets[each.id].position - each.position for each in one.handles}
 
 
-@pytest.fixture
-def session(tmp_path):
+@pytest.fixture(scope="module")
+def raised(tmp_path_factory):
     """Near leg raised at frame 0; the far leg, which is drawn elsewhere, and the body at rest."""
-    session = walking(tmp_path, walker())
+    session = walking(tmp_path_factory.mktemp("raised"), walker())
     pull(session, "near leg", knee=18 + 8j, foot=-20 + 30j)
-    return session
+    return session.project.document
+
+
+@pytest.fixture
+def session(raised, tmp_path):
+    return walking(tmp_path, raised)
 
 
 def near_and_far(session, frame):

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from animations import moving_document, still_document
+from animations import moving_document, round_document
 from sessions import session_of, settle
 
 from app.document.commands import figure_commands, handle_commands
@@ -25,14 +25,23 @@ def with_handles(document):
     return document
 
 
-@pytest.fixture
-def session(tmp_path):
+@pytest.fixture(scope="module")
+def blob():
+    return with_handles(round_document())
+
+
+@pytest.fixture(scope="module")
+def pulled(blob, tmp_path_factory):
     """A blob with two handles, one of which is pulled beyond its reach, at frame 0."""
-    session = session_of(with_handles(still_document()), tmp_path)
-    settle(session)
+    session = session_of(blob, tmp_path_factory.mktemp("pulled"))
     posing.wish(session, {1: replace(target(session, 1), position=RIGHT + 70)})
     settle(session)
-    return session
+    return session.project.document
+
+
+@pytest.fixture
+def session(pulled, tmp_path):
+    return session_of(pulled, tmp_path)
 
 
 def pose_of(session, number=0):
@@ -136,9 +145,9 @@ def test_each_arrow_is_a_step(session):
 
 
 @pytest.fixture
-def joined(tmp_path):
+def joined(blob, tmp_path):
     """Two blobs, the second of which hangs on the first, and is posed."""
-    session = session_of(with_handles(still_document()), tmp_path)
+    session = session_of(blob, tmp_path)
     session.project.history.do(figure_commands.set_anchor(0, LEFT))
     settle(session)
     layering.duplicate(session, 0)
@@ -180,9 +189,8 @@ def test_a_layer_stays_that_hangs_on_a_locked_one(joined):
     assert "is locked" in joined.toasts[-1].text
 
 
-def test_the_layer_that_is_pressed_moves_and_no_other(tmp_path):
-    session = session_of(with_handles(still_document()), tmp_path)
-    settle(session)
+def test_the_layer_that_is_pressed_moves_and_no_other(blob, tmp_path):
+    session = session_of(blob, tmp_path)
     layering.duplicate(session, 0)
     layering.choose(session, 0)
     settle(session)
@@ -205,8 +213,7 @@ def test_an_arrow_is_undone_before_it_is_seen(session):
 
 
 def test_a_drawing_without_handles_moves_too(tmp_path):
-    session = session_of(still_document(), tmp_path)
-    settle(session)
+    session = session_of(round_document(), tmp_path)
     before = pose_of(session)
     drag(session, ctrl=True, shift=True)
     assert is_moved(session, pose_of(session), before, WAY)
@@ -237,8 +244,9 @@ def test_an_in_between_becomes_a_pose_of_its_own(tmp_path, auto_key, is_there):
     assert project.unkeyed is None
 
 
-def test_a_pose_on_its_way_gets_there_elsewhere(session):
+def test_a_pose_on_its_way_gets_there_elsewhere(blob, tmp_path):
     """The hand lets a handle go, and moves all of it before the pose has come to rest."""
+    session = session_of(blob, tmp_path)
     wished = {1: replace(target(session, 1), position=RIGHT + 12j)}
     posing.wish(session, wished)
     settle(session)
@@ -248,6 +256,7 @@ def test_a_pose_on_its_way_gets_there_elsewhere(session):
     maintain(session)
     assert session.jobs.settle()
     session.jobs.deliver()
+    assert session.project.pending
     drag(session, ctrl=True, shift=True)
     settle(session)
     now = pose_of(session)

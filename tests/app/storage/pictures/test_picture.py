@@ -21,6 +21,7 @@ from profiles import (
 
 from app.errors import LissomError
 from app.storage.files import read_file
+from app.storage.files.reading import FOLDER_READ
 from app.storage.pictures import decode_picture, decode_pictures
 from app.storage.pictures.picture import DAMAGED_PICTURE, NO_PICTURE
 
@@ -285,7 +286,7 @@ def test_a_decompression_bomb_is_refused_before_it_is_decoded(monkeypatch):
 def test_missing_files_and_folders(tmp_path):
     with pytest.raises(LissomError, match=r"cannot read .*No such file"):
         read_file(tmp_path / "nothing.png")
-    with pytest.raises(LissomError, match=r"cannot read .*it is a folder"):
+    with pytest.raises(LissomError, match=says(FOLDER_READ, path=tmp_path)):
         read_file(tmp_path)
 
 
