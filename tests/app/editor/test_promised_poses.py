@@ -8,7 +8,7 @@ from still_poses import posed
 
 from app.document import cycle_commands, scene_commands
 from app.document.keyframe import Target
-from app.editor.actions import playback, posing
+from app.editor.actions import editing, playback, posing
 from app.editor.actions.posing.adopting import NO_POSE
 from app.editor.actions.upkeep import maintain
 
@@ -35,3 +35,29 @@ def test_refused_pose_is_told_once_and_hides_nothing(session):
     assert toast.text.startswith(NO_POSE)
     assert not project.pending
     assert project.puppet.shown.clip == project.clip
+
+
+def test_undone_pull_has_its_newest_pose_and_no_other(session):
+    project = session.project
+    last = project.figure.keys[-1].frame
+    playback.scrub(session, last)
+    handle = project.figure.handles[0]
+    posing.wish(session, {handle.id: Target(position=handle.position + 9)})
+    maintain(session)
+    (pull,) = project.pulls
+    while pull.kept is None or pull.kept is pull.before:
+        assert session.jobs.settle()
+        session.jobs.deliver()
+        maintain(session)
+    with session.jobs.held():
+        pull.is_held, pull.ready = False, replace(pull.kept, phi=pull.kept.phi.copy())
+        editing.undo(session)
+        playback.scrub(session, 0)
+        maintain(session)
+        later = [step.document for step in project.history._steps]
+        maintain(session)
+    assert not pull.is_in(project.history)
+    assert pull.kept is pull.newest
+    assert all(
+        step.document is before for step, before in zip(project.history._steps, later, strict=True)
+    )

@@ -16,7 +16,7 @@ def maintain(session: Session, project: Project) -> None:
     """Let the document have what pulls have come to; once a frame."""
     for pull in project.pulls:
         _follow_key(project, pull)
-        if pull.newest is not None:
+        if pull.newest is not None and pull.is_in(project.history):
             _bring(session, project, pull, is_here=is_here(session, project, pull))
         if pull.is_settled and not pull.is_held and pull in project.pending:
             project.pending.remove(pull)
