@@ -36,6 +36,7 @@ from app.document.commands import (
     material_commands as material_commands,
     numbered as numbered,
     pose_commands as pose_commands,
+    retargeted as retargeted,
     scene_commands as scene_commands,
     track_commands as track_commands,
 )

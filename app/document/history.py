@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from app.document.commands import Command, Settled, exchanged
+from app.document.commands import Command, Settled, exchanged, retargeted
 from app.document.figure import Figure, PictureFile
 from app.document.keyframe import Pose
 from app.document.model import Document
@@ -158,9 +158,10 @@ class History:
         begun = next((i for i in indices if self._steps[i].gesture is gesture), None)
         if begun is None:
             return False
+        changed: dict[Figure, Figure] = {}
         for index in indices[begun:]:
             step = self._steps[index]
-            document, unkeyed = exchanged(step.document, old, new), step.unkeyed
+            document, unkeyed = exchanged(step.document, old, new, changed), step.unkeyed
             for figure in document.figures:
                 if unkeyed and unkeyed.figure == figure.id and unkeyed.pose.phi is old.phi:
                     unkeyed = replace(unkeyed, pose=new(figure, unkeyed.pose))
@@ -230,12 +231,26 @@ class History:
 
 
 def _fitting(unkeyed: UnkeyedPose | None, before: Document, after: Document) -> UnkeyedPose | None:
-    """Return a pose of a document, unless a later one has its figure no more, or another domain."""
+    """Return a pose of a document as a later one can have it, with a target for each handle.
+
+    Returns None where that has the figure no more, or another domain. A handle that is put
+    elsewhere, or added, is wanted where it is.
+    """
     if unkeyed is None:
         return None
-    domains = {figure.id: figure.domain for figure in after.figures}
-    is_fit = domains.get(unkeyed.figure) is before.figure(unkeyed.figure).domain
-    return unkeyed if is_fit else None
+    was = before.figure(unkeyed.figure)
+    now = next((figure for figure in after.figures if figure.id == was.id), None)
+    if now is None or now.domain is not was.domain:
+        return None
+    places = {handle.id: handle.position for handle in now.handles}
+    if places == {handle.id: handle.position for handle in was.handles}:
+        return unkeyed
+    targets = {
+        handle.id: unkeyed.pose.targets[handle.id]
+        for handle in was.handles
+        if places.get(handle.id) == handle.position
+    }
+    return replace(unkeyed, pose=retargeted(now, replace(unkeyed.pose, targets=targets)))
 
 
 def _is_same(step: Step, other: Step) -> bool:
@@ -254,6 +269,8 @@ def _bytes_only_in(old: Step, new: Step) -> int:
 
 
 def _figure_bytes_only_in(old: Figure, new: Figure | None) -> int:
+    if old is new:
+        return 0
     size = 0
     if new is None or old.picture is not new.picture:
         size += len(old.picture.data)

@@ -114,6 +114,8 @@ class Project:
     pending: list[Promise] = field(default_factory=list)  # all on its way to the document
     # What decided which jobs are due, when that was looked at last.
     polled: tuple[object, ...] = ()
+    # On what it depended what is drawn, when that was settled last.
+    settled: tuple[object, ...] = ()
     afterwards: list[Afterwards] = field(default_factory=list)  # what is done once it is there
     # Commands given during a gesture make one step of undo together; it is that of a widget.
     gesture: object | None = None

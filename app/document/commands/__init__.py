@@ -20,7 +20,11 @@ from app.document.commands.command import (
     in_turn as in_turn,
     numbered as numbered,
 )
-from app.document.commands.pose_commands import Settled as Settled, exchanged as exchanged
+from app.document.commands.pose_commands import (
+    Settled as Settled,
+    exchanged as exchanged,
+    retargeted as retargeted,
+)
 from app.document.commands.staging import (
     choice_commands as choice_commands,
     filming_commands as filming_commands,

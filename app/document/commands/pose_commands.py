@@ -3,9 +3,11 @@
 from collections.abc import Callable
 from dataclasses import replace
 
+import numpy as np
+
 from app.document.commands.command import figure_command, numbered
 from app.document.figure import Figure
-from app.document.keyframe import KeptPose, Pose
+from app.document.keyframe import KeptPose, Pose, Target
 from app.document.model import Document
 
 # Of a figure and a pose of it: the pose to which that one has gone on.
@@ -44,10 +46,32 @@ def set_mirror(figure: Figure, mirror: float | None) -> Figure:
     return figure if mirror == figure.mirror else replace(figure, mirror=mirror)
 
 
-def exchanged(document: Document, old: Pose, new: Settled) -> Document:
-    """Return a document in which another pose stands wherever one with the map of `old` does."""
+def exchanged(
+    document: Document, old: Pose, new: Settled, known: dict[Figure, Figure] | None = None
+) -> Document:
+    """Return a document in which another pose stands wherever one with the map of `old` does.
+
+    Figures that several documents share are changed once, where `known` holds what became of them.
+    """
+    known = {} if known is None else known
     for figure in document.figures:
         if any(pose.phi is old.phi for pose in figure.poses):
-            poses = (new(figure, pose) if pose.phi is old.phi else pose for pose in figure.poses)
-            document = document.with_figure(figure.with_poses(poses))
+            if figure not in known:
+                poses = (
+                    new(figure, pose) if pose.phi is old.phi else pose for pose in figure.poses
+                )
+                known[figure] = figure.with_poses(poses)
+            document = document.with_figure(known[figure])
     return document
+
+
+def retargeted(figure: Figure, pose: Pose) -> Pose:
+    """Return a pose with a target for each handle of a figure: its own, or where it is."""
+    places = figure.map_of(pose)(
+        np.array([handle.position for handle in figure.handles], dtype=np.complex128)
+    )
+    targets = {
+        handle.id: pose.targets.get(handle.id, Target(position=complex(place)))
+        for handle, place in zip(figure.handles, places, strict=True)
+    }
+    return replace(pose, targets=targets)

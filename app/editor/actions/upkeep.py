@@ -86,7 +86,10 @@ def ask_for_missing(session: Session, project: Project) -> None:
 @with_project
 def settle_shown(session: Session, project: Project) -> None:
     """Settle what is drawn in the next frame."""
-    _show(session, project)
+    # Where all is as it was, so is what is drawn, however many layers there are.
+    if _drawn_of(session, project) != project.settled:
+        _show(session, project)
+        project.settled = _drawn_of(session, project)
     if project.awaits_extent:
         _fit_motion(session, project)
 
@@ -127,6 +130,15 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
         *(project.chosen_track, take, take and (take.is_over, len(take.samples))),
         *(project.unkeyed, tuple(project.pending), tuple(map(_stage, project.pulls))),
         tuple(puppet.store for puppet in project.puppets.values()),
+    )
+
+
+def _drawn_of(session: Session, project: Project) -> tuple[object, ...]:
+    """Return all on which it depends what is drawn, and what is drawn now."""
+    puppets = project.puppets.values()
+    return (
+        *(_inputs(session, project), _is_moving(session, project)),
+        *((each.shown, each.fine, each.corrected, each.twin) for each in puppets),
     )
 
 

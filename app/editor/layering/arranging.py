@@ -57,15 +57,15 @@ def is_at(project: Project, identity: int, place: complex) -> bool:
     """Tell whether a figure is seen at a place of the scene."""
     shown = project.puppets[identity].shown
     document = project.document
-    if shown is None or not is_visible(document, document.figure(identity), shown.frame):
-        return False
-    if project.solo and identity not in project.solo:
+    if shown is None or (project.solo and identity not in project.solo):
         return False
     outline = shown.positions[: len(shown.mesh.domain.outline)]
     place = shown.placement.back(place)
     # Most layers are elsewhere, which their boxes tell at once.
     x, y = outline.real, outline.imag
     if not (x.min() <= place.real <= x.max() and y.min() <= place.imag <= y.max()):
+        return False
+    if not is_visible(document, document.figure(identity), shown.frame):
         return False
     return bool(contains(outline, np.array([place]))[0])
 

@@ -4,7 +4,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
-from app.document import Figure, Keyframe, Pose, key_commands
+from app.document import Figure, Keyframe, Pose, key_commands, retargeted
 from app.editor.actions import playback, posing
 from app.editor.project import Project
 from app.editor.session import Session
@@ -99,7 +99,7 @@ def fitted(
 
 def _fitted(project: Project, figure: Figure, pose: Pose, bounds: Bounds) -> Pose:
     if pose.targets.keys() != {handle.id for handle in figure.handles}:
-        pose = posing.retargeted(figure, pose)
+        pose = retargeted(figure, pose)
     if figure.bounds == bounds:
         return pose
     puppet = project.puppets[figure.id]

@@ -22,6 +22,9 @@ MOST_WITHIN: Final = 7  # rounds that are measured first between two keys
 MOST_PHASES: Final = 240  # frames of a round that are measured, beside those that are keyed
 MOST_AT_FIRST: Final = 60  # frames of these rounds
 FEWEST_ROUNDS: Final = 4  # of which only some are measured
+MOST_REPEATED: Final = (
+    250  # frames that a cycle brings again and that are measured as keyed ones are
+)
 SETTLING: Final = 48  # frames that springs take to come to rest, or most of it
 # Of the longer side: what is found may reach so much less than some frame. It is a fraction of the
 # room that a fitted picture has around the motion.
@@ -148,7 +151,15 @@ class _Search:
 
 def _stretches(document: Document, frames: FrameRange) -> list[UnkeyedFrames]:
     """Return the stretches between the frames at which anything is keyed."""
-    keyed = {frame for figure in document.figures for frame in _keyed(document, figure)}
+    sprung = [each for each in document.figures if any(spring.enabled for spring in each.springs)]
+    swinging = {each.id for each in sprung}
+    # What carries springs sets them swinging, too.
+    swinging |= {each.id for figure in sprung for each in document.all_carriers(figure.id)}
+    keyed = {
+        frame
+        for figure in document.figures
+        for frame in _keyed(document, figure, SETTLING if figure.id in swinging else 0)
+    }
     inside = {frame for frame in keyed if frame in frames}
     ends = sorted({frames.first, frames.last, *inside})
     found = []
@@ -161,8 +172,11 @@ def _stretches(document: Document, frames: FrameRange) -> list[UnkeyedFrames]:
     return found
 
 
-def _keyed(document: Document, figure: Figure) -> Iterator[int]:
-    """Yield the frames at which a figure's motion is keyed, and those beside where it may jump."""
+def _keyed(document: Document, figure: Figure, settling: int) -> Iterator[int]:
+    """Yield the frames at which a figure's motion is keyed, and those beside where it may jump.
+
+    Springs that it sets swinging take `settling` frames after each of these.
+    """
     moves = [*figure.key_frames, *(key.frame for key in figure.movement)]
     jumps = [frame for cycle in figure.cycles for frame in (cycle.first, cycle.last)]
     jumps += [cycle.until for cycle in figure.cycles if cycle.until is not None]
@@ -175,7 +189,12 @@ def _keyed(document: Document, figure: Figure) -> Iterator[int]:
         # What is late goes on from the beginning.
         first, length = document.frames.first, document.frames.last - document.frames.first
         moves += [first + (frame - first) % max(length, 1) for frame in moves]
-    settling = SETTLING if any(spring.enabled for spring in figure.springs) else 0
+    for cycle in figure.cycles:
+        until = document.frames.last if cycle.until is None else cycle.until
+        own = [frame for frame in moves if cycle.has(frame)]
+        rounds = range(cycle.period, until - cycle.first + 1, cycle.period)
+        if len(own) * len(rounds) * (1 + settling) <= MOST_REPEATED:
+            moves += [frame + later for frame in own for later in rounds]
     for frame in (*moves, *jumps):
         yield from range(frame, frame + settling + 1)
     for frame in jumps:

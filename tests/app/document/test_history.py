@@ -357,6 +357,22 @@ def test_what_a_gesture_led_to_goes_on_in_its_step_and_in_all_later_ones():
     assert not history.amend(gesture, rest, lambda _, earlier: earlier)
 
 
+def test_steps_still_share_a_figure_when_its_pose_goes_on():
+    first = full_document()
+    history, gesture = History(first, saved=True), object()
+    figure = first.figures[0]
+    frame = figure.keys[0].frame
+    pose, made = moved(figure.keys[0].pose, 1), []
+    history.do(key_commands.pose_key(figure.id, frame, pose), gesture=gesture)
+    history.do(set_fps(31))
+    history.do(set_fps(32))
+    assert history.amend(gesture, pose, lambda *_: made.append(moved(pose, 2)) or made[-1])
+    assert len(made) == 1, "the work does not grow with the steps"
+    figures = [step.document.figures[0] for step in history._steps[1:]]
+    assert len(figures) == 3
+    assert all(each is figures[0] for each in figures)
+
+
 def test_an_unkeyed_pose_goes_on_too_and_other_poses_stay():
     first = full_document()
     history, gesture = History(first, saved=True), object()
@@ -391,3 +407,21 @@ def test_pose_outside_keys_is_let_go_with_its_domain(change):
     assert history.unkeyed is None
     history.undo()
     assert history.unkeyed is not None
+
+
+def test_pose_outside_keys_has_a_target_for_each_handle():
+    first = full_document()
+    history, figure = History(first, saved=True), first.figures[0]
+    pose = moved(figure.keys[0].pose, 1)
+    history.pose(UnkeyedPose(figure=figure.id, frame=5, pose=pose))
+    kept, gone = figure.handles[:2]
+    history.do(handle_commands.remove_handles(figure.id, {gone.id}))
+    assert history.unkeyed.pose.targets.keys() == pose.targets.keys() - {gone.id}
+    assert history.unkeyed.pose.targets[kept.id] == pose.targets[kept.id]
+    place = complex(figure.domain.mesh.vertices[0])
+    history.do(handle_commands.move_handle(figure.id, kept.id, place))
+    (here,) = figure.map_of(pose)(np.array([place]))
+    assert history.unkeyed.pose.targets[kept.id].position == here
+    history.undo()
+    history.undo()
+    assert history.unkeyed.pose is pose

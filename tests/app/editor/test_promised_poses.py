@@ -5,12 +5,16 @@ from dataclasses import replace
 import pytest
 from sessions import session_of, settle
 from still_poses import posed
+from unrest import is_shown, unrest
 
 from app.document import cycle_commands, scene_commands
 from app.document.keyframe import Target
-from app.editor.actions import playback, posing
+from app.editor import layering
+from app.editor.actions import editing, playback, posing
 from app.editor.actions.posing.adopting import NO_POSE
 from app.editor.actions.upkeep import maintain
+
+ROUNDS = 50  # of work until all is at rest, at most
 
 
 @pytest.fixture
@@ -35,3 +39,55 @@ def test_refused_pose_is_told_once_and_hides_nothing(session):
     assert toast.text.startswith(NO_POSE)
     assert not project.pending
     assert project.puppet.shown.clip == project.clip
+
+
+def begun_pull(session):
+    """Pull a handle of the last key until the document has the first pose of it."""
+    project = session.project
+    playback.scrub(session, project.figure.keys[-1].frame)
+    handle = project.figure.handles[0]
+    posing.wish(session, {handle.id: Target(position=handle.position + 9)})
+    maintain(session)
+    (pull,) = project.pulls
+    while pull.kept is None or pull.kept is pull.before:
+        assert session.jobs.settle()
+        session.jobs.deliver()
+        maintain(session)
+    # The hand lets go, and the in-betweens of an earlier pose are there.
+    pull.is_held, pull.ready = False, replace(pull.kept, phi=pull.kept.phi.copy())
+    return pull
+
+
+def test_undone_pull_has_its_newest_pose_and_no_other(session):
+    project = session.project
+    pull = begun_pull(session)
+    with session.jobs.held():
+        editing.undo(session)
+        playback.scrub(session, 0)
+        maintain(session)
+        later = [step.document for step in project.history._steps]
+        maintain(session)
+    assert not pull.is_in(project.history)
+    assert pull.kept is pull.newest
+    now = [step.document for step in project.history._steps]
+    assert all(document is before for document, before in zip(now, later, strict=True))
+
+
+def test_pull_of_a_removed_layer_lets_its_copy_rest(session):
+    project, original = session.project, session.project.active
+    pull = begun_pull(session)
+    with session.jobs.held():
+        layering.duplicate(session, original)
+        layering.remove(session, original)
+        assert not pull.is_in(project.history)
+        assert any(pose.phi is pull.kept.phi for pose in project.figure.poses)
+        playback.scrub(session, 5)
+        posing.insert_key(session)
+        maintain(session)
+    for _ in range(ROUNDS):
+        assert session.jobs.settle()
+        session.jobs.deliver()
+        maintain(session)
+    assert is_shown(session), unrest(session)
+    assert not project.pending, unrest(session)
+    assert 5 in project.figure.key_frames

@@ -5,7 +5,7 @@ import pytest
 from documents import altered, disc_document
 from numpy.testing import assert_allclose
 
-from app.document import LINEAR, FrameRange, Keyframe
+from app.document import LINEAR, Attachment, FrameRange, Handle, Keyframe, MoveKey, Spring, Target
 from app.document.timing import Cycle
 from app.motion.extents import long_extent
 from app.motion.extents.long_extent import MOST_MEASURED, farthest_reach
@@ -82,3 +82,41 @@ def test_few_frames_are_all_measured():
     document = keyed(0)
     assert (farthest_reach(document, FrameRange(0, MOST_MEASURED - 1), measure) == 1).all()
     assert len(measure.seen) == MOST_MEASURED
+
+
+def test_a_spike_that_a_cycle_brings_again_is_within():
+    period, spike = 60_000, 31_234
+    document = keyed(0, spike - 1, spike, spike + 1, cycles=(Cycle(first=0, last=period),))
+    (figure,) = document.figures
+    # Another layer's keys part its rounds, and each spike lies farther than the one before.
+    other = replace(figure, id=1, name="other", cycles=())
+    keys = [replace(other.keys[0], frame=frame) for frame in range(0, LAST, 90_000)]
+    document = replace(document, figures=(figure, replace(other, keys=tuple(keys))))
+    (found, *_) = reach(document, lambda at: 1e-3 * at + 1000.0 * (at % period == spike))
+    assert found >= 1e-3 * (15 * period + spike) + 1000.0
+
+
+def test_a_spring_that_swings_with_what_carries_it_is_within():
+    document, kicked = keyed(0), 500_000
+    (figure,) = document.figures
+    anchor = complex(figure.domain.mesh.vertices[0])
+    handle = Handle(id=0, name="tip", position=anchor)
+    pose = replace(figure.keys[0].pose, targets={0: Target(position=anchor)})
+    keys = (replace(figure.keys[0], pose=pose),)
+    spring = Spring(handle=0, frequency=2.0, damping=0.1)
+    moves = tuple(MoveKey(frame=at) for at in (0, kicked, LAST))
+    carrier = replace(figure, id=1, name="carrier", movement=moves)
+    child = replace(
+        figure,
+        handles=(handle,),
+        next_handle=1,
+        keys=keys,
+        anchor=anchor,
+        joints=(Attachment(to=1, at=anchor),),
+        springs=(spring,),
+    )
+    (found, *_) = reach(
+        replace(document, figures=(child, carrier)),
+        lambda at: 1000.0 if at == kicked + 7 else 10.0,
+    )
+    assert found >= 1000.0

@@ -9,9 +9,10 @@ from imgui_bundle import imgui
 from projects import project_of
 from scenes import PICTURE, drawn
 
+from app.document import layer_commands
 from app.document.figure import Handle
 from app.document.keyframe import Target
-from app.editor.actions import saving
+from app.editor.actions import editing, saving, upkeep
 from app.editor.layering import arranging
 from app.editor.timeline_view import Strip
 
@@ -107,4 +108,23 @@ def test_layer_under_the_pointer_is_sought_among_those_there(window, monkeypatch
         assert not asked
         arranging.figure_at(project, 60 + 47j)
         assert len(asked) == LAYERS
+        saving.put_project(window.session, None)
+
+
+def test_layers_are_settled_only_when_something_changed(window, monkeypatch):
+    asked, show_layer = [], upkeep.show
+
+    def counted(*given):
+        asked.append(1)
+        return show_layer(*given)
+
+    with window.session.jobs.held():
+        show(window, many_layers())
+        window.frames(3)
+        monkeypatch.setattr(upkeep, "show", counted)
+        window.frames(3)
+        assert not asked
+        editing.edit(window.session, layer_commands.rename_figure(1, "arm"))
+        window.frames(1)
+        assert len(asked) == 60
         saving.put_project(window.session, None)

@@ -36,7 +36,10 @@ from app.editor.work.jobs import Jobs, Kind
 from app.export_formats import EXPORT_FORMATS
 from app.storage.project_file import load_project, save_project
 from app.ui.shortcuts import ARROWS, BINDINGS, MODIFIERS
+from engine.domain.outline import fitting
 from engine.domain.picture.cut_out import Stroke
+from engine.interpolation.added.pins import pinning
+from engine.maps import boundary
 from engine.maps.bounds import Bounds
 
 # Both drawings, one of them by two variants.
@@ -45,10 +48,18 @@ FAR = {3: 1_000}  # steps of walks that go farther than the others
 MOST_FRAMES = 400  # until the worker has caught up
 REMEMBERED = 20  # actions that are told where the walk fails
 # Steps between two looks at the invariants, between two saves, and until all work is done.
-LOOKED_AT, SAVED, RESTED = 10, 50, 250
+LOOKED_AT, SAVED, RESTED = 10, 100, 500
 USUAL, SMALL = (1280, 800), (800, 560)
-MOST_HANDLES, MOST_KEYS, MOST_LAYERS = 6, 8, 4
-LAST = 48  # frame beyond which the walk does not go
+MOST_HANDLES, MOST_KEYS, MOST_LAYERS = 4, 5, 3
+LAST = 24  # frame beyond which the walk does not go
+# What makes drawings cheap to pose: few edges of outlines, few samples on them, rough auto-pins.
+CHEAP = (
+    (fitting, "FEWEST_EDGES", 12),
+    (boundary, "SEGMENT_PER_SIZE", 1 / 40),
+    (boundary, "SEGMENT_PER_DISTANCE", 1.0),
+    (pinning, "TOLERANCE", 1e-3),
+    (pinning, "LEFT_OUT", 2e-4),
+)
 # What ends the project is left out; what asks first is answered by Escape.
 LEAVING = {"close", "quit"}
 NAMED = [name for name in BINDINGS if name not in {*LEAVING, "manual", "first animation"}]
@@ -163,12 +174,12 @@ class Walk:
             self.pick(HOLDING)
         else:
             self.pick(ALL)
-        if self.chance(0.02):
+        if self.chance(0.01):
             self.catch_up()
         else:
-            if (kinds := self.session.jobs.kinds) and self.chance(1 / 3):
+            if (kinds := self.session.jobs.kinds) and self.chance(1 / 4):
                 self.workers.do(self.choice(kinds))
-            self.window.frames(int(self.choice((0, 0, 1, 4))))
+            self.window.frames(int(self.choice((0, 0, 0, 1))))
         if number % RESTED == 0:
             self.catch_up(wholly=True)
         self.look(thorough=number % LOOKED_AT == 0, saves=number % SAVED == 0)
@@ -733,8 +744,10 @@ def draw_bones(path: Path) -> Path:
 
 
 @pytest.fixture
-def small_window(window):
-    """A window that costs little to draw."""
+def small_window(window, monkeypatch):
+    """A window that costs little to draw, with drawings that cost little to pose."""
+    for constant in CHEAP:
+        monkeypatch.setattr(*constant)
     window.resize(SMALL)
     window.session.meshing = Meshing(triangles=1_000, detail="coarse")
     yield window
@@ -746,6 +759,12 @@ def workers(small_window):
     workers = Workers(small_window.session.jobs)
     yield workers
     workers.release()
+
+
+def number_of_steps(config, seed):
+    """Return how far a walk goes; one that is asked for, as far as it is asked to."""
+    steps = config.getoption("--steps")
+    return steps if config.getoption("--walks") else FAR.get(seed, steps)
 
 
 def pytest_generate_tests(metafunc):
@@ -763,7 +782,7 @@ def test_random_walk_ends_where_it_began(small_window, workers, tmp_path, seed, 
         keys.set_variant(window.session, "nu")
     walk = Walk(window, seed, workers, Widgets(monkeypatch), tmp_path)
     workers.hold()
-    for number in range(FAR.get(seed, request.config.getoption("--steps"))):
+    for number in range(number_of_steps(request.config, seed)):
         try:
             walk.step(number)
         except Exception as error:

@@ -8,7 +8,6 @@ Imports: `app.editor`, `app.document`, `app.motion`, `app.solving`.
 from app.editor.actions.posing.adopting import (
     adopt_wish as adopt_wish,
     as_key as as_key,
-    retargeted as retargeted,
 )
 from app.editor.actions.posing.handles import (
     add_handle as add_handle,

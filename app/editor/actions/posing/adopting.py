@@ -2,9 +2,7 @@
 
 from dataclasses import replace
 
-import numpy as np
-
-from app.document import Command, Figure, Pose, Target, UnkeyedPose, key_commands
+from app.document import Command, Figure, Pose, UnkeyedPose, key_commands, retargeted
 from app.editor.failures import report
 from app.editor.project import Project
 from app.editor.session import Session
@@ -112,15 +110,3 @@ def as_key(session: Session, project: Project, unkeyed: UnkeyedPose) -> Command:
     if frame in project.document.figure(figure).key_frames:
         return key_commands.pose_key(figure, frame, pose)
     return key_commands.insert_key(figure, frame, pose, easing=session.preferences.easing)
-
-
-def retargeted(figure: Figure, pose: Pose) -> Pose:
-    """Return a pose with a target for each handle of a figure: its own, or where it is."""
-    places = figure.map_of(pose)(
-        np.array([handle.position for handle in figure.handles], dtype=np.complex128)
-    )
-    targets = {
-        handle.id: pose.targets.get(handle.id, Target(position=complex(place)))
-        for handle, place in zip(figure.handles, places, strict=True)
-    }
-    return replace(pose, targets=targets)

@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 
 from app.document import (
-    Command,
     Handle,
     figure_commands,
     handle_commands,
@@ -14,7 +13,6 @@ from app.document import (
     pairs_by_name,
 )
 from app.editor.action import do
-from app.editor.actions.posing.adopting import retargeted
 from app.editor.actions.posing.pulling import let_go
 from app.editor.project import Project
 from app.editor.session import Session, with_project
@@ -35,7 +33,9 @@ def add_handle(
         return
     rest = _at_rest(project.puppet.shown, place)
     identity = project.figure.next_handle
-    _change_handles(project, handle_commands.add_handle(project.active, rest), gesture or object())
+    project.history.do(
+        handle_commands.add_handle(project.active, rest), gesture=gesture or object()
+    )
     project.selected, project.chosen = frozenset({identity}), frozenset()
 
 
@@ -50,7 +50,7 @@ def remove_handles(
     """Delete handles; every pose stays as it is, or comes to rest as it was pulled."""
     let_go(session)
     command = handle_commands.remove_handles(project.active, identities)
-    _change_handles(project, command, gesture or object())
+    project.history.do(command, gesture=gesture or object())
     project.selected -= identities
 
 
@@ -71,7 +71,7 @@ def suggest_handles(session: Session, project: Project) -> None:
         for place, name in free
     ]
     gesture = object()
-    _change_handles(project, handle_commands.add_handles(project.active, handles), gesture)
+    project.history.do(handle_commands.add_handles(project.active, handles), gesture=gesture)
     added = {handle.id for handle in project.figure.handles} - {h.id for h in figure.handles}
     project.selected = project.chosen = frozenset()
     count = len(added)
@@ -115,7 +115,7 @@ def mirror_handles(session: Session, project: Project) -> None:
             project.history.do(command, gesture=gesture)
         partners.append(replace(handle, name=mirrored_name(name, words) or name, position=place))
     if partners:
-        _change_handles(project, handle_commands.add_handles(project.active, partners), gesture)
+        project.history.do(handle_commands.add_handles(project.active, partners), gesture=gesture)
     if outside:
         session.tell("The other side of the mirror axis is beside the drawing there.")
     elif not partners:
@@ -125,15 +125,6 @@ def mirror_handles(session: Session, project: Project) -> None:
 def _is_inside(domain: Domain, place: complex) -> bool:
     outline, *holes = domain.loops
     return bool(contains(outline, np.array([place]), holes=holes)[0])
-
-
-def _change_handles(project: Project, command: Command, gesture: object) -> None:
-    """Add or delete handles, also in the targets of the pose that no key holds."""
-    project.history.do(command, gesture=gesture)
-    unkeyed = project.history.unkeyed
-    if unkeyed is not None:
-        pose = retargeted(project.figure, unkeyed.pose)
-        project.history.pose(replace(unkeyed, pose=pose), gesture=gesture)
 
 
 @with_project
