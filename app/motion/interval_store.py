@@ -175,6 +175,8 @@ class IntervalStore:
         known = self.interval(clip, moment.interval) if resting is None else None
         if known is None or _shows(known, clip):
             return known or resting
+        if is_corrected(clip):
+            return None
         return known.one if known.one and known.one.weight == moment.weight else None
 
     def positions(
@@ -249,6 +251,9 @@ class IntervalStore:
         """
         figure, sampler = clip.figure, self.sampler
         if figure.domain is not self.mesh.source or self.is_exact(clip, frame):
+            return None
+        if is_corrected(clip):
+            # Its corrections need the whole interval.
             return None
         if sampler is None or sampler.anchor != figure.anchor:
             return None

@@ -20,10 +20,6 @@ from engine.interpolation.courses import (
     Tangent as Tangent,
     windows_of as windows_of,
 )
-from engine.interpolation.frame_correction import (
-    FrameCorrection as FrameCorrection,
-    correct_frame as correct_frame,
-)
 from engine.interpolation.inbetweens import Frame as Frame, Inbetweens as Inbetweens
 from engine.interpolation.one_interval import (
     base_at as base_at,
@@ -45,7 +41,12 @@ from engine.interpolation.preparation import (
     prepare as prepare,
     require_keyframes as require_keyframes,
 )
-from engine.interpolation.proof import Proof as Proof, prove as prove
+from engine.interpolation.proof import (
+    FrameCorrection as FrameCorrection,
+    Proof as Proof,
+    correct_frame as correct_frame,
+    prove as prove,
+)
 from engine.interpolation.scaling import (
     PointSamples as PointSamples,
     Scaling as Scaling,

@@ -43,7 +43,7 @@ class PointValues(NamedTuple):
     fz, g : complex128
         f_z and conj(f_z̄).
     k : complex128
-        K, which multiplies the q of a further correction (`engine.correction.BaseFrame`).
+        K, which multiplies the q of a further correction (`engine.deform.correction.BaseFrame`).
     """
 
     fz: Complexes

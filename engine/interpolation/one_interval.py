@@ -5,7 +5,7 @@ from functools import partial
 import numpy as np
 
 from engine.arrays import Complexes, Floats
-from engine.correction import BaseFrame, PointCorrector
+from engine.deform.correction import BaseFrame, PointCorrector
 from engine.errors import EngineError
 from engine.interpolation.added.periods import Unclosed, close, to_conformal
 from engine.interpolation.added.pins import BaseAt, CorrectionSeries, SegmentPins, pin

@@ -15,7 +15,7 @@ from app.document import (
 from app.motion.inbetweens.pairs import pair_of
 from app.motion.inbetweens.pose_sampler import PoseSampler, prepare_corrector
 from engine.arrays import Complexes, Floats
-from engine.correction import PointCorrector
+from engine.deform.correction import PointCorrector
 from engine.geometry import box_diagonal
 from engine.interpolation import (
     CorrectionSeries,

@@ -20,7 +20,7 @@ from app.motion.inbetweens.pairs import pair_of, poses_of
 from app.motion.inbetweens.pose_sampler import PoseSampler, prepare_corrector
 from app.motion.inbetweens.swings import Carried
 from engine.arrays import Complexes, Floats
-from engine.correction import Targets
+from engine.deform.correction import Targets
 from engine.interpolation import BaseAt, base_at, correct_frame
 
 KEPT = 2**26  # bytes of corrections of one outline that are kept

@@ -13,7 +13,7 @@ from app.motion.inbetweens.content_cache import ContentCache, digest
 from app.motion.inbetweens.correction import SolvedTracks
 from app.motion.inbetweens.pairs import Pair
 from engine.arrays import Complexes, freeze, held_bytes
-from engine.correction import PointCorrector, corrector_of
+from engine.deform.correction import PointCorrector, corrector_of
 from engine.dirichlet import Extension, HilbertTransform
 from engine.domain import Domain
 from engine.interpolation import (

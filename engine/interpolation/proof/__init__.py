@@ -7,3 +7,7 @@ Imports: `engine.maps`, `engine.interpolation.enclosing`, `engine.interpolation.
 """
 
 from engine.interpolation.proof.bisection import Proof as Proof, prove as prove
+from engine.interpolation.proof.frame_correction import (
+    FrameCorrection as FrameCorrection,
+    correct_frame as correct_frame,
+)

@@ -7,7 +7,7 @@ import pytest
 from interpolation_shapes import bar, bent, inner_points, stage_of
 from numpy.testing import assert_allclose
 
-from engine.correction import corrector_of, solve
+from engine.deform.correction import corrector_of, solve
 from engine.interpolation import (
     SegmentPins,
     Variant,

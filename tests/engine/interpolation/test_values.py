@@ -9,7 +9,7 @@ from interpolation_shapes import bar, bent, letter_l, narrow_u, random_map
 from messages import says
 from numpy.testing import assert_allclose
 
-from engine.correction import corrector_of
+from engine.deform.correction import corrector_of
 from engine.dirichlet import HilbertTransform
 from engine.errors import EngineError
 from engine.interpolation import (

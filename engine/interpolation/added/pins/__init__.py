@@ -1,8 +1,9 @@
 """Corrections of in-betweens as series in time; those of handles that stay in a segment.
 
 In: in-betweens, and targets for handles during a segment.
-Out: h and q (`engine.correction`) as few functions times series in time, folded into in-betweens.
-Imports: `engine.correction`, `engine.interpolation.passage` and its series.
+Out: h and q (`engine.deform.correction`) as few functions times series in time, folded into
+in-betweens.
+Imports: `engine.deform.correction`, `engine.interpolation.passage` and its series.
 """
 
 from engine.interpolation.added.pins.folded import (

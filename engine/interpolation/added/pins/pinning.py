@@ -7,7 +7,7 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from engine.arrays import Complexes, Floats, freeze
-from engine.correction import (
+from engine.deform.correction import (
     BaseFrame,
     PointCorrector,
     PointSolution,

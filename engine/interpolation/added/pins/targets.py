@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.arrays import Booleans, Complexes, Floats
-from engine.correction import Targets
+from engine.deform.correction import Targets
 from engine.geometry import best_rigid
 
 

@@ -11,9 +11,9 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices
-from engine.correction.corrector import PointCorrector
-from engine.correction.frame import BaseFrame
-from engine.correction.variables import Values
+from engine.deform.correction.corrector import PointCorrector
+from engine.deform.correction.frame import BaseFrame
+from engine.deform.correction.variables import Values
 
 NEAR = 0.01
 FOLDED = 10.0  # −ln σ_b where a map begins to fold
@@ -31,8 +31,8 @@ class WallState(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Walls:
-    """Walls at the samples of the boundary.
+class LimitWalls:
+    """LimitWalls at the samples of the boundary.
 
     Parameters
     ----------

@@ -17,10 +17,10 @@ from typing import NamedTuple
 import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices
-from engine.correction.corrector import PointCorrector
-from engine.correction.frame import BaseFrame, CorrectedFrame
-from engine.correction.step_model import Form, Rows, StepModel
-from engine.correction.walls import Walls, WallState
+from engine.deform.correction.corrector import PointCorrector
+from engine.deform.correction.frame import BaseFrame, CorrectedFrame
+from engine.deform.correction.step_model import Form, Rows, StepModel
+from engine.deform.correction.walls import LimitWalls, WallState
 
 SMALL = 1e-6  # a step in h: where the iteration ends
 MET = 1e-9  # of the diagonal: points that are where they are wanted
@@ -33,7 +33,6 @@ ARM = 0.02  # of the diagonal: at what distance a turn is as firm as a point
 TRACE = True
 ARM = 0.25  # of the diagonal: the distance at which a turn is as firm as a point
 TINY = 1e-300
-NOTHING_NEAR = np.zeros(0, np.intp), np.zeros(0, np.intp)
 FIRMEST = 1.5  # times the largest pull: what the merit takes for each point off its target
 
 
@@ -93,7 +92,7 @@ def solve(
     base: BaseFrame,
     targets: Targets,
     start: PointSolution | None = None,
-    walls: Walls | None = None,
+    walls: LimitWalls | None = None,
 ) -> PointSolution:
     """Find the correction of one frame.
 
@@ -105,7 +104,7 @@ def solve(
     targets : Targets
     start : PointSolution, optional
         Of a frame that is much the same.
-    walls : Walls, optional
+    walls : LimitWalls, optional
         What the correction is to keep.
     """
     problem = _Problem(corrector, base, targets, walls)
@@ -132,7 +131,7 @@ class _Problem:
     """One frame: its points as rows that are scaled by the roots of their weights."""
 
     def __init__(
-        self, corrector: PointCorrector, base: BaseFrame, targets: Targets, walls: Walls | None
+        self, corrector: PointCorrector, base: BaseFrame, targets: Targets, walls: LimitWalls | None
     ) -> None:
         self.corrector, self.base, self.walls = corrector, base, walls
         self.longest = LONGEST if walls is None else LONGEST_AT_WALLS
@@ -210,7 +209,7 @@ class _Problem:
         steps, known = 0, len(self.group)
         while steps < MOST_STEPS:
             steps += 1
-            near = NOTHING_NEAR if at.walls is None or not self.walls else self.walls.near(at.walls)
+            near = self._near(at)
             rows = self.rows(at, near)
             model = StepModel(at.frame.x, rows)
             change, shift = model.step()
@@ -239,6 +238,12 @@ class _Problem:
                 break
         misses = np.abs(at.frame.places() + at.shift - self.wanted)[: self.count]
         return PointSolution(x=at.frame.x, shift=at.shift, misses=misses, steps=steps)
+
+    def _near(self, at: _State) -> tuple[Indices, Indices]:
+        """Return the walls that count in the next step."""
+        if self.walls is None or at.walls is None:
+            return np.zeros(0, np.intp), np.zeros(0, np.intp)
+        return self.walls.near(at.walls)
 
     def _bending(self, at: _State, near: tuple[Indices, Indices], pulls: Floats) -> Form:
         """Return how the rows are curved that are pulled at."""

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 from engine.arrays import Complexes, held_bytes
-from engine.correction.paths import PointPaths
-from engine.correction.variables import Variables
+from engine.deform.correction.paths import PointPaths
+from engine.deform.correction.variables import Variables
 from engine.maps import Boundary
 
 

@@ -6,21 +6,21 @@ its distortion is known from moduli.
 Imports: `engine.maps`, `engine.paths`.
 """
 
-from engine.correction.corrector import (
+from engine.deform.correction.corrector import (
     PointCorrector as PointCorrector,
     corrector_of as corrector_of,
 )
-from engine.correction.frame import BaseFrame as BaseFrame
-from engine.correction.limits import (
+from engine.deform.correction.frame import BaseFrame as BaseFrame
+from engine.deform.correction.limits import (
     MARGIN as MARGIN,
     extremes as extremes,
     largest_share as largest_share,
     limits_of as limits_of,
     logarithms as logarithms,
-    shortened as shortened,
+    shorten_solution as shorten_solution,
     solve_within as solve_within,
 )
-from engine.correction.solver import (
+from engine.deform.correction.solver import (
     PointSolution as PointSolution,
     Targets as Targets,
     solve as solve,

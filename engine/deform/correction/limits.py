@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 
 from engine.arrays import Floats
-from engine.correction.corrector import PointCorrector
-from engine.correction.frame import BaseFrame, CorrectedFrame
-from engine.correction.solver import PointSolution, Targets, solve
-from engine.correction.walls import Walls, quantities
+from engine.deform.correction.corrector import PointCorrector
+from engine.deform.correction.frame import BaseFrame, CorrectedFrame
+from engine.deform.correction.solver import PointSolution, Targets, solve
+from engine.deform.correction.walls import LimitWalls, quantities
 from engine.maps import Bounds
 
 INSIDE = 0.002  # of the limits: how far inside a correction ends, as between samples it is more
@@ -66,7 +66,7 @@ def solve_within(
     limits = limits_of(bounds, own)
     if (extremes(corrector, samples, found.x) <= limits).all():
         return found
-    walls = Walls.around(corrector, samples, limits_of(bounds, inside=MARGIN))
+    walls = LimitWalls.around(corrector, samples, limits_of(bounds, inside=MARGIN))
     # Far outside, the nearest way back may lead through folds.
     share = largest_share(corrector, samples, found.x, limits)
     near = replace(found, x=share * found.x, shift=share * found.shift)
@@ -76,10 +76,10 @@ def solve_within(
         steps += near.steps
     share = largest_share(corrector, samples, near.x, limits)
     found = replace(near, steps=steps, is_held_back=True)
-    return shortened(corrector, nodes, targets, found, share) if share < 1.0 else found
+    return shorten_solution(corrector, nodes, targets, found, share) if share < 1.0 else found
 
 
-def shortened(
+def shorten_solution(
     corrector: PointCorrector,
     nodes: BaseFrame,
     targets: Targets,

@@ -9,7 +9,7 @@ from holed_shapes import ring
 from numpy.testing import assert_allclose
 from scipy.optimize import minimize
 
-from engine.correction import (
+from engine.deform.correction import (
     BaseFrame,
     Targets,
     corrector_of,
@@ -18,8 +18,8 @@ from engine.correction import (
     limits_of,
     solve,
 )
-from engine.correction.frame import CorrectedFrame
-from engine.correction.paths import PointPaths
+from engine.deform.correction.frame import CorrectedFrame
+from engine.deform.correction.paths import PointPaths
 from engine.maps import Boundary, Bounds
 
 SHAPES = {"bar": (bar_boundary, BAR_POINTS), "star": (star_boundary, STAR_POINTS)}

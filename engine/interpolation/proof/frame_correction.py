@@ -5,22 +5,22 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.arrays import Floats
-from engine.correction import (
+from engine.deform.correction import (
     MARGIN,
     PointCorrector,
     Targets,
     extremes,
     limits_of,
     logarithms,
-    shortened,
+    shorten_solution,
     solve_within,
 )
 from engine.interpolation.added.pins import BaseAt, CorrectionSeries
 from engine.interpolation.inbetweens import Inbetweens
-from engine.interpolation.proof import prove
+from engine.interpolation.proof.bisection import prove
 from engine.maps import Bounds
 
-# A share of a correction is shortened by this much until it is proven within the limits.
+# A share of a correction is shorten_solution by this much until it is proven within the limits.
 SHORTER, MOST_SHORTER = 0.95, 12
 BEYOND = 5e-4  # of a limit: the tightness of proofs
 
@@ -85,7 +85,7 @@ def correct_frame(
             proof = prove(inbetweens.corrected(known), time)
             if (logarithms(proof.sigma_a, proof.sigma_b, proof.k) <= limits).all():
                 break
-            found = shortened(corrector, base.nodes, targets, found, SHORTER)
+            found = shorten_solution(corrector, base.nodes, targets, found, SHORTER)
         reached = extremes(corrector, base.samples, found.x)
     return FrameCorrection(
         known=CorrectionSeries.of_frame(corrector, found.x, found.shift),

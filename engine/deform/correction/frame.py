@@ -14,8 +14,8 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from engine.arrays import Complexes, Floats
-from engine.correction.corrector import PointCorrector
-from engine.correction.variables import Values
+from engine.deform.correction.corrector import PointCorrector
+from engine.deform.correction.variables import Values
 
 
 class BaseFrame(NamedTuple):
