@@ -77,7 +77,7 @@ def test_a_segment_is_solved_once_at_vertices_and_handles(monkeypatch):
 
         monkeypatch.setattr(blend, name, counted)
     animation = animate(document)
-    assert all(animation.base.inbetweens(number).pins for number in range(3))
+    assert all(animation.base.inbetweens(number).corrections for number in range(3))
     assert called.count("on_boundary") == 3
     assert called.count("tangent") == 2
 

@@ -339,7 +339,7 @@ def test_what_swings_goes_along_where_a_track_moves_its_root(turn):
     document = springy(root=IDS["middle"])
     frames, seen = (3, 6, 8), []
     for tracks in ((), (moves,)):
-        animation = animate(with_figure(document, tracks=tracks))
+        animation = animate(with_figure(document, tracks=tracks, bounds=RUBBERY.bounds))
         places = np.array([animation.positions(frame) for frame in frames])
         seen.append(places[:, IDS["top"]] - places[:, IDS["middle"]])
     turns = [track_at(moves, clip_of(document, 0), frame).turn for frame in frames]

@@ -126,5 +126,5 @@ def test_layers_are_settled_only_when_something_changed(window, monkeypatch):
         assert not asked
         editing.edit(window.session, layer_commands.rename_figure(1, "arm"))
         window.frames(1)
-        assert len(asked) == 60
+        assert len(asked) == LAYERS
         saving.put_project(window.session, None)
