@@ -19,10 +19,6 @@ EXITS = {Verdict.PROVEN: 0, Verdict.MEASURED: 3, Verdict.OVER: 1}
 # As the table calls them.
 WORDS = {Verdict.PROVEN: "proven", Verdict.MEASURED: "MEASURED ONLY", Verdict.OVER: "OVER"}
 
-BY_METRIC = (
-    " (the metric variant turns f_z by an integral over the whole outline, which nothing encloses)"
-)
-
 
 def run(arguments: argparse.Namespace) -> int:
     """Print the report of a project."""
@@ -208,12 +204,11 @@ def _corrected_lines(report: Report) -> list[str]:
         return []
     reached = zip(_numbers(corrected.reached), ("+", "+", "-"), corrected.excess, strict=True)
     cells = [f"{value:.4f} ({sign}{by:.4f})" for value, sign, by in reached]
-    measured = corrected.frames - corrected.proven
     lines = [_line("tracks", cells, WORDS[report.corrected_verdict])]
     lines.append(
-        f"In {corrected.frames} frames tracks and springs move handles: {corrected.proven} are "
-        f"proven, and {measured} are measured at {corrected.points:,} points of the outline each"
-        f"{BY_METRIC if measured else ''}. Halfway between two of them the drawing is measured."
+        f"Tracks and springs move handles in {corrected.frames} frames; {corrected.proven} of them "
+        f"are proven. Halfway between two frames the drawing is measured, at {corrected.points:,} "
+        "points of the outline."
     )
     if corrected.left_out:
         every = corrected.looked_at + corrected.left_out

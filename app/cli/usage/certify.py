@@ -20,11 +20,10 @@ handles stay or the motion passes through its keys:
   measured  in-betweens never fold, but that they are within is measured only; exit status 3
   over      some are not within, or may fold, or a keyframe is not certified; exit status 1
 In-betweens are proven with the handles that stay between keys. Frames in which tracks and springs
-move handles are solved one by one. Each is proven, with the metric variant only measured, at some
-thousand points of the outline; halfway between two of them the drawing is measured. Handles that
-cannot reach their tracks are named, with frames and pixels. Repeats are looked at once, and of more
-than a thousand frames some at equal steps ("looked_at", "left_out" in JSON): then the verdict is at
-best measured.
+move handles are solved and proven one by one; halfway between two frames the drawing is measured.
+Handles that cannot reach their tracks are named, with frames and pixels. Repeats are looked at
+once. Of more than a thousand frames some are looked at, at equal steps ("looked_at", "left_out" in
+JSON): then the verdict is at best measured.
 Proven and measured values count as within up to .002 (k) or .2 % (both sigmas) beyond. Where a key
 is held, nothing but that key counts until the next one. Around holes the metric variant meets its
 Equation (13) by least squares only.
