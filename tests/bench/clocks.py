@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from app.document import Clip, Spring, Track, TrackKey, clip_of, pinned_segments
+from app.document import Clip, FrameRange, Spring, Track, TrackKey, clip_of, pinned_segments
 from app.motion import Animation
 from app.motion.inbetweens import AutoPins, PoseSampler, SolvedTracks
 from app.storage import load_project, sample_images
@@ -51,6 +51,7 @@ def tables(extent: Extent) -> Iterator[Table]:
         spring = Spring(handle=own, frequency=1.6, damping=0.18)
         swinging = replace(clip, figure=replace(figure, springs=(spring,), stillness=False))
         rows.append(_row(f"{handle!r} swings on a spring", swinging, extent.frames))
+        rows.append(_edit_row(clip, own, extent.frames))
         count = sum(map(len, figure.domain.cages))
         yield Table(title=f"A frame of {name}'s {layer}, {count} cage vertices", rows=tuple(rows))
 
@@ -86,6 +87,29 @@ def _pin_rows(clip: Clip, frames: int) -> list[Row]:
         note = f"a streamed frame takes {1e3 * frame:.2f} ms, {frame / plain:.2f} times as much"
         rows.append(Row(name=name, seconds=seconds, note=note))
     return rows
+
+
+def _edit_row(clip: Clip, wagged: int, frames: int) -> Row:
+    """Measure all frames of a clip with a track and two springs, in series, from an edit on."""
+    others = [each.id for each in clip.figure.handles if each.id != wagged][:2]
+    springs = tuple(Spring(handle=each, frequency=1.6, damping=0.18) for each in others)
+    keys = tuple(TrackKey(frame=12 * n, place=20.0 * (0, 1j, 0, -1j)[n % 4]) for n in range(9))
+    figure = replace(clip.figure, tracks=(Track(handles=(wagged,), keys=keys),), springs=springs)
+    every = 2 * frames
+    last = clip.frames.first + every - 1
+    edited = replace(clip, figure=figure, frames=FrameRange(clip.frames.first, last))
+    sampler = Animation(edited).sampler  # what is prepared before the edit
+
+    def follow() -> None:
+        sampler.known.corrections.clear()
+        corrections = Animation(edited, sampler=sampler).corrections
+        if corrections is None:
+            raise ValueError("nothing is corrected")
+        for number in range(every):
+            corrections.at(float(edited.frames.first + number))
+
+    name = f"a track and {len(springs)} springs, all {every} frames after an edit"
+    return Row(name=name, seconds=measure(follow, repeats=1), note="")
 
 
 def _row(name: str, clip: Clip, frames: int) -> Row:
