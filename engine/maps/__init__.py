@@ -15,11 +15,9 @@ from engine.maps.cauchy import (
 )
 from engine.maps.certificate import (
     ROUNDING as ROUNDING,
-    BoundaryPieces as BoundaryPieces,
     Certificate as Certificate,
     Enclosures as Enclosures,
     certify as certify,
-    certify_pieces as certify_pieces,
     certify_segments as certify_segments,
     segment_enclosures as segment_enclosures,
 )

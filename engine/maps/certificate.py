@@ -22,7 +22,7 @@ fold, but comes from the identity by no deformation, and has no single-valued lo
 
 from dataclasses import dataclass, replace
 from math import inf, pi
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 
@@ -109,35 +109,6 @@ def certify_segments(
         return _bisect(boundary, _measure(harmonic_map, boundary), limits)
 
 
-def certify_pieces(pieces: "BoundaryPieces", boundary: Boundary, limits: Limits) -> Certificate:
-    """Certify what has these holomorphic derivatives along the segments of the boundary."""
-    certificate, _, _ = _bisect(boundary, pieces, limits)
-    return certificate
-
-
-class BoundaryPieces(Protocol):
-    """BoundaryPieces (s,) of the sampled segments `origins`.
-
-    `ends` are F and G at both ends, complex128 (2, 2, s); `errors` how far they may be off their
-    chords, float64 (2, s).
-    """
-
-    @property
-    def ends(self) -> Complexes:
-        """F and G at both ends."""
-
-    @property
-    def errors(self) -> Floats:
-        """How far off their chords."""
-
-    @property
-    def origins(self) -> Indices:
-        """The segments that they are of."""
-
-    def divided(self, which: Booleans, /) -> tuple["BoundaryPieces", int]:
-        """Return the equal parts of some of them, and how many of each."""
-
-
 class Enclosures(NamedTuple):
     """What is proven about each segment between two samples, float64 (m,) each."""
 
@@ -217,7 +188,7 @@ class _Segments:
 
 
 def _bisect(
-    boundary: Boundary, segments: BoundaryPieces, limits: Limits
+    boundary: Boundary, segments: "_Segments", limits: Limits
 ) -> tuple[Certificate, Indices, Enclosures]:
     # Where it is the same for all samples one column will do, at less cost.
     at = limits.at(boundary)
@@ -274,7 +245,7 @@ def _distortions(a: Floats, b: Floats) -> Floats:
     return np.array([ratio(b, a), a + b, b - a])
 
 
-def _enclose(segments: BoundaryPieces) -> tuple[Floats, Booleans, Floats]:
+def _enclose(segments: "_Segments") -> tuple[Floats, Booleans, Floats]:
     """Return the enclosures (3, s), where F is proven not to vanish, and its angles of turn Δ."""
     (start, end), _ = segments.ends
     a, b = np.abs(segments.ends)

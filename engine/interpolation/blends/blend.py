@@ -17,7 +17,7 @@ from engine.interpolation.courses import (
     derivatives_along,
     shortened,
 )
-from engine.interpolation.enclosing import Changes, Chord, EdgeCurves, EndValues, Patch
+from engine.interpolation.enclosing import Changes, EdgeCurves, EndValues, Patch
 from engine.interpolation.passage import BoundaryResidual, Derivatives, Interval, Passage
 from engine.interpolation.series import HoleConstants, Residual
 from engine.interpolation.sites import Sites
@@ -150,24 +150,6 @@ class Blend(ABC):
     @abstractmethod
     def curves(self, values: EndValues) -> PairCurves:
         """Return what is known of the two quantities along pieces of the boundary."""
-
-    @abstractmethod
-    def chords(
-        self, values: EndValues, time: float, start: Complexes, change: Chord, /
-    ) -> tuple[Chord, Chord]:
-        """Return f_z and conj(f_z̄) of an in-between along pieces (p,) of the boundary.
-
-        Of a variant in closed form, before any scaling.
-
-        Parameters
-        ----------
-        values : EndValues
-        time : float
-        start : complex128, shape (p,)
-            f_z where the pieces begin.
-        change : Chord
-            How log f_z changes from there.
-        """
 
     @staticmethod
     @abstractmethod

@@ -9,7 +9,7 @@ import numpy as np
 from engine.arrays import Complexes, Floats, Indices, freeze
 from engine.interpolation.added.periods import Closing
 from engine.interpolation.blends.blend import Blend, PairCurves
-from engine.interpolation.enclosing import Changes, Chord, EndValues, Patch, exponential
+from engine.interpolation.enclosing import Changes, EndValues, Patch, exponential
 from engine.interpolation.passage import Derivatives, Interval, weighted
 from engine.interpolation.scaling import SharpScaling
 from engine.interpolation.series import combined
@@ -96,14 +96,6 @@ class EtaBlend(Blend):
     def curves(self, values: EndValues) -> PairCurves:
         """Return ln |f_z| and conj(η) along pieces of the boundary."""
         return values.log_modulus(), values.conj_eta()
-
-    def chords(
-        self, values: EndValues, time: float, start: Complexes, change: Chord, /
-    ) -> tuple[Chord, Chord]:
-        """Return f_z, and conj(η) / f_z."""
-        inverse = change.times(-1.0).exponential().times(1.0 / start)
-        g = Chord.of(values.conj_eta(), self.passage.eta_course(time)).product(inverse)
-        return change.exponential().times(start), g
 
     @staticmethod
     def enclose(first: Patch[Any], second: Patch[Any], changes: Changes | None, /) -> Enclosures:

@@ -7,7 +7,7 @@ import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices, freeze
 from engine.interpolation.blends.blend import Blend, PairCurves
-from engine.interpolation.enclosing import Changes, Chord, EndValues, Patch, linear
+from engine.interpolation.enclosing import Changes, EndValues, Patch, linear
 from engine.interpolation.passage import Derivatives, Interval, weighted
 from engine.interpolation.series import combined
 from engine.maps import Enclosures
@@ -70,13 +70,6 @@ class LinearBlend(Blend):
     def curves(self, values: EndValues) -> PairCurves:
         """Return f_z and conj(f_z̄) along pieces of the boundary."""
         return values.conformal(), values.anticonformal()
-
-    def chords(
-        self, values: EndValues, time: float, _start: Complexes, _change: Chord, /
-    ) -> tuple[Chord, Chord]:
-        """Return f_z and conj(f_z̄), blended themselves."""
-        weights = self.passage.course(time)
-        return Chord.of(values.conformal(), weights), Chord.of(values.anticonformal(), weights)
 
     @staticmethod
     def enclose(first: Patch[Any], second: Patch[Any], _changes: Changes | None, /) -> Enclosures:

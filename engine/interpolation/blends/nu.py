@@ -7,7 +7,7 @@ import numpy as np
 
 from engine.arrays import Complexes, Floats
 from engine.interpolation.blends.blend import Blend, PairCurves
-from engine.interpolation.enclosing import Changes, Chord, EndValues, Patch, exponential
+from engine.interpolation.enclosing import Changes, EndValues, Patch, exponential
 from engine.interpolation.passage import Derivatives, Interval, weighted
 from engine.interpolation.series import combined
 from engine.maps import Enclosures
@@ -71,13 +71,6 @@ class NuBlend(Blend):
     def curves(self, values: EndValues) -> PairCurves:
         """Return ln |f_z| and ν along pieces of the boundary."""
         return values.log_modulus(), values.nu()
-
-    def chords(
-        self, values: EndValues, time: float, start: Complexes, change: Chord, /
-    ) -> tuple[Chord, Chord]:
-        """Return f_z, and ν f_z."""
-        fz = change.exponential().times(start)
-        return fz, Chord.of(values.nu(), self.passage.course(time)).product(fz)
 
     @staticmethod
     def enclose(first: Patch[Any], second: Patch[Any], changes: Changes | None, /) -> Enclosures:

@@ -1,8 +1,8 @@
 """What variants blend, enclosed: along pieces of the boundary, during pieces of time.
 
 In: keyframes and a boundary.
-Out: `EndValues` and `EdgeCurves`, what is known of keyframes along pieces; `Chord`, a function
-along pieces at one time; `Patch`, a quantity on cells; enclosures of k, σ_a and σ_b of such ones.
+Out: `EndValues` and `EdgeCurves`, what is known of keyframes along pieces; `Patch` and `Sheet`,
+quantities on cells; enclosures of k, σ_a and σ_b of such ones.
 Imports: `engine.maps`.
 """
 
@@ -15,7 +15,6 @@ from engine.interpolation.enclosing.cells import (
     from_metric as from_metric,
     linear as linear,
 )
-from engine.interpolation.enclosing.chords import Chord as Chord
 from engine.interpolation.enclosing.pieces import (
     EdgeCurves as EdgeCurves,
     EndValues as EndValues,

@@ -139,15 +139,6 @@ class EndValues(NamedTuple):
     g1: Complexes
     eg: Floats
 
-    def of(self, which: Indices, keyframes: slice) -> "EndValues":
-        """Return those of some of the pieces, and of some of the keyframes."""
-
-        def part(values: npt.NDArray[type_]) -> npt.NDArray[type_]:
-            return values[which, keyframes]
-
-        f0, f1, ef, g0, g1, eg = self
-        return EndValues(part(f0), part(f1), part(ef), part(g0), part(g1), part(eg))
-
     @property
     def least(self) -> Floats:
         """The least |F| of the linear interpolants, at least."""
