@@ -183,10 +183,9 @@ def test_corrected_frames_are_proven_in_closed_variants(variant, wish):
     outline = clip.figure.domain.outline
     between = outline + np.linspace(0, 1, 40)[:, None] * (np.roll(outline, -1) - outline)
     animation = Animation(clip, variant, points=between.ravel())
-    for frame in (2, 3):
-        shown = animation.frame(frame)
-        found = Extremes.measured(shown.fz, shown.fzbar)
-        assert found.beyond(corrected.reached) == Extremes(0, 0, 0)
+    shown = animation.frame(3)
+    found = Extremes.measured(shown.fz, shown.fzbar)
+    assert found.beyond(corrected.reached) == Extremes(0, 0, 0)
 
 
 def test_repeats_of_a_track_are_proven_once_however_many():
@@ -299,12 +298,14 @@ def arms(frames, **settings):
 
 @pytest.mark.parametrize("loop", [False, True])
 def test_spring_keeps_its_distance_to_its_root(loop):
-    frames, settings = (2, 4.3, 6, 9), {"loop": loop, "frequency": 3.0}
-    base, shown = arms(frames, **settings)
+    base, shown = arms((2, 4.3, 9), loop=loop, frequency=3.0)
     assert_allclose(np.abs(shown), np.abs(base), rtol=0, atol=0.05)
     assert np.abs(np.angle(shown / base)).max() > 0.1
+
+
+def test_spring_grows_longer_by_its_stretch():
     longer = [
-        np.abs(np.subtract(*np.abs(arms(frames, stretch=stretch, **settings)))).max()
+        np.abs(np.subtract(*np.abs(arms((2, 4.3), frequency=3.0, stretch=stretch)))).max()
         for stretch in (0.5, 1.0)
     ]
     assert longer[1] > longer[0] > 0.3
@@ -480,7 +481,7 @@ def test_the_frames_of_a_window_are_those_of_an_export():
 
 
 def test_extent_and_exports_are_of_the_shown_frames():
-    document = pulled(25 - 10j)
+    document = pulled(14 - 6j)
     clip, figure = clip_of(document, 0), document.figures[0]
     store = IntervalStore(mesh=PosableMesh.coarse(figure.domain))
     store.take(store.preparing(clip, store.missing(clip, 0))())
