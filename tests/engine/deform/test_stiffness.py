@@ -28,7 +28,7 @@ WIDE = Bounds(k=0.9, sigma_a=8.0, sigma_b=0.1)
 SOME = Bounds(k=0.6, sigma_a=3.0, sigma_b=0.4)
 # The ends of a bar turn, and its middle is stiff.
 BENT = np.array([-1.6 + 0.9j, 0.0, 1.6 + 0.9j])
-BOWED = STAR_POINTS + [0, 0, 0.2j, 0, 0, 0.2j]
+BOWED = STAR_POINTS + np.array([0, 0, 0.2j, 0, 0, 0.2j])
 MIDDLE = np.exp(np.log(100) * np.clip(1.6 - np.abs(BAR.outline.real), 0.0, 1.0))
 
 

@@ -304,7 +304,7 @@ def test_a_search_that_is_given_up_says_so(monkeypatch):
     assert_sound(state, TIGHT)
 
 
-@pytest.mark.parametrize("play", [1e-2, 1e-4, 1e-6])
+@pytest.mark.parametrize("play", [1e-2, 1e-6])
 def test_bounds_next_to_the_identity_hold_back(play):
     rigid = Bounds(k=play, sigma_a=1 + play, sigma_b=1 - play)
     state = settled(star(rigid), TWISTED)
