@@ -107,7 +107,7 @@ class Harness:
         self.session.autosave.forget()
         for leftover in self.folder.iterdir():
             leftover.unlink()
-        self.frames(3)
+        self.frames()
 
     def open(self, path: Path) -> Project:
         """Open a picture or a project, and wait until it is there with all its in-betweens.
@@ -140,7 +140,7 @@ class Harness:
         # What was kept of it went away with the test for which it was made.
         project.autosaved, project.autosaved_at, project.changed_at = None, self.clock.now, None
         saving.put_project(self.session, project)
-        self.frames(2)
+        self.frames()
         if prepares_ahead:
             self.settle()
         return project
@@ -199,7 +199,7 @@ class Harness:
             if not self.session.jobs.kinds and all(pull.is_settled for pull in pulls):
                 break
             assert self.session.jobs.settle(PATIENCE), self.session.jobs.kinds
-        self.frames(2)
+        self.frames()
 
     def until(self, is_so: Callable[[], bool]) -> None:
         """Draw frames until something is so, however long the workers take to it."""
@@ -224,6 +224,7 @@ class Harness:
                 failures.append(error)
                 robot.finish(imgui.test_engine.TestStatus.error)
 
+        test.flags |= imgui.test_engine.TestFlags_.no_gui_warm_up.value
         test.test_func = body
         imgui.test_engine.queue_test(self._engine, test)
         for _ in range(MOST_FRAMES):

@@ -59,8 +59,8 @@ def tracked(*tracks, loop=False, **changes):
 
 
 def pulled(wish, variant="nu", **changes):
-    """A short document whose right handle is wanted elsewhere in its middle frame."""
-    away = track(keys=((1, 0), (4, wish), (7, 0)))
+    """A short document whose right handle is wanted elsewhere in its frame 3."""
+    away = track(keys=((1, 0), (3, wish), (5, 0)))
     return with_figure(posed(FEW, drawn=SHORT, variant=variant), tracks=(away,), **changes)
 
 
@@ -177,16 +177,15 @@ def test_corrected_frames_are_proven_in_closed_variants(variant, wish):
     document = pulled(wish)
     report = certify_clip(clip_of(document, 0), variant)
     corrected = report.corrected
-    assert corrected.frames == corrected.proven > 4
+    assert corrected.frames == corrected.proven == 3
     assert report.corrected_verdict is Verdict.PROVEN
     clip = clip_of(document, 0)
     outline = clip.figure.domain.outline
     between = outline + np.linspace(0, 1, 40)[:, None] * (np.roll(outline, -1) - outline)
     animation = Animation(clip, variant, points=between.ravel())
-    for frame in (2, 4, 5):
-        shown = animation.frame(frame)
-        found = Extremes.measured(shown.fz, shown.fzbar)
-        assert found.beyond(corrected.reached) == Extremes(0, 0, 0)
+    shown = animation.frame(3)
+    found = Extremes.measured(shown.fz, shown.fzbar)
+    assert found.beyond(corrected.reached) == Extremes(0, 0, 0)
 
 
 def test_repeats_of_a_track_are_proven_once_however_many():
@@ -194,11 +193,11 @@ def test_repeats_of_a_track_are_proven_once_however_many():
     document = pulled(8j, keys=posed(1).figures[0].keys, cycles=cycles)
     clip = clip_of(replace(document, frames=FrameRange(0, 999_999)), 0)
     frames, counts = acting_frames(clip)
-    assert_array_equal(frames, range(1, 8))
+    assert_array_equal(frames, range(1, 6))
     assert_array_equal(counts, 100_000)
     report = certify_clip(clip)
     assert report.verdict is Verdict.PROVEN
-    assert report.corrected.frames == report.corrected.proven > 400_000
+    assert report.corrected.frames == report.corrected.proven == 300_000
 
 
 @pytest.mark.parametrize("loop", [False, True])
@@ -222,10 +221,10 @@ def test_acting_frames_are_those_of_the_tracks(loop):
 
 
 def test_certify_looks_at_few_of_very_many_frames(monkeypatch):
-    monkeypatch.setattr(corrected_frames, "MOST_LOOKED_AT", 5)
+    monkeypatch.setattr(corrected_frames, "MOST_LOOKED_AT", 4)
     monkeypatch.setattr(corrected_frames, "SPREAD", 3)
     corrected = (report := certify_clip(clip_of(pulled(8j), 0))).corrected
-    assert (corrected.looked_at, corrected.left_out) == (3, 4)
+    assert (corrected.looked_at, corrected.left_out) == (3, 2)
     assert corrected.proven == corrected.frames
     assert report.corrected_verdict is report.verdict is Verdict.MEASURED
 
@@ -237,7 +236,7 @@ def test_track_out_of_reach_keeps_limits_and_reports_its_error():
     assert report.corrected.excess.k == report.corrected.excess.sigma_a == 0
     (short,) = report.corrected.short
     assert short.handle == "right"
-    assert 1 < short.first < 4 < short.last < 7
+    assert 1 < short.first < 3 < short.last < 5
     assert short.lag > 50
 
 
@@ -299,12 +298,14 @@ def arms(frames, **settings):
 
 @pytest.mark.parametrize("loop", [False, True])
 def test_spring_keeps_its_distance_to_its_root(loop):
-    frames, settings = (2, 4.3, 6, 9), {"loop": loop, "frequency": 3.0}
-    base, shown = arms(frames, **settings)
+    base, shown = arms((2, 4.3, 9), loop=loop, frequency=3.0)
     assert_allclose(np.abs(shown), np.abs(base), rtol=0, atol=0.05)
     assert np.abs(np.angle(shown / base)).max() > 0.1
+
+
+def test_spring_grows_longer_by_its_stretch():
     longer = [
-        np.abs(np.subtract(*np.abs(arms(frames, stretch=stretch, **settings)))).max()
+        np.abs(np.subtract(*np.abs(arms((2, 4.3), frequency=3.0, stretch=stretch)))).max()
         for stretch in (0.5, 1.0)
     ]
     assert longer[1] > longer[0] > 0.3
@@ -480,7 +481,7 @@ def test_the_frames_of_a_window_are_those_of_an_export():
 
 
 def test_extent_and_exports_are_of_the_shown_frames():
-    document = pulled(25 - 10j)
+    document = pulled(14 - 6j)
     clip, figure = clip_of(document, 0), document.figures[0]
     store = IntervalStore(mesh=PosableMesh.coarse(figure.domain))
     store.take(store.preparing(clip, store.missing(clip, 0))())
@@ -490,14 +491,14 @@ def test_extent_and_exports_are_of_the_shown_frames():
     animation = Animation(clip)
     (hung,) = hung_animations([Animation(clip)], document).values()
     places = [animation.positions(float(frame)) for frame in range(9)]
-    assert_allclose(hung.positions(4.0), places[4], rtol=0, atol=1e-9)
+    assert_allclose(hung.positions(3.0), places[3], rtol=0, atol=1e-9)
     found = measure_extent(document, {0: store}, corrected={0: frames})
     # On the screen positions have single precision.
     assert_allclose(found, box_around(np.concatenate(places)), rtol=0, atol=1e-2)
     bare = measure_extent(document, {0: store})
     assert found.upper.real - bare.upper.real > 5
-    shown = store.vertices(clip, 4, correction=frames.at(clip, 4)).positions
-    assert_allclose(shown, places[4], rtol=0, atol=1e-2)
+    shown = store.vertices(clip, 3, correction=frames.at(clip, 3)).positions
+    assert_allclose(shown, places[3], rtol=0, atol=1e-2)
 
 
 def test_planted_track_is_solved_anew_when_the_parent_changes():

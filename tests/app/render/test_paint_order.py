@@ -6,6 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 from animations import still_document
+from drawings import NEEDS_OSMESA
 from PIL import Image, ImageDraw
 
 from app.document import clip_of
@@ -146,7 +147,15 @@ def _always_coarse(monkeypatch):
     monkeypatch.setattr("app.motion.posable_mesh.FINER", 1)
 
 
-@pytest.mark.parametrize(("seed", "is_coarse"), [(15, False), (18, True), (55, False)])
+@pytest.mark.parametrize(
+    ("gl", "seed", "is_coarse"),
+    [
+        ("egl", 15, False),
+        pytest.param("osmesa", 18, True, marks=NEEDS_OSMESA),
+        ("egl", 55, False),
+    ],
+    indirect=["gl"],
+)
 def test_no_pixel_of_what_is_behind_shows_through(easel, seed, is_coarse):
     star, clip = star_and_clip(seed)
     posable = PosableMesh.coarse if is_coarse else PosableMesh.fine

@@ -164,7 +164,7 @@ def require_reopened(path, begin, seeds):
     assert not differences(load_project(path), document)
 
 
-@settings(max_examples=25)
+@settings(max_examples=16)
 @given(st.sampled_from(BEGINNINGS), st.lists(st.integers(0, 2**32 - 1), max_size=15))
 def test_what_commands_make_at_limits_opens_again(tmp_path_factory, begin, seeds):
     require_reopened(tmp_path_factory.getbasetemp() / "limits.lissom", begin, seeds)

@@ -34,6 +34,7 @@ def asked(window):
 
 def press(window, *keys):
     def play(robot):
+        robot.yield_()  # until the window knows that it has the keys
         for key in keys:
             robot.key_press(int(key))
 

@@ -317,6 +317,11 @@ def test_the_list_shows_small_pictures(window, scene, listed):
     assert scene.puppets[arm].small.value is small
 
 
+def enter(robot):
+    robot.yield_()  # until the window knows that it has the keys
+    robot.key_press(int(Harness.Key.enter))
+
+
 def test_pictures_that_are_dropped_on_a_scene(window, scene, listed, tmp_path, drawing):
     body = identity(scene, "body")
     before = scene.document
@@ -327,7 +332,7 @@ def test_pictures_that_are_dropped_on_a_scene(window, scene, listed, tmp_path, d
     assert [text for text, _ in question.answers] == ["New layer", "Replace arm", "New scene"]
     # Enter takes the first one.
     window.frames(3)
-    window.run(lambda robot: robot.key_press(int(window.Key.enter)))
+    window.run(enter)
     window.settle()
     assert scene.figure.name == "hat"
     assert scene.document.figures[-1] is scene.figure
@@ -342,7 +347,7 @@ def test_pictures_that_are_dropped_on_a_scene(window, scene, listed, tmp_path, d
     listed(over)
     texts = [text for text, _ in window.session.dialog.answers]
     assert texts == ["Replace body", "New layer", "New scene"]
-    window.run(lambda robot: robot.key_press(int(window.Key.enter)))
+    window.run(enter)
     window.settle()
     assert scene.history.undo_label == "Replace picture"
     assert scene.document.figure(body).picture.size == (80, 50)
@@ -353,7 +358,7 @@ def test_pictures_that_are_dropped_on_a_scene(window, scene, listed, tmp_path, d
     window.act(layering.drop, [hat, cap, drawing])
     texts = [text for text, _ in window.session.dialog.answers]
     assert texts == ["New layers", "New scene"]
-    window.run(lambda robot: robot.key_press(int(window.Key.enter)))
+    window.run(enter)
     window.settle()
     names = [figure.name for figure in scene.document.figures]
     assert names == ["wall", "body", "arm", "hat", "cap", "wall 2", "body 2", "arm 2"]

@@ -293,8 +293,8 @@ def record(window, project, ways, *, until=None, handle=END):
     return start
 
 
-CIRCLE = 25 * (np.exp(2j * np.pi * np.arange(41) / 40) - 1)
-ARC = CIRCLE[:9]
+CIRCLE = 25 * (np.exp(2j * np.pi * np.arange(25) / 24) - 1)
+ARC = CIRCLE[:6]
 
 
 def test_a_drag_is_recorded_while_it_plays_and_fitted_by_few_keys(window, bent):
@@ -384,7 +384,7 @@ def test_the_end_of_the_range_ends_a_recording_and_other_keys_stay(window, brief
     playback.scrub(window.session, last - 4)
     window.settle()
     taken = [key for key in brief.figure.tracks[0].keys if key.frame == 1]
-    record(window, brief, [*CIRCLE, *CIRCLE])
+    record(window, brief, CIRCLE)
     assert brief.take.is_over
     (track,) = brief.figure.tracks
     frames = [key.frame for key in track.keys]
@@ -398,7 +398,7 @@ def test_in_a_loop_a_recording_goes_on_over_the_seam_at_most_once_round(window, 
     brief.history.do(scene_commands.set_loop(loop=True))
     playback.scrub(window.session, 5)
     window.settle()
-    record(window, brief, [*CIRCLE, *CIRCLE])
+    record(window, brief, CIRCLE)
     take = brief.take
     assert take.is_over
     assert take.samples[-1].time == 5 + LAST

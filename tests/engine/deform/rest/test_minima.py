@@ -164,32 +164,24 @@ def wound_up():
     return Deformer(boundary=bar_boundary(), handles=handles, bounds=bounds)
 
 
-def test_a_shape_that_starts_turned_finds_what_the_aligned_one_does_not():
-    deformer = wound_up()
-    state, tried = deformer.settle(deformer.start(), deformer.handles.wish(WOUND_UP))
+def test_a_turned_start_that_finds_a_better_pose_shows_it_once():
+    deformer, shown = wound_up(), []
+    state, wish = deformer.start(), deformer.handles.wish(WOUND_UP)
+    while not state.status.is_final:
+        before, state = state, deformer.step(state, wish)
+        if before.tried > 0 and state.map is not before.map:
+            shown.append((before, state))
+    # The aligned shape does not find it, and what is shown is clearly better.
+    ((before, after),) = shown
+    assert after is state
+    worth = (1 - WORTH_A_JUMP) * before.statistics.objective
+    assert after.statistics.objective < worth
     assert state.status is Status.AT_LIMITS
     assert state.outcome.way.is_turned
     assert state.statistics.objective < 0.9 * 2449
     assert_sound(state, deformer.bounds)
     assert state.steps <= 60
-    assert tried == state.tried <= 250
-
-
-def test_a_better_pose_is_shown_once_and_only_if_it_is_clearly_better():
-    deformer, shown = wound_up(), []
-    state = deformer.start()
-    for share in np.linspace(0, 1, 9)[1:]:
-        row = deformer.handles.wish(CORNERS + share * (WOUND_UP - CORNERS))
-        state = deformer.step(state, row)
-    wish = deformer.handles.wish(WOUND_UP)
-    while not state.status.is_final:
-        before, state = state, deformer.step(state, wish)
-        if before.tried > 0 and state.map is not before.map:
-            shown.append((before, state))
-    ((before, after),) = shown
-    assert after is state
-    worth = (1 - WORTH_A_JUMP) * before.statistics.objective
-    assert after.statistics.objective < worth
+    assert state.tried <= 250
     assert deformer.step(state, wish) is state
 
 
@@ -312,7 +304,7 @@ def test_a_search_that_is_given_up_says_so(monkeypatch):
     assert_sound(state, TIGHT)
 
 
-@pytest.mark.parametrize("play", [1e-2, 1e-4, 1e-6])
+@pytest.mark.parametrize("play", [1e-2, 1e-6])
 def test_bounds_next_to_the_identity_hold_back(play):
     rigid = Bounds(k=play, sigma_a=1 + play, sigma_b=1 - play)
     state = settled(star(rigid), TWISTED)
