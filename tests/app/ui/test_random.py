@@ -36,7 +36,7 @@ from app.editor.work.jobs import Jobs, Kind
 from app.export_formats import EXPORT_FORMATS
 from app.storage.project_file import load_project, save_project
 from app.ui.shortcuts import ARROWS, BINDINGS, MODIFIERS
-from engine.domain.outline import fitting
+from engine.domain.outline import enclosure, fitting
 from engine.domain.picture.cut_out import Stroke
 from engine.interpolation.added.pins import pinning
 from engine.maps import boundary
@@ -54,11 +54,14 @@ MOST_HANDLES, MOST_KEYS, MOST_LAYERS = 4, 5, 3
 LAST = 24  # frame beyond which the walk does not go
 # What makes drawings cheap to pose: few edges of outlines, few samples on them, rough auto-pins.
 CHEAP = (
-    (fitting, "FEWEST_EDGES", 12),
+    (fitting.Candidates.on.__func__, "__kwdefaults__", {"fewest_edges": 12}),
+    (fitting, "LONGEST_EDGE", 0.14),
     (boundary, "SEGMENT_PER_SIZE", 1 / 40),
     (boundary, "SEGMENT_PER_DISTANCE", 1.0),
     (pinning, "TOLERANCE", 1e-3),
     (pinning, "LEFT_OUT", 2e-4),
+    (pinning, "DEGREES", (4, 8, 16, 32)),
+    (enclosure, "MARGINS", {**enclosure.MARGINS, "coarse": 0.03}),
 )
 # What ends the project is left out; what asks first is answered by Escape.
 LEAVING = {"close", "quit"}
@@ -177,9 +180,9 @@ class Walk:
         if self.chance(0.01):
             self.catch_up()
         else:
-            if (kinds := self.session.jobs.kinds) and self.chance(1 / 4):
+            if (kinds := self.session.jobs.kinds) and self.chance(1 / 10):
                 self.workers.do(self.choice(kinds))
-            self.window.frames(int(self.choice((0, 0, 0, 1))))
+            self.window.frames(int(self.chance(1 / 10)))
         if number % RESTED == 0:
             self.catch_up(wholly=True)
         self.look(thorough=number % LOOKED_AT == 0, saves=number % SAVED == 0)
@@ -225,11 +228,12 @@ class Walk:
         io = imgui.get_io()
         modifiers = [modifier for modifier in MODIFIERS if chord & modifier]
         key = imgui.Key(chord & ~sum(MODIFIERS))
+        # Its release comes with the frames after.
         for is_down in (True, False):
             for modifier in modifiers:
                 io.add_key_event(imgui.Key(modifier), is_down)
             io.add_key_event(key, is_down)
-            self.window.frames(1)
+        self.window.frames(1)
 
     def press_bound_key(self) -> None:
         chord = self.choice(BOUND)
@@ -305,7 +309,6 @@ class Walk:
             return
         io = imgui.get_io()
         io.add_mouse_button_event(self.button, down=False)
-        self.window.frames(1)
         if self.modifier:
             io.add_key_event(imgui.Key(self.modifier), down=False)
         self.is_down, self.modifier = False, 0
@@ -429,7 +432,7 @@ class Walk:
 
     def change_variant(self) -> None:
         # The costlier ones are left again soon.
-        self.act(keys.set_variant, self.choice((*VARIANTS, "nu", "nu", "nu", "linear")))
+        self.act(keys.set_variant, self.choice((*VARIANTS, *("nu", "linear") * 4)))
 
     def change_bounds(self) -> None:
         wanted = Bounds(
