@@ -13,10 +13,16 @@ from layered import openraster
 from PIL import Image, ImageDraw
 from unrest import is_shown, unrest
 
-from app.document.commands import figure_commands, handle_commands, key_commands, layer_commands
+from app.document.commands import (
+    figure_commands,
+    handle_commands,
+    key_commands,
+    layer_commands,
+    track_commands,
+)
 from app.document.keyframe import Target
 from app.document.settings import VARIANTS, ExportSettings, FrameRange, Meshing
-from app.document.timing import PRESETS, Easing
+from app.document.timing import PRESETS, Easing, Spring
 from app.editor import layering
 from app.editor.actions import (
     cutting,
@@ -27,7 +33,9 @@ from app.editor.actions import (
     playback,
     posing,
     rebuilding,
+    springs,
     timeline_pointing,
+    tracks,
     viewing,
 )
 from app.editor.poses import copying, flipping, library, pasting
@@ -560,6 +568,54 @@ class Walk:
             case _:
                 self.act(layering.hang, child.id, parent.id, self.chance(0.5))
 
+    def change_tracks(self) -> None:
+        """Move a handle by a track of its own, or by a spring."""
+        figure = self.project.figure
+        if not figure.handles:
+            return
+        handle = self.choice(figure.handles).id
+        place = complex(*self.rng.normal(0, 0.05 * self.size, 2))
+        match self.rng.integers(8):
+            case 0:
+                self.act(tracks.key_here, (handle,))
+            case 1 | 2:
+                self.act(tracks.put, handle, place)
+            case 3:
+                self.act(tracks.plant, handle, self.chance(0.5))
+            case 4:
+                frequency, damping = self.rng.uniform((0.5, 0), (4, 1))
+                spring = Spring(handle=handle, frequency=float(frequency), damping=float(damping))
+                self.act(editing.edit_figure, track_commands.put_spring, spring)
+            case 5:
+                self.act(springs.make_keys, handle)
+            case 6:
+                remove = self.choice((track_commands.remove_tracks, track_commands.remove_springs))
+                self.act(editing.edit_figure, remove, (handle,))
+            case 7:
+                self.act(tracks.choose, self.choice((handle, None)))
+
+    def change_staging(self) -> None:
+        """Let layers fade, move, take turns, or be painted in another order; and the camera."""
+        figures = self.document.figures
+        layer, other = self.choice(figures).id, self.choice(figures).id
+        match self.rng.integers(7):
+            case 0:
+                self.act(layering.fade_here, layer, float(self.rng.random()))
+            case 1:
+                shift = complex(*self.rng.normal(0, 0.1 * self.size, 2))
+                self.act(layering.move_here, layer, shift, float(self.rng.normal()))
+            case 2:
+                self.act(layering.place_here, layer, None if other == layer else other)
+            case 3:
+                verbs = layering.unfade_here, layering.unmove_here, layering.unplace_here
+                self.act(self.choice(verbs), layer)
+            case 4:
+                self.act(layering.key_camera)
+            case 5:
+                self.act(layering.form, *{layer, other})
+            case 6 if self.document.choices:
+                self.act(layering.dissolve, self.choice(self.document.choices).name)
+
     def change_depth(self) -> None:
         figure = self.project.figure
         if not figure.handles:
@@ -717,6 +773,8 @@ ALL = (
     (Walk.change_view, 2),
     (Walk.change_layers, 3),
     (Walk.change_joints, 3),
+    (Walk.change_tracks, 4),
+    (Walk.change_staging, 2),
     (Walk.change_depth, 2),
     (Walk.change_material, 3),
     (Walk.cut_out, 0.5),
