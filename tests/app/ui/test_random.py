@@ -4,6 +4,7 @@ from collections import deque
 from contextlib import ExitStack
 from pathlib import Path
 
+import harness
 import numpy as np
 import pytest
 from documents import differences
@@ -40,6 +41,7 @@ from app.editor.actions import (
 )
 from app.editor.poses import copying, flipping, library, pasting
 from app.editor.timeline_view import Strip
+from app.editor.work import pull
 from app.editor.work.jobs import Jobs, Kind
 from app.export_formats import EXPORT_FORMATS
 from app.storage.project_file import load_project, save_project
@@ -59,8 +61,9 @@ REMEMBERED = 20  # actions that are told where the walk fails
 LOOKED_AT, SAVED, RESTED = 10, 100, 500
 USUAL, SMALL = (1280, 800), (800, 560)
 MOST_HANDLES, MOST_KEYS, MOST_LAYERS = 4, 5, 3
-LAST = 24  # frame beyond which the walk does not go
-# What makes drawings cheap to pose: few edges of outlines, few samples on them, rough auto-pins.
+LAST = 16  # frame beyond which the walk does not go
+# What makes drawings cheap to pose: few edges of outlines, few samples on them, rough auto-pins,
+# and few Newton steps, many of them at once.
 CHEAP = (
     (fitting.Candidates.on.__func__, "__kwdefaults__", {"fewest_edges": 12}),
     (fitting, "LONGEST_EDGE", 0.14),
@@ -69,7 +72,9 @@ CHEAP = (
     (pinning, "TOLERANCE", 1e-3),
     (pinning, "LEFT_OUT", 2e-4),
     (pinning, "DEGREES", (4, 8, 16, 32)),
-    (enclosure, "MARGINS", {**enclosure.MARGINS, "coarse": 0.03}),
+    (pull, "MOST_STEPS", 60),
+    (harness, "STEP", 0.001),
+    (enclosure, "MARGINS", {"coarse": 0.03, "normal": 0.025, "fine": 0.02}),
 )
 # What ends the project is left out; what asks first is answered by Escape.
 LEAVING = {"close", "quit"}
@@ -188,7 +193,7 @@ class Walk:
         if self.chance(0.01):
             self.catch_up()
         else:
-            if (kinds := self.session.jobs.kinds) and self.chance(1 / 10):
+            if (kinds := self.session.jobs.kinds) and self.chance(1 / 12):
                 self.workers.do(self.choice(kinds))
             self.window.frames(int(self.chance(1 / 10)))
         if number % RESTED == 0:
