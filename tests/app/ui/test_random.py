@@ -846,6 +846,7 @@ def test_random_walk_ends_where_it_began(small_window, workers, tmp_path, seed, 
     first = project.document
     if seed % 5:
         keys.set_variant(window.session, "nu")
+    keys.set_last_frame(window.session, LAST)
     walk = Walk(window, seed, workers, Widgets(monkeypatch), tmp_path)
     workers.hold()
     for number in range(number_of_steps(request.config, seed)):
