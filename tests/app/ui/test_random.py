@@ -14,6 +14,7 @@ from layered import openraster
 from PIL import Image, ImageDraw
 from unrest import is_shown, unrest
 
+from app.document import Document
 from app.document.commands import (
     figure_commands,
     handle_commands,
@@ -62,8 +63,9 @@ LOOKED_AT, SAVED, RESTED = 10, 100, 500
 USUAL, SMALL = (1280, 800), (800, 560)
 MOST_HANDLES, MOST_KEYS, MOST_LAYERS = 4, 5, 3
 LAST = 16  # frame beyond which the walk does not go
-# What makes drawings cheap to pose: few edges of outlines, few samples on them, rough auto-pins,
-# and few Newton steps, many of them at once.
+NEW_DOCUMENT = Document.__init__.__kwdefaults__
+# What makes drawings cheap to pose: few edges of outlines, few samples on them, few frames, rough
+# auto-pins, and few Newton steps, many of them at once.
 CHEAP = (
     (fitting.Candidates.on.__func__, "__kwdefaults__", {"fewest_edges": 12}),
     (fitting, "LONGEST_EDGE", 0.14),
@@ -71,6 +73,7 @@ CHEAP = (
     (boundary, "SEGMENT_PER_DISTANCE", 1.0),
     (pinning, "TOLERANCE", 1e-3),
     (pinning, "LEFT_OUT", 2e-4),
+    (Document.__init__, "__kwdefaults__", {**NEW_DOCUMENT, "frames": FrameRange(0, LAST)}),
     (pinning, "DEGREES", (4, 8, 16, 32)),
     (pull, "MOST_STEPS", 60),
     (harness, "STEP", 0.001),
@@ -846,7 +849,6 @@ def test_random_walk_ends_where_it_began(small_window, workers, tmp_path, seed, 
     first = project.document
     if seed % 5:
         keys.set_variant(window.session, "nu")
-    keys.set_last_frame(window.session, LAST)
     walk = Walk(window, seed, workers, Widgets(monkeypatch), tmp_path)
     workers.hold()
     for number in range(number_of_steps(request.config, seed)):
