@@ -103,3 +103,16 @@ def test_clip_of_a_tried_pose_is_made_once_for_a_document(session):
         assert any(key.pose.phi is pull.tried.phi for key in clip.keys)
         pull.tried = pull.newest
         assert posing.tried_clips(session.project)[0] is not clip
+
+
+def test_turn_of_a_handle_that_came_later_is_left_out(session):
+    project = session.project
+    playback.scrub(session, 5)
+    with session.jobs.held():
+        handle = project.figure.handles[0]
+        wishes = {handle.id: Target(position=handle.position + 9)}
+        posing.pull(session, wishes, gesture="drag")
+        posing.add_handle(session, complex(project.figure.domain.mesh.vertices[0]))
+        posing.free_turn(session, project.figure.handles[-1].id)
+    settle(session)
+    assert not [toast.text for toast in session.toasts]

@@ -139,7 +139,7 @@ class Workers:
 
     def do(self, kind: Kind) -> None:
         """Let them do what waits of a kind, while the window stands still."""
-        others = {other for other in self._jobs.kinds if other is not kind}
+        others = {other for other in self._jobs.kinds if other != kind}
         before, self._hold = self._hold, ExitStack()
         with ExitStack() as rest:
             if others:
