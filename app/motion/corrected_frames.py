@@ -143,9 +143,12 @@ class CorrectedFrames:
     def missing_ground(
         self, document: Document, frame: int, siblings: Mapping[int, PoseSampler]
     ) -> Callable[[], FoundCorrections] | None:
-        """Return what finds the grounds that are wanted next, the nearest to a frame first."""
+        """Return what finds the grounds that are wanted next, the nearest to a frame first.
+
+        Without handles there is nothing that could be recorded.
+        """
         lacking = [each for each in self._frames if each not in self._grounds]
-        if not lacking or not self._is_known(siblings):
+        if not (lacking and self.clip.figure.handles and self._is_known(siblings)):
             return None
         lacking.sort(key=lambda each: abs(each - frame))
         begin = partial(_prepare, self._corrections, document, self.clip, siblings)

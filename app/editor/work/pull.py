@@ -6,7 +6,8 @@ from functools import partial
 
 import numpy as np
 
-from app.document import Clip, Figure, History, Pose, Settled, Target
+from app.document import Clip, Document, Figure, History, Pose, Settled, Target
+from app.editor.work.derived import Derived
 from app.editor.work.promise import Promise
 from app.solving import Drag
 from engine.deform import Hand
@@ -112,6 +113,8 @@ class Pull(Promise):
         What the document has of it; None as long as that is nothing.
     tried : Pose, optional
         The one whose in-betweens are being prepared, once the hand has let go.
+    trial : Derived
+        The figure's clip with it, as long as the document stays: several ask for it in each frame.
     ready : Pose, optional
         The newest one whose in-betweens are there: the playhead that leaves it finds them.
     is_left : bool
@@ -140,6 +143,9 @@ class Pull(Promise):
     newest: Pose | None = None
     kept: Pose | None = None
     tried: Pose | None = None
+    trial: Derived[tuple[Document, Pose, Pose], Clip | None] = field(
+        default_factory=lambda: Derived(None)
+    )
     ready: Pose | None = None
     is_left: bool = False
 

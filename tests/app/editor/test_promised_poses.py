@@ -91,3 +91,28 @@ def test_pull_of_a_removed_layer_lets_its_copy_rest(session):
     assert is_shown(session), unrest(session)
     assert not project.pending, unrest(session)
     assert 5 in project.figure.key_frames
+
+
+def test_clip_of_a_tried_pose_is_made_once_for_a_document(session):
+    pull = begun_pull(session)
+    with session.jobs.held():
+        pull.tried = pull.ready
+        (clip,) = posing.tried_clips(session.project)
+        assert posing.tried_clips(session.project) == [clip]
+        assert posing.tried_clips(session.project)[0] is clip
+        assert any(key.pose.phi is pull.tried.phi for key in clip.keys)
+        pull.tried = pull.newest
+        assert posing.tried_clips(session.project)[0] is not clip
+
+
+def test_turn_of_a_handle_that_came_later_is_left_out(session):
+    project = session.project
+    playback.scrub(session, 5)
+    with session.jobs.held():
+        handle = project.figure.handles[0]
+        wishes = {handle.id: Target(position=handle.position + 9)}
+        posing.pull(session, wishes, gesture="drag")
+        posing.add_handle(session, complex(project.figure.domain.mesh.vertices[0]))
+        posing.free_turn(session, project.figure.handles[-1].id)
+    settle(session)
+    assert not [toast.text for toast in session.toasts]

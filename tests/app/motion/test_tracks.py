@@ -6,8 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from animations import still_document, within
 from numpy.testing import assert_allclose, assert_array_equal
-from still_poses import PLACES, animate, animated, posed, with_figure
+from shapes import regular_polygon
+from still_poses import CORNERS, PLACES, animate, animated, posed, with_figure
 
 from app.document import (
     RUBBERY,
@@ -478,6 +480,14 @@ def test_the_frames_of_a_window_are_those_of_an_export():
     assert later.at(clip_of(changed, 0), 12) is frames.at(clip, 12)
     assert not later.is_exact(clip_of(changed, 0), 12)
     assert later.at(clip, 12) is None
+
+
+def test_no_places_are_asked_for_without_handles():
+    document = within(still_document(), 60 + 47j + 40 * regular_polygon(CORNERS))
+    frames = CorrectedFrames(clip_of(document, 0))
+    assert frames.missing_ground(document, 0, {}) is None
+    with_handle = handle_commands.add_handle(0, PLACES["left"])(document)
+    assert CorrectedFrames(clip_of(with_handle, 0)).missing_ground(with_handle, 0, {}) is not None
 
 
 def test_extent_and_exports_are_of_the_shown_frames():

@@ -4,6 +4,7 @@ from collections import deque
 from contextlib import ExitStack
 from pathlib import Path
 
+import harness
 import numpy as np
 import pytest
 from documents import differences
@@ -13,10 +14,17 @@ from layered import openraster
 from PIL import Image, ImageDraw
 from unrest import is_shown, unrest
 
-from app.document.commands import figure_commands, handle_commands, key_commands, layer_commands
+from app.document import Document, Figure
+from app.document.commands import (
+    figure_commands,
+    handle_commands,
+    key_commands,
+    layer_commands,
+    track_commands,
+)
 from app.document.keyframe import Target
 from app.document.settings import VARIANTS, ExportSettings, FrameRange, Meshing
-from app.document.timing import PRESETS, Easing
+from app.document.timing import PRESETS, Easing, Spring
 from app.editor import layering
 from app.editor.actions import (
     cutting,
@@ -27,16 +35,19 @@ from app.editor.actions import (
     playback,
     posing,
     rebuilding,
+    springs,
     timeline_pointing,
+    tracks,
     viewing,
 )
 from app.editor.poses import copying, flipping, library, pasting
 from app.editor.timeline_view import Strip
+from app.editor.work import pull
 from app.editor.work.jobs import Jobs, Kind
 from app.export_formats import EXPORT_FORMATS
 from app.storage.project_file import load_project, save_project
 from app.ui.shortcuts import ARROWS, BINDINGS, MODIFIERS
-from engine.domain.outline import fitting
+from engine.domain.outline import enclosure, fitting
 from engine.domain.picture.cut_out import Stroke
 from engine.interpolation.added.pins import pinning
 from engine.maps import boundary
@@ -51,14 +62,23 @@ REMEMBERED = 20  # actions that are told where the walk fails
 LOOKED_AT, SAVED, RESTED = 10, 100, 500
 USUAL, SMALL = (1280, 800), (800, 560)
 MOST_HANDLES, MOST_KEYS, MOST_LAYERS = 4, 5, 3
-LAST = 24  # frame beyond which the walk does not go
-# What makes drawings cheap to pose: few edges of outlines, few samples on them, rough auto-pins.
+LAST = 16  # frame beyond which the walk does not go
+NEW_DOCUMENT, NEW_FIGURE = Document.__init__.__kwdefaults__, Figure.__init__.__kwdefaults__
+# What makes drawings cheap to pose: few edges of outlines, few samples on them, few frames, a
+# variant that costs little, rough auto-pins, and few Newton steps, many of them at once.
 CHEAP = (
-    (fitting, "FEWEST_EDGES", 12),
+    (fitting.Candidates.on.__func__, "__kwdefaults__", {"fewest_edges": 12}),
+    (fitting, "LONGEST_EDGE", 0.14),
     (boundary, "SEGMENT_PER_SIZE", 1 / 40),
     (boundary, "SEGMENT_PER_DISTANCE", 1.0),
     (pinning, "TOLERANCE", 1e-3),
     (pinning, "LEFT_OUT", 2e-4),
+    (Document.__init__, "__kwdefaults__", {**NEW_DOCUMENT, "frames": FrameRange(0, LAST)}),
+    (Figure.__init__, "__kwdefaults__", {**NEW_FIGURE, "variant": "nu"}),
+    (pinning, "DEGREES", (4, 8, 16, 32)),
+    (pull, "MOST_STEPS", 60),
+    (harness, "STEP", 0.001),
+    (enclosure, "MARGINS", {"coarse": 0.03, "normal": 0.025, "fine": 0.02}),
 )
 # What ends the project is left out; what asks first is answered by Escape.
 LEAVING = {"close", "quit"}
@@ -120,7 +140,7 @@ class Workers:
 
     def do(self, kind: Kind) -> None:
         """Let them do what waits of a kind, while the window stands still."""
-        others = {other for other in self._jobs.kinds if other is not kind}
+        others = {other for other in self._jobs.kinds if other != kind}
         before, self._hold = self._hold, ExitStack()
         with ExitStack() as rest:
             if others:
@@ -177,9 +197,9 @@ class Walk:
         if self.chance(0.01):
             self.catch_up()
         else:
-            if (kinds := self.session.jobs.kinds) and self.chance(1 / 4):
+            if (kinds := self.session.jobs.kinds) and self.chance(1 / 16):
                 self.workers.do(self.choice(kinds))
-            self.window.frames(int(self.choice((0, 0, 0, 1))))
+            self.window.frames(int(self.chance(1 / 10)))
         if number % RESTED == 0:
             self.catch_up(wholly=True)
         self.look(thorough=number % LOOKED_AT == 0, saves=number % SAVED == 0)
@@ -225,11 +245,12 @@ class Walk:
         io = imgui.get_io()
         modifiers = [modifier for modifier in MODIFIERS if chord & modifier]
         key = imgui.Key(chord & ~sum(MODIFIERS))
+        # Its release comes with the frames after.
         for is_down in (True, False):
             for modifier in modifiers:
                 io.add_key_event(imgui.Key(modifier), is_down)
             io.add_key_event(key, is_down)
-            self.window.frames(1)
+        self.window.frames(1)
 
     def press_bound_key(self) -> None:
         chord = self.choice(BOUND)
@@ -305,7 +326,6 @@ class Walk:
             return
         io = imgui.get_io()
         io.add_mouse_button_event(self.button, down=False)
-        self.window.frames(1)
         if self.modifier:
             io.add_key_event(imgui.Key(self.modifier), down=False)
         self.is_down, self.modifier = False, 0
@@ -429,7 +449,7 @@ class Walk:
 
     def change_variant(self) -> None:
         # The costlier ones are left again soon.
-        self.act(keys.set_variant, self.choice((*VARIANTS, "nu", "nu", "nu", "linear")))
+        self.act(keys.set_variant, self.choice((*VARIANTS, *("nu", "linear") * 4)))
 
     def change_bounds(self) -> None:
         wanted = Bounds(
@@ -556,6 +576,54 @@ class Walk:
                 self.act(layering.turn_with, child.id, self.chance(0.5))
             case _:
                 self.act(layering.hang, child.id, parent.id, self.chance(0.5))
+
+    def change_tracks(self) -> None:
+        """Move a handle by a track of its own, or by a spring."""
+        figure = self.project.figure
+        if not figure.handles:
+            return
+        handle = self.choice(figure.handles).id
+        place = complex(*self.rng.normal(0, 0.05 * self.size, 2))
+        match self.rng.integers(8):
+            case 0:
+                self.act(tracks.key_here, (handle,))
+            case 1 | 2:
+                self.act(tracks.put, handle, place)
+            case 3:
+                self.act(tracks.plant, handle, self.chance(0.5))
+            case 4:
+                frequency, damping = self.rng.uniform((0.5, 0), (4, 1))
+                spring = Spring(handle=handle, frequency=float(frequency), damping=float(damping))
+                self.act(editing.edit_figure, track_commands.put_spring, spring)
+            case 5:
+                self.act(springs.make_keys, handle)
+            case 6:
+                remove = self.choice((track_commands.remove_tracks, track_commands.remove_springs))
+                self.act(editing.edit_figure, remove, (handle,))
+            case 7:
+                self.act(tracks.choose, self.choice((handle, None)))
+
+    def change_staging(self) -> None:
+        """Let layers fade, move, take turns, or be painted in another order; and the camera."""
+        figures = self.document.figures
+        layer, other = self.choice(figures).id, self.choice(figures).id
+        match self.rng.integers(7):
+            case 0:
+                self.act(layering.fade_here, layer, float(self.rng.random()))
+            case 1:
+                shift = complex(*self.rng.normal(0, 0.1 * self.size, 2))
+                self.act(layering.move_here, layer, shift, float(self.rng.normal()))
+            case 2:
+                self.act(layering.place_here, layer, None if other == layer else other)
+            case 3:
+                verbs = layering.unfade_here, layering.unmove_here, layering.unplace_here
+                self.act(self.choice(verbs), layer)
+            case 4:
+                self.act(layering.key_camera)
+            case 5:
+                self.act(layering.form, *{layer, other})
+            case 6 if self.document.choices:
+                self.act(layering.dissolve, self.choice(self.document.choices).name)
 
     def change_depth(self) -> None:
         figure = self.project.figure
@@ -714,6 +782,8 @@ ALL = (
     (Walk.change_view, 2),
     (Walk.change_layers, 3),
     (Walk.change_joints, 3),
+    (Walk.change_tracks, 4),
+    (Walk.change_staging, 2),
     (Walk.change_depth, 2),
     (Walk.change_material, 3),
     (Walk.cut_out, 0.5),
@@ -778,8 +848,8 @@ def test_random_walk_ends_where_it_began(small_window, workers, tmp_path, seed, 
     drawing = draw_bones if seed % 2 else draw_bone
     project = window.open(drawing(tmp_path / ("bones.ora" if seed % 2 else "bone.png")))
     first = project.document
-    if seed % 5:
-        keys.set_variant(window.session, "nu")
+    if seed % 5 == 0:
+        keys.set_variant(window.session, "metric")
     walk = Walk(window, seed, workers, Widgets(monkeypatch), tmp_path)
     workers.hold()
     for number in range(number_of_steps(request.config, seed)):

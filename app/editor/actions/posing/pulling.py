@@ -112,7 +112,12 @@ def nudge(session: Session, project: Project, step: complex) -> None:
 
 def free_turn(session: Session, identity: int) -> None:
     """Let the solver choose how the shape turns at a handle."""
-    _once(session, lambda _, targets: {identity: replace(targets[identity], rotation=None)})
+
+    def free(_: Start, targets: Mapping[int, Target]) -> Mapping[int, Target]:
+        known = {identity} & targets.keys()
+        return {i: replace(targets[i], rotation=None) for i in known}
+
+    _once(session, free)
 
 
 @with_project

@@ -83,8 +83,11 @@ def bring_all(session: Session, project: Project) -> None:
 def _tried_clip(project: Project, pull: Pull) -> Clip | None:
     if pull.tried is None or pull.kept is None or pull.figure not in project.puppets:
         return None
-    document = exchanged(project.document, pull.kept, pull.brought_to(pull.tried))
-    return clip_of(document, pull.figure)
+    source = (project.document, pull.kept, pull.tried)
+    if not pull.trial.follows(source):
+        document = exchanged(project.document, pull.kept, pull.brought_to(pull.tried))
+        pull.trial.set(source, clip_of(document, pull.figure))
+    return pull.trial.value
 
 
 def _has_inbetweens(project: Project, clip: Clip) -> bool:
