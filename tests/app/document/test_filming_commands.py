@@ -88,3 +88,11 @@ def test_a_layer_is_painted_beside_another_one_from_a_frame_on():
     assert filming.unplace_at(0, 12)(behind).figure(0).placings == ()
     with pytest.raises(LissomError):
         filming.place_at(0, Placing(12, 0))(document)
+
+
+def test_layer_placed_beside_what_it_clips_stays_there():
+    document = layer_commands.duplicate_figure(0)(EMPTY)
+    base, cut = (each.id for each in document.figures)
+    clipped = layer_commands.set_clipped(cut, clipped=True)(document)
+    placed = filming.place_at(base, Placing(12, cut, in_front=True))(clipped)
+    assert in_order(placed, 12) == placed.figures

@@ -147,6 +147,9 @@ def in_order(document: Document, frame: float) -> tuple[Figure, ...]:
         _, beside, in_front = placed.pop(moved)
         cut = [each for stack in clipping if stack.base == (moved,) for each in stack.cut]
         along = [moved, *(each for each in cut if each not in own)]
+        if beside in along:
+            # It is there already: what it clips goes with it.
+            continue
         order = [each for each in order if each not in along]
         # What is clipped by a group's figure is so inside of the group.
         around = {beside}
