@@ -12,9 +12,10 @@ from engine.deform.correction.walls import LimitWalls, quantities
 from engine.maps import Bounds
 
 INSIDE = 0.002  # of the limits: how far inside a correction ends, as between samples it is more
-# How far inside the walls are, and how stiff: one after the other, from soft to firm, since the
-# first leads near the solution in few long steps.
-MARGIN, STIFFNESSES = 0.02, (1e2, 1e3, 1e4)
+BEYOND = 0.0005  # of the base's own distortion, where that exceeds a limit: what may be added to it
+# Weights and widths of barriers, one after the other: the first leads near the solution in few long
+# steps. The last one is what counts.
+BARRIERS = ((1.0, 0.5), (0.1, 0.15), (0.01, 0.05))
 HALVINGS = 20
 TINY = 1e-300
 
@@ -46,6 +47,7 @@ def solve_within(
     samples: BaseFrame,
     targets: Targets,
     bounds: Bounds,
+    inside: float = INSIDE,
 ) -> PointSolution:
     """Find the correction of one frame within bounds, from zero.
 
@@ -63,20 +65,16 @@ def solve_within(
     """
     found = solve(corrector, nodes, targets)
     own = extremes(corrector, samples, 0.0 * found.x)
-    limits = limits_of(bounds, own)
-    if (extremes(corrector, samples, found.x) <= limits).all():
+    limits = limits_of(bounds, own + BEYOND, inside=inside)
+    _, width = BARRIERS[-1]
+    if (extremes(corrector, samples, found.x) <= limits - width).all():
         return found
-    walls = LimitWalls.around(corrector, samples, limits_of(bounds, inside=MARGIN))
-    # Far outside, the nearest way back may lead through folds.
-    share = largest_share(corrector, samples, found.x, limits)
-    near = replace(found, x=share * found.x, shift=share * found.shift)
-    steps = found.steps
-    for stiffness in STIFFNESSES:
-        near = solve(corrector, nodes, targets, near, replace(walls, stiffness=stiffness))
+    near, steps = replace(found, x=0.0 * found.x, shift=0j), found.steps
+    for barrier in BARRIERS:
+        walls = LimitWalls(corrector, samples, limits, *barrier)
+        near = solve(corrector, nodes, targets, near, walls)
         steps += near.steps
-    share = largest_share(corrector, samples, near.x, limits)
-    found = replace(near, steps=steps, is_held_back=True)
-    return shorten_solution(corrector, nodes, targets, found, share) if share < 1.0 else found
+    return replace(near, steps=steps, is_held_back=True)
 
 
 def shorten_solution(

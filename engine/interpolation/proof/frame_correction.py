@@ -6,7 +6,7 @@ import numpy as np
 
 from engine.arrays import Floats
 from engine.deform.correction import (
-    MARGIN,
+    BEYOND,
     PointCorrector,
     Targets,
     extremes,
@@ -22,7 +22,6 @@ from engine.maps import Bounds
 
 # A share of a correction is shorten_solution by this much until it is proven within the limits.
 SHORTER, MOST_SHORTER = 0.95, 12
-BEYOND = 5e-4  # of a limit: the tightness of proofs
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -78,7 +77,7 @@ def correct_frame(
     found = solve_within(corrector, base.nodes, base.samples, targets, bounds)
     own = extremes(corrector, base.samples, 0.0 * found.x)
     reached = extremes(corrector, base.samples, found.x)
-    if (reached > limits_of(bounds, inside=MARGIN)).any():
+    if (reached > limits_of(bounds, inside=.03)).any():
         limits = limits_of(bounds, own, inside=-BEYOND)
         for _ in range(MOST_SHORTER):
             known = CorrectionSeries.of_frame(corrector, found.x, found.shift)
