@@ -8,14 +8,11 @@ from engine.arrays import Floats
 from engine.deform.correction.corrector import PointCorrector
 from engine.deform.correction.frame import BaseFrame, CorrectedFrame
 from engine.deform.correction.solver import PointSolution, Targets, solve
-from engine.deform.correction.walls import LimitWalls, quantities
+from engine.deform.correction.walls import WIDTH, LimitWalls, quantities
 from engine.maps import Bounds
 
 INSIDE = 0.002  # of the limits: how far inside a correction ends, as between samples it is more
 BEYOND = 0.0005  # of the base's own distortion, where that exceeds a limit: what may be added to it
-# Weights and widths of barriers, one after the other: the first leads near the solution in few long
-# steps. The last one is what counts.
-BARRIERS = ((1.0, 0.5), (0.1, 0.15), (0.01, 0.05))
 HALVINGS = 20
 TINY = 1e-300
 
@@ -66,15 +63,11 @@ def solve_within(
     found = solve(corrector, nodes, targets)
     own = extremes(corrector, samples, 0.0 * found.x)
     limits = limits_of(bounds, own + BEYOND, inside=inside)
-    _, width = BARRIERS[-1]
-    if (extremes(corrector, samples, found.x) <= limits - width).all():
+    if (extremes(corrector, samples, found.x) <= limits - WIDTH).all():
         return found
-    near, steps = replace(found, x=0.0 * found.x, shift=0j), found.steps
-    for barrier in BARRIERS:
-        walls = LimitWalls(corrector, samples, limits, *barrier)
-        near = solve(corrector, nodes, targets, near, walls)
-        steps += near.steps
-    return replace(near, steps=steps, is_held_back=True)
+    start = replace(found, x=0.0 * found.x, shift=0j)
+    near = solve(corrector, nodes, targets, start, LimitWalls(corrector, samples, limits))
+    return replace(near, steps=found.steps + near.steps, is_held_back=True)
 
 
 def shorten_solution(

@@ -20,11 +20,13 @@ from engine.arrays import Complexes, Floats
 from engine.deform.correction.corrector import PointCorrector
 from engine.deform.correction.frame import BaseFrame, Bending, CorrectedFrame
 from engine.deform.correction.step_model import Rows, StepModel
-from engine.deform.correction.walls import LimitWalls, WallState
+from engine.deform.correction.walls import LAST, LimitWalls, WallState
 
 SMALL = 1e-6  # a step in h: where the iteration ends
 MET = 1e-9  # of the diagonal: points that are where they are wanted
 LONGEST, LONGEST_AT_WALLS = 1.0, 0.3  # step in h
+MOST_STEPS_AT_WALLS = 60
+ENOUGH = 0.5  # of a step: what must be taken of it for the barrier to be lowered
 MOST_STEPS, MOST_HALVINGS, MOST_RETURNS = 25, 7, 3
 NEARER = 0.7  # of the gap: what a step back to the points leaves of it, at most
 CALM = 1e-4
@@ -171,12 +173,12 @@ class _Problem:
         # What is met at any price.
         self.held = (self.loose == 0) & (self.give == 0) & np.isinf(self.forces)[self.group]
 
-    def state(self, x: Floats, shift: complex) -> _State:
+    def state(self, x: Floats, shift: complex, last: WallState | None = None) -> _State:
         """Work out what the points lack."""
         frame = CorrectedFrame.of(self.corrector, self.base, x)
         lack = self.roots * (frame.places() + shift * self.of_points - self.wanted)
         turned = self.corrector.variables.at_points.h_of(x).imag[self.turned] - self.turns
-        walls = None if self.walls is None else self.walls.state(x)
+        walls = None if self.walls is None else self.walls.state(x, last)
         return _State(frame, shift, np.concatenate([lack.real, lack.imag, turned]), walls)
 
     def rows(self, at: _State) -> Rows:
@@ -199,7 +201,7 @@ class _Problem:
         size, firm = self.corrector.boundary.size, 0.0
         small = SMALL if self.walls is None else CALM
         steps = 0
-        while steps < MOST_STEPS:
+        while steps < (MOST_STEPS if self.walls is None else MOST_STEPS_AT_WALLS):
             steps += 1
             rows = self.rows(at)
             pushed = None if self.walls is None or at.walls is None else self.walls.model(at.walls)
@@ -228,6 +230,10 @@ class _Problem:
             moved = self._length(tried.frame.x - at.frame.x)
             off = np.abs(tried.lack)[self.held].max(initial=0.0)
             at = tried
+            if self.walls is not None and self.walls.weight > LAST:
+                if share > ENOUGH or is_stuck:
+                    self.walls = self.walls.lowered()
+                continue
             if is_stuck or (moved < small and (off < MET * size or share < 1.0)):
                 break
         misses = np.abs(at.frame.places() + at.shift - self.wanted)[: self.count]
@@ -245,7 +251,7 @@ class _Problem:
         self, at: _State, model: StepModel, change: Floats, shift: complex, share: float
     ) -> _State:
         """Return the state after a step, with points back on where the model has them."""
-        tried = self.state(at.frame.x + change, at.shift + shift)
+        tried = self.state(at.frame.x + change, at.shift + shift, at.walls)
         aim = (1 - share) * at.lack
         for _ in range(MOST_RETURNS):
             gap = np.where(self.held, aim - tried.lack, 0)
@@ -253,7 +259,7 @@ class _Problem:
             if worst < MET / 100 * self.corrector.boundary.size:
                 break
             back, along = model.restoring(gap)
-            nearer = self.state(tried.frame.x + back, tried.shift + along)
+            nearer = self.state(tried.frame.x + back, tried.shift + along, at.walls)
             if np.abs(np.where(self.held, aim - nearer.lack, 0)).max() > NEARER * worst:
                 break
             tried = nearer

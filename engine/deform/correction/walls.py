@@ -5,10 +5,12 @@ With a = |F| e^{Re h} and b = |G e^{σh} + q K e^h| they are on ln σ_a = ln (a 
 
     weight · its share of the boundary · (d / width − 1 − ln (d / width))    where d < width,
 
-which has no jump in its slope: what keeps farther from the limits is not changed.
+which has no jump in its slope: what keeps farther from the limits is not changed. The weight falls
+from step to step, and the width with it. How firm the barrier is taken to be follows from the
+pushes that the steps before found (primal-dual; Wächter and Biegler 2006).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +21,10 @@ from engine.deform.correction.frame import BaseFrame
 
 FOLDED = 10.0  # −ln σ_b where a map begins to fold
 ROUND = 1e-12  # the least b that is divided by
+LEAST = 1e-12  # of what is left
+# The weight at first, how it falls, and at last; and the width at last.
+FIRST, FALL, LAST, WIDTH = 1.0, 0.3, 0.01, 0.05
+NEAR = 100.0  # times what the barrier itself pushes with: what pushes may be off it
 FLAT = 1e-9  # of the largest curvature of a sample: what counts for nothing
 
 
@@ -26,6 +32,7 @@ class WallState(NamedTuple):
     """What is left of the limits at all samples (p,) of a corrected frame, and what it is of."""
 
     left: Floats  # (3, p)
+    pushes: Floats  # (3, p), without what the width takes off
     a: Floats
     g: Complexes
     by_h: Complexes  # derivative of the corrected G by h
@@ -52,24 +59,35 @@ class LimitWalls:
         Of ln σ_a, −ln σ_b and k.
     weight : float
         Of the whole boundary.
-    width : float
-        What is left of a limit where the barrier begins.
     """
 
     corrector: PointCorrector
     base: BaseFrame
     limits: Floats
-    weight: float
-    width: float
+    weight: float = FIRST
 
-    def state(self, x: Floats) -> WallState:
-        """Work a corrected frame out."""
+    @property
+    def width(self) -> float:
+        """What is left of a limit where the barrier begins."""
+        return WIDTH * float(np.sqrt(self.weight / LAST))
+
+    def lowered(self) -> "LimitWalls":
+        """Return the barrier of the next step."""
+        return replace(self, weight=max(FALL * self.weight, LAST))
+
+    def state(self, x: Floats, last: WallState | None = None) -> WallState:
+        """Work a corrected frame out, after a step from a last one."""
         values = self.corrector.variables.at_samples
         conformal, own, factor = self.base.corrected(values, x)
         mixed = factor * values.q_of(x)
         a, g = np.abs(conformal), own + mixed
         left = self.limits[:, None] - quantities(a, np.abs(g))
-        return WallState(left, a, g, self.base.sign * own + mixed, factor)
+        pushes = self.weight * self.corrector.boundary.shares / np.maximum(left, LEAST)
+        if last is not None:
+            follow = self.weight * self.corrector.boundary.shares / last.left
+            follow = follow - last.pushes * (left - last.left) / last.left
+            pushes = np.clip(follow, pushes / NEAR, pushes * NEAR)
+        return WallState(left, pushes, a, g, self.base.sign * own + mixed, factor)
 
     def energy(self, at: WallState) -> float:
         """Return the barrier; infinite where a limit is not kept."""
@@ -87,7 +105,7 @@ class LimitWalls:
         weights = self.weight * self.corrector.boundary.shares[near]
         slopes, forms = _by_both(at.a[near], at.g[near], at.by_h[near], at.by_q[near])
         push = weights * (1.0 / left - 1.0 / self.width)
-        firm = weights * (left < self.width) / left**2
+        firm = at.pushes[:, near] * (left < self.width) / left
         slope = np.einsum("kp,kpi->pi", push, slopes)
         form = np.einsum("kp,kpij->pij", push, forms)
         form += np.einsum("kp,kpi,kpj->pij", firm, slopes, slopes)
