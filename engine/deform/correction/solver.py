@@ -26,6 +26,7 @@ SMALL = 1e-6  # a step in h: where the iteration ends
 MET = 1e-9  # of the diagonal: points that are where they are wanted
 LONGEST, LONGEST_AT_WALLS = 1.0, 0.3  # step in h
 MOST_STEPS_AT_WALLS = 60
+CLOSE = 0.15
 ENOUGH = 0.5  # of a step: what must be taken of it for the barrier to be lowered
 MOST_STEPS, MOST_HALVINGS, MOST_RETURNS = 25, 7, 3
 NEARER = 0.7  # of the gap: what a step back to the points leaves of it, at most
@@ -231,7 +232,7 @@ class _Problem:
             off = np.abs(tried.lack)[self.held].max(initial=0.0)
             at = tried
             if self.walls is not None and self.walls.weight > LAST:
-                if share > ENOUGH or is_stuck:
+                if is_stuck or (share > ENOUGH and moved < CLOSE):
                     self.walls = self.walls.lowered()
                 continue
             if is_stuck or (moved < small and (off < MET * size or share < 1.0)):
@@ -253,6 +254,8 @@ class _Problem:
         """Return the state after a step, with points back on where the model has them."""
         tried = self.state(at.frame.x + change, at.shift + shift, at.walls)
         aim = (1 - share) * at.lack
+        if tried.walls is not None and tried.walls.left.min() <= 0:
+            return tried
         for _ in range(MOST_RETURNS):
             gap = np.where(self.held, aim - tried.lack, 0)
             worst = np.abs(gap).max(initial=0.0)
