@@ -13,6 +13,7 @@ from engine.maps import Bounds
 
 INSIDE = 0.002  # of the limits: how far inside a correction ends, as between samples it is more
 BEYOND = 0.0005  # of the base's own distortion, where that exceeds a limit: what may be added to it
+START = 0.95  # of the part that keeps the limits
 HALVINGS = 20
 TINY = 1e-300
 
@@ -48,8 +49,9 @@ def solve_within(
 ) -> PointSolution:
     """Find the correction of one frame within bounds, from zero.
 
-    Where the smallest correction exceeds a limit, walls push it back, and targets out of reach are
-    approached with their largest forces. A base beyond a limit stays within its own distortion.
+    Where the smallest correction comes near a limit, a barrier keeps it inside, and targets out of
+    reach are approached with their largest forces. A base beyond a limit stays within its own
+    distortion.
 
     Parameters
     ----------
@@ -59,13 +61,17 @@ def solve_within(
     targets : Targets
         Without a largest force, a target is met even where that breaks a limit.
     bounds : Bounds
+    inside : float
+        How far inside the bounds the samples end.
     """
     found = solve(corrector, nodes, targets)
     own = extremes(corrector, samples, 0.0 * found.x)
     limits = limits_of(bounds, own + BEYOND, inside=inside)
     if (extremes(corrector, samples, found.x) <= limits - WIDTH).all():
         return found
-    start = replace(found, x=0.0 * found.x, shift=0j)
+    # What is kept of the smallest correction is where the steps begin: inside all limits.
+    part = START * largest_share(corrector, samples, found.x, limits, more=0.0)
+    start = replace(found, x=part * found.x, shift=part * found.shift)
     near = solve(corrector, nodes, targets, start, LimitWalls(corrector, samples, limits))
     return replace(near, steps=found.steps + near.steps, is_held_back=True)
 
@@ -85,10 +91,14 @@ def shorten_solution(
     return replace(solution, x=x, shift=shift, misses=np.abs(moved - targets.moves))
 
 
-def largest_share(corrector: PointCorrector, base: BaseFrame, x: Floats, limits: Floats) -> float:
+def largest_share(
+    corrector: PointCorrector,
+    base: BaseFrame,
+    x: Floats,
+    limits: Floats,
+    more: float = INSIDE,
+) -> float:
     """Return the largest s of [0, 1], about, with which s h and s q keep limits at the samples.
-
-    A base that exceeds a limit itself may exceed it a little more.
 
     Parameters
     ----------
@@ -98,8 +108,10 @@ def largest_share(corrector: PointCorrector, base: BaseFrame, x: Floats, limits:
     x : float64, shape (2N,)
     limits : float64, shape (3,)
         Of ln σ_a, −ln σ_b and k.
+    more : float
+        By how much a base that exceeds a limit itself may exceed it more.
     """
-    known = np.maximum(limits, extremes(corrector, base, 0.0 * x) + INSIDE)
+    known = np.maximum(limits, extremes(corrector, base, 0.0 * x) + more)
 
     def is_kept(share: float) -> bool:
         return bool((extremes(corrector, base, share * x) <= known).all())

@@ -25,10 +25,9 @@ from engine.deform.correction.walls import LAST, LimitWalls, WallState
 SMALL = 1e-6  # a step in h: where the iteration ends
 MET = 1e-9  # of the diagonal: points that are where they are wanted
 LONGEST, LONGEST_AT_WALLS = 1.0, 0.3  # step in h
-MOST_STEPS_AT_WALLS = 60
-CLOSE = 0.15
-ENOUGH = 0.5  # of a step: what must be taken of it for the barrier to be lowered
-MOST_STEPS, MOST_HALVINGS, MOST_RETURNS = 25, 7, 3
+MOST_STEPS, MOST_STEPS_AT_WALLS, MOST_HALVINGS, MOST_RETURNS = 25, 60, 7, 3
+# The barrier is lowered after a step of which so much was taken, and that is no longer.
+ENOUGH, CLOSE = 0.5, 0.15
 NEARER = 0.7  # of the gap: what a step back to the points leaves of it, at most
 CALM = 1e-4
 GAINS, GAINS_AT_WALLS = 0.99, 0.999  # of the merit: what a part of a step leaves of it, at most
