@@ -13,7 +13,6 @@ from engine.maps import Bounds
 
 INSIDE = 0.002  # of the limits: how far inside a correction ends, as between samples it is more
 BEYOND = 0.0005  # of the base's own distortion, where that exceeds a limit: what may be added to it
-START = 0.95  # of the part that keeps the limits
 HALVINGS = 20
 TINY = 1e-300
 
@@ -69,9 +68,8 @@ def solve_within(
     limits = limits_of(bounds, own + BEYOND, inside=inside)
     if (extremes(corrector, samples, found.x) <= limits - WIDTH).all():
         return found
-    # What is kept of the smallest correction is where the steps begin: inside all limits.
-    part = START * largest_share(corrector, samples, found.x, limits, more=0.0)
-    start = replace(found, x=part * found.x, shift=part * found.shift)
+    # From zero, where all that stays is where it is wanted: so it remains on the way.
+    start = replace(found, x=0.0 * found.x, shift=0j)
     near = solve(corrector, nodes, targets, start, LimitWalls(corrector, samples, limits))
     return replace(near, steps=found.steps + near.steps, is_held_back=True)
 
@@ -91,14 +89,10 @@ def shorten_solution(
     return replace(solution, x=x, shift=shift, misses=np.abs(moved - targets.moves))
 
 
-def largest_share(
-    corrector: PointCorrector,
-    base: BaseFrame,
-    x: Floats,
-    limits: Floats,
-    more: float = INSIDE,
-) -> float:
+def largest_share(corrector: PointCorrector, base: BaseFrame, x: Floats, limits: Floats) -> float:
     """Return the largest s of [0, 1], about, with which s h and s q keep limits at the samples.
+
+    A base that exceeds a limit itself may exceed it a little more.
 
     Parameters
     ----------
@@ -108,10 +102,8 @@ def largest_share(
     x : float64, shape (2N,)
     limits : float64, shape (3,)
         Of ln σ_a, −ln σ_b and k.
-    more : float
-        By how much a base that exceeds a limit itself may exceed it more.
     """
-    known = np.maximum(limits, extremes(corrector, base, 0.0 * x) + more)
+    known = np.maximum(limits, extremes(corrector, base, 0.0 * x) + INSIDE)
 
     def is_kept(share: float) -> bool:
         return bool((extremes(corrector, base, share * x) <= known).all())
