@@ -209,7 +209,7 @@ class _Problem:
             change, shift = model.step()
             length = self._length(change)
             if length > SMALL:
-                more, along = model.bent(self._bending(at, model.pulls), change)
+                more, along = model.bent(self._bending(at, model.pulls).__call__, change)
                 # What changes a step by more than itself is not to be trusted.
                 part = min(1.0, length / max(self._length(more), TINY))
                 change, shift = change + part * more, shift + part * along

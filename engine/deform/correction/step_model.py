@@ -1,7 +1,7 @@
 """One step of the solver: its model, solved exactly in the few dimensions of its rows."""
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 import scipy.linalg
@@ -67,13 +67,14 @@ class StepModel:
     """
 
     def __init__(self, x: Floats, rows: Rows, walls: WallModel | None = None) -> None:
-        self._rows, self._root = rows, None
+        self._rows = rows
+        self._root: Floats | None = None
         if walls is None:
             self._slopes, self._down = rows.slopes, x
         else:
             metric = walls.rows.T @ walls.rows
             metric[np.diag_indices(len(x))] += 1.0
-            self._root = np.linalg.cholesky(metric)
+            self._root = np.asarray(np.linalg.cholesky(metric), dtype=np.float64)
             self._slopes = self._halved(rows.slopes.T).T
             self._down = self._halved(x + walls.slope)
         self._products = self._slopes @ self._slopes.T
@@ -166,7 +167,7 @@ class StepModel:
 
 
 def _solved(root: Floats, v: Floats, *, transposed: bool) -> Floats:
-    solved: Floats = scipy.linalg.solve_triangular(
-        root, v, trans=int(transposed), lower=True, check_finite=False
+    way: Literal["T", "N"] = "T" if transposed else "N"
+    return np.asarray(
+        scipy.linalg.solve_triangular(root, v, trans=way, lower=True, check_finite=False)
     )
-    return solved
