@@ -12,7 +12,8 @@ from engine.deform.correction.corrector import (
 )
 from engine.deform.correction.frame import BaseFrame as BaseFrame
 from engine.deform.correction.limits import (
-    MARGIN as MARGIN,
+    BEYOND as BEYOND,
+    INSIDE as INSIDE,
     extremes as extremes,
     largest_share as largest_share,
     limits_of as limits_of,

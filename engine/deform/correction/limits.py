@@ -8,13 +8,11 @@ from engine.arrays import Floats
 from engine.deform.correction.corrector import PointCorrector
 from engine.deform.correction.frame import BaseFrame, CorrectedFrame
 from engine.deform.correction.solver import PointSolution, Targets, solve
-from engine.deform.correction.walls import LimitWalls, quantities
+from engine.deform.correction.walls import WIDTH, LimitWalls, quantities
 from engine.maps import Bounds
 
 INSIDE = 0.002  # of the limits: how far inside a correction ends, as between samples it is more
-# How far inside the walls are, and how stiff: one after the other, from soft to firm, since the
-# first leads near the solution in few long steps.
-MARGIN, STIFFNESSES = 0.02, (1e2, 1e3, 1e4)
+BEYOND = 0.0005  # of the base's own distortion, where that exceeds a limit: what may be added to it
 HALVINGS = 20
 TINY = 1e-300
 
@@ -46,11 +44,13 @@ def solve_within(
     samples: BaseFrame,
     targets: Targets,
     bounds: Bounds,
+    inside: float = INSIDE,
 ) -> PointSolution:
     """Find the correction of one frame within bounds, from zero.
 
-    Where the smallest correction exceeds a limit, walls push it back, and targets out of reach are
-    approached with their largest forces. A base beyond a limit stays within its own distortion.
+    Where the smallest correction comes near a limit, a barrier keeps it inside, and targets out of
+    reach are approached with their largest forces. A base beyond a limit stays within its own
+    distortion.
 
     Parameters
     ----------
@@ -60,23 +60,18 @@ def solve_within(
     targets : Targets
         Without a largest force, a target is met even where that breaks a limit.
     bounds : Bounds
+    inside : float
+        How far inside the bounds the samples end.
     """
     found = solve(corrector, nodes, targets)
     own = extremes(corrector, samples, 0.0 * found.x)
-    limits = limits_of(bounds, own)
-    if (extremes(corrector, samples, found.x) <= limits).all():
+    limits = limits_of(bounds, own + BEYOND, inside=inside)
+    if (extremes(corrector, samples, found.x) <= limits - WIDTH).all():
         return found
-    walls = LimitWalls.around(corrector, samples, limits_of(bounds, inside=MARGIN))
-    # Far outside, the nearest way back may lead through folds.
-    share = largest_share(corrector, samples, found.x, limits)
-    near = replace(found, x=share * found.x, shift=share * found.shift)
-    steps = found.steps
-    for stiffness in STIFFNESSES:
-        near = solve(corrector, nodes, targets, near, replace(walls, stiffness=stiffness))
-        steps += near.steps
-    share = largest_share(corrector, samples, near.x, limits)
-    found = replace(near, steps=steps, is_held_back=True)
-    return shorten_solution(corrector, nodes, targets, found, share) if share < 1.0 else found
+    # From zero, where all that stays is where it is wanted: so it remains on the way.
+    start = replace(found, x=0.0 * found.x, shift=0j)
+    near = solve(corrector, nodes, targets, start, LimitWalls(corrector, samples, limits))
+    return replace(near, steps=found.steps + near.steps, is_held_back=True)
 
 
 def shorten_solution(

@@ -16,21 +16,21 @@ from typing import NamedTuple
 
 import numpy as np
 
-from engine.arrays import Complexes, Floats, Indices
+from engine.arrays import Complexes, Floats
 from engine.deform.correction.corrector import PointCorrector
-from engine.deform.correction.frame import BaseFrame, CorrectedFrame
-from engine.deform.correction.step_model import Form, Rows, StepModel
-from engine.deform.correction.walls import LimitWalls, WallState
+from engine.deform.correction.frame import BaseFrame, Bending, CorrectedFrame
+from engine.deform.correction.step_model import Rows, StepModel
+from engine.deform.correction.walls import LAST, LimitWalls, WallState
 
 SMALL = 1e-6  # a step in h: where the iteration ends
 MET = 1e-9  # of the diagonal: points that are where they are wanted
 LONGEST, LONGEST_AT_WALLS = 1.0, 0.3  # step in h
-MOST_STEPS, MOST_HALVINGS, MOST_RETURNS = 25, 7, 3
+MOST_STEPS, MOST_STEPS_AT_WALLS, MOST_HALVINGS, MOST_RETURNS = 25, 60, 7, 3
+# The barrier is lowered after a step of which so much was taken, and that is no longer.
+ENOUGH, CLOSE = 0.5, 0.15
 NEARER = 0.7  # of the gap: what a step back to the points leaves of it, at most
 CALM = 1e-4
 GAINS, GAINS_AT_WALLS = 0.99, 0.999  # of the merit: what a part of a step leaves of it, at most
-ARM = 0.02  # of the diagonal: at what distance a turn is as firm as a point
-TRACE = True
 ARM = 0.25  # of the diagonal: the distance at which a turn is as firm as a point
 TINY = 1e-300
 FIRMEST = 1.5  # times the largest pull: what the merit takes for each point off its target
@@ -173,54 +173,48 @@ class _Problem:
         # What is met at any price.
         self.held = (self.loose == 0) & (self.give == 0) & np.isinf(self.forces)[self.group]
 
-    def state(self, x: Floats, shift: complex) -> _State:
+    def state(self, x: Floats, shift: complex, last: WallState | None = None) -> _State:
         """Work out what the points lack."""
         frame = CorrectedFrame.of(self.corrector, self.base, x)
         lack = self.roots * (frame.places() + shift * self.of_points - self.wanted)
         turned = self.corrector.variables.at_points.h_of(x).imag[self.turned] - self.turns
-        walls = None if self.walls is None else self.walls.state(x)
+        walls = None if self.walls is None else self.walls.state(x, last)
         return _State(frame, shift, np.concatenate([lack.real, lack.imag, turned]), walls)
 
-    def rows(self, at: _State, near: tuple[Indices, Indices]) -> Rows:
-        """Return what is wanted around a state, walls last."""
+    def rows(self, at: _State) -> Rows:
+        """Return what is wanted around a state."""
         h = self.corrector.variables.at_points.h[:, self.turned]
         turning = np.hstack([h.imag.T, np.zeros_like(h.imag.T)])
-        slopes = np.vstack([np.tile(self.roots, 2)[:, None] * at.frame.rows(), turning])
-        points = slopes[: 2 * len(self.roots)]
+        points = np.tile(self.roots, 2)[:, None] * at.frame.rows()
         scale = float(np.vdot(points, points)) / len(points)
-        soft = self.loose * scale + self.give
-        group, forces, lack = self.group, self.forces, at.lack
-        pushes, translations = np.zeros(len(lack), np.bool_), self.translations
-        if self.walls is not None and at.walls is not None and len(near[0]):
-            more = len(near[0])
-            lack = np.concatenate([lack, at.walls.beyond[near]])
-            slopes = np.vstack([slopes, self.walls.rows(at.walls, near)])
-            soft = np.concatenate([soft, self.walls.soft(near[1])])
-            group = np.concatenate([group, len(forces) + np.arange(more)])
-            forces = np.concatenate([forces, np.full(more, np.inf)])
-            pushes = np.concatenate([pushes, np.ones(more, np.bool_)])
-            translations = np.vstack([translations, np.zeros((more, translations.shape[1]))])
-        return Rows(lack, slopes, soft, group, forces, pushes, translations)
+        return Rows(
+            at.lack,
+            np.vstack([points, turning]),
+            self.loose * scale + self.give,
+            self.group,
+            self.forces,
+            self.translations,
+        )
 
     def solved(self, at: _State) -> PointSolution:
         """Take steps from a state until they are small."""
         size, firm = self.corrector.boundary.size, 0.0
         small = SMALL if self.walls is None else CALM
-        steps, known = 0, len(self.group)
-        while steps < MOST_STEPS:
+        steps = 0
+        while steps < (MOST_STEPS if self.walls is None else MOST_STEPS_AT_WALLS):
             steps += 1
-            near = self._near(at)
-            rows = self.rows(at, near)
-            model = StepModel(at.frame.x, rows)
+            rows = self.rows(at)
+            pushed = None if self.walls is None or at.walls is None else self.walls.model(at.walls)
+            model = StepModel(at.frame.x, rows, pushed)
             change, shift = model.step()
             length = self._length(change)
             if length > SMALL:
-                more, along = model.bent(self._bending(at, near, model.pulls), change)
+                more, along = model.bent(self._bending(at, model.pulls).__call__, change)
                 # What changes a step by more than itself is not to be trusted.
                 part = min(1.0, length / max(self._length(more), TINY))
                 change, shift = change + part * more, shift + part * along
-            firm = max(firm, FIRMEST * float(rows.sizes(model.pulls)[: len(self.forces)].max()))
-            soft = rows.soft[:known]
+            firm = max(firm, FIRMEST * float(rows.sizes(model.pulls).max()))
+            soft = rows.soft
             share = min(1.0, self.longest / max(self._length(change), TINY))
             now = self._merit(at, soft, firm)
             for _ in range(MOST_HALVINGS):
@@ -230,31 +224,25 @@ class _Problem:
                     break
                 share /= 2
             # What only parts of steps bring on is out of reach.
+            if np.isinf(merit):
+                break
             is_stuck = share < 1.0 and merit > self.gains * now
             moved = self._length(tried.frame.x - at.frame.x)
             off = np.abs(tried.lack)[self.held].max(initial=0.0)
             at = tried
+            if self.walls is not None and self.walls.weight > LAST:
+                if is_stuck or (share > ENOUGH and moved < CLOSE):
+                    self.walls = self.walls.lowered()
+                continue
             if is_stuck or (moved < small and (off < MET * size or share < 1.0)):
                 break
         misses = np.abs(at.frame.places() + at.shift - self.wanted)[: self.count]
         return PointSolution(x=at.frame.x, shift=at.shift, misses=misses, steps=steps)
 
-    def _near(self, at: _State) -> tuple[Indices, Indices]:
-        """Return the walls that count in the next step."""
-        if self.walls is None or at.walls is None:
-            return np.zeros(0, np.intp), np.zeros(0, np.intp)
-        return self.walls.near(at.walls)
-
-    def _bending(self, at: _State, near: tuple[Indices, Indices], pulls: Floats) -> Form:
+    def _bending(self, at: _State, pulls: Floats) -> Bending:
         """Return how the rows are curved that are pulled at."""
         known = len(self.roots)
-        both = -self.roots * (pulls[:known] + 1j * pulls[known : 2 * known])
-        of_points = at.frame.bending(both)
-        pushed = -pulls[len(self.group) :]
-        if self.walls is None or at.walls is None or not pushed.any():
-            return of_points.__call__
-        of_walls = self.walls.bending(at.walls, near, pushed)
-        return lambda x: of_points(x) + of_walls(x)
+        return at.frame.bending(-self.roots * (pulls[:known] + 1j * pulls[known : 2 * known]))
 
     def _length(self, change: Floats) -> float:
         return float(np.abs(self.corrector.variables.at_nodes.h_of(change)).max())
@@ -263,15 +251,17 @@ class _Problem:
         self, at: _State, model: StepModel, change: Floats, shift: complex, share: float
     ) -> _State:
         """Return the state after a step, with points back on where the model has them."""
-        tried = self.state(at.frame.x + change, at.shift + shift)
+        tried = self.state(at.frame.x + change, at.shift + shift, at.walls)
         aim = (1 - share) * at.lack
+        if tried.walls is not None and tried.walls.left.min() <= 0:
+            return tried
         for _ in range(MOST_RETURNS):
             gap = np.where(self.held, aim - tried.lack, 0)
             worst = np.abs(gap).max(initial=0.0)
             if worst < MET / 100 * self.corrector.boundary.size:
                 break
             back, along = model.restoring(gap)
-            nearer = self.state(tried.frame.x + back, tried.shift + along)
+            nearer = self.state(tried.frame.x + back, tried.shift + along, at.walls)
             if np.abs(np.where(self.held, aim - nearer.lack, 0)).max() > NEARER * worst:
                 break
             tried = nearer

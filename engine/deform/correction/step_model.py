@@ -1,18 +1,19 @@
 """One step of the solver: its model, solved exactly in the few dimensions of its rows."""
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 import scipy.linalg
 
-from engine.arrays import Booleans, Floats, Indices
+from engine.arrays import Floats, Indices
+from engine.deform.correction.walls import WallModel
 
 RIDGE = 1e-13  # of the mean of the rows' products
 MOST_BENDS = 30  # steps of the conjugate gradients
 NEARLY = 1e-4  # of what the curvature changes: what may be left of it
 CURVED = 1e-2  # of the metric: the least curvature along which steps are taken
-# Rounds in which bounded and one-sided pulls are found, and how exactly.
+# Rounds in which bounded pulls are found, and how exactly.
 ROUNDS, LEFT_TO_GO = 8, 1e-3
 LEAST_LACK = 1e-9
 
@@ -35,8 +36,6 @@ class Rows(NamedTuple):
         The two coordinates of a point form one group.
     forces : float64, shape (g,)
         The largest pull of each group; infinite for an equality.
-    pushes : bool, shape (r,)
-        Inequalities: a negative residual counts for nothing.
     translations : float64, shape (r, 2) or (r, 0)
         Derivatives by a translation.
     """
@@ -46,7 +45,6 @@ class Rows(NamedTuple):
     soft: Floats
     group: Indices
     forces: Floats
-    pushes: Booleans
     translations: Floats
 
     def sizes(self, values: Floats) -> Floats:
@@ -59,57 +57,52 @@ class StepModel:
     """The quadratic model around unknowns x.
 
     A group that would pull with more than its largest force pulls with that force: its rows get the
-    compliance residual / force, by iteration (Holland and Welsch 1977). Of the inequalities, those
-    that push are found by the primal-dual active set method.
+    compliance residual / force, by iteration (Holland and Welsch 1977). Walls change the metric,
+    which is the identity without them, and the slope of what is minimised, which is x.
 
     Attributes
     ----------
     pulls : float64, shape (r,)
-        The multipliers of the rows; x + step is their sum with the rows' derivatives.
+        The multipliers of the rows.
     """
 
-    def __init__(self, x: Floats, rows: Rows) -> None:
-        self._x, self._rows = x, rows
-        self._products = rows.slopes @ rows.slopes.T
+    def __init__(self, x: Floats, rows: Rows, walls: WallModel | None = None) -> None:
+        self._rows = rows
+        self._root: Floats | None = None
+        if walls is None:
+            self._slopes, self._down = rows.slopes, x
+        else:
+            metric = walls.rows.T @ walls.rows
+            metric[np.diag_indices(len(x))] += 1.0
+            self._root = np.asarray(np.linalg.cholesky(metric), dtype=np.float64)
+            self._slopes = self._halved(rows.slopes.T).T
+            self._down = self._halved(x + walls.slope)
+        self._products = self._slopes @ self._slopes.T
         self._ridge = RIDGE * float(np.trace(self._products)) / len(self._products)
-        self._right = rows.slopes @ x - rows.lack
         self._find_pulls()
 
     def _find_pulls(self) -> None:
-        rows = self._rows
+        rows, right = self._rows, self._slopes @ self._down - self._rows.lack
         secant = np.maximum(rows.sizes(rows.lack), LEAST_LACK) / rows.forces
         give = np.zeros(len(rows.forces))
-        idle = rows.pushes & (rows.lack <= 0)
         for _ in range(ROUNDS):
-            self._factor(~idle, rows.soft + give[rows.group])
-            self.pulls, self._shift = self._solve(self._right)
-            pushing = np.where(idle, self._residuals() > 0, self.pulls < 0)
-            changed = rows.pushes & (idle == pushing)
-            idle = rows.pushes & ~pushing
+            self._factor(rows.soft + give[rows.group])
+            self.pulls, self._shift = self._solve(right)
             sizes = rows.sizes(self.pulls)
             over = (give == 0) & (sizes > rows.forces)
             share = np.where(give > 0, sizes / rows.forces, 1.0)
-            is_found = (np.abs(share - 1.0) < LEFT_TO_GO).all()
-            if is_found and not changed.any() and not over.any():
+            if (np.abs(share - 1.0) < LEFT_TO_GO).all() and not over.any():
                 break
             give = np.where(over, secant, give * share)
 
-    def _residuals(self) -> Floats:
-        """Return the rows' residuals after the step."""
-        rows, (step, shift) = self._rows, self.step()
-        left = rows.lack + rows.slopes @ step
-        if rows.translations.shape[1]:
-            left = left + rows.translations @ np.array([shift.real, shift.imag])
-        return left
-
     def step(self) -> tuple[Floats, complex]:
         """Return the step in the unknowns and the translation."""
-        return self.pulls @ self._rows.slopes - self._x, self._shift
+        return self._whole(self.pulls @ self._slopes - self._down), self._shift
 
     def restoring(self, gap: Floats) -> tuple[Floats, complex]:
-        """Return the least step that changes the first rows by so much."""
-        pulls, shift = self._solve(np.pad(gap, (0, len(self.pulls) - len(gap))))
-        return pulls @ self._rows.slopes, shift
+        """Return the least step that changes the rows by so much."""
+        pulls, shift = self._solve(gap)
+        return self._whole(pulls @ self._slopes), shift
 
     def bent(self, bending: Form, step: Floats) -> tuple[Floats, complex]:
         """Return the change of a step by a curvature, by conjugate gradients."""
@@ -142,27 +135,39 @@ class StepModel:
         return found, along
 
     def _preconditioned(self, v: Floats) -> tuple[Floats, complex]:
-        pulls, shift = self._solve(-(self._rows.slopes @ v))
-        return v + pulls @ self._rows.slopes, shift
+        half = self._halved(v)
+        pulls, shift = self._solve(-(self._slopes @ half))
+        return self._whole(half + pulls @ self._slopes), shift
 
-    def _factor(self, active: Booleans, soft: Floats) -> None:
-        """Factor the matrix of the pulls of some of the rows."""
-        self._active = which = np.flatnonzero(active)
-        translations = self._rows.translations[which]
+    def _halved(self, v: Floats) -> Floats:
+        """Return v (2N,) or (2N, r) in unknowns in which the metric is the identity."""
+        return v if self._root is None else _solved(self._root, v, transposed=False)
+
+    def _whole(self, v: Floats) -> Floats:
+        """Return a step in the unknowns of one in those."""
+        return v if self._root is None else _solved(self._root, v, transposed=True)
+
+    def _factor(self, soft: Floats) -> None:
+        """Factor the matrix of the pulls."""
+        translations = self._rows.translations
         count, more = translations.shape
         matrix = np.zeros((count + more, count + more))
-        matrix[:count, :count] = self._products[np.ix_(which, which)]
+        matrix[:count, :count] = self._products
         matrix[:count, count:] = translations
         matrix[count:, :count] = translations.T
         diagonal = np.arange(count)
-        matrix[diagonal, diagonal] += self._ridge + soft[which]
+        matrix[diagonal, diagonal] += self._ridge + soft
         self._factors = scipy.linalg.lu_factor(matrix, overwrite_a=True, check_finite=False)
 
     def _solve(self, right: Floats) -> tuple[Floats, complex]:
-        count, more = len(self._active), self._rows.translations.shape[1]
-        padded = np.append(right[self._active], np.zeros(more))
+        count, more = self._rows.translations.shape
+        padded = np.append(right, np.zeros(more))
         found = scipy.linalg.lu_solve(self._factors, padded, check_finite=False)
-        shift = complex(*found[count:]) if more else 0j
-        pulls = np.zeros(len(right))
-        pulls[self._active] = found[:count]
-        return pulls, shift
+        return found[:count], complex(*found[count:]) if more else 0j
+
+
+def _solved(root: Floats, v: Floats, *, transposed: bool) -> Floats:
+    way: Literal["T", "N"] = "T" if transposed else "N"
+    return np.asarray(
+        scipy.linalg.solve_triangular(root, v, trans=way, lower=True, check_finite=False)
+    )

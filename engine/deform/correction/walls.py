@@ -1,153 +1,165 @@
-"""Limits of the distortion as conditions on a correction, at the samples of the boundary.
+"""Limits of the distortion as a barrier, at the samples of the boundary.
 
 With a = |F| e^{Re h} and b = |G e^{σh} + q K e^h| they are on ln σ_a = ln (a + b), −ln σ_b =
-−ln (a − b) and k = b / a. Where one is beyond its wall it is pushed back, the more stiffly the more
-of the boundary the sample stands for.
+−ln (a − b) and k = b / a. With d what is left of a limit, each sample adds
+
+    weight · its share of the boundary · (d / width − 1 − ln (d / width))    where d < width,
+
+which has no jump in its slope: what keeps farther from the limits is not changed. The weight falls
+from step to step, and the width with it. How firm the barrier is taken to be follows from the
+pushes that the steps before found (primal-dual; Wächter and Biegler 2006).
 """
 
-from dataclasses import dataclass
-from typing import NamedTuple, Self
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
-from engine.arrays import Complexes, Floats, Indices
+from engine.arrays import Complexes, Floats
 from engine.deform.correction.corrector import PointCorrector
 from engine.deform.correction.frame import BaseFrame
-from engine.deform.correction.variables import Values
 
-NEAR = 0.01
 FOLDED = 10.0  # −ln σ_b where a map begins to fold
-ROUND, SQUEEZED = 1e-12, 1e-3  # the least b, and a − b over a, that are divided by
+ROUND = 1e-12  # the least b that is divided by
+LEAST = 1e-12  # of what is left
+# The weight at first, how it falls, and at last; and the width at last.
+FIRST, FALL, LAST, WIDTH = 1.0, 0.3, 0.01, 0.05
+NEAR = 100.0  # times what the barrier itself pushes with: what pushes may be off it
+FLAT = 1e-9  # of the largest curvature of a sample: what counts for nothing
 
 
 class WallState(NamedTuple):
-    """The quantities at all samples (p,) of a corrected frame, and what they are made of."""
+    """What is left of the limits at all samples (p,) of a corrected frame, and what it is of."""
 
-    beyond: Floats  # (3, p), positive where a wall is passed
+    left: Floats  # (3, p)
+    pushes: Floats  # (3, p), without what the width takes off
     a: Floats
     g: Complexes
     by_h: Complexes  # derivative of the corrected G by h
     by_q: Complexes
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class WallModel(NamedTuple):
+    """The barrier around a frame: its slope (2N,), and rows (w, 2N) whose squares curve it."""
+
+    slope: Floats
+    rows: Floats
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class LimitWalls:
-    """LimitWalls at the samples of the boundary.
+    """A barrier at the samples of the boundary.
 
     Parameters
     ----------
     corrector : PointCorrector
     base : BaseFrame
         At the samples.
-    limits : float64, shape (3, p)
+    limits : float64, shape (3,)
         Of ln σ_a, −ln σ_b and k.
-    stiffness : float
+    weight : float
         Of the whole boundary.
     """
 
     corrector: PointCorrector
     base: BaseFrame
     limits: Floats
-    stiffness: float = 1.0
+    weight: float = FIRST
 
-    @classmethod
-    def around(cls, corrector: PointCorrector, base: BaseFrame, limits: Floats) -> Self:
-        """Return walls at limits (3,), or where the base is beyond them at itself."""
-        own = quantities(np.abs(base.fz), np.abs(base.g))
-        return cls(corrector=corrector, base=base, limits=np.maximum(limits[:, None], own))
+    @property
+    def width(self) -> float:
+        """What is left of a limit where the barrier begins."""
+        return WIDTH * float(np.sqrt(self.weight / LAST))
 
-    def state(self, x: Floats) -> WallState:
-        """Work a corrected frame out."""
+    def lowered(self) -> "LimitWalls":
+        """Return the barrier of the next step."""
+        return replace(self, weight=max(FALL * self.weight, LAST))
+
+    def state(self, x: Floats, last: WallState | None = None) -> WallState:
+        """Work a corrected frame out, after a step from a last one."""
         values = self.corrector.variables.at_samples
         conformal, own, factor = self.base.corrected(values, x)
         mixed = factor * values.q_of(x)
         a, g = np.abs(conformal), own + mixed
-        beyond = quantities(a, np.abs(g)) - self.limits
-        return WallState(beyond, a, g, self.base.sign * own + mixed, factor)
-
-    def soft(self, which: Indices) -> Floats:
-        """Return how much walls give in, over their pushes."""
-        weights = self.corrector.boundary.shares[which]
-        return np.asarray(1.0 / (self.stiffness * weights))
-
-    def near(self, at: WallState) -> tuple[Indices, Indices]:
-        """Return the kinds and samples of quantities that count in the next step."""
-        kinds, which = np.nonzero(at.beyond > -NEAR)
-        return kinds, which
+        left = self.limits[:, None] - quantities(a, np.abs(g))
+        pushes = self.weight * self.corrector.boundary.shares / np.maximum(left, LEAST)
+        if last is not None:
+            follow = self.weight * self.corrector.boundary.shares / last.left
+            follow = follow - last.pushes * (left - last.left) / last.left
+            pushes = np.clip(follow, pushes / NEAR, pushes * NEAR)
+        return WallState(left, pushes, a, g, self.base.sign * own + mixed, factor)
 
     def energy(self, at: WallState) -> float:
-        """Return what the walls that are passed add to ½ |x|²."""
-        passed = np.maximum(at.beyond, 0.0) ** 2 @ self.corrector.boundary.shares
-        return self.stiffness / 2 * float(passed.sum())
+        """Return the barrier; infinite where a limit is not kept."""
+        if at.left.min() <= 0:
+            return np.inf
+        part = np.minimum(at.left / self.width, 1.0)
+        each = (part - 1.0 - np.log(part)) @ self.corrector.boundary.shares
+        return self.weight * float(each.sum())
 
-    def rows(self, at: WallState, near: tuple[Indices, Indices]) -> Floats:
-        """Return the derivatives (w, 2N) of some quantities, by their kinds and samples."""
-        values = _of(self.corrector.variables.at_samples, near[1])
-        bend = _Bend.of(at, near)
-        by_a, by_b = bend.by_a, bend.by_b
-        of_h = by_a * bend.a + by_b * bend.frame * bend.by_h
-        of_q = by_b * bend.frame * bend.by_q
-        return np.hstack([(values.h * of_h).real.T, (values.q * of_q).real.T])
-
-    def bending(self, at: WallState, near: tuple[Indices, Indices], pushes: Floats) -> "WallForm":
-        """Return the second derivative of the sum of pushes (w,) times these quantities."""
-        values = _of(self.corrector.variables.at_samples, near[1])
-        return WallForm(values, _Bend.of(at, near), pushes)
-
-
-class _Bend(NamedTuple):
-    """The first and second derivatives of quantities (w,) by a and b, and what these depend on."""
-
-    a: Floats
-    b: Floats
-    frame: Complexes  # conj(g) / |g|
-    g: Complexes
-    by_h: Complexes
-    by_q: Complexes
-    by_a: Floats
-    by_b: Floats
-    by_aa: Floats
-    by_ab: Floats
-    by_bb: Floats
-
-    @classmethod
-    def of(cls, at: WallState, near: tuple[Indices, Indices]) -> Self:
-        kinds, which = near
-        a, g = at.a[which], at.g[which]
-        b = np.maximum(np.abs(g), ROUND)
-        total, rest = a + b, np.maximum(a - b, SQUEEZED * a)
-        zero = np.zeros_like(a)
-        firsts = [[1 / total, 1 / total], [-1 / rest, 1 / rest], [-b / a**2, 1 / a]]
-        seconds = [
-            [-1 / total**2, -1 / total**2, -1 / total**2],
-            [1 / rest**2, -1 / rest**2, 1 / rest**2],
-            [2 * b / a**3, -1 / a**2, zero],
-        ]
-        by_a, by_b = (np.choose(kinds, [each[k] for each in firsts]) for k in range(2))
-        aa, ab, bb = (np.choose(kinds, [each[k] for each in seconds]) for k in range(3))
-        return cls(a, b, g.conj() / b, g, at.by_h[which], at.by_q[which], by_a, by_b, aa, ab, bb)
+    def model(self, at: WallState) -> WallModel:
+        """Return the slope and the convex part of the curvature of the barrier."""
+        values = self.corrector.variables.at_samples
+        near = np.flatnonzero(at.left.min(axis=0) < self.width)
+        left = np.minimum(at.left[:, near], self.width)
+        weights = self.weight * self.corrector.boundary.shares[near]
+        slopes, forms = _by_both(at.a[near], at.g[near], at.by_h[near], at.by_q[near])
+        push = weights * (1.0 / left - 1.0 / self.width)
+        firm = at.pushes[:, near] * (left < self.width) / left
+        slope = np.einsum("kp,kpi->pi", push, slopes)
+        form = np.einsum("kp,kpij->pij", push, forms)
+        form += np.einsum("kp,kpi,kpj->pij", firm, slopes, slopes)
+        sizes, ways = np.linalg.eigh(form)
+        sample, way = np.nonzero(sizes > FLAT * np.abs(sizes).max(axis=1, keepdims=True))
+        along = np.sqrt(sizes[sample, way])[:, None] * ways[sample, :, way]
+        h, q = values.h[:, near], values.q[:, near]
+        of_h, of_q = (slope[:, k] - 1j * slope[:, k + 1] for k in (0, 2))
+        rows_h, rows_q = (along[:, k] - 1j * along[:, k + 1] for k in (0, 2))
+        return WallModel(
+            np.concatenate([(h @ of_h).real, (q @ of_q).real]),
+            np.hstack([(h[:, sample] * rows_h).real.T, (q[:, sample] * rows_q).real.T]),
+        )
 
 
-class WallForm(NamedTuple):
-    """A symmetric form of the unknowns: how walls that are pushed at are curved."""
+def _by_both(a: Floats, g: Complexes, by_h: Complexes, by_q: Complexes) -> tuple[Floats, Floats]:
+    """Return the derivatives of the quantities (3, p) by Re h, Im h, Re q and Im q.
 
-    values: Values
-    bend: _Bend
-    pushes: Floats
-
-    def __call__(self, x: Floats) -> Floats:
-        """Return the form's product with a vector."""
-        at, frame = self.bend, self.bend.frame
-        h, q = self.values.h_of(x), self.values.q_of(x)
-        change = at.by_h * h + at.by_q * q
-        da, db = at.a * h.real, (frame * change).real
-        turn = -1j * (frame * change).imag / at.b * frame
-        ca, cb = at.by_aa * da + at.by_ab * db, at.by_ab * da + at.by_bb * db
-        along = at.by_b * turn + cb * frame
-        of_h = at.by_a * at.a * h.real + ca * at.a + along * at.by_h
-        of_h = of_h + at.by_b * frame * (at.g * h + at.by_q * q)
-        of_q = along * at.by_q + at.by_b * frame * at.by_q * h
-        return self.values.against(self.pushes * of_h, self.pushes * of_q)
+    Returns
+    -------
+    slopes : float64, shape (3, p, 4)
+    forms : float64, shape (3, p, 4, 4)
+    """
+    b = np.maximum(np.abs(g), ROUND)
+    total, rest = a + b, a - b
+    frame, zero = g.conj() / b, np.zeros_like(a)
+    u, v = frame * by_h, frame * by_q
+    of_a = np.stack([a, zero, zero, zero], axis=-1)
+    of_b = np.stack([u.real, -u.imag, v.real, -v.imag], axis=-1)
+    turn = np.stack([u.imag, u.real, v.imag, v.real], axis=-1)
+    # Re of conj(g) / |g| times the second derivative of g, which is g δh² + 2 K e^h δh δq.
+    own = np.zeros((len(a), 4, 4))
+    own[:, 0, 0], own[:, 1, 1] = b, -b
+    own[:, 0, 2] = own[:, 2, 0] = v.real
+    own[:, 1, 3] = own[:, 3, 1] = -v.real
+    own[:, 0, 3] = own[:, 3, 0] = own[:, 1, 2] = own[:, 2, 1] = -v.imag
+    form_a = of_a[:, :, None] * np.array([1.0, 0, 0, 0])
+    form_b = own + turn[:, :, None] * turn[:, None] / b[:, None, None]
+    by_a = np.stack([1 / total, -1 / rest, -b / a**2])
+    by_b = np.stack([1 / total, 1 / rest, 1 / a])
+    by_aa = np.stack([-1 / total**2, 1 / rest**2, 2 * b / a**3])
+    by_ab = np.stack([-1 / total**2, -1 / rest**2, -1 / a**2])
+    by_bb = np.stack([-1 / total**2, 1 / rest**2, zero])
+    slopes = by_a[..., None] * of_a + by_b[..., None] * of_b
+    both = of_a[:, :, None] * of_b[:, None]
+    parts = (
+        (by_a, form_a),
+        (by_b, form_b),
+        (by_aa, of_a[:, :, None] * of_a[:, None]),
+        (by_ab, both + both.swapaxes(1, 2)),
+        (by_bb, of_b[:, :, None] * of_b[:, None]),
+    )
+    forms = sum(by[..., None, None] * form for by, form in parts)
+    return slopes, np.asarray(forms)
 
 
 def quantities(a: Floats, b: Floats) -> Floats:
@@ -156,9 +168,3 @@ def quantities(a: Floats, b: Floats) -> Floats:
     rest = np.where(folds, 1.0, a - b)
     small = np.where(folds, FOLDED + (b - a) / a, -np.log(np.maximum(rest, np.exp(-FOLDED))))
     return np.array([np.log(a + b), small, b / a])
-
-
-def _of(values: Values, which: Indices) -> Values:
-    return Values(
-        np.ascontiguousarray(values.h[:, which]), np.ascontiguousarray(values.q[:, which])
-    )

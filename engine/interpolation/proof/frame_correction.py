@@ -6,8 +6,10 @@ import numpy as np
 
 from engine.arrays import Floats
 from engine.deform.correction import (
-    MARGIN,
+    BEYOND,
+    INSIDE,
     PointCorrector,
+    PointSolution,
     Targets,
     extremes,
     limits_of,
@@ -20,9 +22,10 @@ from engine.interpolation.inbetweens import Inbetweens
 from engine.interpolation.proof.bisection import prove
 from engine.maps import Bounds
 
-# A share of a correction is shorten_solution by this much until it is proven within the limits.
+# How far inside the limits the samples end, one after the other until the frame is proven; then it
+# is shortened by so much, as often.
+INSIDES = (INSIDE, 4 * INSIDE, 16 * INSIDE)
 SHORTER, MOST_SHORTER = 0.95, 12
-BEYOND = 5e-4  # of a limit: the tightness of proofs
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -59,8 +62,8 @@ def correct_frame(
 ) -> FrameCorrection:
     """Correct an in-between within bounds, or within its own distortion beyond them.
 
-    A correction that comes near a limit is proven to keep it between the samples, too: the largest
-    share of it that is.
+    A correction that comes near a limit is proven to keep it between the samples, too; it ends
+    farther inside where that is not so, and where no such frame is found, it is shortened.
 
     Parameters
     ----------
@@ -75,18 +78,30 @@ def correct_frame(
         For the handles.
     bounds : Bounds
     """
-    found = solve_within(corrector, base.nodes, base.samples, targets, bounds)
-    own = extremes(corrector, base.samples, 0.0 * found.x)
-    reached = extremes(corrector, base.samples, found.x)
-    if (reached > limits_of(bounds, inside=MARGIN)).any():
+    nodes, samples = base.nodes, base.samples
+    found = solve_within(corrector, nodes, samples, targets, bounds)
+    if found.is_held_back:
+        own = extremes(corrector, samples, 0.0 * found.x)
+        if (own > limits_of(bounds)).any():
+            own = _proven(inbetweens, time) + BEYOND
         limits = limits_of(bounds, own, inside=-BEYOND)
-        for _ in range(MOST_SHORTER):
-            known = CorrectionSeries.of_frame(corrector, found.x, found.shift)
-            proof = prove(inbetweens.corrected(known), time)
-            if (logarithms(proof.sigma_a, proof.sigma_b, proof.k) <= limits).all():
+
+        def is_kept(solution: PointSolution) -> bool:
+            known = CorrectionSeries.of_frame(corrector, solution.x, solution.shift)
+            return bool((_proven(inbetweens.corrected(known), time) <= limits).all())
+
+        kept = is_kept(found)
+        for inside in INSIDES[1:]:
+            if kept:
                 break
-            found = shorten_solution(corrector, base.nodes, targets, found, SHORTER)
-        reached = extremes(corrector, base.samples, found.x)
+            found = solve_within(corrector, nodes, samples, targets, bounds, inside)
+            kept = is_kept(found)
+        for _ in range(MOST_SHORTER):
+            if kept:
+                break
+            found = shorten_solution(corrector, nodes, targets, found, SHORTER)
+            kept = is_kept(found)
+    reached = extremes(corrector, samples, found.x)
     return FrameCorrection(
         known=CorrectionSeries.of_frame(corrector, found.x, found.shift),
         misses=found.misses,
@@ -94,3 +109,9 @@ def correct_frame(
         is_held_back=found.is_held_back,
         reached=(float(reached[2]), float(np.exp(reached[0])), float(np.exp(-reached[1]))),
     )
+
+
+def _proven(inbetweens: Inbetweens, time: float) -> Floats:
+    """Return the largest ln σ_a, −ln σ_b and k that a frame is proven to have, (3,)."""
+    proof = prove(inbetweens, time)
+    return logarithms(proof.sigma_a, proof.sigma_b, proof.k)

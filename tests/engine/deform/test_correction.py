@@ -17,9 +17,11 @@ from engine.deform.correction import (
     largest_share,
     limits_of,
     solve,
+    solve_within,
 )
 from engine.deform.correction.frame import CorrectedFrame
 from engine.deform.correction.paths import PointPaths
+from engine.deform.correction.walls import LimitWalls
 from engine.maps import Boundary, Bounds
 
 SHAPES = {"bar": (bar_boundary, BAR_POINTS), "star": (star_boundary, STAR_POINTS)}
@@ -265,3 +267,35 @@ def test_a_start_changes_nothing_but_the_steps():
     near = solve(known, base, targets, start=far)
     assert near.steps <= far.steps
     assert_allclose(near.x, far.x, atol=1e-7)
+
+
+@pytest.mark.parametrize("sign", [-1, 1])
+def test_the_barrier_has_the_slope_of_its_energy(sign):
+    known, e = corrector("star"), 1e-6
+    samples = bent(known.boundary.points, sign=sign)
+    limits = extremes(known, samples, np.zeros(2 * known.variables.count)) + 0.05
+    walls = LimitWalls(known, samples, limits)
+    x, step = RNG.normal(size=(2, 2 * known.variables.count)) * 1e-3
+    rise = (walls.energy(walls.state(x + e * step)) - walls.energy(walls.state(x - e * step))) / e
+    assert walls.model(walls.state(x)).slope @ step == pytest.approx(rise / 2, rel=1e-4)
+    assert walls.energy(walls.state(300 * x)) == np.inf
+
+
+@pytest.mark.parametrize(("name", "sign"), [("bar", -1), ("star", 1)])
+def test_others_stay_and_limits_hold_out_of_reach(name, sign):
+    known, bounds = corrector(name), Bounds(k=0.4, sigma_a=1.5, sigma_b=0.6)
+    nodes, samples = (
+        bent(z, amount=0.02, sign=sign) for z in (known.paths.nodes, known.boundary.points)
+    )
+    count, size = len(known.points), known.boundary.size
+    forces = np.where(np.arange(count) == 1, 8 / size, np.inf)
+    moves = moves_of(known.points, size * np.exp(2j))
+    targets = Targets(moves, np.ones(count), is_anchored=False, forces=forces)
+    found = solve_within(known, nodes, samples, targets, bounds)
+    assert found.is_held_back
+    assert (extremes(known, samples, found.x) <= limits_of(bounds)).all()
+    assert np.delete(found.misses, 1).max() < 1e-4 * size
+    # A part of the smallest correction, which leaves the others alone as little, goes less far.
+    free = solve(known, nodes, targets)
+    share = largest_share(known, samples, free.x, limits_of(bounds))
+    assert size - found.misses[1] > share * (size - free.misses[1])
