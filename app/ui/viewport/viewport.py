@@ -189,8 +189,9 @@ def _lay_handles(session: Session, look: Look, screen: Screen) -> _Handles:
             imgui.open_popup(f"menu of handle {identity}")
             if identity not in screen.project.selected:
                 actions.append(do(editing.select, frozenset({identity})))
-    for identity in identities:
-        actions += _handle_menu(session, screen, identity)
+    # What is shown may still be of a figure from before the last edit.
+    for handle in screen.project.figure.handles:
+        actions += _handle_menu(session, screen, handle)
     return _Handles(hovered, at_target, pressed, actions)
 
 
@@ -211,12 +212,12 @@ def _canvas_menu(session: Session, *, is_pointed: bool) -> list[Action]:
     return actions
 
 
-def _handle_menu(session: Session, screen: Screen, identity: int) -> list[Action]:
+def _handle_menu(session: Session, screen: Screen, handle: Handle) -> list[Action]:
     """Draw the menu of a handle, if it is open: what it does is done with all that are selected."""
     actions: list[Action] = []
+    figure, identity = screen.project.figure, handle.id
     if not imgui.begin_popup(f"menu of handle {identity}"):
         return actions
-    figure, handle = screen.project.figure, screen.project.figure.handle(identity)
     chosen = screen.project.selected | {identity}
     target = screen.shown.pose.targets.get(identity) if screen.shown.pose else None
     item = imgui.internal.menu_item_ex  # as menu_item_simple, with icons in a column

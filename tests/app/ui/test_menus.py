@@ -1,10 +1,13 @@
 """The menus of the drawing, tooltips, and a panel that stays where it is between keys."""
 
+from dataclasses import replace
+
 import pytest
 from bars import BENT
 from harness import FRAME
 from imgui_bundle import ImVec2, hello_imgui, imgui
 
+from app.document.commands import Command, handle_commands
 from app.editor.actions import editing, playback
 from app.storage.assets import sample_images
 from app.ui.shortcuts import BINDINGS
@@ -37,6 +40,20 @@ def test_a_handle_is_pinned_by_its_menu(window, loose):
     on_handle(window, loose, "Pin here")
     assert loose.selected == {0}, "what the menu is of is selected"
     assert loose.figure.key(BENT).pose.targets[0].position == pytest.approx(place, abs=0.1)
+
+
+def test_menu_of_a_handle_closes_when_the_layer_changes(window, loose):
+    """Until a mesh of the new outline is there, the old layer is shown with its handles."""
+    place = window.point(loose.puppet.shown.handle_places[1])
+    window.run(lambda robot: open_menu(robot, place))
+    with window.session.jobs.held():
+        fewer = handle_commands.remove_handles(loose.active, {1})(loose.document)
+        (figure,) = fewer.figures
+        other = replace(fewer, figures=(replace(figure, domain=replace(figure.domain)),))
+        editing.edit(window.session, Command("Change the outline", lambda _: other))
+        window.frames(2)
+        assert len(loose.puppet.shown.clip.figure.handles) > len(loose.figure.handles)
+    assert not [part for part in window.program.shell.parts.values() if part.failure]
 
 
 def test_how_firmly_a_handle_holds_is_in_its_menu(window, loose):
