@@ -9,6 +9,7 @@ from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui, imgui_ctx,
 from app.editor import Action, Session, do, failures
 from app.ui.style import Look, small, tip
 
+OWN_CLIPS = 2  # clip rectangles of a window itself
 PAUSE = 1.0  # seconds after which a step that failed is tried again
 WIDTH = 24.0  # em: of a notice that is in no panel
 MOST_SHOWN = 1500  # characters of a traceback; all of it can be copied
@@ -175,6 +176,10 @@ def _restore(stacks: imgui.internal.ErrorRecoveryState, around: imgui.internal.W
         implot.internal.reset_ctx_for_next_plot(plots)
     # Recovery would end the menu bar that a part is in, too.
     in_bar, around.dc.menu_bar_appending = around.dc.menu_bar_appending, False
+    # A menu that was open before may lack the clip rectangle that ending it takes off.
+    clips = imgui.get_window_draw_list()
+    if clips._clip_rect_stack.size() < OWN_CLIPS:  # noqa: SLF001 - nothing else tells of it
+        clips.push_clip_rect_full_screen()
     imgui.internal.error_recovery_try_to_recover_state(stacks)
     around.dc.menu_bar_appending = in_bar
     if imgui.get_current_context().open_popup_stack.size():

@@ -8,6 +8,7 @@ from imgui_bundle import imgui, implot
 from app.document.commands import scene_commands
 from app.editor.actions import editing, playback, viewing
 from app.editor.dialogs import Question
+from app.ui.viewport import viewport
 from app.ui.window import guard
 from app.ui.window.guard import FrameStep, cannot_be_shown
 
@@ -204,6 +205,22 @@ def test_failing_viewport_still_shows_the_drawing(window, parts, bar):
 
 
 @pytest.mark.usefixtures("bar")
+def test_failing_menu_of_a_handle_leaves_nothing_open(window, parts, bar, monkeypatch):
+    place = window.point(bar.puppet.shown.handle_places[0])
+
+    def open_menu(robot):
+        robot.mouse_move_to_pos(place)
+        robot.mouse_click(1)
+        robot.yield_(2)
+
+    window.run(open_menu)
+    assert imgui.get_current_context().open_popup_stack.size() == 1
+    monkeypatch.setattr(viewport, "with_key", Broken())
+    window.frames(2)
+    assert parts["The panel Viewport"].failure
+    assert imgui.get_current_context().open_popup_stack.size() == 0
+
+
 def test_failing_dialog_can_be_closed(window, parts):
     parts["The dialog"].draw = Broken()
     window.session.dialog = Question(title="Well", text="Well?", answers=())
