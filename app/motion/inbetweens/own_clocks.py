@@ -51,7 +51,7 @@ class OwnClocks:
         self._swings = Swings(clip, carried)
         self._index = {handle.id: number for number, handle in enumerate(figure.handles)}
         self._tracks = [track for track in figure.tracks if track.enabled]
-        # Held as firmly wherever others go their own ways: nothing gives when they begin.
+        # Tracks and springs hold their handles also before they move them: no jump as they begin.
         own = [identity for track in self._tracks for identity in track.handles]
         own += [spring.handle for spring in self._swings.springs]
         self._is_own = np.zeros(len(figure.handles), np.bool_)

@@ -29,7 +29,7 @@ MOST_STEPS, MOST_STEPS_AT_WALLS, MOST_HALVINGS, MOST_RETURNS = 25, 60, 7, 3
 # The barrier is lowered after a step of which so much was taken, and that is no longer.
 ENOUGH, CLOSE = 0.5, 0.15
 NEARER = 0.7  # of the gap: what a step back to the points leaves of it, at most
-CALM = 1e-4
+CALM = 1e-4  # a step in h: where the iteration ends within walls
 GAINS, GAINS_AT_WALLS = 0.99, 0.999  # of the merit: what a part of a step leaves of it, at most
 ARM = 0.25  # of the diagonal: the distance at which a turn is as firm as a point
 TINY = 1e-300
@@ -77,7 +77,7 @@ class PointSolution:
         How far points are from where they are wanted.
     steps : int
     is_held_back : bool
-        Whether limits stop it.
+        Whether it came near a limit, and walls took part.
     """
 
     x: Floats
@@ -214,12 +214,11 @@ class _Problem:
                 part = min(1.0, length / max(self._length(more), TINY))
                 change, shift = change + part * more, shift + part * along
             firm = max(firm, FIRMEST * float(rows.sizes(model.pulls).max()))
-            soft = rows.soft
             share = min(1.0, self.longest / max(self._length(change), TINY))
-            now = self._merit(at, soft, firm)
+            now = self._merit(at, rows.soft, firm)
             for _ in range(MOST_HALVINGS):
                 tried = self._tried(at, model, change * share, shift * share, share)
-                merit = self._merit(tried, soft, firm)
+                merit = self._merit(tried, rows.soft, firm)
                 if merit <= now * (1 + 1e-12):
                     break
                 share /= 2

@@ -40,7 +40,7 @@ class FrameCorrection:
         Target errors of the points.
     steps : int
     is_held_back : bool
-        Whether limits stop it.
+        Whether it came near a limit, so that it is proven here.
     reached : (float, float, float)
         The largest k and σ_a, and the smallest σ_b, at the samples of the boundary.
     """
