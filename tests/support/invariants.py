@@ -61,7 +61,8 @@ def check_joints(project: Project) -> None:
         at = parent.placement.on(np.array([parent.hinge(joint.at).place]))[0]
         size = np.abs(figure.domain.outline - figure.domain.outline.mean()).max()
         factor = parent.placement.factor * parent.hinge(joint.at).turn if joint.turns else 1.0
-        assert abs(anchor - at - factor * joint.offset) < OPEN * size
+        gap = abs(anchor - at - factor * joint.offset)
+        assert gap < OPEN * size, f"{figure.name} is {gap} from its joint {joint}: {child}, {parent}"
 
 
 def check_pose(figure: Figure, pose: Pose) -> None:
