@@ -1,4 +1,4 @@
-"""`.ci/setup` on machines that are not there, with a package manager of the test's own."""
+"""`.ci/setup` and `.ci/start` on simulated machines, with a package manager of the test's own."""
 
 import os
 import subprocess
@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-SETUP = Path(__file__).parents[1] / ".ci" / "setup"
+SCRIPTS = Path(__file__).parents[1] / ".ci"
 NEEDED = {"python3", "python3-venv", "libegl1", "libgl1", "libgl1-mesa-dri"}
 TESTING = {"xvfb", "xdotool", "shared-mime-info"}
 WELCOME = {"libosmesa6", "chromium"}
@@ -35,11 +35,18 @@ exec "$@"
 NPM = """
 echo "$@" > "$MACHINE/npm"
 """
+UNAME = """
+echo "$SYSTEM"
+"""
 PYTHON = """
 mkdir -p .venv/bin
-printf '#!/bin/sh\\necho "$@" > "$MACHINE/pip"\\n' > .venv/bin/pip
-chmod +x .venv/bin/pip
+for program in pip lissom; do
+    printf '#!/bin/sh\\necho "$@" >> "$MACHINE/'$program'"\\n' > .venv/bin/$program
+    chmod +x .venv/bin/$program
+done
 """
+EXPORT = "export sample_images/giraffe.lissom --out giraffe_frames"
+WINDOW = "sample_images/giraffe.lissom"
 
 
 @pytest.fixture
@@ -52,21 +59,28 @@ def machine(tmp_path):
         pytest.skip("needs bash")
     programs = tmp_path / "programs"
     programs.mkdir()
-    texts = {"apt-get": APT_GET, "dpkg": DPKG, "sudo": SUDO, "python3": PYTHON, "npm": NPM}
+    texts = {
+        "apt-get": APT_GET,
+        "dpkg": DPKG,
+        "sudo": SUDO,
+        "python3": PYTHON,
+        "npm": NPM,
+        "uname": UNAME,
+    }
     for name, text in texts.items():
         (programs / name).write_text(f"#!/bin/sh{text}")
         (programs / name).chmod(0o755)
     (tmp_path / "checkout" / ".ci").mkdir(parents=True)
-    copy = tmp_path / "checkout" / ".ci" / "setup"
-    copy.write_bytes(SETUP.read_bytes())
+    for name in ("setup", "start"):
+        (tmp_path / "checkout" / ".ci" / name).write_bytes((SCRIPTS / name).read_bytes())
 
-    def run(*arguments, known, installed=()):
+    def run(*arguments, known, installed=(), script="setup", **variables):
         (tmp_path / "known").write_text("\n".join([*known, ""]))
         (tmp_path / "installed").write_text("\n".join([*installed, ""]))
         path = f"{programs}{os.pathsep}{os.environ['PATH']}"
-        environment = {**os.environ, "PATH": path, "MACHINE": str(tmp_path)}
+        environment = {**os.environ, "PATH": path, "MACHINE": str(tmp_path), **variables}
         said = subprocess.run(
-            ["bash", copy, *arguments],
+            ["bash", tmp_path / "checkout" / ".ci" / script, *arguments],
             env=environment,
             check=True,
             stdout=subprocess.PIPE,
@@ -116,3 +130,19 @@ def test_where_all_is_there_nothing_is_asked_of_the_package_manager(machine, tmp
 def test_a_package_that_is_needed_and_missing_is_an_error(machine):
     with pytest.raises(subprocess.CalledProcessError):
         machine(known=NEEDED - {"libegl1"})
+
+
+@pytest.mark.parametrize(
+    ("system", "display", "wayland", "has_screen"),
+    [
+        ("Linux", "", "", False),
+        ("Linux", ":0", "", True),
+        ("Linux", "", "wayland-0", True),
+        ("Darwin", "", "", True),
+    ],
+)
+def test_start_exports_and_opens_a_sample(machine, tmp_path, system, display, wayland, has_screen):
+    screen = {"SYSTEM": system, "DISPLAY": display, "WAYLAND_DISPLAY": wayland}
+    machine(known=NEEDED, script="start", **screen)
+    called = (tmp_path / "lissom").read_text().splitlines()
+    assert called == ([EXPORT, WINDOW] if has_screen else [EXPORT])
