@@ -128,7 +128,7 @@ def test_what_the_program_does_not_have_is_refused(tmp_path, text):
 def test_what_the_program_has_is_written_as_it_writes_it(tmp_path):
     path = tmp_path / "page.md"
     path.write_text(
-        "# Page\n\n*File › Export…*, *Hand over from frame 7 on…*, *Export › Format*, "
+        "# Page\n\n*File › Export…*, *Show from frame 7 on*, *Export › Format*, "
         "{key:save as}, {ctrl+shift:drag}\n",
         encoding="utf-8",
     )
