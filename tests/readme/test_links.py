@@ -33,6 +33,12 @@ def test_every_link_leads_somewhere(page):
         assert not anchor or anchor in anchors(target), f"{link} has no such heading"
 
 
+@pytest.mark.parametrize("page", PAGES, ids=names)
+def test_every_named_file_is_there(page):
+    named = re.findall(r"`((?:app|engine|tests|shaders)/[\w/]+(?:\.py)?)`", page.read_text("utf-8"))
+    assert [each for each in named if not (ROOT / each).exists()] == []
+
+
 def test_the_readmes_lead_to_each_other():
     first = (ROOT / "README.md").read_text(encoding="utf-8")
     for page in PAGES:
