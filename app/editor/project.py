@@ -202,7 +202,7 @@ class Project:
         return self.tree_rows.value
 
     @property
-    def layers(self) -> tuple[int, ...]:
+    def selected_layers(self) -> tuple[int, ...]:
         """The ids of the chosen layers, from front to back; the one that is posed is among them."""
         chosen = self.beside | {self.active}
         return tuple(each.id for each in reversed(self.document.figures) if each.id in chosen)

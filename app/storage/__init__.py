@@ -66,10 +66,10 @@ from app.storage.layers import (
     as_layer as as_layer,
     flattened as flattened,
     is_layered as is_layered,
-    layer_figure as layer_figure,
     open_layered as open_layered,
     open_merged as open_merged,
     open_pictures as open_pictures,
+    posable_layer as posable_layer,
     read_layered as read_layered,
     still_figure as still_figure,
     still_picture as still_picture,
@@ -81,7 +81,7 @@ from app.storage.opening import (
     open_picture as open_picture,
 )
 from app.storage.pictures import (
-    Layer as Layer,
+    ImportedLayer as ImportedLayer,
     LayeredPicture as LayeredPicture,
     Picture as Picture,
     decode_mask as decode_mask,

@@ -23,7 +23,7 @@ from app.errors import LissomError, Told, shown_name
 from app.storage.files import read_file
 from app.storage.opening import OpenedScene, cut_picture, scene_of
 from app.storage.pictures import (
-    Layer,
+    ImportedLayer,
     LayeredPicture,
     Names,
     Picture,
@@ -87,7 +87,7 @@ def open_pictures(paths: Sequence[Path], meshing: Meshing) -> OpenedScene:
 
     The canvas is as large as the largest of them; the others stand in its middle.
     """
-    layers: list[Layer] = []
+    all_imported: list[ImportedLayer] = []
     names, told = Names(), Told()
     files = [(read_file(path), str(path)) for path in paths]
     pictures = decode_pictures(files)
@@ -98,10 +98,10 @@ def open_pictures(paths: Sequence[Path], meshing: Meshing) -> OpenedScene:
     for path, (data, _), picture in zip(paths, files, pictures, strict=True):
         name = names.free(shown_name(path.stem))
         corner = complex((size[0] - picture.size[0]) // 2, (size[1] - picture.size[1]) // 2)
-        layers.append(Layer(name=name, data=data, picture=picture, corner=corner))
+        all_imported.append(ImportedLayer(name=name, data=data, picture=picture, corner=corner))
         for notice in picture.notices:
             told.note(name, notice)
-    drawing = LayeredPicture(size=size, layers=tuple(layers), summary=told.summary)
+    drawing = LayeredPicture(size=size, layers=tuple(all_imported), summary=told.summary)
     return _scene(drawing, meshing, is_cut_out=False)
 
 
@@ -124,9 +124,9 @@ def flattened(document: Document, textures: Mapping[int, Bytes]) -> Bytes:
     size = -(-document.canvas[0] // factor), -(-document.canvas[1] // factor)
 
     def drawn(figure: Figure) -> Image.Image:
-        layer, corner = _reduced(textures[figure.id], factor), figure.corner / factor
+        imported, corner = _reduced(textures[figure.id], factor), figure.corner / factor
         moved = Image.new("RGBA", size)
-        moved.paste(layer, (round(corner.real), round(size[1] - corner.imag - layer.height)))
+        moved.paste(imported, (round(corner.real), round(size[1] - corner.imag - imported.height)))
         return moved
 
     def over(flat: Image.Image, parts: Sequence[Figure | Composite[Figure]]) -> Image.Image:
@@ -148,19 +148,19 @@ def flattened(document: Document, textures: Mapping[int, Bytes]) -> Bytes:
     return readonly(np.asarray(painted))
 
 
-def _blended(below: Image.Image, layer: Image.Image, how: Composite[Figure]) -> Image.Image:
+def _blended(below: Image.Image, above: Image.Image, how: Composite[Figure]) -> Image.Image:
     """Return a layer over what lies below it ("Compositing and Blending Level 1", Section 10)."""
-    alpha = layer.getchannel("A").point(lambda a: round(how.opacity * a))
+    alpha = above.getchannel("A").point(lambda a: round(how.opacity * a))
     covered = below.getchannel("A")
     # What is clipped meets all below as if that were opaque.
     solid = below.convert("RGB").convert("RGBA") if how.clipped else below
     if how.blend != "normal":
         mix = ImageChops.multiply if how.blend == "multiply" else ImageChops.screen
-        own, lower = layer.convert("RGB"), below.convert("RGB")
+        own, lower = above.convert("RGB"), below.convert("RGB")
         # Where there is nothing below, it keeps its colours.
-        layer = Image.composite(mix(lower, own), own, solid.getchannel("A")).convert("RGBA")
-    layer.putalpha(alpha)
-    flat = Image.alpha_composite(solid, layer)
+        above = Image.composite(mix(lower, own), own, solid.getchannel("A")).convert("RGBA")
+    above.putalpha(alpha)
+    flat = Image.alpha_composite(solid, above)
     if how.clipped:
         flat.putalpha(covered)
     return flat
@@ -173,8 +173,8 @@ def _reduced(rgba: Bytes, factor: int) -> Image.Image:
     return Image.fromarray(np.concatenate([Image.fromarray(row).reduce(factor) for row in rows]))
 
 
-def layer_figure(
-    layer: Layer, identity: int, meshing: Meshing, *, is_cut_out: bool
+def posable_layer(
+    imported: ImportedLayer, identity: int, meshing: Meshing, *, is_cut_out: bool
 ) -> tuple[Figure, tuple[str, ...]]:
     """Return the figure of a layer, as it was drawn, and what was done, in words.
 
@@ -186,8 +186,8 @@ def layer_figure(
         Whether its transparency alone tells what is drawn. Then a layer that is opaque all over
         becomes a still picture; else a plain background is taken off first.
     """
-    picture = layer.picture
-    file = PictureFile(data=layer.data, suffix=picture.suffix, size=picture.size)
+    picture = imported.picture
+    file = PictureFile(data=imported.data, suffix=picture.suffix, size=picture.size)
     cut_out = WHOLE if is_cut_out else CutOut()
     domain, still = rectangle_domain(*picture.size), True
     notices: tuple[str, ...] = ("opaque all over, so that it stands still",)
@@ -203,16 +203,16 @@ def layer_figure(
         except EngineError as error:
             notices = (f"stands still: {error}",)
     figure = replace(
-        new_figure(file, domain.moved(layer.corner), meshing, WHOLE if still else cut_out),
+        new_figure(file, domain.moved(imported.corner), meshing, WHOLE if still else cut_out),
         id=identity,
-        name=layer.name,
-        corner=layer.corner,
+        name=imported.name,
+        corner=imported.corner,
         still=still,
-        hidden=not layer.visible,
-        opacity=layer.opacity,
-        blend=layer.blend,
-        clipped=layer.clipped,
-        group=layer.group,
+        hidden=not imported.visible,
+        opacity=imported.opacity,
+        blend=imported.blend,
+        clipped=imported.clipped,
+        group=imported.group,
     )
     return figure, notices
 
@@ -234,32 +234,32 @@ def still_figure(figure: Figure) -> Figure:
     return as_layer(replace(rest, still=True), figure)
 
 
-def as_layer(figure: Figure, layer: Figure) -> Figure:
+def as_layer(figure: Figure, replaced: Figure) -> Figure:
     """Return a figure as it is drawn in the place of a layer, be that a still picture or not."""
-    anchor = layer.anchor
+    anchor = replaced.anchor
     if anchor is not None:
         anchor = complex(figure.domain.nearest(np.array([anchor]))[0])
     return replace(
         figure,
-        id=layer.id,
-        name=layer.name,
-        corner=layer.corner,
+        id=replaced.id,
+        name=replaced.name,
+        corner=replaced.corner,
         anchor=anchor,
-        keys=(replace(figure.keys[0], frame=layer.keys[0].frame),),
-        cycles=layer.cycles,
-        reference=layer.reference,
-        locked=layer.locked,
-        hidden=layer.hidden,
-        switches=layer.switches,
-        opacity=layer.opacity,
-        opacities=layer.opacities,
-        blend=layer.blend,
-        clipped=layer.clipped,
-        group=layer.group,
-        joints=layer.joints,
-        movement=layer.movement,
-        placings=layer.placings,
-        unknown=layer.unknown,
+        keys=(replace(figure.keys[0], frame=replaced.keys[0].frame),),
+        cycles=replaced.cycles,
+        reference=replaced.reference,
+        locked=replaced.locked,
+        hidden=replaced.hidden,
+        switches=replaced.switches,
+        opacity=replaced.opacity,
+        opacities=replaced.opacities,
+        blend=replaced.blend,
+        clipped=replaced.clipped,
+        group=replaced.group,
+        joints=replaced.joints,
+        movement=replaced.movement,
+        placings=replaced.placings,
+        unknown=replaced.unknown,
     )
 
 
@@ -267,19 +267,19 @@ def _scene(drawing: LayeredPicture, meshing: Meshing, *, is_cut_out: bool) -> Op
     share = max(FEWEST_TRIANGLES, meshing.triangles // len(drawing.layers))
     each = replace(meshing, triangles=min(meshing.triangles, share))
     made = side_by_side(
-        lambda numbered: layer_figure(numbered[1], numbered[0], each, is_cut_out=is_cut_out),
+        lambda numbered: posable_layer(numbered[1], numbered[0], each, is_cut_out=is_cut_out),
         enumerate(drawing.layers),
-        (layer.picture.size for layer in drawing.layers),
+        (imported.picture.size for imported in drawing.layers),
     )
     # Layers that share a picture share its file.
     files: dict[int, PictureFile] = {}
     figures = tuple(
-        replace(figure, picture=files.setdefault(id(layer.picture), figure.picture))
-        for layer, (figure, _) in zip(drawing.layers, made, strict=True)
+        replace(figure, picture=files.setdefault(id(imported.picture), figure.picture))
+        for imported, (figure, _) in zip(drawing.layers, made, strict=True)
     )
     if all(figure.still for figure in figures):
         raise LissomError("none of its layers can be posed: there is no shape on any of them")
-    pictures = {index: layer.picture for index, layer in enumerate(drawing.layers)}
+    pictures = {index: imported.picture for index, imported in enumerate(drawing.layers)}
     told = Told()
     for figure, notices in made:
         for notice in notices:

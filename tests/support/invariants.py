@@ -62,7 +62,9 @@ def check_joints(project: Project) -> None:
         size = np.abs(figure.domain.outline - figure.domain.outline.mean()).max()
         factor = parent.placement.factor * parent.hinge(joint.at).turn if joint.turns else 1.0
         gap = abs(anchor - at - factor * joint.offset)
-        assert gap < OPEN * size, f"{figure.name} is {gap} from its joint {joint}: {child}, {parent}"
+        assert gap < OPEN * size, (
+            f"{figure.name} is {gap} from its joint {joint}: {child}, {parent}"
+        )
 
 
 def check_pose(figure: Figure, pose: Pose) -> None:

@@ -132,7 +132,7 @@ def group(session: Session, path: str, *identities: int) -> None:
 @with_project
 def group_together(session: Session, project: Project) -> None:
     """Put the chosen layers in a new group, in the innermost one that all of them are in."""
-    document, chosen = project.document, project.layers
+    document, chosen = project.document, project.selected_layers
     around = reduce(shared_path, (document.figure(each).group for each in chosen))
     taken = {each.name for each in document.groups}
     free = layer_commands.numbered_name(f"{around}/group".removeprefix("/"), taken)

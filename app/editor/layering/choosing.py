@@ -31,7 +31,7 @@ def choose_all(session: Session, project: Project, *identities: int) -> None:
 @with_project
 def choose_too(session: Session, project: Project, *identities: int) -> None:
     """Choose layers beside those that are chosen, or no more where all of them are."""
-    chosen = frozenset(project.layers)
+    chosen = frozenset(project.selected_layers)
     left = chosen - set(identities) if chosen.issuperset(identities) else chosen | set(identities)
     if left:
         ordered = [each for each in project.document.figures[::-1] if each.id in left]

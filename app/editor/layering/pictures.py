@@ -26,13 +26,13 @@ from app.editor.work import Kind, Puppet
 from app.errors import NOTHING_TOLD, ImportSummary, LissomError, Told, shown_name
 from app.solving import Renewal, begin_replacing
 from app.storage import (
-    Layer,
+    ImportedLayer,
     LayeredPicture,
     Picture,
     as_layer,
     decode_picture,
     is_layered,
-    layer_figure,
+    posable_layer,
     read_file,
     read_layered,
     require_memory,
@@ -65,11 +65,13 @@ def stand_still(session: Session, project: Project, identity: int) -> None:
 def stand_up(session: Session, project: Project, identity: int) -> None:
     """Let a still picture be posed: the shape that is drawn on it, as it was drawn."""
     figure, picture = project.document.figure(identity), project.puppets[identity].picture
-    layer = Layer(name=figure.name, data=figure.picture.data, picture=picture, corner=figure.corner)
+    imported = ImportedLayer(
+        name=figure.name, data=figure.picture.data, picture=picture, corner=figure.corner
+    )
     meshing = session.meshing
 
     def work() -> Figure:
-        return as_layer(_shape(layer, identity, meshing).figure, figure)
+        return as_layer(_shape(imported, identity, meshing).figure, figure)
 
     def done(made: Figure) -> None:
         command = layer_commands.replace_figure(identity, made)
@@ -80,14 +82,14 @@ def stand_up(session: Session, project: Project, identity: int) -> None:
     promises.begin(session, project, kind, work, done)
 
 
-def _shape(layer: Layer, identity: int, meshing: Meshing) -> _Made:
+def _shape(imported: ImportedLayer, identity: int, meshing: Meshing) -> _Made:
     """Return the figure of a layer that can be posed."""
     # Where nothing is transparent, a plain background is taken off first.
-    is_cut_out = bool((layer.picture.rgba[..., 3] == 0).any())
-    made, notices = layer_figure(layer, identity, meshing, is_cut_out=is_cut_out)
+    is_cut_out = bool((imported.picture.rgba[..., 3] == 0).any())
+    made, notices = posable_layer(imported, identity, meshing, is_cut_out=is_cut_out)
     if made.still:
         raise LissomError(f"there is no shape on it ({'; '.join(notices)})")
-    return _Made(made, layer.picture, (*layer.picture.notices, *notices))
+    return _Made(made, imported.picture, (*imported.picture.notices, *notices))
 
 
 def replace_picture(session: Session, identity: int, path: Path) -> None:
@@ -109,8 +111,8 @@ def _replace_picture(session: Session, project: Project, identity: int, path: Pa
         if before.still:
             made = _Made(still_picture(data, picture), picture, picture.notices)
         else:
-            layer = Layer(name=before.name, data=data, picture=picture)
-            made = _shape(layer, identity, before.meshing)
+            imported = ImportedLayer(name=before.name, data=data, picture=picture)
+            made = _shape(imported, identity, before.meshing)
         return begin_replacing(before, made.figure, canvas), made
 
     def done(begun: tuple[Renewal, _Made]) -> None:
@@ -138,22 +140,22 @@ def add(session: Session, project: Project, paths: Sequence[Path]) -> None:
         made: list[_Made] = []
         for path in paths:
             drawing = _with_free_groups(_drawing(path), document)
-            _require_room(document.figures, [layer.picture for layer in drawing.layers])
+            _require_room(document.figures, [imported.picture for imported in drawing.layers])
             document = group_commands.add_groups(drawing.groups)(document)
             summary += drawing.summary
             across, up = ((ours - its) // 2 for ours, its in zip(canvas, drawing.size, strict=True))
-            for layer in drawing.layers:
-                moved = replace(layer, corner=layer.corner + complex(across, up))
+            for imported in drawing.layers:
+                moved = replace(imported, corner=imported.corner + complex(across, up))
                 identity = layer_commands.free_identity(document)
-                figure, notices = layer_figure(
+                figure, notices = posable_layer(
                     moved, identity, meshing, is_cut_out=is_layered(path)
                 )
                 document = layer_commands.add_figure(figure)(document)
                 # Here, and not while the window waits: it takes a tenth of a second.
-                puppet = Puppet.of(clip_of(document, identity), layer.picture)
-                for notice in layer.picture.notices + notices:
+                puppet = Puppet.of(clip_of(document, identity), imported.picture)
+                for notice in imported.picture.notices + notices:
                     told.note(document.figures[-1].name, notice)
-                made.append(_Made(figure, layer.picture, (), puppet))
+                made.append(_Made(figure, imported.picture, (), puppet))
         return made, summary + told.summary, document.groups[len(before.groups) :]
 
     def done(read: tuple[list[_Made], ImportSummary, Sequence[Group]]) -> None:
@@ -192,7 +194,7 @@ def _with_free_groups(drawing: LayeredPicture, document: Document) -> LayeredPic
 
     return replace(
         drawing,
-        layers=tuple(replace(layer, group=free(layer.group)) for layer in drawing.layers),
+        layers=tuple(replace(imported, group=free(imported.group)) for imported in drawing.layers),
         groups=tuple(replace(group, name=free(group.name)) for group in drawing.groups),
     )
 
@@ -203,8 +205,10 @@ def _drawing(path: Path) -> LayeredPicture:
         return read_layered(path)
     data = read_file(path)
     picture = decode_picture(data, path.name)
-    layer = Layer(name=shown_name(path.stem).strip() or "layer", data=data, picture=picture)
-    return LayeredPicture(size=picture.size, layers=(layer,))
+    imported = ImportedLayer(
+        name=shown_name(path.stem).strip() or "layer", data=data, picture=picture
+    )
+    return LayeredPicture(size=picture.size, layers=(imported,))
 
 
 def ask(session: Session) -> None:

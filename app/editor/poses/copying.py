@@ -26,8 +26,8 @@ def copy(session: Session, project: Project) -> None:
     """
     if copies_keys(session, project):
         copy_keys(session)
-    elif len(project.layers) > 1:
-        _copy_poses(session, project, project.layers)
+    elif len(project.selected_layers) > 1:
+        _copy_poses(session, project, project.selected_layers)
     else:
         frame = playback.current_frame(session, project)
         putting.take_pose(session, project, COPYING, partial(_copy, session, frame))
@@ -39,13 +39,13 @@ def copy_all(session: Session, project: Project) -> None:
     _copy_poses(session, project, [figure.id for figure in project.document.figures])
 
 
-def _copy_poses(session: Session, project: Project, layers: Sequence[int]) -> None:
+def _copy_poses(session: Session, project: Project, chosen: Sequence[int]) -> None:
     """Copy the poses of layers at the playhead; the worker finds those in between."""
     frame, document = playback.current_frame(session, project), project.document
     figures = [
         each
         for each in document.figures
-        if each.id in layers and (each.handles or len(each.keys) > 1)
+        if each.id in chosen and (each.handles or len(each.keys) > 1)
     ]
     known: dict[int, Pose] = {}
     works = {}

@@ -184,7 +184,7 @@ def _receivers(
     kin = (each for each in document.figures if each.id == source.id)
     own = names.get(source.name) or next((f for f in kin if f.domain is source.domain), None)
     if is_alone and way == "as it is":
-        yield from map(document.figure, project.layers)
+        yield from map(document.figure, project.selected_layers)
     elif is_alone and (own is None or own.id != project.active):
         yield project.figure
     elif own is not None:

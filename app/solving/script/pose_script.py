@@ -187,10 +187,10 @@ def parse_pose_script(content: object) -> PoseScript:
         where = f"figures[{index}]."
         fields = fields_in(entry, where[:-1], FIGURE_FIELDS)
         figures.append(_figure(fields, where, usual))
-    layers = [figure.layer for figure in figures]
-    for layer in layers:
-        if layers.count(layer) > 1:
-            raise LissomError(f"two figures are of the layer {layer!r}")
+    names = [figure.layer for figure in figures]
+    for name in names:
+        if names.count(name) > 1:
+            raise LissomError(f"two figures are of the layer {name!r}")
     if not figures:
         raise LissomError("figures must be a list of at least one figure")
     parsed = PoseScript(

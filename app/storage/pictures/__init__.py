@@ -10,7 +10,7 @@ from app.storage.pictures.cores import (
     side_by_side as side_by_side,
 )
 from app.storage.pictures.layered import (
-    Layer as Layer,
+    ImportedLayer as ImportedLayer,
     LayeredPicture as LayeredPicture,
     Names as Names,
     encode_png as encode_png,

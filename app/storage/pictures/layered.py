@@ -27,7 +27,7 @@ GROUPS_DEEP = "its groups lie more than {most} deep in each other"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Layer:
+class ImportedLayer:
     """A layer of a drawing.
 
     Parameters
@@ -70,7 +70,7 @@ class LayeredPicture:
     ----------
     size : tuple of int
         Width and height of the canvas in pixels.
-    layers : tuple of Layer
+    layers : tuple of ImportedLayer
         From the one behind all others to the one in front; there is always one.
     summary : ImportSummary
     groups : tuple of Group
@@ -78,7 +78,7 @@ class LayeredPicture:
     """
 
     size: tuple[int, int]
-    layers: tuple[Layer, ...]
+    layers: tuple[ImportedLayer, ...]
     summary: ImportSummary = NOTHING_TOLD
     groups: tuple[Group, ...] = ()
 
@@ -135,21 +135,21 @@ class Groups:
         """Tell whether a group is seen only where what lies below it is."""
         return self._found[path].clipped
 
-    def of(self, layers: Sequence[Layer]) -> tuple[Group, ...]:
+    def of(self, layers: Sequence[ImportedLayer]) -> tuple[Group, ...]:
         """Return the groups that these layers are in."""
         filled = {path for layer in layers for path in paths_to(layer.group)}
         return tuple(group for path, group in self._found.items() if path in filled)
 
 
 def layered_picture(
-    size: tuple[int, int], found: Sequence[Layer], groups: Groups, told: Told
+    size: tuple[int, int], found: Sequence[ImportedLayer], groups: Groups, told: Told
 ) -> LayeredPicture:
     """Return the drawing of the layers that were found, each with a name of its own.
 
     Parameters
     ----------
     size : tuple of int
-    found : sequence of Layer
+    found : sequence of ImportedLayer
         From back to front; those of which nothing is to be seen are left out.
     groups : Groups
         All of them.
@@ -177,17 +177,19 @@ def layered_picture(
     )
 
 
-def _seen(layers: Sequence[Layer], groups: Groups, told: Told, depth: int = 0) -> list[Layer]:
+def _seen(
+    layers: Sequence[ImportedLayer], groups: Groups, told: Told, depth: int = 0
+) -> list[ImportedLayer]:
     """Return those of some layers, that are in the same groups so deep, of which a pixel is seen.
 
     What is clipped by an empty layer or group is nowhere.
     """
 
-    def unit(layer: Layer) -> Hashable:
+    def unit(layer: ImportedLayer) -> Hashable:
         """Return the group that lies next among these, or the layer."""
         return (*paths_to(layer.group)[depth : depth + 1], layer)[0]
 
-    seen: list[Layer] = []
+    seen: list[ImportedLayer] = []
     empty = ""  # the last thing that clips others, where nothing is drawn on it
     for found, each in groupby(layers, unit):
         run = list(each)
@@ -205,7 +207,7 @@ def _seen(layers: Sequence[Layer], groups: Groups, told: Told, depth: int = 0) -
     return seen
 
 
-def _if_drawn(layer: Layer, told: Told) -> list[Layer]:
+def _if_drawn(layer: ImportedLayer, told: Told) -> list[ImportedLayer]:
     """Return a layer, or nothing where it is empty, which is told."""
     is_empty = is_blank(layer.picture)
     if is_empty:
@@ -225,13 +227,13 @@ class _Trimmed(NamedTuple):
     picture: Picture
     shift: complex
 
-    def of(self, layer: Layer) -> Layer:
+    def of(self, layer: ImportedLayer) -> ImportedLayer:
         """Return a layer with this picture."""
         corner = layer.corner + self.shift
         return replace(layer, data=self.data, picture=self.picture, corner=corner)
 
 
-def _trimmed(layer: Layer) -> _Trimmed:
+def _trimmed(layer: ImportedLayer) -> _Trimmed:
     """Return a layer's picture without empty pixels around what is drawn, where they are many."""
     picture, (width, height) = layer.picture, layer.picture.size
     drawn = picture.rgba[..., 3] > 0

@@ -16,7 +16,7 @@ from app.storage.files import DAMAGED_ZIP, opened_zip
 from app.storage.pictures.layered import (
     EMPTY,
     Groups,
-    Layer,
+    ImportedLayer,
     LayeredPicture,
     corner_from_top,
     is_blank,
@@ -86,7 +86,7 @@ def _read(archive: zipfile.ZipFile) -> LayeredPicture:
     require_room([stored_size(members[source], source) for source in sources])
     decoded = decode_pictures([(members[source], source) for source in distinct])
     pictures = dict(zip(distinct, decoded, strict=True))
-    found: list[Layer] = []
+    found: list[ImportedLayer] = []
     for (element, place), source in zip(elements, sources, strict=True):
         member, picture = members[source], pictures[source]
         name = element.get("name", "").strip() or "layer"
@@ -94,7 +94,7 @@ def _read(archive: zipfile.ZipFile) -> LayeredPicture:
             # It clips nothing: what else lies below does.
             told.note(name, EMPTY)
             continue
-        layer = Layer(
+        layer = ImportedLayer(
             name=name,
             data=member,
             picture=picture,
@@ -109,7 +109,9 @@ def _read(archive: zipfile.ZipFile) -> LayeredPicture:
     return layered_picture(size, found, groups, told)
 
 
-def _clips(found: Sequence[Layer], layer: Layer, size: tuple[int, int], told: Told) -> bool:
+def _clips(
+    found: Sequence[ImportedLayer], layer: ImportedLayer, size: tuple[int, int], told: Told
+) -> bool:
     """Tell whether a layer is clipped, which here all that lies below it in its group does."""
     depth = len(paths_to(layer.group))
     below = set()

@@ -17,7 +17,7 @@ from app.document import BlendMode, Group
 from app.errors import LissomError, Told, missing, shortened
 from app.storage.pictures.layered import (
     Groups,
-    Layer,
+    ImportedLayer,
     LayeredPicture,
     corner_from_top,
     encode_png,
@@ -138,7 +138,7 @@ def _read(drawing: Any) -> LayeredPicture:
         # An empty one clips what it does in the file.
         image = masked_pixels(layer, place.masks, told) or Image.new("RGBA", (1, 1))
         picture = Picture(rgba=freeze(np.array(image)))
-        read = Layer(
+        read = ImportedLayer(
             name=name,
             data=encode_png(image),
             picture=picture,
@@ -157,7 +157,7 @@ def _read(drawing: Any) -> LayeredPicture:
         _require_all_rows(whole, rows, drawing.version, padding=PADDING)
         file = encode_png(drawing.topil().convert("RGBA"))
         flat = decode_picture(file, "the picture")
-        layers = [Layer(name="picture", data=file, picture=flat)]
+        layers = [ImportedLayer(name="picture", data=file, picture=flat)]
     return layered_picture((drawing.width, drawing.height), layers, groups, told)
 
 

@@ -54,7 +54,7 @@ def _looks_through(session: Session) -> bool:
 def _copied(session: Session, project: Project) -> str:
     if copying.copies_keys(session, project):
         return f"{project.count_chosen} keys" if project.count_chosen > 1 else "pose"
-    layers = len(project.layers)
+    layers = len(project.selected_layers)
     return f"poses of {layers} layers" if layers > 1 else "pose"
 
 

@@ -16,8 +16,8 @@ from app.solving.drag import Drag, Rig
 from app.solving.renewal import go_on
 from app.solving.replacing import begin_replacing
 from app.storage.assets import sample_images
-from app.storage.layers import layer_figure, still_picture
-from app.storage.pictures import Layer, decode_picture
+from app.storage.layers import posable_layer, still_picture
+from app.storage.pictures import ImportedLayer, decode_picture
 from app.storage.project_file import load_project
 
 MESHING = Meshing(triangles=1_000, detail="coarse")
@@ -25,8 +25,10 @@ MESHING = Meshing(triangles=1_000, detail="coarse")
 
 def figure_of(image, corner=0j):
     data = png(image)
-    layer = Layer(name="arm", data=data, picture=decode_picture(data, "arm.png"), corner=corner)
-    figure, _ = layer_figure(layer, 0, MESHING, is_cut_out=True)
+    layer = ImportedLayer(
+        name="arm", data=data, picture=decode_picture(data, "arm.png"), corner=corner
+    )
+    figure, _ = posable_layer(layer, 0, MESHING, is_cut_out=True)
     return figure
 
 

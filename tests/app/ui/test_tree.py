@@ -108,7 +108,7 @@ def test_layers_take_turns_by_one_click(window, scene, ids, use):
         robot.key_up(int(window.Key.mod_ctrl))
 
     use(choose_both)
-    assert set(scene.layers) == {ids["ah"], ids["oh"]}
+    assert set(scene.selected_layers) == {ids["ah"], ids["oh"]}
 
     def let_take_turns(robot):
         robot.item_click(row_of(ids["ah"]), 1)
@@ -418,7 +418,7 @@ def test_several_layers_get_keys_together_and_go_together(window, scene, ids):
         assert 12 in scene.document.figure(ids[name]).key_frames
     window.act(editing.undo)
     assert scene.document is before
-    window.act(layering.remove, *scene.layers)
+    window.act(layering.remove, *scene.selected_layers)
     window.settle()
     assert {figure.name for figure in scene.document.figures} == {"stick", "ah", "oh"}
     window.act(layering.remove, *(figure.id for figure in scene.document.figures))

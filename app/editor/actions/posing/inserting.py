@@ -22,7 +22,7 @@ def insert_key(session: Session, project: Project) -> None:
     playback.halt(session)
     if project.beside:
         here, gesture = playback.current_frame(session, project), object()
-        chosen = [project.document.figure(each) for each in project.layers]
+        chosen = [project.document.figure(each) for each in project.selected_layers]
         for figure in (each for each in chosen if not each.still):
             if (at := figure.source_of(here)) not in figure.key_frames:
                 insert_key_at(session, figure.id, at, gesture)

@@ -17,7 +17,7 @@ def chosen_stretch(project: Project) -> tuple[int, int] | None:
     """
     frames = set[int]().union(*project.chosen_of.values())
     if len(frames) < 2:
-        rows = project.layers if len(project.layers) > 1 else [project.row]
+        rows = project.selected_layers if len(project.selected_layers) > 1 else [project.row]
         frames = set[int]().union(*(frames_in(project.document, row) for row in rows))
     return (min(frames), max(frames)) if len(frames) > 1 else None
 
@@ -78,7 +78,7 @@ def _change(
 
 def _figures(project: Project) -> list[int]:
     """Return the layers of chosen keys, with those that are chosen together, or the one posed."""
-    together = project.layers if len(project.layers) > 1 else ()
+    together = project.selected_layers if len(project.selected_layers) > 1 else ()
     figures = {*together, *map(figure_of, project.chosen_of)} or {project.active}
     return sorted(each for each in figures if _may_repeat(project.document, each))
 

@@ -20,7 +20,7 @@ def drag_row(look: Look, project: Project, row: TreeRow, low: ImVec2, high: ImVe
     actions: list[Action] = []
     if imgui.begin_drag_drop_source():
         imgui.set_drag_drop_payload_py_id(MOVED, row.figures[0])
-        if row.figure is None and set(project.layers) != set(row.figures):
+        if row.figure is None and set(project.selected_layers) != set(row.figures):
             actions.append(do(layering.choose_all, *row.figures))
         dragged = _dragged(project, row.figures[0])
         imgui.text(row.name if set(dragged) <= set(row.figures) else f"{len(dragged)} layers")
@@ -51,7 +51,7 @@ def drag_row(look: Look, project: Project, row: TreeRow, low: ImVec2, high: ImVe
 
 def _dragged(project: Project, identity: int) -> tuple[int, ...]:
     """Return the layers that are dragged by the row of one: all chosen ones if it is among them."""
-    return project.layers if identity in project.layers else (identity,)
+    return project.selected_layers if identity in project.selected_layers else (identity,)
 
 
 def _onto(project: Project, row: TreeRow, identity: int) -> Action | None:

@@ -39,7 +39,7 @@ def kept_whole(groups: Sequence[str]) -> str:
 
 def _of_layer(project: Project, figure: Figure) -> list[Action]:
     actions: list[Action] = []
-    identity, chosen = figure.id, project.layers
+    identity, chosen = figure.id, project.selected_layers
     is_many = len(chosen) > 1 and identity in chosen
     whom = chosen if is_many else (identity,)
     many = f" {len(chosen)} layers" if is_many else ""

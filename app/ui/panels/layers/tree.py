@@ -67,7 +67,7 @@ def draw_tree(
 def _bar(look: Look, project: Project) -> list[Action]:
     """Draw the buttons for whole layers."""
     actions: list[Action] = []
-    active, figures, chosen = project.active, project.document.figures, project.layers
+    active, figures, chosen = project.active, project.document.figures, project.selected_layers
     index, last = figures.index(project.figure), len(figures) - 1
 
     def button(icon: str, name: str, hint: str, action: Action, *, enabled: bool = True) -> None:
@@ -103,7 +103,7 @@ def _row(
     corner, height = imgui.get_cursor_screen_pos(), ROW * em
     # Below all that follows, which takes the pointer first.
     flags = imgui.SelectableFlags_.allow_overlap | imgui.SelectableFlags_.allow_double_click
-    is_chosen = set(project.layers).issuperset(row.figures)
+    is_chosen = set(project.selected_layers).issuperset(row.figures)
     if imgui.selectable(f"###row {row.key}", is_chosen, flags, ImVec2(0, height))[0]:
         actions.append(_chosen(row))
     after = imgui.get_cursor_screen_pos()
@@ -291,7 +291,7 @@ def _ring(look: Look) -> None:
 
 def _of_chosen(project: Project, row: TreeRow) -> tuple[int, ...]:
     """Return what a switch of a row is for: all chosen layers, if the row's are among them."""
-    chosen = project.layers
+    chosen = project.selected_layers
     return chosen if set(row.figures).issubset(chosen) and len(chosen) > 1 else row.figures
 
 
