@@ -99,7 +99,7 @@ class SheetLayout(FormatOptions):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ShapeDetail(FormatOptions):
-    """How closely an export of shapes follows the motion, in how many triangles of each figure.
+    """How closely an export of shapes follows the motion, in how many triangles of each layer.
 
     Without a tolerance it is half a pixel, with no more shapes than every viewer shows.
     """
@@ -107,7 +107,7 @@ class ShapeDetail(FormatOptions):
     triangles: int = _asked(
         4_000,
         label="Triangles",
-        tip="Of each figure, about: more of them bend more smoothly, in a larger file",
+        tip="Of each layer, about: more of them bend more smoothly, in a larger file",
         flag="triangles",
         about="of a model, about (default: 4000)",
         least=100,
@@ -167,7 +167,7 @@ class ExportFormat:
     keeps_order : bool
         Whether what lies in front of what may change in it.
     composites : bool
-        Whether figures and groups are blended, clipped and faded in it as they are here.
+        Whether layers and groups are blended, clipped and faded in it as they are here.
     largest : int, optional
         Pixels of a picture each way, at most.
     is_still : bool

@@ -39,26 +39,24 @@ def test_four_creatures_move():
 @pytest.mark.parametrize("name", NAMES)
 def test_a_sample_is_what_its_script_says(name):
     document = sample(name)
-    (script,) = load_pose_script(SAMPLES / f"{name}.json").figures
-    assert document.figures[0].picture.data == (SAMPLES / f"{name}.png").read_bytes()
-    assert {handle.name: handle.position for handle in document.figures[0].handles} == {
+    (script,) = load_pose_script(SAMPLES / f"{name}.json").layers
+    assert document.layers[0].picture.data == (SAMPLES / f"{name}.png").read_bytes()
+    assert {handle.name: handle.position for handle in document.layers[0].handles} == {
         name: handle.at for name, handle in script.handles.items()
     }
-    assert [key.frame for key in document.figures[0].keys] == [key.frame for key in script.keys]
-    assert [key.easing for key in document.figures[0].keys] == [key.ease for key in script.keys]
-    assert [key.passing for key in document.figures[0].keys] == [key.passing for key in script.keys]
-    names = {handle.name: handle.id for handle in document.figures[0].handles}
-    assert [dict(key.fronts) for key in document.figures[0].keys] == [
+    assert [key.frame for key in document.layers[0].keys] == [key.frame for key in script.keys]
+    assert [key.easing for key in document.layers[0].keys] == [key.ease for key in script.keys]
+    assert [key.passing for key in document.layers[0].keys] == [key.passing for key in script.keys]
+    names = {handle.name: handle.id for handle in document.layers[0].handles}
+    assert [dict(key.fronts) for key in document.layers[0].keys] == [
         {names[name]: front for name, front in key.fronts.items()} for key in script.keys
     ]
-    assert {(handle.front, handle.extent) for handle in document.figures[0].handles} == {
+    assert {(handle.front, handle.extent) for handle in document.layers[0].handles} == {
         (handle.front, handle.extent) for handle in script.handles.values()
     }
-    assert document.figures[0].bounds == script.bounds
+    assert document.layers[0].bounds == script.bounds
     lags = [
-        lag
-        for key in document.figures[0].keys
-        for lag in document.figures[0].lags(key.pose).values()
+        lag for key in document.layers[0].keys for lag in document.layers[0].lags(key.pose).values()
     ]
     assert max(lags) < 2.0, "handles arrive, to two pixels"
 
@@ -79,22 +77,20 @@ def test_a_sample_on_layers_is_what_its_script_says(name):
     document = sample(name)
     drawing = read_openraster((SAMPLES / f"{name}.ora").read_bytes())
     script = load_pose_script(SAMPLES / f"{name}.json")
-    assert [figure.name for figure in document.figures] == [layer.name for layer in drawing.layers]
-    parts = {part.layer: part for part in script.figures}
-    names = {figure.id: figure.name for figure in document.figures}
-    for figure in document.figures:
-        part = parts.get(figure.name)
-        assert figure.still == (part is None)
+    assert [layer.name for layer in document.layers] == [layer.name for layer in drawing.layers]
+    parts = {part.layer: part for part in script.layers}
+    names = {layer.id: layer.name for layer in document.layers}
+    for layer in document.layers:
+        part = parts.get(layer.name)
+        assert layer.still == (part is None)
         if part is None:
             continue
-        assert [key.frame for key in figure.keys] == [key.frame for key in part.keys]
-        assert [names[each.to] for each in figure.joints] == [each.to for each in part.attach]
-        assert (
-            max([0.0, *(lag for key in figure.keys for lag in figure.lags(key.pose).values())]) < 2
-        )
+        assert [key.frame for key in layer.keys] == [key.frame for key in part.keys]
+        assert [names[each.to] for each in layer.joints] == [each.to for each in part.attach]
+        assert max([0.0, *(lag for key in layer.keys for lag in layer.lags(key.pose).values())]) < 2
     # Mouths and lids take turns, and the joints of the whole chain stay closed.
     joints = Joints(document)
-    laugh, head = (next(f for f in document.figures if f.name == n) for n in ("laugh", "head"))
+    laugh, head = (next(f for f in document.layers if f.name == n) for n in ("laugh", "head"))
     assert [is_visible(document, laugh, frame) for frame in (29, 30, 52)] == [True, False, True]
     at, frame = np.array([laugh.joints[0].at]), 9.5
     carrier = joints.placement(head.id, frame)
@@ -106,8 +102,8 @@ def test_a_sample_on_layers_is_what_its_script_says(name):
 
 def test_the_octopus_crosses_its_arms_one_way_and_then_the_other():
     document = sample("octopus")
-    clip, mesh = clip_of(document, 0), document.figures[0].domain.mesh
-    places = {handle.name: handle.position for handle in document.figures[0].handles}
+    clip, mesh = clip_of(document, 0), document.layers[0].domain.mesh
+    places = {handle.name: handle.position for handle in document.layers[0].handles}
     higher = []
     for frame in (16, 48):
         order = PaintOrder(mesh).triangles(clip, frame)
@@ -124,18 +120,18 @@ def test_the_octopus_crosses_its_arms_one_way_and_then_the_other():
 @pytest.mark.parametrize("name", NAMES)
 def test_a_sample_begins_and_ends_as_it_was_drawn(name):
     document = sample(name)
-    vertices = document.figures[0].domain.mesh.vertices
-    for key in (document.figures[0].keys[0], document.figures[0].keys[-1]):
-        assert_allclose(document.figures[0].map_of(key.pose)(vertices), vertices, rtol=0, atol=1e-2)
+    vertices = document.layers[0].domain.mesh.vertices
+    for key in (document.layers[0].keys[0], document.layers[0].keys[-1]):
+        assert_allclose(document.layers[0].map_of(key.pose)(vertices), vertices, rtol=0, atol=1e-2)
     assert exported_frames(document).last == document.frames.last - 1
     assert document.export.framing == "fit"
 
 
 @pytest.mark.parametrize("name", [*NAMES, *LAYERED])
 def test_no_pose_of_a_sample_sits_at_its_limits(name):
-    for figure in sample(name).figures:
-        uses = (use for pose in figure.poses for use in Extremes.of(pose).uses(figure.bounds))
-        assert max(use.share for use in uses) < 0.9, figure.name
+    for layer in sample(name).layers:
+        uses = (use for pose in layer.poses for use in Extremes.of(pose).uses(layer.bounds))
+        assert max(use.share for use in uses) < 0.9, layer.name
 
 
 @pytest.mark.parametrize(
@@ -147,20 +143,20 @@ def test_no_pose_of_a_sample_sits_at_its_limits(name):
 )
 def test_limits_do_not_slow_down_a_motion_of_the_friend(name):
     document = sample("friend")
-    moving = {figure.name: figure for figure in document.figures if len(figure.keys) > 2}
+    moving = {layer.name: layer for layer in document.layers if len(layer.keys) > 2}
     assert set(moving) == {"left arm", "right arm", "body", "head"}
-    figure = moving[name]
-    store = IntervalStore(mesh=PosableMesh.coarse(figure.domain))
-    clip = clip_of(document, figure.id)
+    layer = moving[name]
+    store = IntervalStore(mesh=PosableMesh.coarse(layer.domain))
+    clip = clip_of(document, layer.id)
     store.take(store.preparing(clip, store.missing(clip, 0))())
     assert min(store.velocity_shares(clip).values(), default=1.0) > 0.6
 
 
 def test_head_of_the_friend_keeps_its_bounds_between_two_keys():
-    head = next(figure for figure in sample("friend").figures if figure.name == "head")
+    head = next(layer for layer in sample("friend").layers if layer.name == "head")
     keys = tuple(key for key in head.keys if 22 <= key.frame <= 50)
     assert len(keys) == 2
-    alone = Document(figures=(replace(head, keys=keys, joints=()),), frames=FrameRange(22, 50))
+    alone = Document(layers=(replace(head, keys=keys, joints=()),), frames=FrameRange(22, 50))
     report = certify_clip(clip_of(alone, head.id))
     (interval,) = report.intervals
     assert interval.verdict is Verdict.PROVEN

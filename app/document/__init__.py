@@ -26,7 +26,6 @@ from app.document.commands import (
     choice_commands as choice_commands,
     cycle_commands as cycle_commands,
     exchanged as exchanged,
-    figure_commands as figure_commands,
     filming_commands as filming_commands,
     group_commands as group_commands,
     handle_commands as handle_commands,
@@ -38,13 +37,8 @@ from app.document.commands import (
     pose_commands as pose_commands,
     retargeted as retargeted,
     scene_commands as scene_commands,
+    shape_commands as shape_commands,
     track_commands as track_commands,
-)
-from app.document.figure import (
-    Figure as Figure,
-    PictureFile as PictureFile,
-    new_figure as new_figure,
-    pose_as_drawn as pose_as_drawn,
 )
 from app.document.history import History as History, UnkeyedPose as UnkeyedPose
 from app.document.keyframe import (
@@ -55,6 +49,12 @@ from app.document.keyframe import (
     Keyframe as Keyframe,
     Pose as Pose,
     Target as Target,
+)
+from app.document.layer import (
+    Layer as Layer,
+    PictureFile as PictureFile,
+    new_layer as new_layer,
+    pose_as_drawn as pose_as_drawn,
 )
 from app.document.layering import (
     BLENDS as BLENDS,

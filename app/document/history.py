@@ -3,8 +3,8 @@
 from dataclasses import dataclass, replace
 
 from app.document.commands import Command, Settled, exchanged, retargeted
-from app.document.figure import Figure, PictureFile
 from app.document.keyframe import Pose
+from app.document.layer import Layer, PictureFile
 from app.document.model import Document
 
 MEMORY = 512 * 1024 * 1024
@@ -15,9 +15,9 @@ POSE_BYTES = 1_000
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class UnkeyedPose:
-    """A pose of a figure at a frame that no key holds: undone like all else, but not saved."""
+    """A pose of a layer at a frame that no key holds: undone like all else, but not saved."""
 
-    figure: int
+    layer: int
     frame: int
     pose: Pose
 
@@ -90,9 +90,9 @@ class History:
 
     @property
     def picture_files(self) -> frozenset[PictureFile]:
-        """Those of all figures that are there now, or that undo and redo lead to."""
-        figures = (figure for step in self._steps for figure in step.document.figures)
-        return frozenset(figure.picture for figure in figures)
+        """Those of all layers that are there now, or that undo and redo lead to."""
+        layers = (layer for step in self._steps for layer in step.document.layers)
+        return frozenset(layer.picture for layer in layers)
 
     @property
     def is_saved(self) -> bool:
@@ -147,7 +147,7 @@ class History:
         gesture : object
         old : Pose
         new : callable
-            Returns the pose of a figure that takes the place of one with the map of `old`.
+            Returns the pose of a layer that takes the place of one with the map of `old`.
 
         Returns
         -------
@@ -158,13 +158,13 @@ class History:
         begun = next((i for i in indices if self._steps[i].gesture is gesture), None)
         if begun is None:
             return False
-        changed: dict[Figure, Figure] = {}
+        changed: dict[Layer, Layer] = {}
         for index in indices[begun:]:
             step = self._steps[index]
             document, unkeyed = exchanged(step.document, old, new, changed), step.unkeyed
-            for figure in document.figures:
-                if unkeyed and unkeyed.figure == figure.id and unkeyed.pose.phi is old.phi:
-                    unkeyed = replace(unkeyed, pose=new(figure, unkeyed.pose))
+            for layer in document.layers:
+                if unkeyed and unkeyed.layer == layer.id and unkeyed.pose.phi is old.phi:
+                    unkeyed = replace(unkeyed, pose=new(layer, unkeyed.pose))
             if document is not step.document or unkeyed is not step.unkeyed:
                 self._put(index, replace(step, document=document, unkeyed=unkeyed))
         return True
@@ -233,13 +233,13 @@ class History:
 def _fitting(unkeyed: UnkeyedPose | None, before: Document, after: Document) -> UnkeyedPose | None:
     """Return a pose of a document as a later one can have it, with a target for each handle.
 
-    Returns None where that has the figure no more, or another domain. A handle that is put
+    Returns None where that has the layer no more, or another domain. A handle that is put
     elsewhere, or added, is wanted where it is.
     """
     if unkeyed is None:
         return None
-    was = before.figure(unkeyed.figure)
-    now = next((figure for figure in after.figures if figure.id == was.id), None)
+    was = before.layer(unkeyed.layer)
+    now = next((layer for layer in after.layers if layer.id == was.id), None)
     if now is None or now.domain is not was.domain:
         return None
     places = {handle.id: handle.position for handle in now.handles}
@@ -259,16 +259,16 @@ def _is_same(step: Step, other: Step) -> bool:
 
 def _bytes_only_in(old: Step, new: Step) -> int:
     """Return the bytes of `old` that `new` does not share."""
-    figures = {figure.id: figure for figure in new.document.figures}
+    layers = {layer.id: layer for layer in new.document.layers}
     size = SNAPSHOT_BYTES + sum(
-        _figure_bytes_only_in(figure, figures.get(figure.id)) for figure in old.document.figures
+        _layer_bytes_only_in(layer, layers.get(layer.id)) for layer in old.document.layers
     )
     if old.unkeyed is not None and old.unkeyed is not new.unkeyed:
         size += POSE_BYTES + old.unkeyed.pose.nbytes
     return size
 
 
-def _figure_bytes_only_in(old: Figure, new: Figure | None) -> int:
+def _layer_bytes_only_in(old: Layer, new: Layer | None) -> int:
     if old is new:
         return 0
     size = 0

@@ -147,7 +147,7 @@ class Pose:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class KeptPose:
-    """A pose in a figure's library, under a name that is unique there."""
+    """A pose in a layer's library, under a name that is unique there."""
 
     name: str
     pose: Pose

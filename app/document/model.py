@@ -1,4 +1,4 @@
-"""The document: a scene of figures on one timeline, and how it plays and exports.
+"""The document: a scene of layers on one timeline, and how it plays and exports.
 
 Every value is frozen, and every document that exists is valid. Commands make new ones all the time,
 so that the constructors refuse what they can tell at once, and what takes longer is made sure of
@@ -16,7 +16,7 @@ from typing import NoReturn
 
 from app.document.body import PAIRS, SidePairs, require_pairs
 from app.document.checks import NOTHING, Unknown, require, require_distinct, require_size
-from app.document.figure import Figure
+from app.document.layer import Layer
 from app.document.layering import (
     Attachment,
     CameraKey,
@@ -30,7 +30,7 @@ from app.document.settings import ExportSettings, FrameRange, Marker, require_fp
 from app.document.timing import count_changes
 from app.errors import NOTHING_TOLD, ImportSummary, LissomError
 
-NO_FIGURE = "There is no figure with the id {identity}."
+NO_LAYER = "There is no layer with the id {identity}."
 HANGS_ON_ITSELF = "{name!r} would hang on itself{when}: {links}; detach one of them first."
 # Of all layers, in the repeats of their cycles, too.
 MOST_CHANGES = 100_000
@@ -41,11 +41,11 @@ class Document:
     """Everything that a project file holds."""
 
     # From the one behind all others to the one in front; there is always one.
-    figures: tuple[Figure, ...]
+    layers: tuple[Layer, ...]
     frames: FrameRange = FrameRange(0, 48)  # all frames of the animation; every key lies in it
     # The part of them that plays, to look at it; None plays everything. Exports do not heed it.
     preview: FrameRange | None = None
-    choices: tuple[Choice, ...] = ()  # between figures that take turns; none is in two of them
+    choices: tuple[Choice, ...] = ()  # between layers that take turns; none is in two of them
     markers: tuple[Marker, ...] = ()  # in the order of their frames, of which each has one at most
     fps: float = 24.0  # frames per second
     # Whether the last frame leads back to the first one: both are the same moment.
@@ -67,20 +67,20 @@ class Document:
     camera: tuple[CameraKey, ...] = ()
     # What was told when drawings on layers were brought in.
     told: ImportSummary = NOTHING_TOLD
-    # Figures by their ids, choices by those of their figures, groups by their paths.
-    _figures: Mapping[int, Figure] = field(init=False, repr=False)
+    # Layers by their ids, choices by those of their layers, groups by their paths.
+    _layers: Mapping[int, Layer] = field(init=False, repr=False)
     _choices: Mapping[int, Choice] = field(init=False, repr=False)
     _groups: Mapping[str, Group] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        chosen = {identity: each for each in self.choices for identity in each.figures}
+        chosen = {identity: each for each in self.choices for identity in each.layers}
         for name, found in (
-            ("_figures", {each.id: each for each in self.figures}),
+            ("_layers", {each.id: each for each in self.layers}),
             ("_choices", chosen),
             ("_groups", {each.name: each for each in self.groups}),
         ):
             object.__setattr__(self, name, found)
-        self._check_figures()
+        self._check_layers()
         require_pairs(self.pairs)
         require(
             self.preview is None
@@ -103,21 +103,21 @@ class Document:
     @property
     def canvas(self) -> tuple[int, int]:
         """Width and height of the scene in pixels."""
-        return self.figures[0].picture.size if self.size is None else self.size
+        return self.layers[0].picture.size if self.size is None else self.size
 
     @property
-    def exported(self) -> tuple[Figure, ...]:
-        """The figures that exports show at some time, from back to front."""
+    def exported(self) -> tuple[Layer, ...]:
+        """The layers that exports show at some time, from back to front."""
         return tuple(
             each
-            for each in self.figures
+            for each in self.layers
             if not (each.reference or self.is_in_hidden(each))
             and (each.id in self._choices or not each.hidden)
         )
 
-    def is_in_hidden(self, figure: Figure) -> bool:
-        """Tell whether a group that a figure is in is hidden at all times."""
-        return any(group.hidden for group in self.groups_around(figure.group))
+    def is_in_hidden(self, layer: Layer) -> bool:
+        """Tell whether a group that a layer is in is hidden at all times."""
+        return any(group.hidden for group in self.groups_around(layer.group))
 
     def group(self, path: str) -> Group:
         """Return the group with this path."""
@@ -129,11 +129,11 @@ class Document:
         """Return the group with this path after those that it is in, the outermost first."""
         return tuple(self.group(each) for each in paths_to(path))
 
-    def figure(self, identity: int) -> Figure:
-        """Return the figure with this id."""
-        if identity not in self._figures:
-            raise LissomError(NO_FIGURE.format(identity=identity))
-        return self._figures[identity]
+    def layer(self, identity: int) -> Layer:
+        """Return the layer with this id."""
+        if identity not in self._layers:
+            raise LissomError(NO_LAYER.format(identity=identity))
+        return self._layers[identity]
 
     def choice(self, name: str) -> Choice:
         """Return the choice with this name."""
@@ -143,7 +143,7 @@ class Document:
         raise LissomError(f"There is no choice {name!r}.")
 
     def choice_of(self, identity: int) -> Choice | None:
-        """Return the choice that decides when the figure with this id is seen, if there is one."""
+        """Return the choice that decides when the layer with this id is seen, if there is one."""
         return self._choices.get(identity)
 
     def marker(self, frame: int) -> Marker:
@@ -153,31 +153,31 @@ class Document:
                 return marker
         raise LissomError(f"There is no marker at frame {frame}.")
 
-    def with_figure(self, changed: Figure) -> "Document":
-        """Return the document with another figure of the same id, and with room for its keys."""
-        if changed is self.figure(changed.id):
+    def with_layer(self, changed: Layer) -> "Document":
+        """Return the document with another layer of the same id, and with room for its keys."""
+        if changed is self.layer(changed.id):
             return self
         first, last = changed.ends
         frames = FrameRange(min(self.frames.first, first), max(self.frames.last, last))
-        figures = tuple(changed if figure.id == changed.id else figure for figure in self.figures)
-        return replace(self, figures=figures, frames=frames)
+        layers = tuple(changed if layer.id == changed.id else layer for layer in self.layers)
+        return replace(self, layers=layers, frames=frames)
 
-    def joints_of(self, figure: Figure) -> tuple[Attachment, ...]:
-        """Return the joints of a figure, with those in the repeats of its cycles."""
-        if not (figure.cycles and figure.joints):
-            return figure.joints  # asked for often
-        return repeated_joints(figure.joints, figure.cycles, self.frames.last)
+    def joints_of(self, layer: Layer) -> tuple[Attachment, ...]:
+        """Return the joints of a layer, with those in the repeats of its cycles."""
+        if not (layer.cycles and layer.joints):
+            return layer.joints  # asked for often
+        return repeated_joints(layer.joints, layer.cycles, self.frames.last)
 
-    def joint_at(self, figure: Figure, frame: float, *, before: bool = False) -> Attachment | None:
+    def joint_at(self, layer: Layer, frame: float, *, before: bool = False) -> Attachment | None:
         """Return the joint that holds at a frame, or until just before; None before the first."""
-        joints = self.joints_of(figure)
+        joints = self.joints_of(layer)
         count = (bisect_left if before else bisect_right)(
             joints, frame, key=lambda each: each.frame
         )
         return joints[count - 1] if count else None
 
-    def carriers(self, identity: int, frame: float, *, before: bool = False) -> tuple[Figure, ...]:
-        """Return the figure with this id, the one that it hangs on at a frame, and so on.
+    def carriers(self, identity: int, frame: float, *, before: bool = False) -> tuple[Layer, ...]:
+        """Return the layer with this id, the one that it hangs on at a frame, and so on.
 
         Parameters
         ----------
@@ -187,25 +187,25 @@ class Document:
             Whether what hangs just before the frame counts, and not from it on.
         """
         frame = self.in_time(frame)
-        figure = self.figure(identity)
-        chain = {figure.id: figure}
-        while (joint := self.joint_at(figure, frame, before=before)) and joint.to is not None:
-            figure = self.figure(joint.to)
-            if figure.id in chain:
+        layer = self.layer(identity)
+        chain = {layer.id: layer}
+        while (joint := self.joint_at(layer, frame, before=before)) and joint.to is not None:
+            layer = self.layer(joint.to)
+            if layer.id in chain:
                 found = [*chain.values()]
-                self._refuse_circle((*found[found.index(figure) :], figure), frame)
-            chain[figure.id] = figure
+                self._refuse_circle((*found[found.index(layer) :], layer), frame)
+            chain[layer.id] = layer
         return tuple(chain.values())
 
-    def all_carriers(self, identity: int) -> tuple[Figure, ...]:
-        """Return the others on which a figure hangs at some time, directly or by others."""
-        found = [self.figure(identity)]
+    def all_carriers(self, identity: int) -> tuple[Layer, ...]:
+        """Return the others on which a layer hangs at some time, directly or by others."""
+        found = [self.layer(identity)]
         known = {identity}
-        for figure in found:
-            for joint in figure.joints:
+        for layer in found:
+            for joint in layer.joints:
                 if joint.to is not None and joint.to not in known:
                     known.add(joint.to)
-                    found.append(self.figure(joint.to))
+                    found.append(self.layer(joint.to))
         return tuple(found[1:])
 
     def in_time(self, frame: float) -> float:
@@ -214,33 +214,33 @@ class Document:
         is_beyond = self.loop and period and frame not in self.frames
         return first + (frame - first) % period if is_beyond else frame
 
-    def _check_figures(self) -> None:
-        require(len(self.figures) > 0, "A document has at least one figure.")
+    def _check_layers(self) -> None:
+        require(len(self.layers) > 0, "A document has at least one layer.")
         if self.size is not None:
             require_size(self.size, "canvas")
-        require_distinct((figure.id for figure in self.figures), "Two figures have the id {!r}.")
-        require_distinct((figure.name for figure in self.figures), "Two figures are called {!r}.")
+        require_distinct((layer.id for layer in self.layers), "Two layers have the id {!r}.")
+        require_distinct((layer.name for layer in self.layers), "Two layers are called {!r}.")
         self._check_groups()
-        for figure in self.figures:
-            for frame in figure.ends:
+        for layer in self.layers:
+            for frame in layer.ends:
                 self._require_inside(frame)
-            for placing in figure.placings:
+            for placing in layer.placings:
                 if placing.beside is not None:
-                    self.figure(placing.beside)
+                    self.layer(placing.beside)
         self._check_choices()
         self._check_repeats()
         self._check_joints()
-        for figure in self.figures:
-            self._check_clocks(figure)
+        for layer in self.layers:
+            self._check_clocks(layer)
 
     def _check_repeats(self) -> None:
         """Refuse more changes than can be told in a moment, those in repeats among them."""
         end, count = self.frames.last, 0
-        for figure in self.figures:
-            for changes in (figure.switches, figure.placings, figure.joints):
-                count += count_changes([each.frame for each in changes], figure.cycles, end)
+        for layer in self.layers:
+            for changes in (layer.switches, layer.placings, layer.joints):
+                count += count_changes([each.frame for each in changes], layer.cycles, end)
         for choice in self.choices:
-            cycles = set.intersection(*({*self.figure(each).cycles} for each in choice.figures))
+            cycles = set.intersection(*({*self.layer(each).cycles} for each in choice.layers))
             count += count_changes([turn.frame for turn in choice.turns], cycles, end)
         require(
             count <= MOST_CHANGES,
@@ -249,10 +249,10 @@ class Document:
         )
 
     def _check_joints(self) -> None:
-        """Refuse figures that hang on each other in a circle at any frame."""
-        hung = [each for each in self.figures if each.joints]
+        """Refuse layers that hang on each other in a circle at any frame."""
+        hung = [each for each in self.layers if each.joints]
         links = {
-            each.id: {self.figure(joint.to).id for joint in each.joints if joint.to is not None}
+            each.id: {self.layer(joint.to).id for joint in each.joints if joint.to is not None}
             for each in hung
         }
         try:
@@ -260,10 +260,10 @@ class Document:
         except CycleError:
             self._check_circles(hung)
 
-    def _check_circles(self, hung: Sequence[Figure]) -> None:
-        """Refuse figures in a circle, where some hang on each other at different frames.
+    def _check_circles(self, hung: Sequence[Layer]) -> None:
+        """Refuse layers in a circle, where some hang on each other at different frames.
 
-        A circle begins where one of its figures is attached, from which it leads back.
+        A circle begins where one of its layers is attached, from which it leads back.
         """
         first, last = self.frames.first, self.frames.last
         changes = sorted(
@@ -278,8 +278,8 @@ class Document:
             attached = {hung[place].id: parent for _, _, place, parent in at_once}
             parents |= attached
             if any(_leads_back(parents, identity) for identity in attached):
-                for figure in hung:
-                    self.carriers(figure.id, frame)  # tells the circle
+                for layer in hung:
+                    self.carriers(layer.id, frame)  # tells the circle
 
     def _require_inside(self, frame: int) -> None:
         require(
@@ -292,24 +292,24 @@ class Document:
         require_distinct((choice.name for choice in self.choices), "Two choices are called {!r}.")
         taken: dict[int, str] = {}
         for choice in self.choices:
-            for identity in choice.figures:
-                figure = self.figure(identity)
+            for identity in choice.layers:
+                layer = self.layer(identity)
                 require(
                     identity not in taken,
-                    f"The layer {figure.name!r} is in two choices, {taken.get(identity)!r} and "
+                    f"The layer {layer.name!r} is in two choices, {taken.get(identity)!r} and "
                     f"{choice.name!r}; take it out of one.",
                 )
                 require(
-                    not figure.switches,
-                    f"The layer {figure.name!r} is shown and hidden at frames of its own, and is "
+                    not layer.switches,
+                    f"The layer {layer.name!r} is shown and hidden at frames of its own, and is "
                     f"in the choice {choice.name!r}, which alone decides that; leave out one.",
                 )
                 taken[identity] = choice.name
 
-    def _refuse_circle(self, circle: Sequence[Figure], frame: float) -> NoReturn:
-        """Refuse figures each of which hangs on the next one, the last one being the first."""
+    def _refuse_circle(self, circle: Sequence[Layer], frame: float) -> NoReturn:
+        """Refuse layers each of which hangs on the next one, the last one being the first."""
         links = ", ".join(f"{one.name!r} on {other.name!r}" for one, other in pairwise(circle))
-        changes = any(joint.frame > 0 for figure in circle for joint in figure.joints)
+        changes = any(joint.frame > 0 for layer in circle for joint in layer.joints)
         when = f" at frame {frame:g}" if changes else ""
         raise LissomError(HANGS_ON_ITSELF.format(name=circle[0].name, when=when, links=links))
 
@@ -322,37 +322,37 @@ class Document:
                 f"The group {group.name!r} comes before the one that it is in.",
             )
             known.add(group.name)
-        for figure in self.figures:
+        for layer in self.layers:
             require(
-                not figure.group or figure.group in known,
-                f"{figure.name!r} is in the group {figure.group!r}, which is not there.",
+                not layer.group or layer.group in known,
+                f"{layer.name!r} is in the group {layer.group!r}, which is not there.",
             )
 
-    def _check_clocks(self, figure: Figure) -> None:
+    def _check_clocks(self, layer: Layer) -> None:
         """Refuse what does not come round in a loop."""
         period = self.frames.last - self.frames.first
-        for cycle in figure.cycles if self.loop and len(figure.keys) > 1 else ():
+        for cycle in layer.cycles if self.loop and len(layer.keys) > 1 else ():
             require(
-                any(cycle.has(key.frame) for key in figure.keys),
-                f"There is no key of {figure.name!r} in {cycle.told} that could repeat in a loop; "
+                any(cycle.has(key.frame) for key in layer.keys),
+                f"There is no key of {layer.name!r} in {cycle.told} that could repeat in a loop; "
                 "insert one there first.",
             )
-        for track in figure.tracks if self.loop else ():
+        for track in layer.tracks if self.loop else ():
             require(
                 track.delay <= period,
-                f"A track of {figure.name!r} is late by {track.delay} frames, which is longer than "
+                f"A track of {layer.name!r} is late by {track.delay} frames, which is longer than "
                 f"the loop of {period}; make its delay shorter first.",
             )
-        for spring in figure.springs if self.loop else ():
+        for spring in layer.springs if self.loop else ():
             require(
                 spring.damping > 0 or not spring.enabled,
-                f"A spring of {figure.name!r} has no damping, so that it never comes round in a "
+                f"A spring of {layer.name!r} has no damping, so that it never comes round in a "
                 "loop; give it some.",
             )
 
 
 def _leads_back(parents: Mapping[int, int | None], identity: int) -> bool:
-    """Tell whether going from a figure to its parent, and on, comes to a figure again."""
+    """Tell whether going from a layer to its parent, and on, comes to a layer again."""
     passed = {identity}
     above = parents.get(identity)
     while above is not None and above not in passed:

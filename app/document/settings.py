@@ -31,7 +31,7 @@ class Stretch(NamedTuple):
     hint: str
 
 
-# Measured on the samples and on drawn heads, limbs and figures. Natural ones let limbs bend by a
+# Measured on the samples and on drawn heads, limbs and layers. Natural ones let limbs bend by a
 # right angle, be they a third as thick as long; with three handles on a head, a fourth that is
 # pulled by a third of its width moves what is around it, and the head stays a head, while at
 # σ_a ≤ 2.5 already it follows as a whole. Stiff ones let limbs bend that are a seventh as thick.

@@ -58,8 +58,8 @@ from app.editor.timeline_view import (
     TimeGesture as TimeGesture,
     TrackRow as TrackRow,
     TurnDrag as TurnDrag,
-    figure_of as figure_of,
     frames_in as frames_in,
+    layer_of as layer_of,
     row_of as row_of,
     seen_at as seen_at,
 )

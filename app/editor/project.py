@@ -11,9 +11,9 @@ from app.document import (
     Baseline,
     Clip,
     Document,
-    Figure,
     History,
     Keyframe,
+    Layer,
     Meshing,
     PictureFile,
     Playhead,
@@ -55,7 +55,7 @@ from engine.geometry import RigidMotion
 from engine.maps import Bounds
 
 EXTENTS = 32  # of the motion, which are remembered for undo and redo
-# Bytes of what figures that nobody edits may be prepared with, once series show them.
+# Bytes of what layers that nobody edits may be prepared with, once series show them.
 MOST_PASSING = 64 * 2**20
 FIT_MARGIN = 0.08  # of the viewport, left free around what is fitted into it
 
@@ -64,10 +64,10 @@ FIT_MARGIN = 0.08  # of the viewport, left free around what is fitted into it
 class Flip:
     """What was flipped last.
 
-    The `keys` are as they were copied; `poses` took their place in a figure, at its `frames`.
+    The `keys` are as they were copied; `poses` took their place in a layer, at its `frames`.
     """
 
-    figure: int
+    layer: int
     keys: tuple[Keyframe, ...]
     frames: frozenset[int]
     poses: tuple[Pose, ...]
@@ -75,7 +75,7 @@ class Flip:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PoseBlend:
-    """A pose of a figure's library, by its name, that is mixed into the one at a frame.
+    """A pose of a layer's library, by its name, that is mixed into the one at a frame.
 
     Its `share` goes from 0 to 1; all that is mixed in one gesture is one step of undo.
     """
@@ -107,10 +107,10 @@ class Project:
     autosaved_at: float = 0.0
     changed_at: float | None = None
 
-    puppets: dict[int, Puppet]  # one for each figure, by its id
+    puppets: dict[int, Puppet]  # one for each layer, by its id
     # Those that are decoded, of layers that come back by undo among them.
     pictures: dict[PictureFile, Picture] = field(default_factory=dict)
-    active: int  # the id of the figure whose handles and keys are shown and changed
+    active: int  # the id of the layer whose handles and keys are shown and changed
     pending: list[Promise] = field(default_factory=list)  # all on its way to the document
     # What decided which jobs are due, when that was looked at last.
     polled: tuple[object, ...] = ()
@@ -121,12 +121,12 @@ class Project:
     gesture: object | None = None
     used_widget: int = 0
 
-    # Distortion over time, of the active figure and of its twin.
+    # Distortion over time, of the active layer and of its twin.
     curves: Derived[Clip, Curves | None] = field(default_factory=lambda: Derived(None))
     twin_curves: Derived[Clip, Curves | None] = field(default_factory=lambda: Derived(None))
-    # Of the active figure's handles; they are traced while they are shown.
+    # Of the active layer's handles; they are traced while they are shown.
     paths: Derived[Clip, MotionPaths | None] = field(default_factory=lambda: Derived(None))
-    # Of the figures that hang on others; `hung` has those of the document as it is now.
+    # Of the layers that hang on others; `hung` has those of the document as it is now.
     joints: Derived[tuple[object, ...], Joints | None] = field(
         default_factory=lambda: Derived(None)
     )
@@ -138,9 +138,9 @@ class Project:
     # What the domain will be rebuilt with; None as long as that is what it has.
     meshing: Meshing | None = None
     drafted_bounds: Bounds | None = None  # what the person drags them to
-    # The figure whose domain is older than its cut-out, and the clock's seconds when it was seen.
-    stale: tuple[Figure, float] | None = None
-    unbuildable: Figure | None = None  # one whose cut-out is known to give no domain
+    # The layer whose domain is older than its cut-out, and the clock's seconds when it was seen.
+    stale: tuple[Layer, float] | None = None
+    unbuildable: Layer | None = None  # one whose cut-out is known to give no domain
     brush: float | None = None  # radius in pixels of the picture; None until somebody chooses it
     # Where the next export of a format goes: as its last one, or as was told; the newest last.
     exports_to: dict[str, Path] = field(default_factory=dict)
@@ -172,7 +172,7 @@ class Project:
     declined: frozenset[str] = frozenset()  # groups of which no choice is to be made
     # Layers that were posed, and whose rows stay until the pointer is over the drawing again.
     lingering: frozenset[int] = frozenset()
-    listed: int | None = None  # the figure that the list of layers was scrolled to
+    listed: int | None = None  # the layer that the list of layers was scrolled to
     # Those of the list of layers; of a document, what is toggled in it, and what is kept in it.
     tree_rows: Derived[tuple[Document, frozenset[str], frozenset[int]], tuple[TreeRow, ...]] = (
         field(default_factory=lambda: Derived(()))
@@ -189,9 +189,9 @@ class Project:
         return Origin(self.name, self.path)
 
     @property
-    def figure(self) -> Figure:
-        """The figure that is posed, as it is now."""
-        return self.document.figure(self.active)
+    def layer(self) -> Layer:
+        """The layer that is posed, as it is now."""
+        return self.document.layer(self.active)
 
     @property
     def tree(self) -> tuple[TreeRow, ...]:
@@ -205,27 +205,27 @@ class Project:
     def selected_layers(self) -> tuple[int, ...]:
         """The ids of the chosen layers, from front to back; the one that is posed is among them."""
         chosen = self.beside | {self.active}
-        return tuple(each.id for each in reversed(self.document.figures) if each.id in chosen)
+        return tuple(each.id for each in reversed(self.document.layers) if each.id in chosen)
 
     @property
     def rows(self) -> list[KeyRow]:
-        """The rows of the timeline from top to bottom: the figure in front comes first."""
+        """The rows of the timeline from top to bottom: the layer in front comes first."""
         rows: list[KeyRow] = []
-        for figure in (row.figure for row in self.tree if row.figure):
-            rows.append(figure.id)
-            if figure.id in self.timing.unfolded:
-                rows += [row_of(figure, track) for track in figure.tracks]
+        for layer in (row.layer for row in self.tree if row.layer):
+            rows.append(layer.id)
+            if layer.id in self.timing.unfolded:
+                rows += [row_of(layer, track) for track in layer.tracks]
         return rows
 
     def track_in(self, row: KeyRow) -> Track | None:
         """Return the track of a row; None where it is of poses, or not there any more."""
-        if not isinstance(row, TrackRow) or row.figure not in self.puppets:
+        if not isinstance(row, TrackRow) or row.layer not in self.puppets:
             return None
-        return self.document.figure(row.figure).track_of(row.handle)
+        return self.document.layer(row.layer).track_of(row.handle)
 
     @property
     def chosen(self) -> frozenset[int]:
-        """The frames of the chosen keys of the active figure's poses.
+        """The frames of the chosen keys of the active layer's poses.
 
         Setting them lets all others go.
         """
@@ -237,12 +237,12 @@ class Project:
 
     @property
     def chosen_track(self) -> int | None:
-        """The id of the handle whose track's row is chosen, of the figure that is posed.
+        """The id of the handle whose track's row is chosen, of the layer that is posed.
 
         None where its whole pose's row is. Setting it chooses a row.
         """
         row = self.track_row
-        if row is None or row.figure != self.active or self.figure.track_of(row.handle) is None:
+        if row is None or row.layer != self.active or self.layer.track_of(row.handle) is None:
             return None
         return row.handle
 
@@ -252,9 +252,9 @@ class Project:
 
     @property
     def row(self) -> KeyRow:
-        """The row that is chosen: of the poses of the figure that is posed, or of a track of it."""
+        """The row that is chosen: of the poses of the layer that is posed, or of a track of it."""
         handle = self.chosen_track
-        return row_of(self.figure, None if handle is None else self.figure.track_of(handle))
+        return row_of(self.layer, None if handle is None else self.layer.track_of(handle))
 
     @property
     def count_chosen(self) -> int:
@@ -274,27 +274,27 @@ class Project:
 
     @property
     def clip(self) -> Clip:
-        """The figure that is posed, in the time of its scene."""
+        """The layer that is posed, in the time of its scene."""
         return clip_of(self.document, self.active)
 
     @property
     def puppet(self) -> Puppet:
-        """The figure that is posed, as the window has it."""
+        """The layer that is posed, as the window has it."""
         return self.puppets[self.active]
 
     @property
     def samplers(self) -> dict[int, PoseSampler]:
-        """What is known of the figures' outlines, by their ids."""
-        samplers = {figure: puppet.store.sampler for figure, puppet in self.puppets.items()}
-        return {figure: sampler for figure, sampler in samplers.items() if sampler is not None}
+        """What is known of the layers' outlines, by their ids."""
+        samplers = {layer: puppet.store.sampler for layer, puppet in self.puppets.items()}
+        return {layer: sampler for layer, sampler in samplers.items() if sampler is not None}
 
     @property
     def is_crowded(self) -> bool:
-        """Whether figures that nobody edits hold much that `Puppet.rest` lets go, or will."""
+        """Whether layers that nobody edits hold much that `Puppet.rest` lets go, or will."""
         return sum(puppet.held(clip) for clip, puppet in self._unedited()) > MOST_PASSING
 
     def make_room(self) -> None:
-        """Let go of what figures that nobody edits were made with, as long as that is much."""
+        """Let go of what layers that nobody edits were made with, as long as that is much."""
         unedited = self._unedited()
         held = {puppet: puppet.held(clip) for clip, puppet in unedited}
         for clip, puppet in unedited:
@@ -305,18 +305,18 @@ class Project:
 
     def _unedited(self) -> list[tuple[Clip, Puppet]]:
         return [
-            (clip_of(self.document, figure), puppet)
-            for figure, puppet in self.puppets.items()
-            if figure != self.active
+            (clip_of(self.document, layer), puppet)
+            for layer, puppet in self.puppets.items()
+            if layer != self.active
         ]
 
     @property
     def unkeyed(self) -> Pose | None:
         """The pose that is shown though no key holds it; None where there is none at this frame."""
         unkeyed = self.history.unkeyed
-        if unkeyed is None or unkeyed.figure != self.active or self.playhead.since is not None:
+        if unkeyed is None or unkeyed.layer != self.active or self.playhead.since is not None:
             return None
-        here = self.figure.source_of(self.playhead.frame)
+        here = self.layer.source_of(self.playhead.frame)
         return unkeyed.pose if unkeyed.frame == here else None
 
     @property
@@ -331,11 +331,11 @@ class Project:
 
     @property
     def pull(self) -> Pull | None:
-        """The one on its way that is shown of the figure that is posed."""
+        """The one on its way that is shown of the layer that is posed."""
         if self.playhead.since is not None:
             return None
-        here = (self.active, self.figure.source_of(self.playhead.frame))
-        mine = [pull for pull in self.pulls if (pull.figure, pull.frame) == here]
+        here = (self.active, self.layer.source_of(self.playhead.frame))
+        mine = [pull for pull in self.pulls if (pull.layer, pull.frame) == here]
         return mine[-1] if mine else None
 
     @property
@@ -350,14 +350,14 @@ class Project:
 
     @property
     def errand(self) -> MotionErrand | None:
-        """A motion on its way to a figure."""
+        """A motion on its way to a layer."""
         return next((promise.errand for promise in self.pending if promise.errand), None)
 
     @property
-    def stale_figure(self) -> Figure | None:
+    def stale_layer(self) -> Layer | None:
         """One whose domain is older than its cut-out, and will be built anew."""
-        figures = self.document.figures
-        stale = next((each for each in figures if each.is_stale and not each.still), None)
+        layers = self.document.layers
+        stale = next((each for each in layers if each.is_stale and not each.still), None)
         return None if stale is self.unbuildable else stale
 
     @property
@@ -367,46 +367,46 @@ class Project:
         return self.joints.value if follows else None
 
     def placements(self, frames: Iterable[int], unknown: RigidMotion) -> list[RigidMotion]:
-        """Return where the figure that is posed is at some frames: `unknown` till that is known."""
+        """Return where the layer that is posed is at some frames: `unknown` till that is known."""
         frames = list(frames)
         return self.placed_at(self.active, frames) or [unknown for _ in frames]
 
-    def placed_at(self, figure: int, frames: Sequence[int]) -> list[RigidMotion] | None:
-        """Return where a figure, by its id, is at some frames; None till that is known.
+    def placed_at(self, layer: int, frames: Sequence[int]) -> list[RigidMotion] | None:
+        """Return where a layer, by its id, is at some frames; None till that is known.
 
         While it is posed itself, it hangs as before: its joint holds.
         """
-        own, joints = self.document.figure(figure), self.hung
+        own, joints = self.document.layer(layer), self.hung
         if not own.joints:
             return [movement_at(self.document, own, frame) for frame in frames]
         if joints is None and (before := self.joints.value) is not None:
             joints = before if self._hangs_as_in(before.document, own) else None
-        return None if joints is None else [joints.placement(figure, frame) for frame in frames]
+        return None if joints is None else [joints.placement(layer, frame) for frame in frames]
 
-    def _hangs_as_in(self, before: Document, figure: Figure) -> bool:
-        """Tell whether a figure hangs on the very same others as in an earlier document."""
-        was = {each.id: each for each in before.figures}
-        document, own = self.document, was.get(figure.id)
+    def _hangs_as_in(self, before: Document, layer: Layer) -> bool:
+        """Tell whether a layer hangs on the very same others as in an earlier document."""
+        was = {each.id: each for each in before.layers}
+        document, own = self.document, was.get(layer.id)
         return (
             own is not None
             and (before.frames, before.loop) == (document.frames, document.loop)
             and (own.joints, own.anchor, own.domain, own.movement, own.cycles)
-            == (figure.joints, figure.anchor, figure.domain, figure.movement, figure.cycles)
-            and all(was.get(each.id) is each for each in document.all_carriers(figure.id))
+            == (layer.joints, layer.anchor, layer.domain, layer.movement, layer.cycles)
+            and all(was.get(each.id) is each for each in document.all_carriers(layer.id))
         )
 
     def pair_up(self, method: Variant | Baseline | None) -> None:
-        """Let each figure have a twin by a method, or none."""
-        for figure in self.document.figures:
-            puppet = self.puppets[figure.id]
+        """Let each layer have a twin by a method, or none."""
+        for layer in self.document.layers:
+            puppet = self.puppets[layer.id]
             if method is None:
                 puppet.twin = None
                 continue
-            twin = puppet.twin or Twin(original=figure, figure=figure, method=figure.variant)
-            if twin.original is not figure or twin.method is not method:
-                twin.original, twin.method = figure, method
-                twin.figure = (
-                    figure if isinstance(method, Baseline) else replace(figure, variant=method)
+            twin = puppet.twin or Twin(original=layer, layer=layer, method=layer.variant)
+            if twin.original is not layer or twin.method is not method:
+                twin.original, twin.method = layer, method
+                twin.layer = (
+                    layer if isinstance(method, Baseline) else replace(layer, variant=method)
                 )
             puppet.twin = twin
 

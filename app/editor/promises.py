@@ -72,7 +72,7 @@ def is_settled(project: Project, *, after_saves: bool = False) -> bool:
 
     With `after_saves`, a save that is under way counts, too.
     """
-    if project.stale_figure is not None:
+    if project.stale_layer is not None:
         return False
 
     def is_over(promise: Promise) -> bool:
@@ -154,6 +154,6 @@ def waits_for(project: Project) -> str:
 def coming(project: Project) -> str:
     """Return in words what is on its way to the document or the disk."""
     labels = [promise.label for promise in project.pending]
-    if project.stale_figure is not None:
+    if project.stale_layer is not None:
         labels.append("Cutting out")
     return ", ".join(dict.fromkeys(labels))

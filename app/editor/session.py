@@ -7,7 +7,7 @@ from itertools import count
 from pathlib import Path
 from typing import Concatenate, Literal, ParamSpec, Protocol
 
-from app.document import Baseline, Document, Figure, Keyframe, Meshing, Track, TrackKey, Variant
+from app.document import Baseline, Document, Keyframe, Layer, Meshing, Track, TrackKey, Variant
 from app.editor.action import Action
 from app.editor.dialogs import Dialog, FileDialog
 from app.editor.project import Project
@@ -47,7 +47,7 @@ class Overlays:
 class Split:
     """Another method beside the drawing's own: how the viewport is divided."""
 
-    method: Variant | Baseline  # by which all figures are shown in the right part
+    method: Variant | Baseline  # by which all layers are shown in the right part
     place: float = 0.5  # of the divider, as a share of the viewport's width
     # Whether the two are side by side, each whole, and not under a divider over one place.
     beside: bool = False
@@ -136,18 +136,18 @@ Mark = BoxMark | SweepMark | EntryMark | StrokeMark | KnifeMark | JointMark | Bo
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CopiedKeys:
-    """Keys of a figure to be pasted, or a pose as the only one, and the figure as it was then."""
+    """Keys of a layer to be pasted, or a pose as the only one, and the layer as it was then."""
 
-    figure: Figure
+    layer: Layer
     keys: tuple[Keyframe, ...]
     is_pose: bool = False  # whether it is a pose, and no way to the next key comes with it
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CopiedTrack:
-    """Keys of a track to be pasted, and the track and its figure as they were then."""
+    """Keys of a track to be pasted, and the track and its layer as they were then."""
 
-    figure: Figure
+    layer: Layer
     track: Track
     keys: tuple[TrackKey, ...]
 
@@ -208,7 +208,7 @@ class Guide:
     """
 
     project: Project | None = None  # None while the drawing is chosen and opened
-    handles: frozenset[tuple[int, int]] = frozenset()  # those that were there, by figure and id
+    handles: frozenset[tuple[int, int]] = frozenset()  # those that were there, by layer and id
     aim: complex | None = None
     goal: complex | None = None
     step: GuideStep = "handle"
@@ -255,14 +255,14 @@ class Session:
     material: MaterialTool | None = None  # what is in hand that makes parts stiff or soft
     strength: float = 10.0  # how many times as stiff, or as soft, the brush makes what it covers
     softness: float = 0.5  # over which part of the brush's radius that becomes less
-    moves: bool = False  # whether a drag, or an arrow, moves the whole figure
+    moves: bool = False  # whether a drag, or an arrow, moves the whole layer
     records: bool = False  # whether the next drag of a handle is recorded while it plays
     recording_speed: float = 1.0  # times the animation's own
     snaps: bool = False  # whether what the pointer does goes in steps
     insists: bool = False  # whether what it pulls beyond its reach is wanted there all the same
     # Whether the timeline has the pointer, or else the focus: what is chosen there is meant.
     in_timeline: bool = False
-    copied: tuple[CopiedKeys, ...] = ()  # of each figure whose keys were copied together
+    copied: tuple[CopiedKeys, ...] = ()  # of each layer whose keys were copied together
     copied_tracks: tuple[CopiedTrack, ...] = ()  # of each track, likewise
     space_used: bool = False  # Space was held to move the view
     hovered: int | None = None  # the handle under the pointer

@@ -8,9 +8,9 @@ from app.document import (
     Clip,
     Cycle,
     Document,
-    Figure,
     FrameRange,
     Keyframe,
+    Layer,
     Pose,
     Track,
     TrackKey,
@@ -25,34 +25,34 @@ Edge = Literal["preview start", "preview range", "preview end", "animation end"]
 
 
 class TrackRow(NamedTuple):
-    """The row of a track: the ids of its figure, and of the first of its handles."""
+    """The row of a track: the ids of its layer, and of the first of its handles."""
 
-    figure: int
+    layer: int
     handle: int
 
 
-# The row of the poses of a figure, by its id, or that of a track.
+# The row of the poses of a layer, by its id, or that of a track.
 KeyRow = int | TrackRow
 # The frames of some keys, by their rows.
 KeysOf = Mapping[KeyRow, frozenset[int]]
 
 
-def figure_of(row: KeyRow) -> int:
-    """Return the id of the figure whose keys are in a row."""
-    return row.figure if isinstance(row, TrackRow) else row
+def layer_of(row: KeyRow) -> int:
+    """Return the id of the layer whose keys are in a row."""
+    return row.layer if isinstance(row, TrackRow) else row
 
 
-def row_of(figure: Figure, track: Track | None) -> KeyRow:
-    """Return the row of a track of a figure, or that of its poses."""
-    return figure.id if track is None else TrackRow(figure.id, track.handles[0])
+def row_of(layer: Layer, track: Track | None) -> KeyRow:
+    """Return the row of a track of a layer, or that of its poses."""
+    return layer.id if track is None else TrackRow(layer.id, track.handles[0])
 
 
 def keys_in(document: Document, row: KeyRow) -> tuple[Keyframe, ...] | tuple[TrackKey, ...]:
     """Return the keys of a row; none where it is not there any more."""
-    figure = next((each for each in document.figures if each.id == figure_of(row)), None)
-    if figure is None or not isinstance(row, TrackRow):
-        return () if figure is None else figure.keys
-    track = figure.track_of(row.handle)
+    layer = next((each for each in document.layers if each.id == layer_of(row)), None)
+    if layer is None or not isinstance(row, TrackRow):
+        return () if layer is None else layer.keys
+    track = layer.track_of(row.handle)
     return () if track is None or track.handles[0] != row.handle else track.keys
 
 
@@ -76,8 +76,8 @@ def seen_at(document: Document, track: Track | None, frame: int) -> int:
 
 def _cycle_of(document: Document, track: Track) -> Cycle | None:
     """Return the cycle with which a track repeats, if there is one."""
-    figure = next((each for each in document.figures if track in each.tracks), None)
-    cycles = () if figure is None else figure.cycles
+    layer = next((each for each in document.layers if track in each.tracks), None)
+    cycles = () if layer is None else layer.cycles
     return next((cycle for cycle in cycles if cycle.takes(track.keys)), None)
 
 
@@ -161,7 +161,7 @@ class KeyDrag(TimeDrag):
     """The pointer moves keys, or copies of them."""
 
     keys: KeysOf  # as they are in `before`
-    row: KeyRow  # of the one under the pointer, which is of the active figure
+    row: KeyRow  # of the one under the pointer, which is of the active layer
     pressed: int  # its frame
     copies: bool
     by: int = 0  # how far they are, in frames
@@ -192,9 +192,9 @@ class CameraDrag(TimeDrag):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class SwitchDrag(TimeDrag):
-    """The pointer moves where a figure is shown or hidden: from a frame in `before` to `at`."""
+    """The pointer moves where a layer is shown or hidden: from a frame in `before` to `at`."""
 
-    figure: int
+    layer: int
     switch: int
     at: int
 
@@ -203,7 +203,7 @@ class SwitchDrag(TimeDrag):
 class CycleDrag(TimeDrag):
     """The pointer moves the end of what repeats from a frame on, or of its repeats."""
 
-    figure: int
+    layer: int
     first: int
     is_stretch: bool  # whether it is its own end
 
@@ -240,14 +240,14 @@ TimeGesture = TimeDrag | KeyBox | Scrub
 Shortfalls = Mapping[Pose, Mapping[int, float]]
 
 
-def measure_shortfalls(figure: Figure, earlier: Derived[Figure, Shortfalls]) -> Shortfalls:
-    """Measure the poses of a figure; those that were measured before are not again."""
+def measure_shortfalls(layer: Layer, earlier: Derived[Layer, Shortfalls]) -> Shortfalls:
+    """Measure the poses of a layer; those that were measured before are not again."""
     known, source = earlier.value, earlier.source
-    if source is None or figure.handles != source.handles or figure.domain is not source.domain:
+    if source is None or layer.handles != source.handles or layer.domain is not source.domain:
         known = {}
     lags: dict[Pose, Mapping[int, float]] = {}
-    for pose in (key.pose for key in figure.keys):
-        usual = find_shortfall(figure, pose).lags if figure.handles and pose not in known else {}
+    for pose in (key.pose for key in layer.keys):
+        usual = find_shortfall(layer, pose).lags if layer.handles and pose not in known else {}
         lags[pose] = known.get(pose, usual)
     return lags
 
@@ -262,13 +262,13 @@ class Timing:
     gesture_strip: Strip | None = None
     # The frame that was shown last, so that the strip follows the playhead only when it moves.
     seen: int = 0
-    # By how many em the rows of figures are scrolled down, where there are more than have room.
+    # By how many em the rows of layers are scrolled down, where there are more than have room.
     scrolled: float = 0.0
-    # The row that was chosen last, and the figures whose tracks had rows then, so that the rows
+    # The row that was chosen last, and the layers whose tracks had rows then, so that the rows
     # are scrolled to it only when that is another one.
     seen_rows: tuple[KeyRow, frozenset[int]] | None = None
-    unfolded: frozenset[int] = frozenset()  # the figures whose tracks have rows
-    shortfalls: Derived[Figure, Shortfalls] = field(default_factory=lambda: Derived({}))
+    unfolded: frozenset[int] = frozenset()  # the layers whose tracks have rows
+    shortfalls: Derived[Layer, Shortfalls] = field(default_factory=lambda: Derived({}))
     # The frames at which keys of a row are seen, in their order.
     keyed: Derived[tuple[Document, KeyRow], tuple[int, ...]] = field(
         default_factory=lambda: Derived(())

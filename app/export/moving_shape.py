@@ -1,4 +1,4 @@
-"""A figure as other programs play it: a light textured mesh, and few shapes that it blends."""
+"""A layer as other programs play it: a light textured mesh, and few shapes that it blends."""
 
 import math
 from collections.abc import Callable, Generator, Mapping
@@ -10,7 +10,7 @@ import numpy as np
 from app.document import (
     Composite,
     Document,
-    Figure,
+    Layer,
     camera_at,
     clip_of,
     composed,
@@ -38,7 +38,7 @@ _CLOSE: Final = 0.5  # frames between the moments that are looked at first
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class MovingShape:
-    """A figure's mesh, picture and motion.
+    """A layer's mesh, picture and motion.
 
     Parameters
     ----------
@@ -47,14 +47,14 @@ class MovingShape:
         Straight alpha, with colours where it is transparent; the part of the picture that the mesh
         shows.
     opacity : float
-        Of the whole figure, where it is the most, with those of its groups.
+        Of the whole layer, where it is the most, with those of its groups.
     uv : float64, shape (v, 2)
         u right, v up; [0, 1] spans the texture.
     orders : tuple of (float, int32 of shape (m, 3))
         The triangles, counter-clockwise, in the order of painting, and from when on they are
         painted so.
     sights : tuple of (float, bool)
-        From when on the figure is seen, or is not.
+        From when on the layer is seen, or is not.
     motion : ShapeTargets
         In pixels, y up; its times, like all others, are seconds from the first frame on.
     """
@@ -85,15 +85,15 @@ class MovingScene:
 
 def with_light_meshes(document: Document, triangles: int) -> Document:
     """Return a document whose meshes have at most so many triangles, about."""
-    return replace(document, figures=tuple(_lighter(f, triangles) for f in document.figures))
+    return replace(document, layers=tuple(_lighter(f, triangles) for f in document.layers))
 
 
-def _lighter(figure: Figure, triangles: int) -> Figure:
-    domain = figure.domain
+def _lighter(layer: Layer, triangles: int) -> Layer:
+    domain = layer.domain
     if len(domain.mesh.triangles) <= triangles:
-        return figure
+        return layer
     mesh = triangulate(domain.outline, triangles, holes=domain.loops[1:])
-    return replace(figure, domain=replace(domain, mesh=in_order_of(mesh, domain.mesh)))
+    return replace(layer, domain=replace(domain, mesh=in_order_of(mesh, domain.mesh)))
 
 
 def moving_shapes(
@@ -102,7 +102,7 @@ def moving_shapes(
     poses: Mapping[int, Poses],
     plan: ExportPlan,
 ) -> Generator[float, None, MovingScene]:
-    """Find the shapes of every figure; yield how much of the work is done, from 0 to 1.
+    """Find the shapes of every layer; yield how much of the work is done, from 0 to 1.
 
     Where the format shows a part of the plane, shapes are as the camera shows them there.
 
@@ -111,9 +111,9 @@ def moving_shapes(
     document : Document
         With the meshes that are exported.
     pictures : mapping of int to uint8, shape (h, w, 4)
-        The figures' pictures, decoded, by their ids.
+        The layers' pictures, decoded, by their ids.
     poses : mapping of int to Poses
-        The figures', by their ids.
+        The layers', by their ids.
     plan : ExportPlan
 
     Raises
@@ -127,54 +127,54 @@ def moving_shapes(
     tolerance = plan.shapes.tolerance
     numbers = range(first, last + 1)
     clips = [
-        clip_of(document, figure.id)
-        for figure in in_order(document, first)
-        if figure in document.exported
-        and any(is_visible(document, figure, frame) for frame in numbers)
+        clip_of(document, layer.id)
+        for layer in in_order(document, first)
+        if layer in document.exported
+        and any(is_visible(document, layer, frame) for frame in numbers)
     ]
     if not clips:
-        raise LissomError("no figure is seen in these frames; there is nothing to export")
+        raise LissomError("no layer is seen in these frames; there is nothing to export")
     found = []
     for index, clip in enumerate(clips):
-        figure, mesh = clip.figure, clip.figure.domain.mesh
-        seam = find_seam(figure.domain)
+        layer, mesh = clip.layer, clip.layer.domain.mesh
+        seam = find_seam(layer.domain)
         places = mesh.vertices if seam is None else seam.closed(mesh.vertices)
         steps = build_targets(
-            _painted(document, plan, seam, poses[figure.id]),
+            _painted(document, plan, seam, poses[layer.id]),
             places,
             times,
             tolerance=DEFAULT_TOLERANCE if tolerance is None else tolerance,
             most=MOST_TARGETS if tolerance is None else None,
         )
         motion = yield from _share(steps, plan.span, (index, len(clips)))
-        texture, uv = _cut_out(pictures[figure.id], places - figure.corner)
+        texture, uv = _cut_out(pictures[layer.id], places - layer.corner)
         order = PaintOrder(mesh)
         orders = [(frame, order.triangles(clip, frame)) for frame in numbers]
-        sights = [(frame, is_visible(document, figure, frame)) for frame in numbers]
+        sights = [(frame, is_visible(document, layer, frame)) for frame in numbers]
         shape = MovingShape(
-            name=plan.out.stem if len(document.figures) == 1 else figure.name,
+            name=plan.out.stem if len(document.layers) == 1 else layer.name,
             texture=bled(texture),
-            opacity=figure.opacity
-            * math.prod(group.opacity for group in document.groups_around(figure.group)),
+            opacity=layer.opacity
+            * math.prod(group.opacity for group in document.groups_around(layer.group)),
             uv=uv,
             orders=tuple(((n - first) / document.fps, order) for n, order in _changes(orders)),
             sights=tuple(((n - first) / document.fps, seen) for n, seen in _changes(sights)),
             motion=replace(motion, times=freeze((motion.times - first) / document.fps)),
         )
         found.append(shape)
-    numbered = {clip.figure.id: number for number, clip in enumerate(clips)}
+    numbered = {clip.layer.id: number for number, clip in enumerate(clips)}
     return MovingScene(shapes=tuple(found), parts=composed(document, numbered, first))
 
 
 def _unfading(document: Document) -> Document:
-    """Return a document whose figures are as opaque as they are at most, at all times."""
-    figures = tuple(
+    """Return a document whose layers are as opaque as they are at most, at all times."""
+    layers = tuple(
         replace(each, opacities=(), opacity=max(key.opacity for key in each.opacities))
         if each.opacities
         else each
-        for each in document.figures
+        for each in document.layers
     )
-    return replace(document, figures=figures)
+    return replace(document, layers=layers)
 
 
 def _painted(

@@ -43,7 +43,7 @@ _OUTSIDE: Final = 1.0  # pixels; less than this is seen by nobody
 
 
 class PosedFrame(NamedTuple):
-    """A frame of the timeline, and where the vertices of each figure are in it."""
+    """A frame of the timeline, and where the vertices of each layer are in it."""
 
     frame: float
     vertices: tuple[Placed, ...]  # in the plane
@@ -66,9 +66,9 @@ class Painter:
     context : Context
         Current on the thread that draws.
     pictures : mapping of int to uint8, shape (h, w, 4)
-        The figures' pictures, decoded, by their ids.
+        The layers' pictures, decoded, by their ids.
     poses : mapping of int to Poses
-        The figures', by their ids.
+        The layers', by their ids.
     plan : ExportPlan
 
     Raises
@@ -86,18 +86,18 @@ class Painter:
         plan: ExportPlan,
     ) -> None:
         self._context, self._document, self._plan = context, document, plan
-        figures = document.exported
-        self._clips = [clip_of(document, figure.id) for figure in figures]
-        self._poses = [poses[figure.id] for figure in figures]
+        layers = document.exported
+        self._clips = [clip_of(document, layer.id) for layer in layers]
+        self._poses = [poses[layer.id] for layer in layers]
         self._background = Backdrop(colour=_colour(plan))
         shots = [camera_at(document, frame) for frame in plan.times]
         zooms = [1.0 if shot is None else shot.zoom for shot in shots]
         smallest, largest = min(zooms) * plan.view.scale, max(zooms) * plan.view.scale
-        meshes = [figure.domain.mesh for figure in figures]
+        meshes = [layer.domain.mesh for layer in layers]
         self._orders = [PaintOrder(mesh) for mesh in meshes]
         self._thinnings = [
-            Thinning(figure.domain, largest) if _pays(plan, mesh, context, largest) else None
-            for figure, mesh in zip(figures, meshes, strict=True)
+            Thinning(layer.domain, largest) if _pays(plan, mesh, context, largest) else None
+            for layer, mesh in zip(layers, meshes, strict=True)
         ]
         looks = np.linspace(0, len(plan.times) - 1, _LOOKS).round().astype(int)
         self._looks = tuple(plan.times[index] for index in looks)
@@ -119,15 +119,15 @@ class Painter:
             while context.error != _NO_ERROR:
                 pass
             self._drawn = []
-            textures: dict[int, GpuPicture] = {}  # by the pictures, which figures may share
-            for figure, mesh in zip(figures, meshes, strict=True):
-                rest = mesh.vertices - figure.corner
-                texture = textures.get(id(pictures[figure.id]))
+            textures: dict[int, GpuPicture] = {}  # by the pictures, which layers may share
+            for layer, mesh in zip(layers, meshes, strict=True):
+                rest = mesh.vertices - layer.corner
+                texture = textures.get(id(pictures[layer.id]))
                 if texture is None:
-                    texture = GpuPicture(context, pictures[figure.id])
-                    textures[id(pictures[figure.id])] = texture
+                    texture = GpuPicture(context, pictures[layer.id])
+                    textures[id(pictures[layer.id])] = texture
                     owned.callback(texture.release)
-                seam = find_seam(figure.domain)
+                seam = find_seam(layer.domain)
                 gpu_mesh = GpuMesh(
                     programs, texture, rest=rest, triangles=mesh.triangles, seam=seam
                 )
@@ -155,8 +155,8 @@ class Painter:
             raise LissomError(f"frame {frame:g} cannot be drawn: its points are not all finite")
         self._reach = self._reach.joined(box)
         vertices = []
-        figures = zip(positions, self._clips, self._orders, self._thinnings, strict=True)
-        for places, clip, order, thinning in figures:
+        layers = zip(positions, self._clips, self._orders, self._thinnings, strict=True)
+        for places, clip, order, thinning in layers:
             triangles = order.triangles(clip, frame)
             if thinning is not None:
                 triangles = thinning.triangles(places, triangles)
@@ -185,9 +185,9 @@ class Painter:
         try:
             drawn = zip(self._drawn, posed.vertices, self._clips, strict=True)
             seen = {
-                clip.figure.id: mesh.pose(vertices, placement=posed.camera or HERE)
+                clip.layer.id: mesh.pose(vertices, placement=posed.camera or HERE)
                 for mesh, vertices, clip in drawn
-                if is_visible(self._document, clip.figure, posed.frame)
+                if is_visible(self._document, clip.layer, posed.frame)
             }
             meshes = composed(self._document, seen, posed.frame)
             scene = Scene(background=self._background, meshes=meshes)
@@ -205,7 +205,7 @@ class Painter:
     def _read(self, posed: PosedFrame, view: View, pixels: Bytes) -> None:
         """Read back what was drawn of a view, the rest of which has the background's colour.
 
-        Only the part where the figures are is read. `pixels` begin where the view does, and may end
+        Only the part where the layers are is read. `pixels` begin where the view does, and may end
         before it.
         """
         height, width, _ = pixels.shape

@@ -187,7 +187,7 @@ def plan_export(
     ----------
     request : ExportRequest
     poses : mapping of int to KeptPoses
-        One for each figure, by its id; looked at only where the framing depends on the motion.
+        One for each layer, by its id; looked at only where the framing depends on the motion.
     extent : Box, optional
         Around all of the motion, where that is known already.
 
@@ -199,12 +199,12 @@ def plan_export(
     settings = request.settings
     frames = _frames(document, settings)
     times = tuple(frame_times(document, frames, request.fps))
-    rest = np.concatenate([figure.domain.mesh.vertices for figure in document.exported])
+    rest = np.concatenate([layer.domain.mesh.vertices for layer in document.exported])
     if settings.framing == "fit" and not document.camera and extent is None:
         extent = motion_box(
             document,
             framed_frames(document, frames),
-            lambda figure, frame: poses[figure].keep(frame),
+            lambda layer, frame: poses[layer].keep(frame),
         )
     plan = ExportPlan(
         out=request.out,

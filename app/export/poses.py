@@ -1,4 +1,4 @@
-"""Where the vertices of a figure are in the frames of an export."""
+"""Where the vertices of a layer are in the frames of an export."""
 
 from typing import Final, Protocol
 
@@ -12,7 +12,7 @@ KEPT: Final = 2**28  # bytes of positions that are kept from the framing for the
 
 
 class Poses(Protocol):
-    """Where the vertices of a figure's mesh are at any time."""
+    """Where the vertices of a layer's mesh are at any time."""
 
     def positions(self, frame: float) -> Complexes:
         """Return the vertices, complex128 (v,), at a frame, whole or between two."""

@@ -4,7 +4,7 @@ from collections.abc import Generator, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from typing import Final
 
-from app.document import Document, Figure, Group
+from app.document import Document, Group, Layer
 from app.export.moving_shape import (
     DEFAULT_TOLERANCE,
     MOST_TARGETS,
@@ -31,9 +31,9 @@ class ShapeExport:
     document : Document
         With the meshes that are exported.
     pictures : mapping of int to uint8, shape (h, w, 4)
-        The figures' pictures, decoded, by their ids.
+        The layers' pictures, decoded, by their ids.
     poses : mapping of int to Poses
-        The figures', by their ids.
+        The layers', by their ids.
     plan : ExportPlan
     """
 
@@ -52,7 +52,7 @@ class ShapeExport:
 
     @property
     def shapes(self) -> tuple[MovingShape, ...]:
-        """What was found of the figures; none before the end."""
+        """What was found of the layers; none before the end."""
         return () if self._scene is None else self._scene.shapes
 
     def run(
@@ -118,18 +118,18 @@ class ShapeExport:
                     f"what lies in front of what changes in {shape.name}; a {format_.label} keeps "
                     "what is so at first"
                 )
-        figures = self._document.exported
-        constant = [f"the opacity of {each.name}" for each in figures if each.opacities]
-        constant += [f"the order of {each.name}" for each in figures if each.placings]
+        layers = self._document.exported
+        constant = [f"the opacity of {each.name}" for each in layers if each.opacities]
+        constant += [f"the order of {each.name}" for each in layers if each.placings]
         constant += ["the camera"] if self._document.camera and not format_.has_frame else []
         if constant:
             found.append(f"in a {format_.label} these do not change: {', '.join(constant)}")
         return (*found, *(() if format_.composites else self._uncomposited(format_.label)))
 
     def _uncomposited(self, label: str) -> Iterator[str]:
-        """Tell what does not look as it does here in a format that paints figure upon figure."""
+        """Tell what does not look as it does here in a format that paints layer upon layer."""
         groups = self._document.groups
-        painted: list[Figure | Group] = [*self._document.exported, *groups]
+        painted: list[Layer | Group] = [*self._document.exported, *groups]
         for what, names in (
             ("multiplied", [each.name for each in painted if each.blend == "multiply"]),
             ("screened", [each.name for each in painted if each.blend == "screen"]),
@@ -140,7 +140,7 @@ class ShapeExport:
         faint = [group.name for group in groups if group.opacity < 1]
         if faint:
             yield (
-                f"{', '.join(faint)}: faded figure by figure in a {label}, so that they shine "
+                f"{', '.join(faint)}: faded layer by layer in a {label}, so that they shine "
                 "through each other"
             )
 

@@ -1,6 +1,6 @@
-"""The motion of a figure on a mesh: one frame, prepared, and as series in time.
+"""The motion of a layer on a mesh: one frame, prepared, and as series in time.
 
-In: a clip (a figure in its scene's time) and a frame.
+In: a clip (a layer in its scene's time) and a frame.
 Out: where the vertices are, and how far they reach.
 Imports: `app.document`.
 """

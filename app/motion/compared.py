@@ -1,4 +1,4 @@
-"""In-betweens by the methods that the figures' own variants are compared with, on a mesh."""
+"""In-betweens by the methods that the layers' own variants are compared with, on a mesh."""
 
 import numpy as np
 
@@ -46,14 +46,14 @@ def prepare_compared(
     keys = [clip.keys[index] for index in intervals(clip)[interval]]
     prepared = prepare_baseline(
         baseline,
-        [clip.figure.map_of(key.pose) for key in keys],
+        [clip.layer.map_of(key.pose) for key in keys],
         domain.mesh.vertices,
         domain.mesh.triangles,
         outline=domain.outline,
-        anchor=clip.figure.anchor,
+        anchor=clip.layer.anchor,
         turns=[keys[0].turns],
-        handles=np.array([handle.position for handle in clip.figure.handles], dtype=np.complex128),
-        bounds=clip.figure.bounds,
+        handles=np.array([handle.position for handle in clip.layer.handles], dtype=np.complex128),
+        bounds=clip.layer.bounds,
     )
     remembered = RememberedFrames(prepared.intervals[0])
     for frame in range(clip.frames.first, clip.frames.last + 1):

@@ -32,7 +32,7 @@ class FoundCorrections(NamedTuple):
 class CorrectedFrames:
     """The corrections of a clip's whole frames; of the main thread alone.
 
-    Until a frame's own is there, what an earlier clip of the figure had there stands in for it.
+    Until a frame's own is there, what an earlier clip of the layer had there stands in for it.
 
     Attributes
     ----------
@@ -148,7 +148,7 @@ class CorrectedFrames:
         Without handles there is nothing that could be recorded.
         """
         lacking = [each for each in self._frames if each not in self._grounds]
-        if not (lacking and self.clip.figure.handles and self._is_known(siblings)):
+        if not (lacking and self.clip.layer.handles and self._is_known(siblings)):
             return None
         lacking.sort(key=lambda each: abs(each - frame))
         begin = partial(_prepare, self._corrections, document, self.clip, siblings)
@@ -159,7 +159,7 @@ class CorrectedFrames:
 
         Its first in-betweens find out about it what is needed here, too.
         """
-        return self.clip.figure.id in siblings or len(self.clip.keys) == 1
+        return self.clip.layer.id in siblings or len(self.clip.keys) == 1
 
     def take(self, found: FoundCorrections, *, is_newest: bool = False) -> None:
         """Take in what a worker has found; what is of an earlier clip stands in for this one's.
@@ -187,12 +187,12 @@ def _prepare(
     """Return a clip's corrections, the earlier ones if there are any."""
     if earlier is not None:
         return earlier
-    figure = clip.figure
-    sibling = siblings.get(figure.id)
-    if sibling is None or sibling.domain.cage is not figure.domain.cage:
-        sibling = PoseSampler(figure.domain, anchor=figure.anchor, points=figure.domain.outline)
-    carried = carried_in(document, figure.id, siblings)
-    return Corrections(clip, clip.figure.variant, sibling, carried)
+    layer = clip.layer
+    sibling = siblings.get(layer.id)
+    if sibling is None or sibling.domain.cage is not layer.domain.cage:
+        sibling = PoseSampler(layer.domain, anchor=layer.anchor, points=layer.domain.outline)
+    carried = carried_in(document, layer.id, siblings)
+    return Corrections(clip, clip.layer.variant, sibling, carried)
 
 
 def _find(
@@ -205,10 +205,10 @@ def _find(
 
 
 def corrected_clip(
-    document: Document, figure: int, earlier: CorrectedFrames | None
+    document: Document, layer: int, earlier: CorrectedFrames | None
 ) -> CorrectedFrames:
-    """Return the corrections of a figure's clip; the earlier ones where the motion is the same."""
-    clip = clip_of(document, figure)
+    """Return the corrections of a layer's clip; the earlier ones where the motion is the same."""
+    clip = clip_of(document, layer)
     if earlier is not None and earlier.clip == clip:
         return earlier
     return CorrectedFrames(clip, earlier)

@@ -1,4 +1,4 @@
-"""All in-betweens of a figure on one mesh, by their content: what is there, and what is missing."""
+"""All in-betweens of a layer on one mesh, by their content: what is there, and what is missing."""
 
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
@@ -34,7 +34,7 @@ IntervalPart = Literal["frame", "in-betweens", "fine", "series", "correction"]
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class IntervalStore:
-    """The in-betweens of a figure on a mesh; of the main thread alone.
+    """The in-betweens of a layer on a mesh; of the main thread alone.
 
     They are known by their content (`Pair`), so that undo, a copied key or another method that is
     tried again find what was made for them before. Of an interval there is nothing, one frame, all
@@ -68,7 +68,7 @@ class IntervalStore:
 
     def prepared(self, clip: Clip) -> tuple[AnyInbetweens, ...] | None:
         """Return the in-betweens of all of a clip's intervals; None where some are missing."""
-        if clip.figure.domain is not self.mesh.source:
+        if clip.layer.domain is not self.mesh.source:
             return None
         known = [self._known.get(pair) for pair in self._pairs(clip)]
         every = [each.inbetweens for each in known if each is not None and each.inbetweens]
@@ -76,7 +76,7 @@ class IntervalStore:
 
     def has(self, clip: Clip) -> bool:
         """Tell whether all in-betweens of a clip can be shown."""
-        if clip.figure.domain is not self.mesh.source:
+        if clip.layer.domain is not self.mesh.source:
             return False
         if self.lacks_sampler(clip):
             return False
@@ -122,7 +122,7 @@ class IntervalStore:
         if sampler is None:
             return None
         if resting is not None:
-            inbetweens, time = sampler.still(resting, clip.figure.variant), 0.0
+            inbetweens, time = sampler.still(resting, clip.layer.variant), 0.0
         else:
             known = self.interval(clip, moment.interval)
             if known is None or not isinstance(known.inbetweens, Inbetweens):
@@ -167,7 +167,7 @@ class IntervalStore:
 
     def _find(self, clip: Clip, moment: Moment) -> Pose | OneFrame | KnownInterval | None:
         """Return what shows a moment exactly."""
-        if clip.figure.domain is not self.mesh.source:
+        if clip.layer.domain is not self.mesh.source:
             return None
         if self.lacks_sampler(clip):
             return None
@@ -227,7 +227,7 @@ class IntervalStore:
     def missing(self, clip: Clip, frame: float, *, is_edited: bool = True) -> list[int]:
         """Return the numbers of intervals to prepare, the nearest first, and each pair once.
 
-        Of a figure that is not edited, those of which the series leaves nothing out need not be.
+        Of a layer that is not edited, those of which the series leaves nothing out need not be.
         """
         pairs, nearest = self._pairs(clip), dict[Pair, int]()
         for number in _by_nearness(clip, frame):
@@ -247,15 +247,15 @@ class IntervalStore:
     def making_frame(self, clip: Clip, frame: float) -> Callable[[], FoundIntervals] | None:
         """Return what makes the in-between at a frame alone; None where it is there or cannot be.
 
-        It cannot before the first in-betweens of a figure, which take longer.
+        It cannot before the first in-betweens of a layer, which take longer.
         """
-        figure, sampler = clip.figure, self.sampler
-        if figure.domain is not self.mesh.source or self.is_exact(clip, frame):
+        layer, sampler = clip.layer, self.sampler
+        if layer.domain is not self.mesh.source or self.is_exact(clip, frame):
             return None
         if is_corrected(clip):
             # Its corrections need the whole interval.
             return None
-        if sampler is None or sampler.anchor != figure.anchor:
+        if sampler is None or sampler.anchor != layer.anchor:
             return None
         return partial(prepare_frame, clip, frame, self.mesh, sampler, keep=self._poses())
 
@@ -307,7 +307,7 @@ class IntervalStore:
 
     def take(self, found: FoundIntervals) -> None:
         """Take in what a worker has found, for whichever clip that was."""
-        anchors, sampler = {clip.figure.anchor for clip in self._present}, found.sampler
+        anchors, sampler = {clip.layer.anchor for clip in self._present}, found.sampler
         if sampler is not None and (not anchors or sampler.anchor in anchors):
             self.sampler = sampler
         for pair, newer in found.intervals.items():

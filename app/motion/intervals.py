@@ -94,12 +94,12 @@ def prepare_intervals(
         Numbers of the intervals.
     mesh : PosableMesh
     sampler : PoseSampler, optional
-        Of the mesh and the figure's anchor, or else one whose knowledge of the outline is used
+        Of the mesh and the layer's anchor, or else one whose knowledge of the outline is used
         again, if it is of the same.
     keep : frozenset of Pose
         Whose samples are kept beside those of the clip.
     """
-    figure, every = clip.figure, transits(clip)
+    layer, every = clip.layer, transits(clip)
     if clip.baseline is not None:
         return FoundIntervals(
             sampler=None,
@@ -111,16 +111,16 @@ def prepare_intervals(
                 for number in wanted
             },
         )
-    if sampler is None or sampler.domain is not mesh.domain or sampler.anchor != figure.anchor:
+    if sampler is None or sampler.domain is not mesh.domain or sampler.anchor != layer.anchor:
         is_sibling = sampler is not None and sampler.domain.cage is mesh.domain.cage
         sibling = sampler if is_sibling else None
-        sampler = PoseSampler(mesh.domain, anchor=figure.anchor, sibling=sibling)
-    pins = AutoPins(clip, figure.variant, sampler)
+        sampler = PoseSampler(mesh.domain, anchor=layer.anchor, sibling=sibling)
+    pins = AutoPins(clip, layer.variant, sampler)
     intervals = {
         pair_of(clip, number): KnownInterval(
             poses=poses_of(clip, number),
             inbetweens=pins.inbetweens(number, sampler),
-            kept=sampler.kept(every[number], figure.bounds, figure.variant),
+            kept=sampler.kept(every[number], layer.bounds, layer.variant),
             sites=sampler.sites,
         )
         for number in wanted
@@ -142,13 +142,13 @@ def prepare_frame(
 ) -> FoundIntervals:
     """Work out the in-between at a frame, exactly as its interval will have it; on a worker thread.
 
-    The sampler is of the mesh and the figure's anchor. Where the whole interval takes no longer, it
+    The sampler is of the mesh and the layer's anchor. Where the whole interval takes no longer, it
     is prepared instead.
     """
-    moment, figure = time_of(clip, frame), clip.figure
-    if not sampler.makes_single_frames(figure.variant):
+    moment, layer = time_of(clip, frame), clip.layer
+    if not sampler.makes_single_frames(layer.variant):
         return prepare_intervals(clip, [moment.interval], mesh, sampler, keep=keep)
-    pair, pins = pair_of(clip, moment.interval), AutoPins(clip, figure.variant, sampler)
+    pair, pins = pair_of(clip, moment.interval), AutoPins(clip, layer.variant, sampler)
     alone = pins.frame(moment.interval, sampler, moment.weight)
     one = OneFrame(pair, moment.weight, alone.positions)
     return FoundIntervals(sampler, {pair: KnownInterval(poses_of(clip, moment.interval), one=one)})

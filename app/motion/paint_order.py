@@ -1,4 +1,4 @@
-"""What of a figure is painted over what, at any frame."""
+"""What of a layer is painted over what, at any frame."""
 
 from functools import lru_cache, partial
 from typing import Final

@@ -12,12 +12,12 @@ from engine.domain import Domain
 from engine.domain.meshing import Mesh, in_order_of, triangulate
 from engine.maps import Span
 
-# Triangles of the meshes, of all figures together, that are shown while the full ones would be too
+# Triangles of the meshes, of all layers together, that are shown while the full ones would be too
 # slow; and of each, however many share them.
 COARSE_TRIANGLES = 12_000
 FEWEST_TRIANGLES = 4_000
-# How many times finer a figure's own mesh is at least where it has a coarse one beside it: all that
-# is prepared of a figure is prepared of both.
+# How many times finer a layer's own mesh is at least where it has a coarse one beside it: all that
+# is prepared of a layer is prepared of both.
 FINER = 2
 EDGE = 1e-6  # barycentric weights that rounding may lack of 0
 
@@ -58,9 +58,9 @@ class PosableMesh:
     Parameters
     ----------
     domain : Domain
-        With the mesh that is shown, which may be coarser than the figure's own.
+        With the mesh that is shown, which may be coarser than the layer's own.
     source : Domain
-        The figure's.
+        The layer's.
     coordinates : complex64, shape (v, n)
         Values at the vertices of the functions that maps are made of: single precision is plenty
         for a screen.
@@ -81,14 +81,14 @@ class PosableMesh:
 
     @classmethod
     def fine(cls, source: Domain) -> "PosableMesh":
-        """Return the figure's own mesh."""
+        """Return the layer's own mesh."""
         return cls(domain=source, source=source, coordinates=_coordinates(source))
 
     @classmethod
     def coarse(cls, source: Domain, *, among: int = 1) -> "PosableMesh":
-        """Return a coarse mesh of the same domain, or the figure's own if that is hardly finer.
+        """Return a coarse mesh of the same domain, or the layer's own if that is hardly finer.
 
-        The more figures are drawn (it is `among` them), the fewer triangles it has.
+        The more layers are drawn (it is `among` them), the fewer triangles it has.
         """
         wanted = max(FEWEST_TRIANGLES, COARSE_TRIANGLES // among)
         if len(source.mesh.triangles) <= FINER * wanted:

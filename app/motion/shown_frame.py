@@ -1,4 +1,4 @@
-"""What is on the screen: which pose of a figure, on which mesh."""
+"""What is on the screen: which pose of a layer, on which mesh."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -10,7 +10,7 @@ from app.document import (
     Attachment,
     Clip,
     Document,
-    Figure,
+    Layer,
     Pose,
     movement_at,
     resting_pose,
@@ -37,13 +37,13 @@ class Shown:
     pose: Pose | None  # the pose that is shown; None for an in-between
     mesh: PosableMesh
     vertices: Vertices  # the mesh's
-    handles: AttachedPoints  # of the figure's handles in the mesh
+    handles: AttachedPoints  # of the layer's handles in the mesh
     # What is shown instead until the in-between is there: one of its two keys, or another of their
     # in-betweens; or what was drawn of another domain.
     stand_in: Pose | OneFrame | Domain | None = None
     correction: SolvedTracks | None = None  # what tracks and springs add
     is_rough: bool = False  # whether that only stands in for the frame's own
-    # Where the figure is in the scene; all else is where it is by itself.
+    # Where the layer is in the scene; all else is where it is by itself.
     placement: RigidMotion = HERE
 
     @property
@@ -63,7 +63,7 @@ class Shown:
         return self.mesh.derivatives(self.positions) if streamed is None else streamed
 
     def hinge(self, place: complex) -> Hinge:
-        """Return about where a point of the figure is by itself, and by what it is turned there.
+        """Return about where a point of the layer is by itself, and by what it is turned there.
 
         As exact as the triangles are small.
         """
@@ -103,7 +103,7 @@ def show(
     ----------
     frame : int
     pose : Pose, optional
-        Shown instead of what the figure has at the frame.
+        Shown instead of what the layer has at the frame.
     stores : sequence of IntervalStore
         Where to look for it, the preferred one first; at least one.
     earlier : Shown, optional
@@ -111,7 +111,7 @@ def show(
     corrected : CorrectedFrames, optional
         Of the clip's frames; a pose that is shown instead has what tracks add to the frame.
     """
-    domain, moment = clip.figure.domain, time_of(clip, frame)
+    domain, moment = clip.layer.domain, time_of(clip, frame)
     correction, is_rough = None, False
     if corrected is not None and pose is not None:
         correction = corrected.at(corrected.clip, frame)
@@ -124,7 +124,7 @@ def show(
         old = earlier.mesh.source
         return earlier if earlier.stand_in is old else replace(earlier, stand_in=old)
     if not fitting:
-        raise ValueError("none of the stores is of the figure's domain")
+        raise ValueError("none of the stores is of the layer's domain")
     store = (*exact, fitting[-1])[0]
     mesh, near = store.mesh, None if exact else store.nearest(clip, moment)
     triangles = mesh.order.triangles(clip, frame)
@@ -160,29 +160,29 @@ def hang_shown(
     poses: Mapping[int, Pose],
     earlier: Joints | None = None,
 ) -> dict[int, Shown]:
-    """Return what is drawn of each figure, where its scene has it.
+    """Return what is drawn of each layer, where its scene has it.
 
     Parameters
     ----------
     shown : mapping of int to Shown
-        By the ids of figures.
+        By the ids of layers.
     joints : Joints or None
         Of the document; without them places are as exact as the triangles are small.
     poses : mapping of int to Pose
         Shown though the document does not have them.
     earlier : Joints, optional
-        Of another document, which tell where figures that keep their places are held until `joints`
+        Of another document, which tell where layers that keep their places are held until `joints`
         are there.
     """
     hung = {}
     for identity, each in shown.items():
-        figure = document.figure(identity)
-        if not figure.joints:
-            placement = movement_at(document, figure, each.frame)
+        layer = document.layer(identity)
+        if not layer.joints:
+            placement = movement_at(document, layer, each.frame)
         elif joints is None:
             chain = chain_of(document, identity, each.frame)
             kept = partial(_as_it_was, earlier, each.frame)
-            placement = along(chain, lambda figure, place: shown[figure.id].hinge(place), kept)
+            placement = along(chain, lambda layer, place: shown[layer.id].hinge(place), kept)
         else:
             placement = joints.placement(identity, each.frame, poses)
         same = placement == each.placement
@@ -191,11 +191,11 @@ def hang_shown(
 
 
 def _as_it_was(
-    earlier: Joints | None, frame: float, figure: Figure, joint: Attachment
+    earlier: Joints | None, frame: float, layer: Layer, joint: Attachment
 ) -> RigidMotion:
-    """Return how a figure was held by a joint in an earlier document, if it was."""
-    known = {each.id: each for each in earlier.document.figures} if earlier else {}
-    was = known.get(figure.id)
+    """Return how a layer was held by a joint in an earlier document, if it was."""
+    known = {each.id: each for each in earlier.document.layers} if earlier else {}
+    was = known.get(layer.id)
     if earlier is None or was is None or joint not in earlier.document.joints_of(was):
         return HERE
     return earlier.kept(was, joint, frame)
@@ -205,8 +205,8 @@ def _locate(clip: Clip, mesh: PosableMesh, earlier: Shown | None) -> AttachedPoi
     if (
         earlier is not None
         and earlier.mesh is mesh
-        and earlier.clip.figure.handles == clip.figure.handles
+        and earlier.clip.layer.handles == clip.layer.handles
     ):
         return earlier.handles
-    places = np.array([handle.position for handle in clip.figure.handles], dtype=np.complex128)
+    places = np.array([handle.position for handle in clip.layer.handles], dtype=np.complex128)
     return mesh.locate(places, mesh.domain.mesh.vertices)

@@ -1,4 +1,4 @@
-"""Where the vertices of a figure are in a frame, known or by a series, and what lies over what."""
+"""Where the vertices of a layer are in a frame, known or by a series, and what lies over what."""
 
 from dataclasses import dataclass
 from functools import cached_property

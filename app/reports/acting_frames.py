@@ -11,12 +11,12 @@ def acting_frames(clip: Clip, *, is_carried: bool = False) -> tuple[Indices, Ind
     """Return the frames (n,) at which tracks or springs act, and how often each repeats (n,).
 
     Frames at which the poses and all tracks are alike are told once, by the first of them. Springs,
-    and tracks of a figure that hangs, go on from repeat to repeat: there each frame is one.
+    and tracks of a layer that hangs, go on from repeat to repeat: there each frame is one.
     """
-    figure = clip.figure
+    layer = clip.layer
     frames = np.arange(clip.frames.first, clip.frames.last + 1)
-    springs = [spring for spring in figure.springs if spring.enabled]
-    tracks = [track for track in figure.tracks if track.enabled]
+    springs = [spring for spring in layer.springs if spring.enabled]
+    tracks = [track for track in layer.tracks if track.enabled]
     acts = np.full(len(frames), bool(springs) and (is_carried or clip.loop))
     # Where nothing moves they come to rest.
     end = max([clip.keys[-1].frame, *(ring.end for ring in layout(clip).rings)])

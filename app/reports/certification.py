@@ -43,7 +43,7 @@ class IntervalReport:
     """One interval: what its in-betweens reach, beside what its two keys do.
 
     `limits` is what they are to keep: the keys' own distortion, but where handles stay or the
-    motion passes through a key, the figure's bounds, or what the keys around have beyond them.
+    motion passes through a key, the layer's bounds, or what the keys around have beyond them.
     `proof` encloses the in-betweens at all times. `unsettled` are the frames about which it cannot
     tell that they do not fold, `loose` others at which it is less tight.
     """
@@ -139,9 +139,9 @@ def _are_within(reached: Extremes, limits: Extremes) -> bool:
 def certify_clip(
     clip: Clip, variant: Variant | None = None, carried: Carried | None = None
 ) -> Report:
-    """Prove and measure the distortion of a figure over time and space.
+    """Prove and measure the distortion of a layer over time and space.
 
-    It is that of its own variant, unless another one is given; `carried` tells where a figure that
+    It is that of its own variant, unless another one is given; `carried` tells where a layer that
     hangs on others is, at a frame.
 
     Notes
@@ -153,10 +153,10 @@ def certify_clip(
     Frames in which tracks and springs move handles are solved and proven one by one; what is
     between two of them is measured.
     """
-    figure, domain = clip.figure, clip.figure.domain
+    layer, domain = clip.layer, clip.layer.domain
     boundary = Boundary.sample(domain.outline, domain.cage, domain.holes)
     keys = tuple(
-        (key.frame, certify(clip.figure.map_of(key.pose), boundary, clip.figure.bounds))
+        (key.frame, certify(clip.layer.map_of(key.pose), boundary, clip.layer.bounds))
         for key in clip.keys
     )
     animation = Animation(clip, variant, points=boundary.points)
@@ -166,22 +166,22 @@ def certify_clip(
     )
     every = [each.limits for each in reports]
     every += [Extremes(own.k, own.sigma_a, own.sigma_b) for _, own in keys]
-    bounds = Extremes(figure.bounds.k, figure.bounds.sigma_a, figure.bounds.sigma_b)
+    bounds = Extremes(layer.bounds.k, layer.bounds.sigma_a, layer.bounds.sigma_b)
     limits = reduce(Extremes.joined, every, bounds)
     corrected = report_corrected(clip, boundary, limits, variant, carried)
-    return Report(keys=keys, intervals=reports, corrected=corrected, cycles=figure.cycles)
+    return Report(keys=keys, intervals=reports, corrected=corrected, cycles=layer.cycles)
 
 
 def _interval_report(
     clip: Clip, animation: Animation, boundary: Boundary, number: int, transit: Transit
 ) -> IntervalReport:
     """Prove and measure the interval of this number."""
-    figure, span = clip.figure, spans(clip)[number]
+    layer, span = clip.layer, spans(clip)[number]
     start, end, last = clip.keys[span.first], clip.keys[span.last], span.start + span.frames
     # A key that is held is all that is seen until the next one.
     held = start.easing == HOLD
     ends = [
-        Extremes.measured(*figure.map_of(key.pose).derivatives(boundary.points))
+        Extremes.measured(*layer.map_of(key.pose).derivatives(boundary.points))
         for key in ((start, start) if held else (start, end, *transit.keys))
     ]
     bound = ends[0].joined(ends[1])
@@ -192,7 +192,7 @@ def _interval_report(
     )
     limits = bound
     if transit.is_joined or inbetweens.corrections:
-        bounds = figure.bounds
+        bounds = layer.bounds
         limits = reduce(Extremes.joined, ends, Extremes(bounds.k, bounds.sigma_a, bounds.sigma_b))
     proof = prove(inbetweens)
     return IntervalReport(

@@ -54,7 +54,7 @@ class CorrectedReport:
     between : Extremes
         What is measured halfway between frames.
     limits : Extremes
-        What they are to keep: the figure's bounds, or what its keys have beyond them.
+        What they are to keep: the layer's bounds, or what its keys have beyond them.
     short : tuple of Short
         What is out of reach.
     looked_at, left_out : int
@@ -91,13 +91,13 @@ def report_corrected(
     ----------
     clip : Clip
     boundary : Boundary
-        Of the figure's domain.
+        Of the layer's domain.
     limits : Extremes
         Of the keys and the bounds.
     variant : Variant, optional
-        The figure's own by default.
+        The layer's own by default.
     carried : callable, optional
-        Where the figure hangs, at a frame.
+        Where the layer hangs, at a frame.
     """
     ends = boundary.points[boundary.following]
     points = np.concatenate(
@@ -160,11 +160,11 @@ def _measured(animation: Animation, at: float) -> Extremes:
 def _short(clip: Clip, step: int, misses: Mapping[int, Mapping[int, float]]) -> tuple[Short, ...]:
     """Return the runs of frames, looked at by steps, in which handles fall short."""
     found = []
-    for handle in clip.figure.handles:
+    for handle in clip.layer.handles:
         lags = {
             frame: miss[handle.id]
             for frame, miss in misses.items()
-            if handle.id in miss and falls_short(clip.figure, miss[handle.id])
+            if handle.id in miss and falls_short(clip.layer, miss[handle.id])
         }
         # Frames of one run are as many steps ahead of their number in it.
         for _, run in groupby(enumerate(lags), key=lambda each: each[1] - step * each[0]):

@@ -36,7 +36,7 @@ class Curves:
 
     def extremes_at(self, frame: float) -> Extremes:
         """Return the extremes at a frame, between those that were measured around it."""
-        cycle = self.clip.figure.cycle_at(frame)
+        cycle = self.clip.layer.cycle_at(frame)
         if cycle is not None and frame >= cycle.last:
             frame = cycle.source(frame)
         elif frame < self.frames[0] and self.clip.loop:

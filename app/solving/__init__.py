@@ -1,6 +1,6 @@
 """Poses from handles: drags, keys that are solved again, pose scripts and ready motions.
 
-In: a figure, and where handles are wanted.
+In: a layer, and where handles are wanted.
 Out: certified poses.
 Imports: `app.motion`, `app.storage`.
 """

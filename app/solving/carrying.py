@@ -1,4 +1,4 @@
-"""Poses that are carried from one figure to another, or to its own other side, by a similarity."""
+"""Poses that are carried from one layer to another, or to its own other side, by a similarity."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -6,7 +6,7 @@ from typing import Self
 
 import numpy as np
 
-from app.document import Figure, Pose, Target
+from app.document import Layer, Pose, Target
 from app.solving.drag import Rig, fit_map, pins_of
 from engine.arrays import Complexes
 from engine.deform import Way
@@ -112,30 +112,30 @@ class Likeness:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Carriage:
-    """The way from one figure's poses to another's.
+    """The way from one layer's poses to another's.
 
     Parameters
     ----------
-    source : Figure
+    source : Layer
         As it was when its poses were.
     pairs : mapping of int to int
-        Of the other figure's handles, those that take over, and from which of the source's.
+        Of the other layer's handles, those that take over, and from which of the source's.
     likeness : Likeness
     """
 
-    source: Figure
+    source: Layer
     pairs: Mapping[int, int]
     likeness: Likeness
-    # Whether sides exchange within one figure: what is far apart turns only as the whole does.
+    # Whether sides exchange within one layer: what is far apart turns only as the whole does.
     is_within: bool = False
 
-    def targets(self, figure: Figure, pose: Pose) -> dict[int, Target]:
-        """Return where a figure's handles are wanted by a pose of the source, by their ids."""
+    def targets(self, layer: Layer, pose: Pose) -> dict[int, Target]:
+        """Return where a layer's handles are wanted by a pose of the source, by their ids."""
         shape, carried = self.source.map_of(pose), {}
         whole = whole_turn(self.source, shape) if self.is_within else None
         for identity, other in self.pairs.items():
             target, place = pose.targets[other], self.source.handle(other).position
-            point = figure.handle(identity).position
+            point = layer.handle(identity).position
             turn = target.rotation
             carried[identity] = Target(
                 position=self.likeness.moved(shape, place, target.position, point, whole),
@@ -144,7 +144,7 @@ class Carriage:
         return carried
 
     def carry(self, rig: Rig, pose: Pose, present: Pose | None = None) -> Pose:
-        """Return a pose of the source as one of a rig's figure, solved within its bounds.
+        """Return a pose of the source as one of a rig's layer, solved within its bounds.
 
         Parameters
         ----------
@@ -154,17 +154,17 @@ class Carriage:
         present : Pose, optional
             Where the handles stay that take nothing over; none is needed where all do.
         """
-        figure, targets = rig.figure, self.targets(rig.figure, pose)
+        layer, targets = rig.layer, self.targets(rig.layer, pose)
         if present is not None:
-            targets, pins = {**present.targets, **targets}, pins_of(figure, present)
-            return solve_from(rig, figure.map_of(present), targets, pins)
+            targets, pins = {**present.targets, **targets}, pins_of(layer, present)
+            return solve_from(rig, layer.map_of(present), targets, pins)
         begin, ways = begin_like(rig, self.source, pose, self.likeness, targets)
         # What follows by a spring needs a target, too, which is not heeded.
-        rest = {handle.id: Target(position=handle.position) for handle in figure.handles}
+        rest = {handle.id: Target(position=handle.position) for handle in layer.handles}
         return solve_from(rig, begin, {**rest, **targets}, self._pins(rig, pose), ways)
 
     def _pins(self, rig: Rig, pose: Pose) -> list[Target]:
-        """Return where the joints of a rig's figure are held, as is done next to them."""
+        """Return where the joints of a rig's layer are held, as is done next to them."""
         shape = self.source.map_of(pose)
         held = [self.source.handle(other).position for other in self.pairs.values()]
         if self.source.joints and self.source.anchor is not None:
@@ -193,7 +193,7 @@ def solve_from(
 
 
 def begin_like(
-    rig: Rig, source: Figure, pose: Pose, likeness: Likeness, targets: Mapping[int, Target]
+    rig: Rig, source: Layer, pose: Pose, likeness: Likeness, targets: Mapping[int, Target]
 ) -> tuple[HarmonicMap, tuple[Way, ...]]:
     """Return the map with which the solver begins to look for the image of a pose, and its ways.
 
@@ -201,27 +201,27 @@ def begin_like(
     next to that; else the rest, turned as a whole as that is.
     """
     shape = source.map_of(pose)
-    if is_alike(rig.figure, source, likeness):
+    if is_alike(rig.layer, source, likeness):
         return _image(rig, source, shape, likeness), (Way.HERE,)
     turn = likeness.turned(whole_turn(source, shape))
     apart = [
-        target.position - turn * rig.figure.handle(identity).position
+        target.position - turn * rig.layer.handle(identity).position
         for identity, target in targets.items()
     ]
     begin = rig.deformer.at_rest.moved(turn, complex(np.mean(apart)) if apart else 0j)
     return begin, tuple(Way)
 
 
-def whole_turn(figure: Figure, shape: HarmonicMap) -> complex:
-    """Return by what a figure is turned as a whole, of modulus 1."""
-    fz, _ = shape.derivatives(_some(figure.domain.mesh.vertices))
+def whole_turn(layer: Layer, shape: HarmonicMap) -> complex:
+    """Return by what a layer is turned as a whole, of modulus 1."""
+    fz, _ = shape.derivatives(_some(layer.domain.mesh.vertices))
     turn = complex(fz.sum())
     return turn / abs(turn) if turn else 1.0 + 0j
 
 
-def is_alike(figure: Figure, source: Figure, likeness: Likeness) -> bool:
-    """Tell whether nearly all of a figure lies on another one's image."""
-    places = likeness.back(_some(figure.domain.mesh.vertices))
+def is_alike(layer: Layer, source: Layer, likeness: Likeness) -> bool:
+    """Tell whether nearly all of a layer lies on another one's image."""
+    places = likeness.back(_some(layer.domain.mesh.vertices))
     # Many vertices of a coarse mesh are on its outline, and so beside the image of another one.
     found = source.covers(places, tolerance=BESIDE * box_diagonal(source.domain.outline))
     return bool(found.mean() >= ALIKE)
@@ -231,7 +231,7 @@ def _some(vertices: Complexes) -> Complexes:
     return vertices[:: max(1, len(vertices) // ENOUGH)]
 
 
-def _image(rig: Rig, source: Figure, shape: HarmonicMap, likeness: Likeness) -> HarmonicMap:
+def _image(rig: Rig, source: Layer, shape: HarmonicMap, likeness: Likeness) -> HarmonicMap:
     """Return the map that is nearest to S ∘ f ∘ S⁻¹."""
     boundary = rig.deformer.boundary
     places = likeness.back(boundary.points)

@@ -8,8 +8,8 @@ import numpy as np
 
 from app.document import (
     Clip,
-    Figure,
     Handle,
+    Layer,
     Pose,
     Target,
     are_as_stiff,
@@ -36,42 +36,42 @@ JOINT_PULL = 0.1
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Rig:
-    """What solving poses needs of a figure.
+    """What solving poses needs of a layer.
 
     Parameters
     ----------
     handles : tuple of Handle
-        Those of the figure by which poses are held, in their order. What follows by a spring goes
+        Those of the layer by which poses are held, in their order. What follows by a spring goes
         where the body carries it, unless it is pulled at itself.
     deformer : Deformer
-        For these, and for the figure's anchor where it hangs by that: a joint holds like a pin.
+        For these, and for the layer's anchor where it hangs by that: a joint holds like a pin.
     """
 
-    figure: Figure
+    layer: Layer
     handles: tuple[Handle, ...]
     deformer: Deformer
 
     @classmethod
     def of(
         cls,
-        figure: Figure,
+        layer: Layer,
         earlier: "Rig | None" = None,
         pulled: Collection[int] = (),
     ) -> Self:
-        """Return the rig of a figure; what did not change is taken from an earlier one.
+        """Return the rig of a layer; what did not change is taken from an earlier one.
 
         `pulled` are the ids of handles that are pulled at even where they follow.
         """
-        domain, pins = figure.domain, _pins(figure)
-        carried = figure.followers.difference(pulled)
-        held = tuple(handle for handle in figure.handles if handle.id not in carried)
-        if earlier is not None and earlier.figure.domain is domain:
+        domain, pins = layer.domain, _pins(layer)
+        carried = layer.followers.difference(pulled)
+        held = tuple(handle for handle in layer.handles if handle.id not in carried)
+        if earlier is not None and earlier.layer.domain is domain:
             boundary = earlier.deformer.boundary
-            is_same = are_as_stiff(earlier.figure, figure)
+            is_same = are_as_stiff(earlier.layer, layer)
         else:
             boundary, is_same = Boundary.sample(domain.outline, domain.cage, domain.holes), False
         if not is_same:
-            boundary, earlier = stiffened(figure, boundary), None
+            boundary, earlier = stiffened(layer, boundary), None
         if earlier and earlier.handles == held and earlier.pins == pins:
             handles = earlier.deformer.handles
         else:
@@ -79,14 +79,14 @@ class Rig:
             pulls = [*(handle.pull for handle in held), *(PIN for _ in pins)]
             handles = Handles.place(boundary, np.array(places, dtype=np.complex128), pulls)
         # Where it is stiff, new poses give way less.
-        bounds = figure.bounds.where_stiff(boundary)
+        bounds = layer.bounds.where_stiff(boundary)
         deformer = Deformer(boundary=boundary, handles=handles, bounds=bounds)
-        return cls(figure=figure, handles=held, deformer=deformer)
+        return cls(layer=layer, handles=held, deformer=deformer)
 
     @property
     def pins(self) -> tuple[complex, ...]:
-        """The points of the figure that a drag holds where they are."""
-        return _pins(self.figure)
+        """The points of the layer that a drag holds where they are."""
+        return _pins(self.layer)
 
     def wish(
         self, targets: Mapping[int, Target], pins: tuple[Target, ...], hands: Sequence[Hand] = ()
@@ -113,10 +113,10 @@ class Rig:
     def _links(self, index: Mapping[int, int]) -> list[Link]:
         """Return what keeps the ends of stiff bones in reach of each other."""
         links = []
-        for bone in self.figure.bones:
+        for bone in self.layer.bones:
             if bone.amount > 1 and index.keys() >= set(bone.ends):
-                start, end = (self.figure.handle(identity).position for identity in bone.ends)
-                limits, rest = self.figure.bounds.stiffened(np.array(bone.amount)), abs(end - start)
+                start, end = (self.layer.handle(identity).position for identity in bone.ends)
+                limits, rest = self.layer.bounds.stiffened(np.array(bone.amount)), abs(end - start)
                 nearest, farthest = rest * float(limits.sigma_b), rest * float(limits.sigma_a)
                 links.append(Link(index[bone.ends[0]], index[bone.ends[1]], nearest, farthest))
         return links
@@ -127,9 +127,9 @@ class Rig:
         They are those on the way along bones from a pulled handle to where the bones end or part.
         """
         pulled = {identity for hand in hands for identity in hand.handles}
-        locked = {handle.id for handle in self.figure.handles if handle.locked}
+        locked = {handle.id for handle in self.layer.handles if handle.locked}
         beside: dict[int, list[int]] = {}
-        for first, second in (bone.ends for bone in self.figure.bones if bone.amount > 1):
+        for first, second in (bone.ends for bone in self.layer.bones if bone.amount > 1):
             beside.setdefault(first, []).append(second)
             beside.setdefault(second, []).append(first)
         joints, waiting = set[int](), list(pulled)
@@ -145,7 +145,7 @@ class Rig:
     ) -> Pose:
         """Return a map as a pose with these wishes; handles that do not hold it are where it is."""
         held = {handle.id for handle in self.handles}
-        carried = [handle for handle in self.figure.handles if handle.id not in held]
+        carried = [handle for handle in self.layer.handles if handle.id not in held]
         places = shape(np.array([handle.position for handle in carried], dtype=np.complex128))
         here = {
             handle.id: replace(targets[handle.id], position=complex(place), rotation=None)
@@ -161,8 +161,8 @@ class Rig:
             return self.deformer.start()
 
     def within_bounds_of(self, pose: Pose) -> Deformer:
-        """Return a deformer that allows a pose, be it outside the figure's present bounds."""
-        return self.deformer.allowing(self.figure.map_of(pose), LEEWAY)
+        """Return a deformer that allows a pose, be it outside the layer's present bounds."""
+        return self.deformer.allowing(self.layer.map_of(pose), LEEWAY)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -172,7 +172,7 @@ class Drag:
     Parameters
     ----------
     deformer : Deformer
-        Its bounds are the figure's, or as much wider as the pose at the start asked for.
+        Its bounds are the layer's, or as much wider as the pose at the start asked for.
     pins : tuple of Target
         What is held still.
     """
@@ -195,8 +195,8 @@ class Drag:
         return cls(
             rig=rig,
             deformer=deformer,
-            state=deformer.start(rig.figure.map_of(pose)),
-            pins=pins_of(rig.figure, pose),
+            state=deformer.start(rig.layer.map_of(pose)),
+            pins=pins_of(rig.layer, pose),
         )
 
     @property
@@ -215,7 +215,7 @@ class Drag:
 
         `pulled` are the ids of handles that are pulled at even where they follow.
         """
-        rig = Rig.of(self.rig.figure, self.rig, pulled)
+        rig = Rig.of(self.rig.layer, self.rig, pulled)
         deformer = self.deformer
         if rig.deformer.handles is not deformer.handles:
             deformer = replace(deformer, handles=rig.deformer.handles)
@@ -253,18 +253,18 @@ class Drag:
         return self.rig.pose(self.state.map, targets, self.state.certificate)
 
 
-def pins_of(figure: Figure, pose: Pose) -> tuple[Target, ...]:
-    """Return where a pose has what a drag holds still: the anchor of a figure that hangs."""
-    places = figure.map_of(pose)(np.array(_pins(figure), dtype=np.complex128))
+def pins_of(layer: Layer, pose: Pose) -> tuple[Target, ...]:
+    """Return where a pose has what a drag holds still: the anchor of a layer that hangs."""
+    places = layer.map_of(pose)(np.array(_pins(layer), dtype=np.complex128))
     return tuple(Target(position=complex(place)) for place in places)
 
 
-def _pins(figure: Figure) -> tuple[complex, ...]:
-    """Return the points of a figure that are held where they are."""
-    anchor = figure.anchor
-    if not figure.hangs or anchor is None:
+def _pins(layer: Layer) -> tuple[complex, ...]:
+    """Return the points of a layer that are held where they are."""
+    anchor = layer.anchor
+    if not layer.hangs or anchor is None:
         return ()
-    return () if any(handle.position == anchor for handle in figure.handles) else (anchor,)
+    return () if any(handle.position == anchor for handle in layer.handles) else (anchor,)
 
 
 def pose_at(rig: Rig, clip: Clip, frame: float, sibling: PoseSampler | None = None) -> Pose:
@@ -276,12 +276,12 @@ def pose_at(rig: Rig, clip: Clip, frame: float, sibling: PoseSampler | None = No
     Parameters
     ----------
     rig : Rig
-        Of the clip's figure.
+        Of the clip's layer.
     frame : float
     sibling : PoseSampler, optional
-        Of the figure's domain, for what it knows of the outline.
+        Of the layer's domain, for what it knows of the outline.
     """
-    figure, boundary = rig.figure, rig.deformer.boundary
+    layer, boundary = rig.layer, rig.deformer.boundary
     moment = time_of(clip, frame)
     resting = resting_pose(clip, moment)
     if resting is not None:
@@ -290,25 +290,25 @@ def pose_at(rig: Rig, clip: Clip, frame: float, sibling: PoseSampler | None = No
     after = moment.weight > 0.5
     near = keys[intervals(clip)[moment.interval][after]].pose
     sampler = PoseSampler(
-        figure.domain, anchor=figure.anchor, points=boundary.points, sibling=sibling
+        layer.domain, anchor=layer.anchor, points=boundary.points, sibling=sibling
     )
     blended = Animation(clip, points=boundary.points, sampler=sampler).base.frame(frame)
     fitted = fit_map(boundary, blended.fz, blended.fzbar, blended.positions)
     for share in (1.0, 0.5, 0.25, 0.0):
-        own = figure.map_of(near)
+        own = layer.map_of(near)
         mixed = own.changed(
             *(share * (new - old) for new, old in zip(fitted.columns, own.columns, strict=True))
         )
         # What is shown may be older than what is stiff now.
-        certificate = certify(mixed, boundary, figure.bounds)
+        certificate = certify(mixed, boundary, layer.bounds)
         if certificate.certified:
             break
     else:
-        mixed, certificate = figure.map_of(near), near.certificate
-    places = mixed(np.array([handle.position for handle in figure.handles], dtype=np.complex128))
+        mixed, certificate = layer.map_of(near), near.certificate
+    places = mixed(np.array([handle.position for handle in layer.handles], dtype=np.complex128))
     targets = {
         handle.id: Target(position=complex(place))
-        for handle, place in zip(figure.handles, places, strict=True)
+        for handle, place in zip(layer.handles, places, strict=True)
     }
     return Pose.of(mixed, targets, certificate)
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.document import PAIRS, Figure, Pose, SidePairs, Target, partners_of
+from app.document import PAIRS, Layer, Pose, SidePairs, Target, partners_of
 from app.solving.carrying import Likeness, begin_like, is_alike, solve_from
 from app.solving.drag import Rig, pins_of
 
@@ -13,7 +13,7 @@ from app.solving.drag import Rig, pins_of
 def flip_poses(
     rig: Rig, poses: Sequence[Pose], axis: float, pairs: SidePairs = PAIRS
 ) -> list[Pose]:
-    """Return poses of a rig's figure mirrored at an upright axis, solved within its bounds.
+    """Return poses of a rig's layer mirrored at an upright axis, solved within its bounds.
 
     The axis is told in pixels from the left.
     """
@@ -21,7 +21,7 @@ def flip_poses(
 
 
 def flipped_targets(
-    figure: Figure, pose: Pose, axis: float, pairs: SidePairs = PAIRS
+    layer: Layer, pose: Pose, axis: float, pairs: SidePairs = PAIRS
 ) -> Mapping[int, Target]:
     """Return where a flipped pose wants each handle.
 
@@ -32,18 +32,18 @@ def flipped_targets(
     Partners are told by the names of handles, then by their places; on a symmetric shape a handle
     without either does what the shape does at its mirror image, and else it mirrors itself.
     """
-    shape, likeness = figure.map_of(pose), Likeness.reflection(axis)
-    handles = {handle.id: handle for handle in figure.handles}
-    partners = partners_of(figure.handles, axis, figure.domain.outline, pairs)
-    is_symmetric = is_alike(figure, figure, likeness)
+    shape, likeness = layer.map_of(pose), Likeness.reflection(axis)
+    handles = {handle.id: handle for handle in layer.handles}
+    partners = partners_of(layer.handles, axis, layer.domain.outline, pairs)
+    is_symmetric = is_alike(layer, layer, likeness)
     targets = {}
-    for handle in figure.handles:
+    for handle in layer.handles:
         partner = handles.get(partners.get(handle.id, -1))
         place, target = handle.position, pose.targets[handle.id]
         mirrored = likeness.to(place)
         if partner is not None:
             place, target = partner.position, pose.targets[partner.id]
-        elif is_symmetric and figure.covers(np.array([mirrored]))[0]:
+        elif is_symmetric and layer.covers(np.array([mirrored]))[0]:
             place = mirrored
             target = replace(target, position=complex(shape(np.array([place]))[0]), rotation=None)
         targets[handle.id] = replace(
@@ -56,11 +56,11 @@ def flipped_targets(
 
 def _flip(rig: Rig, pose: Pose, axis: float, pairs: SidePairs) -> Pose:
     likeness = Likeness.reflection(axis)
-    targets = flipped_targets(rig.figure, pose, axis, pairs)
-    shape = rig.figure.map_of(pose)
+    targets = flipped_targets(rig.layer, pose, axis, pairs)
+    shape = rig.layer.map_of(pose)
     pins = [
         Target(position=likeness.moved(shape, joint, pin.position, joint))
-        for joint, pin in zip(rig.pins, pins_of(rig.figure, pose), strict=True)
+        for joint, pin in zip(rig.pins, pins_of(rig.layer, pose), strict=True)
     ]
-    begin, ways = begin_like(rig, rig.figure, pose, likeness, targets)
+    begin, ways = begin_like(rig, rig.layer, pose, likeness, targets)
     return solve_from(rig, begin, targets, pins, ways)

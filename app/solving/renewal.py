@@ -8,13 +8,13 @@ import numpy as np
 from app.document import (
     Command,
     Document,
-    Figure,
+    Layer,
     Meshing,
     Pose,
     Target,
     carried_over,
-    figure_commands,
     layer_commands,
+    shape_commands,
 )
 from app.solving.drag import Rig, fit_map, pins_of
 from engine.arrays import Bytes
@@ -28,36 +28,36 @@ AT_REST = 1e-3  # pixels that coefficients of the drawing at rest may lack
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Renewal:
-    """A figure on its way to other bounds, another domain or another picture.
+    """A layer on its way to other bounds, another domain or another picture.
 
     Parameters
     ----------
-    before : Figure
+    before : Layer
     bounds : Bounds
         Of the poses to come.
     meshing : Meshing, optional
         What the domain of its picture is built anew with; None builds none.
     pulls : bool
         Whether poses that are within the bounds already are pulled to their targets again, too.
-    into : Figure, optional
-        The figure with the new domain, all poses at rest, once that is built.
+    into : Layer, optional
+        The layer with the new domain, all poses at rest, once that is built.
     replaces : bool
         Whether that is another picture's.
     rig : Rig, optional
         None before the first key.
     poses : tuple of Pose
-        Those that are solved, in the order of `Figure.poses`.
+        Those that are solved, in the order of `Layer.poses`.
     outside : tuple of str
         Those that found no way into the bounds, and stay as they were, in words.
     notices : tuple of str
         What was remedied, in words.
     """
 
-    before: Figure
+    before: Layer
     bounds: Bounds
     meshing: Meshing | None = None
     pulls: bool = True
-    into: Figure | None = None
+    into: Layer | None = None
     replaces: bool = False
     rig: Rig | None = None
     poses: tuple[Pose, ...] = ()
@@ -88,11 +88,11 @@ class Renewal:
         """What makes one step of undo of all of it."""
         identity, into = self.before.id, self.into
         if into is None:
-            return figure_commands.set_bounds(identity, self.bounds, self.poses)
+            return shape_commands.set_bounds(identity, self.bounds, self.poses)
         if self.replaces:
-            posed = figure_commands.set_bounds(identity, self.bounds, self.poses)
-            return _joined("Replace picture", layer_commands.replace_figure(identity, into), posed)
-        domain = figure_commands.replace_domain(identity, into.domain, into.meshing, self.poses)
+            posed = shape_commands.set_bounds(identity, self.bounds, self.poses)
+            return _joined("Replace picture", layer_commands.replace_layer(identity, into), posed)
+        domain = shape_commands.replace_domain(identity, into.domain, into.meshing, self.poses)
         return _joined(domain.label, domain, layer_commands.keep_joints(identity))
 
 
@@ -113,7 +113,7 @@ def go_on(renewal: Renewal, picture: Bytes) -> Renewal:
     renewal : Renewal
         One that is not over.
     picture : uint8, shape (h, w, 4)
-        The figure's, decoded.
+        The layer's, decoded.
     """
     if renewal.meshing is not None and renewal.into is None:
         return _with_domain(renewal, picture, renewal.meshing)
@@ -126,12 +126,12 @@ def go_on(renewal: Renewal, picture: Bytes) -> Renewal:
     return replace(renewal, rig=rig, poses=(*renewal.poses, pose), outside=outside)
 
 
-def _in_words(figure: Figure, index: int) -> str:
-    """Return where a pose of a figure is: at a key's frame, or under a name in the library."""
-    count = len(figure.keys)
+def _in_words(layer: Layer, index: int) -> str:
+    """Return where a pose of a layer is: at a key's frame, or under a name in the library."""
+    count = len(layer.keys)
     if index < count:
-        return f"at frame {figure.keys[index].frame}"
-    return f"“{figure.library[index - count].name}”"
+        return f"at frame {layer.keys[index].frame}"
+    return f"“{layer.library[index - count].name}”"
 
 
 def _with_domain(renewal: Renewal, picture: Bytes, meshing: Meshing) -> Renewal:
@@ -183,13 +183,13 @@ def carried(target: Target, shape: HarmonicMap, place: complex, to: complex) -> 
     return replace(target, position=target.position + fz / abs(fz) * (to - place))
 
 
-def _carried_over(figure: Figure, pose: Pose, rig: Rig) -> HarmonicMap:
-    """Return the map over the rig's cage that is nearest to a pose over the figure's.
+def _carried_over(layer: Layer, pose: Pose, rig: Rig) -> HarmonicMap:
+    """Return the map over the rig's cage that is nearest to a pose over the layer's.
 
     The pose's map goes on from the old outline up to the old cage, where the new outline may lie.
     """
-    boundary, domain = rig.deformer.boundary, figure.domain
-    shape, rest = figure.map_of(pose), HarmonicMap.identity(domain.cage, domain.holes)
+    boundary, domain = rig.deformer.boundary, layer.domain
+    shape, rest = layer.map_of(pose), HarmonicMap.identity(domain.cage, domain.holes)
     is_at_rest = all(
         np.allclose(one, two, rtol=0.0, atol=AT_REST)
         for one, two in zip(shape.columns, rest.columns, strict=True)

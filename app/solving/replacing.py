@@ -5,15 +5,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.document import Figure, Pose, Target, Track, TrackKey, carried_over
+from app.document import Layer, Pose, Target, Track, TrackKey, carried_over
 from app.solving.renewal import Renewal, carried
 from engine.arrays import Complexes
 from engine.domain import Domain
 from engine.maps import HarmonicMap
 
 
-def begin_replacing(before: Figure, made: Figure, canvas: tuple[int, int]) -> Renewal:
-    """Return a figure on its way to another picture.
+def begin_replacing(before: Layer, made: Layer, canvas: tuple[int, int]) -> Renewal:
+    """Return a layer on its way to another picture.
 
     A picture of the same size lies where the old one did, and one of the canvas's size fills it;
     else the middle of the new shape comes where that of the old one was. Handles and the anchor
@@ -21,9 +21,9 @@ def begin_replacing(before: Figure, made: Figure, canvas: tuple[int, int]) -> Re
 
     Parameters
     ----------
-    before : Figure
-    made : Figure
-        The new picture, its lower left corner at 0, as a figure of its own.
+    before : Layer
+    made : Layer
+        The new picture, its lower left corner at 0, as a layer of its own.
     canvas : tuple of int
         Width and height of the scene.
     """
@@ -51,7 +51,7 @@ def begin_replacing(before: Figure, made: Figure, canvas: tuple[int, int]) -> Re
     return Renewal(before=before, bounds=before.bounds, into=into, replaces=True)
 
 
-def _corner(before: Figure, made: Figure, canvas: tuple[int, int]) -> complex:
+def _corner(before: Layer, made: Layer, canvas: tuple[int, int]) -> complex:
     """Return where the lower left corner of the new picture comes, in whole pixels."""
     if made.picture.size == before.picture.size:
         return before.corner
@@ -66,7 +66,7 @@ def _middle(outline: Complexes) -> complex:
     return complex(x.min() + x.max(), y.min() + y.max()) / 2
 
 
-def _places(before: Figure, domain: Domain) -> Mapping[complex, complex]:
+def _places(before: Layer, domain: Domain) -> Mapping[complex, complex]:
     """Return where handles and the anchor come, by where they were."""
     old = [handle.position for handle in before.handles]
     if before.anchor is not None and before.anchor not in old:
@@ -76,7 +76,7 @@ def _places(before: Figure, domain: Domain) -> Mapping[complex, complex]:
     return dict(pairs)
 
 
-def _replanted(before: Figure, track: Track, places: Mapping[complex, complex]) -> Track:
+def _replanted(before: Layer, track: Track, places: Mapping[complex, complex]) -> Track:
     """Return a track whose places in the picture are moved as its handle is."""
     place = before.handle(track.handles[0]).position
     if not track.planted or places[place] == place:
@@ -90,7 +90,7 @@ def _replanted(before: Figure, track: Track, places: Mapping[complex, complex]) 
     return replace(track, keys=tuple(map(moved, track.keys)))
 
 
-def _at_rest(before: Figure, pose: Pose, domain: Domain, places: Mapping[complex, complex]) -> Pose:
+def _at_rest(before: Layer, pose: Pose, domain: Domain, places: Mapping[complex, complex]) -> Pose:
     """Return a pose over the new domain, at rest, with its wishes moved as the handles are."""
     rest, shape = HarmonicMap.identity(domain.cage, domain.holes), before.map_of(pose)
     targets = {}

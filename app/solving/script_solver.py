@@ -9,9 +9,9 @@ import numpy as np
 
 from app.document import (
     Document,
-    Figure,
     FrameRange,
     Keyframe,
+    Layer,
     Pose,
     Switch,
     Target,
@@ -24,7 +24,7 @@ from app.document import (
 )
 from app.errors import LissomError
 from app.solving.drag import Drag, Rig
-from app.solving.script import FigureScript, PoseKey, PoseScript
+from app.solving.script import LayerScript, PoseKey, PoseScript
 from app.solving.stage import (
     layer_named,
     unmoved,
@@ -36,7 +36,7 @@ from app.solving.stage import (
     with_kept_places,
     with_order,
 )
-from app.storage import still_figure
+from app.storage import still_layer
 from engine.deform import Hand
 from engine.errors import EngineError
 
@@ -48,10 +48,10 @@ SAME_PLACE = 1e-6  # pixels: a handle at rest is where the identity takes it, up
 def pose_document(
     document: Document, script: PoseScript, progress: Callable[[str], None]
 ) -> tuple[Document, tuple[str, ...]]:
-    """Give the figures of a new document the handles, keys and joints of a script.
+    """Give the layers of a new document the handles, keys and joints of a script.
 
     Each key is solved by a drag from the key before, the first one from the drawing as it is. A
-    handle that a key does not name keeps its target of the key before. A script of one figure is
+    handle that a key does not name keeps its target of the key before. A script of one layer is
     for the one in front that is seen; of one with several, layers that are not named stand still.
 
     Parameters
@@ -74,7 +74,7 @@ def pose_document(
         If a layer is not there or hangs on itself, or a handle, a joint or the anchor lies outside
         its shape.
     """
-    named, notices = _by_figure(document, script), list[str]()
+    named, notices = _by_layer(document, script), list[str]()
     document = replace(
         document,
         frames=FrameRange(0, script.last),
@@ -89,14 +89,14 @@ def pose_document(
                 document = _prepared(document, identity, part)
             document, told = _with_material(document, identity, part)
         notices += told
-    if script.figures[0].layer is not None:
-        for figure in document.figures:
-            if figure.id not in named and not figure.still:
-                document = document.with_figure(still_figure(figure))
+    if script.layers[0].layer is not None:
+        for layer in document.layers:
+            if layer.id not in named and not layer.still:
+                document = document.with_layer(still_layer(layer))
     for identity, part in named.items():
         with _whose(part):
-            figure, told = _posed(document.figure(identity), part, progress, loop=script.loop)
-        document = document.with_figure(figure)
+            layer, told = _posed(document.layer(identity), part, progress, loop=script.loop)
+        document = document.with_layer(layer)
         notices += told
     document = with_choices(with_kept_places(with_order(document, script), script), script)
     return document, (
@@ -108,7 +108,7 @@ def pose_document(
 
 
 @contextmanager
-def _whose(part: FigureScript) -> Iterator[None]:
+def _whose(part: LayerScript) -> Iterator[None]:
     """Name the layer in errors, where a script has several."""
     try:
         yield
@@ -119,67 +119,67 @@ def _whose(part: FigureScript) -> Iterator[None]:
 
 
 @contextmanager
-def _among(document: Document, identity: int, part: FigureScript) -> Iterator[None]:
+def _among(document: Document, identity: int, part: LayerScript) -> Iterator[None]:
     """Tell in errors which layer a script took that names none, and how it names them."""
     try:
         yield
     except (LissomError, EngineError) as error:
-        figure = document.figure(identity)
-        names = [repr(each.name) for each in document.figures if each is not figure]
+        layer = document.layer(identity)
+        names = [repr(each.name) for each in document.layers if each is not layer]
         places = [handle.at for handle in part.handles.values()]
         places += [] if part.anchor is None else [part.anchor]
-        are_on_it = figure.covers(np.array(places, dtype=np.complex128)).all()
+        are_on_it = layer.covers(np.array(places, dtype=np.complex128)).all()
         if part.layer is not None or not names or are_on_it:
             raise
-        own = figure.name
+        own = layer.name
         raise LissomError(
             f"{error} The script names no layer, so that its handles are on {own!r}, the one in "
             f"front. The drawing has also {', '.join(names)}: say which layer is meant in "
-            f'"figures": [{{"layer": {json.dumps(own, ensure_ascii=False)}, ...}}].'
+            f'"layers": [{{"layer": {json.dumps(own, ensure_ascii=False)}, ...}}].'
         ) from error
 
 
-def _by_figure(document: Document, script: PoseScript) -> dict[int, FigureScript]:
-    """Return what the script says of the figures, by their ids."""
+def _by_layer(document: Document, script: PoseScript) -> dict[int, LayerScript]:
+    """Return what the script says of the layers, by their ids."""
     named = {}
-    for part in script.figures:
+    for part in script.layers:
         if part.layer is None:
-            posable = [f for f in reversed(document.figures) if not f.still]
+            posable = [f for f in reversed(document.layers) if not f.still]
             seen = [f for f in posable if is_visible(document, f, 0)]
-            figure = next(iter(seen or posable), None)
+            layer = next(iter(seen or posable), None)
         else:
-            figure = layer_named(document, part.layer)
+            layer = layer_named(document, part.layer)
         is_posed = bool(part.handles) or len(part.keys) > 1 or part.layer is None
-        if figure is None or (figure.still and is_posed):
+        if layer is None or (layer.still and is_posed):
             raise LissomError(
                 f"the layer {part.layer!r} stands still: there is no shape on it to be posed; it "
                 "may be moved as a whole, without handles and with one key"
             )
-        named[figure.id] = part
+        named[layer.id] = part
     return named
 
 
-def _prepared(document: Document, identity: int, part: FigureScript) -> Document:
-    """Return the document with a figure's handles, settings and joint."""
-    first = document.figure(identity).next_handle
+def _prepared(document: Document, identity: int, part: LayerScript) -> Document:
+    """Return the document with a layer's handles, settings and joint."""
+    first = document.layer(identity).next_handle
     for name, handle in part.handles.items():
-        added = document.figure(identity).next_handle
+        added = document.layer(identity).next_handle
         document = handle_commands.add_handle(identity, handle.at, name=name)(document)
         document = layer_commands.set_front(identity, added, handle.front, handle.extent)(document)
         document = handle_commands.free_handles(identity, {added}, free=not handle.still)(document)
-    figure = document.figure(identity)
+    layer = document.layer(identity)
     if part.visible is not None:
         # What the script says holds, whatever is hidden in the drawing.
         document = layer_commands.reveal(identity)(document)
         switches = tuple(Switch(frame, visible) for frame, visible in part.visible)
-        figure = replace(document.figure(identity), switches=switches)
+        layer = replace(document.layer(identity), switches=switches)
     if isinstance(part.opacity, tuple):
-        figure = replace(figure, opacities=part.opacity)
+        layer = replace(layer, opacities=part.opacity)
     elif part.opacity is not None:
-        figure = replace(figure, opacity=part.opacity)
-    document = document.with_figure(
+        layer = replace(layer, opacity=part.opacity)
+    document = document.with_layer(
         replace(
-            figure,
+            layer,
             variant=part.variant,
             bounds=part.bounds,
             anchor=part.anchor,
@@ -203,13 +203,13 @@ def _prepared(document: Document, identity: int, part: FigureScript) -> Document
 
 
 def _with_material(
-    document: Document, identity: int, part: FigureScript
+    document: Document, identity: int, part: LayerScript
 ) -> tuple[Document, list[str]]:
-    """Return the document with a figure's stiff and soft parts; tell of those that reach none."""
+    """Return the document with a layer's stiff and soft parts; tell of those that reach none."""
     notices = []
     for each in part.parts:
         at, options = each.around, {"radius": each.radius, "amount": each.amount}
-        _, reached = brushed_stiffness(document.figure(identity), [at], **options)
+        _, reached = brushed_stiffness(document.layer(identity), [at], **options)
         if not reached:
             whose = "" if part.layer is None else f"{part.layer}, "
             notices.append(
@@ -217,10 +217,10 @@ def _with_material(
                 f"{at.imag:g}): nothing is stiff or soft there"
             )
         document = material_commands.paint(identity, [at], **options)(document)
-    ids = [handle.id for handle in document.figure(identity).handles]
+    ids = [handle.id for handle in document.layer(identity).handles]
     for bone in part.bones:
         ends = (ids[bone.ends[0]], ids[bone.ends[1]])
-        first, second = (document.figure(identity).handle(end).name for end in ends)
+        first, second = (document.layer(identity).handle(end).name for end in ends)
         try:
             document = material_commands.add_bone(identity, ends, bone.amount)(document)
         except EngineError as error:
@@ -229,12 +229,12 @@ def _with_material(
 
 
 def _posed(
-    figure: Figure, part: FigureScript, progress: Callable[[str], None], *, loop: bool
-) -> tuple[Figure, list[str]]:
-    rig = Rig.of(figure)
-    pose = figure.keys[0].pose
+    layer: Layer, part: LayerScript, progress: Callable[[str], None], *, loop: bool
+) -> tuple[Layer, list[str]]:
+    rig = Rig.of(layer)
+    pose = layer.keys[0].pose
     whose = "" if part.layer is None else f"{part.layer}, "
-    identities = {handle.name: handle.id for handle in figure.handles}
+    identities = {handle.name: handle.id for handle in layer.handles}
     keys: list[Keyframe] = []
     notices: list[str] = []
     for key in part.keys:
@@ -261,11 +261,11 @@ def _posed(
                 frame=key.frame, pose=pose, easing=key.ease, passing=key.passing, fronts=fronts
             )
         )
-    posed = replace(figure, keys=tuple(keys), cycles=part.cycles)
+    posed = replace(layer, keys=tuple(keys), cycles=part.cycles)
     return posed, [*notices, *(whose + notice for notice in unrepeated(posed, part))]
 
 
-def _repeated(part: FigureScript, keys: Sequence[Keyframe], key: PoseKey) -> Keyframe | None:
+def _repeated(part: LayerScript, keys: Sequence[Keyframe], key: PoseKey) -> Keyframe | None:
     """Return the key of a cycle that is shown again at another key; None where there is none."""
     for cycle in part.cycles:
         if key.frame >= cycle.last and cycle.covers(key.frame):
@@ -285,20 +285,20 @@ def _wishes_alike(rig: Rig, pose: Pose, other: Pose) -> bool:
 
 def _solve(rig: Rig, start: Pose, key: PoseKey) -> tuple[Pose, list[str]]:
     """Drag the handles from a pose to the targets of a key."""
-    figure = rig.figure
-    identities = {handle.name: handle.id for handle in figure.handles}
+    layer = rig.layer
+    identities = {handle.name: handle.id for handle in layer.handles}
     named = {identities[name]: place for name, place in key.targets.items()}
     turned = {identities[name]: turn for name, turn in key.turns.items()}
-    carried = figure.followers & named.keys()
+    carried = layer.followers & named.keys()
     notices = [
-        f"frame {key.frame}: {figure.handle(identity).name!r} follows by its spring, and goes "
+        f"frame {key.frame}: {layer.handle(identity).name!r} follows by its spring, and goes "
         "where the body carries it, whatever its target"
         for identity in sorted(carried)
     ]
     for identity in carried:
         del named[identity]
     targets = dict(start.targets)
-    for identity in named.keys() | (turned.keys() - figure.followers):
+    for identity in named.keys() | (turned.keys() - layer.followers):
         before = targets[identity]
         place = named.get(identity, before.position)
         targets[identity] = Target(position=place, rotation=turned.get(identity, before.rotation))
@@ -309,14 +309,14 @@ def _solve(rig: Rig, start: Pose, key: PoseKey) -> tuple[Pose, list[str]]:
         return start, notices
     hands = tuple(Hand((identity,), key.pull) for identity in named)
     drag = Drag.begin(rig, start).towards(targets, MOST_STEPS, hands)
-    shortfall = find_shortfall(figure, drag.pose(targets))
+    shortfall = find_shortfall(layer, drag.pose(targets))
     drag, released = drag.release(targets, hands)
     left = {**targets, **released}
     pose = drag.towards(left, MOST_STEPS).pose(left)
     # Joints of bones give way: nobody asked them to stay.
     joints = {identity for hand in rig.yielding(hands) for identity in hand.handles}
     notices += [
-        f"frame {key.frame}: {figure.handle(identity).name!r} is {lag:.1f} px short of "
+        f"frame {key.frame}: {layer.handle(identity).name!r} is {lag:.1f} px short of "
         f"its target, {shortfall.reason}"
         for identity, lag in shortfall.lags.items()
         if identity not in joints

@@ -7,7 +7,7 @@ import numpy as np
 from app.document import (
     Attachment,
     Document,
-    Figure,
+    Layer,
     MoveKey,
     OpacityKey,
     Placing,
@@ -21,35 +21,35 @@ from app.document import (
 )
 from app.errors import LissomError, listed
 from app.motion import Joints, anchor_of, hand_over
-from app.solving.script import FigureScript, PoseScript, ScriptJoint
+from app.solving.script import LayerScript, PoseScript, ScriptJoint
 
 
-def layer_named(document: Document, name: str) -> Figure:
+def layer_named(document: Document, name: str) -> Layer:
     """Return the layer with a name."""
-    names = {figure.name: figure for figure in document.figures}
+    names = {layer.name: layer for layer in document.layers}
     if name not in names:
         raise LissomError(f"there is no layer {name!r}; the layers are {listed([*names])}")
     return names[name]
 
 
-def with_joints(document: Document, identity: int, part: FigureScript) -> Document:
-    """Return a document whose figure hangs on others as a script says, in the pose as drawn.
+def with_joints(document: Document, identity: int, part: LayerScript) -> Document:
+    """Return a document whose layer hangs on others as a script says, in the pose as drawn.
 
-    Where a joint has no point, it is the parent's point that is nearest to the figure's anchor.
+    Where a joint has no point, it is the parent's point that is nearest to the layer's anchor.
     """
-    figure = document.figure(identity)
+    layer = document.layer(identity)
     if not part.attach:
         return document
     given = part.attach[0].at if part.anchor is None else part.anchor
-    anchor = anchor_of(figure) if given is None else given
+    anchor = anchor_of(layer) if given is None else given
     joints = tuple(_attachment(document, joint, anchor) for joint in part.attach)
-    if part.anchor is None and not figure.covers(np.array([anchor])).all():
+    if part.anchor is None and not layer.covers(np.array([anchor])).all():
         raise LissomError(
             f"it is attached at ({anchor.real:g}, {anchor.imag:g}), which is on "
             f"{part.attach[0].to!r} but not on itself; give it an anchor by which it hangs there, "
             "or choose a point that is on both"
         )
-    return document.with_figure(replace(figure, anchor=anchor, joints=joints))
+    return document.with_layer(replace(layer, anchor=anchor, joints=joints))
 
 
 def _attachment(document: Document, joint: ScriptJoint, anchor: complex) -> Attachment:
@@ -74,7 +74,7 @@ def with_kept_places(document: Document, script: PoseScript) -> Document:
 
     That is known only when all is posed.
     """
-    for part in script.figures:
+    for part in script.layers:
         for joint in part.attach:
             if part.layer is None or joint.to is None or joint.at is not None:
                 continue
@@ -87,12 +87,12 @@ def with_kept_places(document: Document, script: PoseScript) -> Document:
 
 
 def with_order(document: Document, script: PoseScript) -> Document:
-    """Return a document whose figures lie beside others as a script says."""
-    for part in script.figures:
+    """Return a document whose layers lie beside others as a script says."""
+    for part in script.layers:
         if part.layer is None or not part.order:
             continue
         try:
-            figure = layer_named(document, part.layer)
+            layer = layer_named(document, part.layer)
             placings = tuple(
                 Placing(
                     each.frame,
@@ -101,7 +101,7 @@ def with_order(document: Document, script: PoseScript) -> Document:
                 )
                 for each in part.order
             )
-            document = document.with_figure(replace(figure, placings=placings))
+            document = document.with_layer(replace(layer, placings=placings))
         except LissomError as error:
             raise LissomError(f"layer {part.layer!r}: order: {error}") from error
     return document
@@ -126,11 +126,11 @@ def unmoved(document: Document, script: PoseScript) -> list[str]:
     """Tell of layers that a script moves as a whole, and that hang on others at all times."""
     frames = range(document.frames.first, document.frames.last + 1)
     notices = []
-    for part in script.figures:
+    for part in script.layers:
         if part.layer is None or not part.movement:
             continue
-        figure = layer_named(document, part.layer)
-        carriers = [document.carriers(figure.id, frame)[1:] for frame in frames]
+        layer = layer_named(document, part.layer)
+        carriers = [document.carriers(layer.id, frame)[1:] for frame in frames]
         if all(carriers):
             notices.append(
                 f"{part.layer} hangs on {carriers[0][0].name} and goes with it: its own movement "
@@ -139,10 +139,10 @@ def unmoved(document: Document, script: PoseScript) -> list[str]:
     return notices
 
 
-def unrepeated(figure: Figure, part: FigureScript) -> list[str]:
+def unrepeated(layer: Layer, part: LayerScript) -> list[str]:
     """Tell of what a script lets repeat that has nothing to repeat, or does not come round."""
     opacity = part.opacity if isinstance(part.opacity, tuple) else ()
-    keyed = [key.frame for key in part.keys] + [switch.frame for switch in figure.switches]
+    keyed = [key.frame for key in part.keys] + [switch.frame for switch in layer.switches]
     keyed += [key.frame for key in part.movement] + [key.frame for key in opacity]
     keyed += [placing.frame for placing in part.order]
     notices = [
@@ -150,21 +150,21 @@ def unrepeated(figure: Figure, part: FigureScript) -> list[str]:
         for cycle in part.cycles
         if not (
             any(map(cycle.has, keyed))
-            or any(cycle.takes(track.keys) for track in figure.tracks)
-            or joints_repeat(figure.joints, cycle)
+            or any(cycle.takes(track.keys) for track in layer.tracks)
+            or joints_repeat(layer.joints, cycle)
         )
     ]
     rows: dict[str, tuple[MoveKey, ...] | tuple[OpacityKey, ...]]
     rows = {"movement": part.movement, "opacity": opacity}
     for name, row in rows.items():
         cycle = next((each for each in part.cycles if len(row) > 1 and each.takes(row)), None)
-        if cycle is not None and repeating(figure, row) is None:
+        if cycle is not None and repeating(layer, row) is None:
             notices.append(
                 f"its {name} ends otherwise than it begins in {cycle.told}, and does not repeat"
             )
     for cycle in part.cycles:
-        changes = any(cycle.first < joint.frame < cycle.last for joint in figure.joints)
-        if changes and not joints_repeat(figure.joints, cycle):
+        changes = any(cycle.first < joint.frame < cycle.last for joint in layer.joints)
+        if changes and not joints_repeat(layer.joints, cycle):
             notices.append(
                 f"what it hangs on changes in the repeats of {cycle.told}, too, or is another one "
                 "at their end than at their beginning, and does not repeat"
@@ -176,10 +176,10 @@ def unturned(document: Document) -> list[str]:
     """Tell of choices whose turns are in a stretch that repeats for some of their layers only."""
     notices = []
     for choice in document.choices:
-        figures = [document.figure(each) for each in choice.figures]
-        cycles = dict.fromkeys(cycle for each in figures for cycle in each.cycles)
+        layers = [document.layer(each) for each in choice.layers]
+        cycles = dict.fromkeys(cycle for each in layers for cycle in each.cycles)
         cycle = next((each for each in cycles if turns_in(choice, each)), None)
-        others = [each.name for each in figures if cycle not in each.cycles]
+        others = [each.name for each in layers if cycle not in each.cycles]
         if cycle is not None and others:
             notices.append(
                 f"choice {choice.name!r}: its keys do not repeat, as {cycle.told} do not of "
@@ -192,13 +192,13 @@ def unseen(document: Document, script: PoseScript) -> list[str]:
     """Tell of layers that a script poses, switches or chooses, and that are never seen so."""
     first, last = document.frames.first, document.frames.last
     notices = []
-    for part in script.figures:
+    for part in script.layers:
         if part.layer is None:
             continue
-        figure = layer_named(document, part.layer)
-        choice = document.choice_of(figure.id)
+        layer = layer_named(document, part.layer)
+        choice = document.choice_of(layer.id)
         late = [frame for frame, visible in part.visible or () if visible and frame > last]
-        if any(is_visible(document, figure, frame) for frame in range(first, last + 1)):
+        if any(is_visible(document, layer, frame) for frame in range(first, last + 1)):
             continue
         if choice is not None:
             notices.append(f"{part.layer} is never seen: the choice {choice.name!r} never shows it")
@@ -219,7 +219,7 @@ def unseen(document: Document, script: PoseScript) -> list[str]:
         for given in script.choices
         for frame, layer in given.turns
     ]
-    for part in script.figures:
+    for part in script.layers:
         late_changes += [(f"what {part.layer} hangs on", joint.frame) for joint in part.attach]
         late_changes += [(f"the order of {part.layer}", each.frame) for each in part.order]
     return notices + [

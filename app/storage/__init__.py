@@ -71,7 +71,7 @@ from app.storage.layers import (
     open_pictures as open_pictures,
     posable_layer as posable_layer,
     read_layered as read_layered,
-    still_figure as still_figure,
+    still_layer as still_layer,
     still_picture as still_picture,
 )
 from app.storage.opening import (

@@ -231,6 +231,8 @@ class Field:
         What it is where it is not written, and where it is, it is not written.
     earlier : object, optional
         What it was in files of before it was written, as it always is now.
+    was : str, optional
+        Its name in earlier files, which is read as well.
     """
 
     name: str
@@ -238,6 +240,7 @@ class Field:
     of: Callable[[Any], Any] | None = None
     usual: Any = MISSING
     earlier: Any = MISSING
+    was: str = ""
 
     def told(self, value: Any) -> Any:
         """Return what the field is of an object."""
@@ -246,9 +249,10 @@ class Field:
     def read(self, content: JsonObject, where: str) -> Any:
         """Return what the field of some JSON is."""
         absent = self.earlier if self.usual is MISSING else self.usual
-        if self.name not in content and absent is not MISSING:
+        name = self.was if self.name not in content and self.was in content else self.name
+        if name not in content and absent is not MISSING:
             return absent
-        return self.codec.read(content[self.name], f"{where}.{self.name}" if where else self.name)
+        return self.codec.read(content[name], f"{where}.{name}" if where else name)
 
 
 def record(
@@ -267,6 +271,7 @@ def record(
         Returns what else there was in an object.
     """
     known = {field.name: field.codec.known for field in fields}
+    known |= {field.was: field.codec.known for field in fields if field.was}
 
     def write(value: Any) -> dict[str, Any]:
         told = ((field, field.told(value)) for field in fields)

@@ -1,4 +1,4 @@
-"""From a drawing on layers, or several pictures, to figures of one scene."""
+"""From a drawing on layers, or several pictures, to layers of one scene."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -11,13 +11,13 @@ from app.document import (
     Composite,
     Document,
     ExportSettings,
-    Figure,
     Framing,
+    Layer,
     Meshing,
     PictureFile,
     composed,
     is_visible,
-    new_figure,
+    new_layer,
 )
 from app.errors import LissomError, Told, shown_name
 from app.storage.files import read_file
@@ -59,7 +59,7 @@ def read_layered(path: Path) -> LayeredPicture:
 
 
 def open_layered(path: Path, meshing: Meshing) -> OpenedScene:
-    """Read a drawing on layers, and make each of them a figure.
+    """Read a drawing on layers, and make each of them a layer.
 
     A layer that is opaque all over, or on which no shape is found, becomes a still picture. All
     layers together have the triangles that one picture would have.
@@ -71,19 +71,19 @@ def open_merged(path: Path, meshing: Meshing, cut_out: CutOut = CutOut()) -> Ope
     """Read a drawing on layers, as one picture of all that is seen of them."""
     scene = open_layered(path, Meshing(detail="coarse", triangles=FEWEST_TRIANGLES))
     textures = {
-        figure.id: cut_picture(scene.pictures[figure.id], figure.cut_out).texture
-        for figure in scene.document.figures
+        layer.id: cut_picture(scene.pictures[layer.id], layer.cut_out).texture
+        for layer in scene.document.layers
     }
     merged = encode_png(Image.fromarray(flattened(scene.document, textures)))
     opened = scene_of(merged, path.with_suffix(".png"), meshing, cut_out)
-    count = len(scene.document.figures)
+    count = len(scene.document.layers)
     told = (f"the {count} layers of {path.name} are merged into one drawing",) if count > 1 else ()
     document = replace(opened.document, told=scene.document.told)
     return opened._replace(document=document, notices=told + opened.notices)
 
 
 def open_pictures(paths: Sequence[Path], meshing: Meshing) -> OpenedScene:
-    """Read several pictures, and make each of them a figure, the first one behind all others.
+    """Read several pictures, and make each of them a layer, the first one behind all others.
 
     The canvas is as large as the largest of them; the others stand in its middle.
     """
@@ -111,7 +111,7 @@ def flattened(document: Document, textures: Mapping[int, Bytes]) -> Bytes:
     Parameters
     ----------
     textures : mapping of int to uint8, shape (h, w, 4)
-        What is cut out of the figures' pictures, by their ids.
+        What is cut out of the layers' pictures, by their ids.
 
     Returns
     -------
@@ -119,17 +119,17 @@ def flattened(document: Document, textures: Mapping[int, Bytes]) -> Bytes:
         With straight alpha.
     """
     factor = max(1, max(document.canvas) // LARGEST_FLAT)
-    if len(document.figures) == 1:
-        return np.asarray(_reduced(textures[document.figures[0].id], factor))
+    if len(document.layers) == 1:
+        return np.asarray(_reduced(textures[document.layers[0].id], factor))
     size = -(-document.canvas[0] // factor), -(-document.canvas[1] // factor)
 
-    def drawn(figure: Figure) -> Image.Image:
-        imported, corner = _reduced(textures[figure.id], factor), figure.corner / factor
+    def drawn(layer: Layer) -> Image.Image:
+        imported, corner = _reduced(textures[layer.id], factor), layer.corner / factor
         moved = Image.new("RGBA", size)
         moved.paste(imported, (round(corner.real), round(size[1] - corner.imag - imported.height)))
         return moved
 
-    def over(flat: Image.Image, parts: Sequence[Figure | Composite[Figure]]) -> Image.Image:
+    def over(flat: Image.Image, parts: Sequence[Layer | Composite[Layer]]) -> Image.Image:
         for part in parts:
             if isinstance(part, Composite) and part.passes:
                 faded = Image.blend(
@@ -148,7 +148,7 @@ def flattened(document: Document, textures: Mapping[int, Bytes]) -> Bytes:
     return readonly(np.asarray(painted))
 
 
-def _blended(below: Image.Image, above: Image.Image, how: Composite[Figure]) -> Image.Image:
+def _blended(below: Image.Image, above: Image.Image, how: Composite[Layer]) -> Image.Image:
     """Return a layer over what lies below it ("Compositing and Blending Level 1", Section 10)."""
     alpha = above.getchannel("A").point(lambda a: round(how.opacity * a))
     covered = below.getchannel("A")
@@ -175,13 +175,13 @@ def _reduced(rgba: Bytes, factor: int) -> Image.Image:
 
 def posable_layer(
     imported: ImportedLayer, identity: int, meshing: Meshing, *, is_cut_out: bool
-) -> tuple[Figure, tuple[str, ...]]:
-    """Return the figure of a layer, as it was drawn, and what was done, in words.
+) -> tuple[Layer, tuple[str, ...]]:
+    """Return the layer of a layer, as it was drawn, and what was done, in words.
 
     Parameters
     ----------
     identity : int
-        The figure's id.
+        The layer's id.
     is_cut_out : bool
         Whether its transparency alone tells what is drawn. Then a layer that is opaque all over
         becomes a still picture; else a plain background is taken off first.
@@ -202,8 +202,8 @@ def posable_layer(
             still = False
         except EngineError as error:
             notices = (f"stands still: {error}",)
-    figure = replace(
-        new_figure(file, domain.moved(imported.corner), meshing, WHOLE if still else cut_out),
+    layer = replace(
+        new_layer(file, domain.moved(imported.corner), meshing, WHOLE if still else cut_out),
         id=identity,
         name=imported.name,
         corner=imported.corner,
@@ -214,38 +214,38 @@ def posable_layer(
         clipped=imported.clipped,
         group=imported.group,
     )
-    return figure, notices
+    return layer, notices
 
 
-def still_picture(data: bytes, picture: Picture) -> Figure:
-    """Return the figure of a picture that stands still, its lower left corner at 0."""
+def still_picture(data: bytes, picture: Picture) -> Layer:
+    """Return the layer of a picture that stands still, its lower left corner at 0."""
     file = PictureFile(data=data, suffix=picture.suffix, size=picture.size)
-    made = new_figure(file, rectangle_domain(*picture.size), Meshing(), WHOLE)
+    made = new_layer(file, rectangle_domain(*picture.size), Meshing(), WHOLE)
     return replace(made, still=True)
 
 
-def still_figure(figure: Figure) -> Figure:
-    """Return the figure as a picture that stands still where it was drawn, cut out as it is.
+def still_layer(layer: Layer) -> Layer:
+    """Return the layer as a picture that stands still where it was drawn, cut out as it is.
 
     What it is as a layer it stays, in time, too: it hangs, moves, fades and repeats as before.
     """
-    domain = rectangle_domain(*figure.picture.size).moved(figure.corner)
-    rest = new_figure(figure.picture, domain, figure.meshing, figure.cut_out)
-    return as_layer(replace(rest, still=True), figure)
+    domain = rectangle_domain(*layer.picture.size).moved(layer.corner)
+    rest = new_layer(layer.picture, domain, layer.meshing, layer.cut_out)
+    return as_layer(replace(rest, still=True), layer)
 
 
-def as_layer(figure: Figure, replaced: Figure) -> Figure:
-    """Return a figure as it is drawn in the place of a layer, be that a still picture or not."""
+def as_layer(layer: Layer, replaced: Layer) -> Layer:
+    """Return a layer as it is drawn in the place of a layer, be that a still picture or not."""
     anchor = replaced.anchor
     if anchor is not None:
-        anchor = complex(figure.domain.nearest(np.array([anchor]))[0])
+        anchor = complex(layer.domain.nearest(np.array([anchor]))[0])
     return replace(
-        figure,
+        layer,
         id=replaced.id,
         name=replaced.name,
         corner=replaced.corner,
         anchor=anchor,
-        keys=(replace(figure.keys[0], frame=replaced.keys[0].frame),),
+        keys=(replace(layer.keys[0], frame=replaced.keys[0].frame),),
         cycles=replaced.cycles,
         reference=replaced.reference,
         locked=replaced.locked,
@@ -273,21 +273,21 @@ def _scene(drawing: LayeredPicture, meshing: Meshing, *, is_cut_out: bool) -> Op
     )
     # Layers that share a picture share its file.
     files: dict[int, PictureFile] = {}
-    figures = tuple(
-        replace(figure, picture=files.setdefault(id(imported.picture), figure.picture))
-        for imported, (figure, _) in zip(drawing.layers, made, strict=True)
+    layers = tuple(
+        replace(layer, picture=files.setdefault(id(imported.picture), layer.picture))
+        for imported, (layer, _) in zip(drawing.layers, made, strict=True)
     )
-    if all(figure.still for figure in figures):
+    if all(layer.still for layer in layers):
         raise LissomError("none of its layers can be posed: there is no shape on any of them")
     pictures = {index: imported.picture for index, imported in enumerate(drawing.layers)}
     told = Told()
-    for figure, notices in made:
+    for layer, notices in made:
         for notice in notices:
-            told.note(figure.name, notice)
+            told.note(layer.name, notice)
     # A drawing with a background has a frame of its own.
-    framing: Framing = "canvas" if figures[0].still else "fit"
+    framing: Framing = "canvas" if layers[0].still else "fit"
     document = Document(
-        figures=figures,
+        layers=layers,
         size=drawing.size,
         export=ExportSettings(framing=framing),
         groups=drawing.groups,

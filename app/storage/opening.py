@@ -6,7 +6,7 @@ from functools import cache
 from pathlib import Path
 from typing import NamedTuple, Self
 
-from app.document import Document, Meshing, PictureFile, new_figure
+from app.document import Document, Meshing, PictureFile, new_layer
 from app.errors import shown_name
 from app.storage.files import read_file
 from app.storage.pictures import Picture, decode_picture
@@ -16,7 +16,7 @@ from engine.errors import EngineError
 
 
 class OpenedScene(NamedTuple):
-    """A new document, its decoded pictures by the ids of figures, and what was done, in words.
+    """A new document, its decoded pictures by the ids of layers, and what was done, in words.
 
     What was told of several layers is in the document.
     """
@@ -91,10 +91,10 @@ def scene_of(data: bytes, path: Path, meshing: Meshing, cut_out: CutOut) -> Open
         picture.rgba, triangles=meshing.triangles, detail=meshing.detail, cut_out=cut_out
     )
     file = PictureFile(data=data, suffix=picture.suffix, size=picture.size)
-    figure = new_figure(file, domain, meshing, cut_out)
-    named = replace(figure, name=shown_name(path.stem).strip() or figure.name)
+    layer = new_layer(file, domain, meshing, cut_out)
+    named = replace(layer, name=shown_name(path.stem).strip() or layer.name)
     notices = picture.notices + remedies
-    return OpenedScene(Document(figures=(named,)), {named.id: picture}, notices)
+    return OpenedScene(Document(layers=(named,)), {named.id: picture}, notices)
 
 
 def cut_picture(picture: Picture, cut_out: CutOut, *, is_alone: bool = True) -> Cut:

@@ -1,7 +1,7 @@
 """Saving and opening projects.
 
 A project is a zip file: `mimetype` (first, not packed), `project.json`, `thumbnail.png`, and for
-each figure, under `figures/` and its id, the picture, the arrays of the domain, and the maps of its
+each layer, under `layers/` and its id, the picture, the arrays of the domain, and the maps of its
 poses. The maps are stored, not solved again, so that another solver never changes an animation.
 Fields and members that this version does not know are handed on.
 
@@ -21,7 +21,7 @@ from types import MappingProxyType
 from typing import IO, Final
 from weakref import WeakSet
 
-from app.document import Document, Figure
+from app.document import Document, Layer
 from app.errors import EXPECTED_ERRORS, LissomError, shortened
 from app.storage.files import (
     DAMAGED_ZIP,
@@ -37,7 +37,7 @@ from app.storage.project import (
     NO_PROJECT,
     SCHEMA,
     Archive,
-    figure_members,
+    layer_members,
     read_document,
     write_archive,
     write_document,
@@ -54,7 +54,7 @@ NEWER_LISSOM = (
     "it was saved by a newer Lissom ({version}, schema {schema}); this version reads schema {own}. "
     "Update Lissom to open it"
 )
-_readable: Final = WeakSet[Figure]()  # figures that were read of a file as they are
+_readable: Final = WeakSet[Layer]()  # layers that were read of a file as they are
 
 
 def save_project(
@@ -80,8 +80,8 @@ def save_project(
     members = {
         PROJECT_JSON: json.dumps(content, indent=1, sort_keys=True, allow_nan=False).encode(),
     }
-    for figure in document.figures:
-        members |= figure_members(figure)
+    for layer in document.layers:
+        members |= layer_members(layer)
     if thumbnail is not None:
         members[THUMBNAIL] = thumbnail
     # Later versions may know better, but never what this one writes.
@@ -126,7 +126,7 @@ def load_project(path: Path) -> Document:
         raise LissomError(f"cannot open {path}: {error}") from error
     except DAMAGED_ZIP as error:
         raise LissomError(f"{path} {NO_PROJECT}, or it is damaged") from error
-    _readable.update(document.figures)
+    _readable.update(document.layers)
     return document
 
 
@@ -150,10 +150,10 @@ def _require_readable(
     """Refuse a file that was just written unless it can be opened again.
 
     Its values and sizes are read; arrays are those in memory, and their maps are proven already.
-    Figures that were read before, as nearly all are when a project is saved again, are as readable
+    Layers that were read before, as nearly all are when a project is saved again, are as readable
     now.
     """
-    known = {figure.id: figure for figure in document.figures if figure in _readable}
+    known = {layer.id: layer for layer in document.layers if layer in _readable}
     arrays = {name: content for name, content in members.items() if name != PROJECT_JSON}
     size = file.seek(0, os.SEEK_END)
     try:
@@ -163,10 +163,10 @@ def _require_readable(
         raise LissomError(
             f"cannot write {path}, as Lissom could not open it again: {error}"
         ) from error
-    _readable.update(document.figures)
+    _readable.update(document.layers)
 
 
-def _read(archive: Archive, known: Mapping[int, Figure] = MappingProxyType({})) -> Document:
+def _read(archive: Archive, known: Mapping[int, Layer] = MappingProxyType({})) -> Document:
     content = _read_json(archive)
     schema = as_whole(content["schema"], "schema")
     if schema > SCHEMA:

@@ -54,11 +54,11 @@ def test_pipx_puts_it_beside(home):
 def test_uv_has_no_pip(home, monkeypatch):
     receipt = home / "uv-receipt.toml"
     receipt.touch()
-    told = f"uv pip install --python {home} '{errors.required_library('figures')}'"
-    assert errors.missing("figures") == told
+    told = f"uv pip install --python {home} '{errors.required_library('layers')}'"
+    assert errors.missing("layers") == told
     receipt.unlink()
     monkeypatch.setattr(errors, "find_spec", lambda _: None)
-    assert errors.missing("figures") == told
+    assert errors.missing("layers") == told
 
 
 @pytest.mark.usefixtures("home")

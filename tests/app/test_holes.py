@@ -1,4 +1,4 @@
-"""A figure with a hole, through document, files, motion, solving and the command line."""
+"""A layer with a hole, through document, files, motion, solving and the command line."""
 
 from dataclasses import replace
 from functools import cache
@@ -10,7 +10,7 @@ from holed_shapes import Holed, boundary_of, random_map, ring
 from numpy.testing import assert_allclose, assert_array_equal
 
 from app.cli.main import main
-from app.document import Document, Handle, Keyframe, Meshing, Pose, Target, clip_of, new_figure
+from app.document import Document, Handle, Keyframe, Meshing, Pose, Target, clip_of, new_layer
 from app.errors import LissomError
 from app.motion import Animation
 from app.motion.posable_mesh import PosableMesh
@@ -42,7 +42,7 @@ def document() -> Document:
     mesh = triangulate(outline, 1500, holes=shape().loops[1:])
     domain = Domain(outline=outline, cage=shape().cage, mesh=mesh, holes=shape().holes)
     require_domain(domain)
-    figure = new_figure(PICTURE, domain, Meshing())
+    layer = new_layer(PICTURE, domain, Meshing())
     handle = Handle(id=0, name="rim", position=MIDDLE + 0.75 * RADIUS)
     boundary = Boundary.sample(domain.outline, domain.cage, domain.holes)
     keys = []
@@ -63,14 +63,14 @@ def document() -> Document:
             certificate=certify(f, boundary, Bounds()),
         )
         keys.append(Keyframe(frame=12 * number, pose=pose))
-    figure = replace(figure, handles=(handle,), next_handle=1, keys=tuple(keys))
-    return Document(figures=(figure,))
+    layer = replace(layer, handles=(handle,), next_handle=1, keys=tuple(keys))
+    return Document(layers=(layer,))
 
 
 def test_a_project_keeps_holes_and_maps_bit_for_bit(tmp_path):
     path = tmp_path / "ring.lissom"
     save_project(path, document())
-    (before,), (after,) = document().figures, load_project(path).figures
+    (before,), (after,) = document().layers, load_project(path).layers
     for one, two in zip(before.domain.holes, after.domain.holes, strict=True):
         assert_array_equal(one.outline, two.outline)
         assert_array_equal(one.cage, two.cage)
@@ -82,30 +82,30 @@ def test_a_project_keeps_holes_and_maps_bit_for_bit(tmp_path):
 
 
 def test_a_handle_or_anchor_in_a_hole_is_refused():
-    (figure,) = document().figures
+    (layer,) = document().layers
     with pytest.raises(LissomError, match="lies outside the shape"):
-        replace(figure, anchor=MIDDLE)
+        replace(layer, anchor=MIDDLE)
     with pytest.raises(LissomError, match="lies outside the shape"):
-        replace(figure, handles=(replace(figure.handles[0], position=MIDDLE + 3),))
-    pose = replace(figure.keys[0].pose, logs=np.empty(0))
+        replace(layer, handles=(replace(layer.handles[0], position=MIDDLE + 3),))
+    pose = replace(layer.keys[0].pose, logs=np.empty(0))
     with pytest.raises(LissomError, match="is around 0 holes, not 1"):
-        replace(figure, keys=(Keyframe(frame=0, pose=pose),))
+        replace(layer, keys=(Keyframe(frame=0, pose=pose),))
 
 
 def test_the_screen_shows_the_map_around_a_hole():
-    (figure,) = document().figures
-    pose = figure.keys[1].pose
-    mesh = PosableMesh.fine(figure.domain)
-    expected = figure.map_of(pose)(figure.domain.mesh.vertices)
+    (layer,) = document().layers
+    pose = layer.keys[1].pose
+    mesh = PosableMesh.fine(layer.domain)
+    expected = layer.map_of(pose)(layer.domain.mesh.vertices)
     assert_allclose(mesh.posed(pose), expected, rtol=0, atol=1e-3)
 
 
 def test_a_motion_around_a_hole_is_certified_and_its_correction_told(tmp_path, capsys):
     path = tmp_path / "ring.lissom"
-    (figure,) = document().figures
-    from_key_to_key = Document(figures=(replace(figure, keys=figure.keys[:2]),))
+    (layer,) = document().layers
+    from_key_to_key = Document(layers=(replace(layer, keys=layer.keys[:2]),))
     save_project(path, from_key_to_key)
-    clip = clip_of(from_key_to_key, figure.id)
+    clip = clip_of(from_key_to_key, layer.id)
     report = certify_clip(clip)
     assert all(own.certified for _, own in report.keys)
     for interval in report.intervals:
@@ -116,9 +116,9 @@ def test_a_motion_around_a_hole_is_certified_and_its_correction_told(tmp_path, c
 
 
 def test_frames_keep_the_hole_open():
-    clip = clip_of(document(), document().figures[0].id)
+    clip = clip_of(document(), document().layers[0].id)
     animation = Animation(clip)
-    domain = document().figures[0].domain
+    domain = document().layers[0].domain
     for frame in (0.0, 5.0, 12.0, 20.0):
         places = animation.positions(frame)
         moved = np.split(places[: sum(map(len, domain.loops))], [len(domain.outline)])

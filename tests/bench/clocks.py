@@ -16,7 +16,7 @@ from tests.bench.table import Row, Table, measure
 # Samples, their layers, a handle that wags, and by how many pixels: within and at the bounds.
 WAGS = (
     ("friend", "left arm", "hand", (40.0, 600.0)),
-    ("giraffe", "figure", "tail", (40.0, 400.0)),
+    ("giraffe", "layer", "tail", (40.0, 400.0)),
     ("dragon", "dragon", "tail tip", (40.0, 400.0)),
 )
 
@@ -33,12 +33,12 @@ BRIEF = Extent(wags=(("friend", "left arm", "hand", (40.0,)),), frames=3)
 
 
 def tables(extent: Extent) -> Iterator[Table]:
-    """Measure frames of figures whose handles stay, wag and swing."""
-    for name, layer, handle, sizes in extent.wags:
+    """Measure frames of layers whose handles stay, wag and swing."""
+    for name, chosen, handle, sizes in extent.wags:
         document = load_project(sample_images() / f"{name}.lissom")
-        figure = next(each for each in document.figures if each.name == layer)
-        own = next(each.id for each in figure.handles if each.name == handle)
-        clip = clip_of(document, figure.id)
+        layer = next(each for each in document.layers if each.name == chosen)
+        own = next(each.id for each in layer.handles if each.name == handle)
+        clip = clip_of(document, layer.id)
         rows = _pin_rows(clip, extent.frames)
         for size in sizes:
             keys = tuple(
@@ -46,14 +46,14 @@ def tables(extent: Extent) -> Iterator[Table]:
                 for number in range(8)
             )
             track = Track(handles=(own,), keys=keys)
-            wagging = replace(clip, figure=replace(figure, tracks=(track,), stillness=False))
+            wagging = replace(clip, layer=replace(layer, tracks=(track,), stillness=False))
             rows.append(_row(f"{handle!r} wags by {size:.0f} px", wagging, extent.frames))
         spring = Spring(handle=own, frequency=1.6, damping=0.18)
-        swinging = replace(clip, figure=replace(figure, springs=(spring,), stillness=False))
+        swinging = replace(clip, layer=replace(layer, springs=(spring,), stillness=False))
         rows.append(_row(f"{handle!r} swings on a spring", swinging, extent.frames))
         rows.append(_edit_row(clip, own, extent.frames))
-        count = sum(map(len, figure.domain.cages))
-        yield Table(title=f"A frame of {name}'s {layer}, {count} cage vertices", rows=tuple(rows))
+        count = sum(map(len, layer.domain.cages))
+        yield Table(title=f"A frame of {name}'s {chosen}, {count} cage vertices", rows=tuple(rows))
 
 
 def _pin_rows(clip: Clip, frames: int) -> list[Row]:
@@ -62,20 +62,20 @@ def _pin_rows(clip: Clip, frames: int) -> list[Row]:
     pinned = [n for n, each in enumerate(segments) if each is not None and each.is_pinned.any()]
     if not pinned:
         return []
-    figure = clip.figure
-    handles = np.array([handle.position for handle in figure.handles])
-    loose = replace(clip, figure=replace(figure, stillness=False))
+    layer = clip.layer
+    handles = np.array([handle.position for handle in layer.handles])
+    loose = replace(clip, layer=replace(layer, stillness=False))
     rows, plain = [], 0.0
     for name, each in (("a segment without pins", loose), ("the same with pins", clip)):
 
         def prepare(each: Clip = each) -> None:
-            own = PoseSampler(figure.domain, anchor=figure.anchor, points=handles)
-            AutoPins(each, figure.variant, own).inbetweens(pinned[0], own)
+            own = PoseSampler(layer.domain, anchor=layer.anchor, points=handles)
+            AutoPins(each, layer.variant, own).inbetweens(pinned[0], own)
 
         prepare()  # what is prepared once
         seconds = measure(prepare, repeats=1)
-        mesh = PoseSampler(figure.domain, anchor=figure.anchor)
-        inbetweens = AutoPins(each, figure.variant, mesh).inbetweens(pinned[0], mesh)
+        mesh = PoseSampler(layer.domain, anchor=layer.anchor)
+        inbetweens = AutoPins(each, layer.variant, mesh).inbetweens(pinned[0], mesh)
         series = finish(build_series(Positions.of(inbetweens, mesh.sites)))
 
         def play(series: Series = series) -> None:
@@ -91,13 +91,13 @@ def _pin_rows(clip: Clip, frames: int) -> list[Row]:
 
 def _edit_row(clip: Clip, wagged: int, frames: int) -> Row:
     """Measure all frames of a clip with a track and two springs, in series, from an edit on."""
-    others = [each.id for each in clip.figure.handles if each.id != wagged][:2]
+    others = [each.id for each in clip.layer.handles if each.id != wagged][:2]
     springs = tuple(Spring(handle=each, frequency=1.6, damping=0.18) for each in others)
     keys = tuple(TrackKey(frame=12 * n, place=20.0 * (0, 1j, 0, -1j)[n % 4]) for n in range(9))
-    figure = replace(clip.figure, tracks=(Track(handles=(wagged,), keys=keys),), springs=springs)
+    layer = replace(clip.layer, tracks=(Track(handles=(wagged,), keys=keys),), springs=springs)
     every = 2 * frames
     last = clip.frames.first + every - 1
-    edited = replace(clip, figure=figure, frames=FrameRange(clip.frames.first, last))
+    edited = replace(clip, layer=layer, frames=FrameRange(clip.frames.first, last))
     sampler = Animation(edited).sampler  # what is prepared before the edit
 
     def follow() -> None:
@@ -113,7 +113,7 @@ def _edit_row(clip: Clip, wagged: int, frames: int) -> Row:
 
 
 def _row(name: str, clip: Clip, frames: int) -> Row:
-    handles = np.array([handle.position for handle in clip.figure.handles])
+    handles = np.array([handle.position for handle in clip.layer.handles])
     animation = Animation(clip, points=handles)
     corrections = animation.corrections
     if corrections is None:

@@ -22,7 +22,7 @@ from app.document import (
     Meshing,
     PictureFile,
     clip_of,
-    new_figure,
+    new_layer,
 )
 from app.errors import missing
 from app.export import ExportRequest, KeptPoses, Painter, plan_export
@@ -68,12 +68,12 @@ def tables(extent: Extent) -> Iterator[Table]:
 
 def _speed(extent: Extent) -> Table:
     document = _bending_giraffe(FULL_HD, extent.triangles, frames=extent.frames)
-    figure = document.figures[0]
-    pictures = {figure.id: decode_picture(figure.picture.data, "").rgba}
+    layer = document.layers[0]
+    pictures = {layer.id: decode_picture(layer.picture.data, "").rgba}
     context = create_context()
-    poses = {figure.id: KeptPoses(Animation(clip_of(document, figure.id)))}
+    poses = {layer.id: KeptPoses(Animation(clip_of(document, layer.id)))}
     middle = float((extent.frames - 1) // 2)
-    places = poses[figure.id].positions(middle)
+    places = poses[layer.id].positions(middle)
     with tempfile.TemporaryDirectory() as folder:
         request = ExportRequest(out=Path(folder), settings=document.export, project="giraffe")
         plan = plan_export(document, request, poses)
@@ -163,8 +163,8 @@ def _pinned(folder: Path, name: str, frames: str, repeats: int) -> Table:
     document = load_project(sample_images() / f"{name}.lissom")
     words = {False: "without auto-pins", True: "with auto-pins"}
     for pinned in words:
-        figures = tuple(replace(each, stillness=pinned) for each in document.figures)
-        save_project(folder / f"{pinned}.lissom", replace(document, figures=figures))
+        layers = tuple(replace(each, stillness=pinned) for each in document.layers)
+        save_project(folder / f"{pinned}.lissom", replace(document, layers=layers))
     runs = [
         (pinned, _export(str(folder / f"{pinned}.lissom"), "--frames", frames, "--out", str(out)))
         for number in range(repeats)
@@ -197,8 +197,8 @@ def _bending_giraffe(size: tuple[int, int], triangles: int, *, frames: int = 1) 
     canvas.save(stream, "PNG", compress_level=1)
     file = PictureFile(data=stream.getvalue(), suffix=".png", size=size)
     domain, _ = build_domain(np.asarray(canvas), triangles=triangles, detail="normal")
-    figure = new_figure(file, domain, Meshing())
-    first = figure.keys[0]
+    layer = new_layer(file, domain, Meshing())
+    first = layer.keys[0]
     z = domain.cage - complex(*size) / 2
     # |f_z| stays within half of 1 around it.
     bent = replace(
@@ -207,7 +207,7 @@ def _bending_giraffe(size: tuple[int, int], triangles: int, *, frames: int = 1) 
     last = frames - 1
     keys = (first, Keyframe(frame=last, pose=bent)) if last else (first,)
     return Document(
-        figures=(replace(figure, keys=keys),),
+        layers=(replace(layer, keys=keys),),
         frames=FrameRange(0, last),
         export=ExportSettings(framing="canvas"),
     )

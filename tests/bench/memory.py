@@ -9,7 +9,7 @@ import sys
 import time
 from typing import NamedTuple
 
-UNIT = 1 if sys.platform == "darwin" else 1024  # bytes, of the system's figure
+UNIT = 1 if sys.platform == "darwin" else 1024  # bytes, of the system's layer
 
 
 class Run(NamedTuple):

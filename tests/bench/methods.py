@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.document import Figure, Variant
+from app.document import Layer, Variant
 from engine.baselines import (
     Baseline,
     MeshFrame,
@@ -53,11 +53,11 @@ class Cost(NamedTuple):
 
 def tables(extent: Extent) -> Iterator[Table]:
     """Measure a frame by every method at each size, and how scaled η becomes integrable."""
-    figure = posed_giraffe().figures[0]
+    layer = posed_giraffe().layers[0]
     measured = []
     for vertices in extent.vertices:
-        interval = Interval.of(figure, 2 * vertices)
-        costs = frame_costs(figure, interval)
+        interval = Interval.of(layer, 2 * vertices)
+        costs = frame_costs(layer, interval)
         measured.append((len(interval.mesh.vertices), costs))
         rows = [
             Row(name=name, seconds=cost.seconds, note=cost.note) for name, cost in costs.items()
@@ -65,15 +65,15 @@ def tables(extent: Extent) -> Iterator[Table]:
         title = f"A frame by every method, {len(interval.mesh.vertices):,} vertices"
         yield Table(title=title, rows=tuple(rows))
     yield _ratios(measured)
-    yield _refinement(figure, extent.refined)
+    yield _refinement(layer, extent.refined)
 
 
-def frame_costs(figure: Figure, interval: Interval) -> dict[str, Cost]:
+def frame_costs(layer: Layer, interval: Interval) -> dict[str, Cost]:
     """Return what a frame between the first two keys costs, by the name of the method.
 
     Parameters
     ----------
-    figure : Figure
+    layer : Layer
         With two keys and the handles that made them.
     interval : Interval
         Of these keys, at the vertices of a mesh.
@@ -94,7 +94,7 @@ def frame_costs(figure: Figure, interval: Interval) -> dict[str, Cost]:
         inbetweens = interval.inbetweens(variant)
         costs[f"{variant}, directly"] = Cost(measure(partial(inbetweens.offsets, MIDDLE)))
     for baseline in Baseline:
-        prepared = prepared_for(baseline, figure, interval, (first.map, second.map))
+        prepared = prepared_for(baseline, layer, interval, (first.map, second.map))
         found: list[MeshFrame] = []
 
         def frame(prepared: PreparedBaseline = prepared, found: list[MeshFrame] = found) -> None:
@@ -106,14 +106,14 @@ def frame_costs(figure: Figure, interval: Interval) -> dict[str, Cost]:
 
 
 def prepared_for(
-    baseline: Baseline, figure: Figure, interval: Interval, maps: Sequence[HarmonicMap]
+    baseline: Baseline, layer: Layer, interval: Interval, maps: Sequence[HarmonicMap]
 ) -> PreparedBaseline:
     """Prepare a method; conformal interpolation gets the giraffe bent, its keys not being so."""
     if baseline is Baseline.CONFORMAL:
-        bend = bent(figure.domain.cage)
+        bend = bent(layer.domain.cage)
         still = np.zeros_like(bend.psi)
         maps = (
-            HarmonicMap.identity(figure.domain.cage),
+            HarmonicMap.identity(layer.domain.cage),
             HarmonicMap(cage=bend.cage, phi=bend.phi, psi=still),
         )
     return prepare_baseline(
@@ -121,9 +121,9 @@ def prepared_for(
         maps,
         interval.mesh.vertices,
         interval.mesh.triangles,
-        outline=figure.domain.outline,
-        handles=[handle.position for handle in figure.handles],
-        bounds=figure.bounds,
+        outline=layer.domain.outline,
+        handles=[handle.position for handle in layer.handles],
+        bounds=layer.bounds,
     )
 
 
@@ -146,12 +146,12 @@ def _ratios(measured: Sequence[tuple[int, dict[str, Cost]]]) -> Table:
     return Table(title="A frame of Chen et al. (2013), over one of metric", rows=tuple(rows))
 
 
-def _refinement(figure: Figure, sizes: Sequence[int]) -> Table:
+def _refinement(layer: Layer, sizes: Sequence[int]) -> Table:
     """Measure the Poisson error with discrete harmonic keyframes on finer and finer meshes."""
     errors: dict[Baseline, list[float]] = {Baseline.MESH_ETA: [], Baseline.ARAP: []}
     counts, rows = [], []
     for triangles in sizes:
-        interval = Interval.of(figure, triangles)
+        interval = Interval.of(layer, triangles)
         mesh = interval.mesh
         domain = TriangulatedDomain.of(mesh.vertices, mesh.triangles)
         keys = [

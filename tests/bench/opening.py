@@ -61,9 +61,9 @@ def _two_layers() -> dict[str, bytes]:
     with zipfile.ZipFile(sample_images() / SAMPLE) as archive:
         members = {name: archive.read(name) for name in archive.namelist()}
     content = json.loads(members["project.json"])
-    (figure,) = content["figures"]
-    content["figures"].append(figure | {"id": 1, "name": "other"})
-    twice = {name.replace("figures/0/", "figures/1/"): each for name, each in members.items()}
+    (layer,) = content["layers"]
+    content["layers"].append(layer | {"id": 1, "name": "other"})
+    twice = {name.replace("layers/0/", "layers/1/"): each for name, each in members.items()}
     return members | twice | {"project.json": json.dumps(content).encode()}
 
 
@@ -85,10 +85,10 @@ def _opened(name: str, path: Path) -> Row:
         alternates(document)
         composed(document, {}, document.frames.last)
         exported_frames(document)
-        for figure in document.figures:
-            sights_of(document, figure)
-            fronts_at(clip_of(document, figure.id), document.frames.last)
-            document.carriers(figure.id, document.frames.last)
+        for layer in document.layers:
+            sights_of(document, layer)
+            fronts_at(clip_of(document, layer.id), document.frames.last)
+            document.carriers(layer.id, document.frames.last)
     return Row(name=name, seconds=time.process_time() - begun, note=refusal[:90])
 
 
@@ -103,7 +103,7 @@ def _of_scene(name: str, make: Callable[[int], Any]) -> Filling:
 
 
 def _of_layer(name: str, make: Callable[[int], Any]) -> Filling:
-    return lambda content, size: content["figures"][0].update({name: _many(size, make)})
+    return lambda content, size: content["layers"][0].update({name: _many(size, make)})
 
 
 def _key(number: int, **own: Any) -> Content:
@@ -112,13 +112,13 @@ def _key(number: int, **own: Any) -> Content:
 
 def _turns(content: Content, size: int) -> None:
     turns = _many(size, lambda number: [number, number % 2])
-    content["choices"] = [{"name": "mouth", "figures": [0, 1], "turns": turns}]
+    content["choices"] = [{"name": "mouth", "layers": [0, 1], "turns": turns}]
 
 
 def _hang(content: Content, joints: list[Content]) -> None:
-    figure = content["figures"][0]
-    figure["anchor"] = figure["handles"][0]["position"]
-    figure["attachment"], *figure["handovers"] = joints
+    layer = content["layers"][0]
+    layer["anchor"] = layer["handles"][0]["position"]
+    layer["attachment"], *layer["handovers"] = joints
 
 
 def _joint(frame: int, to: int | None) -> Content:
@@ -132,27 +132,27 @@ def _joints(content: Content, size: int) -> None:
 def _circle(content: Content, size: int) -> None:
     """Let two layers carry each other in turn, in 59,000 frames for 1 MB."""
     _hang(content, [_joint(0, 1), _joint(1, None)])
-    first, second = content["figures"]
+    first, second = content["layers"]
     second |= {"anchor": first["anchor"], "attachment": _joint(1, 0)}
     second["handovers"] = [_joint(2, None)]
     repeat = {"first": 0, "last": 3, "until": None}
-    for each in content["figures"]:
+    for each in content["layers"]:
         each.update(keys=each["keys"][:1], cycles=[repeat])
     content["frames"] = [0, 59 * size // 1_000]
 
 
 def _track(content: Content, size: int) -> None:
-    figure = content["figures"][0]
+    layer = content["layers"][0]
     keys = _many(size, lambda number: _key(number, place=[0, 0]))
-    figure["tracks"] = [{"handles": [figure["handles"][0]["id"]], "keys": keys}]
+    layer["tracks"] = [{"handles": [layer["handles"][0]["id"]], "keys": keys}]
 
 
 def _repeats(content: Content, size: int) -> None:
     """Let a layer come and go in every other frame."""
-    figure = content["figures"][0]
+    layer = content["layers"][0]
     repeat = {"first": 0, "last": 2, "until": None}
-    figure |= {"keys": figure["keys"][:1], "cycles": [repeat]}
-    figure["switches"] = [[0, True], [1, False]]
+    layer |= {"keys": layer["keys"][:1], "cycles": [repeat]}
+    layer["switches"] = [[0, True], [1, False]]
     content["frames"] = [0, 59 * size // 1_000]
 
 

@@ -7,7 +7,7 @@ from statistics import mean
 
 import numpy as np
 
-from app.document import Figure, Target
+from app.document import Layer, Target
 from app.editor.work import Start
 from app.solving import Drag, Rig
 from app.storage import load_project, sample_images
@@ -33,15 +33,15 @@ BRIEF = Extent(samples=("character",), reaches=(40.0,), handles=1, moves=2)
 def tables(extent: Extent) -> Iterator[Table]:
     """Measure pulls of the first handles of samples, from the first key of each."""
     for name in extent.samples:
-        figure = load_project(sample_images() / f"{name}.lissom").figures[0]
-        rig = Rig.of(figure)
-        rows = [row for reach in extent.reaches for row in _rows(figure, rig, reach, extent)]
-        title = f"A pull of {name}, {len(figure.domain.cage)} cage vertices"
+        layer = load_project(sample_images() / f"{name}.lissom").layers[0]
+        rig = Rig.of(layer)
+        rows = [row for reach in extent.reaches for row in _rows(layer, rig, reach, extent)]
+        title = f"A pull of {name}, {len(layer.domain.cage)} cage vertices"
         yield Table(title=f"{title}, mean of {extent.handles} handles", rows=tuple(rows))
 
 
-def _rows(figure: Figure, rig: Rig, reach: float, extent: Extent) -> Iterator[Row]:
-    pulls = [_Pull.of(figure, rig, handle.id) for handle in figure.handles[: extent.handles]]
+def _rows(layer: Layer, rig: Rig, reach: float, extent: Extent) -> Iterator[Row]:
+    pulls = [_Pull.of(layer, rig, handle.id) for handle in layer.handles[: extent.handles]]
     moving, resting, steps = [], [], []
     for pull in pulls:
         move = partial(pull.moved, reach, extent.moves)
@@ -56,17 +56,17 @@ def _rows(figure: Figure, rig: Rig, reach: float, extent: Extent) -> Iterator[Ro
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _Pull:
-    """A hand at a handle, and the drag that begins with the figure's first pose."""
+    """A hand at a handle, and the drag that begins with the layer's first pose."""
 
     begun: Drag
     start: Start
     hands: tuple[Hand, ...]
 
     @classmethod
-    def of(cls, figure: Figure, rig: Rig, handle: int) -> "_Pull":
-        pose = figure.keys[0].pose
+    def of(cls, layer: Layer, rig: Rig, handle: int) -> "_Pull":
+        pose = layer.keys[0].pose
         hands = (Hand(frozenset([handle])),)
-        return cls(begun=Drag.begin(rig, pose), start=Start.of(figure, pose), hands=hands)
+        return cls(begun=Drag.begin(rig, pose), start=Start.of(layer, pose), hands=hands)
 
     def moved(self, reach: float, moves: int) -> tuple[Drag, Mapping[int, Target]]:
         """Return the drag after moves of the pointer on an arc, and the last targets."""

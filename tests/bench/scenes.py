@@ -1,4 +1,4 @@
-"""Scenes: opening a drawing on many layers, and many figures beside one of as many triangles."""
+"""Scenes: opening a drawing on many layers, and many layers beside one of as many triangles."""
 
 import io
 import math
@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image, ImageDraw
 
-from app.document import Document, Figure, Meshing, PictureFile, Pose, Variant, clip_of
+from app.document import Document, Layer, Meshing, PictureFile, Pose, Variant, clip_of
 from app.editor import Puppet
 from app.editor.actions import files
 from app.storage import Picture, decode_picture, load_project, open_layered, sample_images
@@ -34,13 +34,13 @@ class Extent:
 
     layers: int = 20
     side: int = 2_000  # pixels, of a layer
-    figures: int = 10
+    posed: int = 10
     triangles: int = 20_000  # of each
     frames: int = 40
     reach: float = REACH  # pixels around it in which a handle is dragged
 
 
-BRIEF = Extent(layers=2, side=160, figures=1, triangles=1_000, frames=2, reach=4.0)
+BRIEF = Extent(layers=2, side=160, posed=1, triangles=1_000, frames=2, reach=4.0)
 
 
 def tables(extent: Extent) -> Iterator[Table]:
@@ -52,7 +52,7 @@ def tables(extent: Extent) -> Iterator[Table]:
 
 
 def _opening(folder: Path, extent: Extent) -> Table:
-    """Measure from a file on the disk to figures that can be drawn."""
+    """Measure from a file on the disk to layers that can be drawn."""
     path = folder / "scene.ora"
     _write_drawing(path, extent)
     begun = time.perf_counter()
@@ -101,17 +101,17 @@ def _write_drawing(path: Path, extent: Extent) -> None:
 
 
 def _beside_one(folder: Path, extent: Extent) -> Table:
-    """Play and drag one figure, and then several of as many triangles together."""
+    """Play and drag one layer, and then several of as many triangles together."""
     stage = Driver(folder)
     rows = []
     for count, triangles in (
-        (1, extent.figures * extent.triangles),
-        (extent.figures, extent.triangles),
+        (1, extent.posed * extent.triangles),
+        (extent.posed, extent.triangles),
     ):
         document, picture = _giraffes(count, triangles)
         puppets = {
             each.id: Puppet.of(clip_of(document, each.id), picture, among=count)
-            for each in document.figures
+            for each in document.layers
         }
         files.show(stage.session, folder / SAMPLE, files.Opened(document, puppets, ()))
         stage.settle()
@@ -132,24 +132,24 @@ def _beside_one(folder: Path, extent: Extent) -> Table:
 def _giraffes(count: int, triangles: int) -> tuple[Document, Picture]:
     """Return so many animated giraffes side by side, which together are as large as one."""
     document = load_project(sample_images() / SAMPLE)
-    first = document.figures[0]
+    first = document.layers[0]
     scale = 1 / math.ceil(math.sqrt(count))
     small = Image.fromarray(decode_picture(first.picture.data, SAMPLE).rgba)
     small = small.resize([round(scale * side) for side in small.size])
     data = io.BytesIO()
     small.save(data, "PNG")
     file = PictureFile(data=data.getvalue(), suffix=".png", size=small.size)
-    figures = tuple(
+    layers = tuple(
         _smaller(first, file, scale, number, triangles=triangles) for number in range(count)
     )
-    changed = replace(document, figures=figures, size=document.canvas)
+    changed = replace(document, layers=layers, size=document.canvas)
     return changed, decode_picture(file.data, SAMPLE)
 
 
 def _smaller(
-    figure: Figure, file: PictureFile, scale: float, number: int, *, triangles: int
-) -> Figure:
-    """Return a figure of this number, with a mesh of its own, in its place among others."""
+    layer: Layer, file: PictureFile, scale: float, number: int, *, triangles: int
+) -> Layer:
+    """Return a layer of this number, with a mesh of its own, in its place among others."""
     row, column = divmod(number, round(1 / scale))
     corner = complex(column * file.size[0], row * file.size[1])
 
@@ -163,24 +163,24 @@ def _smaller(
         }
         return replace(full, phi=place(full.phi), psi=scale * full.psi, targets=targets)
 
-    outline = place(figure.domain.outline)
+    outline = place(layer.domain.outline)
     domain = Domain(
         outline=outline,
-        cage=place(figure.domain.cage),
+        cage=place(layer.domain.cage),
         mesh=mesh_inside(outline, triangles=triangles),
     )
     return replace(
-        figure,
+        layer,
         id=number,
         name=f"giraffe {number}",
         picture=file,
         corner=corner,
         domain=domain,
-        anchor=None if figure.anchor is None else scale * figure.anchor + corner,
+        anchor=None if layer.anchor is None else scale * layer.anchor + corner,
         handles=tuple(
-            replace(handle, position=scale * handle.position + corner) for handle in figure.handles
+            replace(handle, position=scale * handle.position + corner) for handle in layer.handles
         ),
-        keys=tuple(replace(key, pose=pose(key.pose)) for key in figure.keys),
+        keys=tuple(replace(key, pose=pose(key.pose)) for key in layer.keys),
         library=(),
         # Whose in-betweens are soon prepared; frames take no longer with others.
         variant=Variant.NU,
@@ -188,14 +188,14 @@ def _smaller(
 
 
 def _memory(extent: Extent) -> Table:
-    """Tell what figures take with their in-betweens, beside the picture that they share."""
+    """Tell what layers take with their in-betweens, beside the picture that they share."""
     rows = []
-    for count in sorted({1, max(1, extent.figures // 2), extent.figures}):
+    for count in sorted({1, max(1, extent.posed // 2), extent.posed}):
         document, picture = _giraffes(count, extent.triangles)
         tracemalloc.start()
         kept = []
-        for figure in document.figures:
-            clip = clip_of(document, figure.id)
+        for layer in document.layers:
+            clip = clip_of(document, layer.id)
             puppet = Puppet.of(clip, picture)
             store = puppet.store
             store.pin([clip], [], 0)
@@ -205,4 +205,4 @@ def _memory(extent: Extent) -> Table:
         tracemalloc.stop()
         note = f"{used:.1f} MiB, {used / count:.1f} each"
         rows.append(Row(name=f"{count} of {extent.triangles:,} triangles", seconds=None, note=note))
-    return Table(title="Memory of figures with their in-betweens", rows=tuple(rows))
+    return Table(title="Memory of layers with their in-betweens", rows=tuple(rows))

@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from app.document import Document, Figure, Meshing, Pose, Variant
+from app.document import Document, Layer, Meshing, Pose, Variant
 from app.motion import PoseSampler
 from app.render import Renderer, Scene, fit_view
 from app.render.gpu import (
@@ -55,11 +55,11 @@ class Interval:
     prepared: dict[Variant, Inbetweens] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, figure: Figure, triangles: int) -> "Interval":
+    def of(cls, layer: Layer, triangles: int) -> "Interval":
         """Lay the paths of a mesh of so many triangles."""
-        mesh = triangulate(figure.domain.outline, triangles)
-        sampler = PoseSampler(replace(figure.domain, mesh=mesh), anchor=figure.anchor)
-        return cls(sampler=sampler, first=figure.keys[0].pose, second=figure.keys[1].pose)
+        mesh = triangulate(layer.domain.outline, triangles)
+        sampler = PoseSampler(replace(layer.domain, mesh=mesh), anchor=layer.anchor)
+        return cls(sampler=sampler, first=layer.keys[0].pose, second=layer.keys[1].pose)
 
     @property
     def mesh(self) -> Mesh:
@@ -79,16 +79,16 @@ class Interval:
 
 def tables(extent: Extent) -> Iterator[Table]:
     """Measure frames, building, growth and drawing."""
-    figure = posed_giraffe().figures[0]
+    layer = posed_giraffe().layers[0]
     for triangles in extent.triangles:
-        interval = Interval.of(figure, triangles)
+        interval = Interval.of(layer, triangles)
         series = {variant: interval.build(variant) for variant in VARIANTS}
         yield _frames(interval, series)
         if triangles == extent.triangles[0]:
             yield _heat(interval)
             yield _building(interval, series)
             yield _drawing(interval, series)
-    yield from _growth([Interval.of(figure, triangles) for triangles in extent.growth])
+    yield from _growth([Interval.of(layer, triangles) for triangles in extent.growth])
 
 
 def posed_giraffe() -> Document:
@@ -96,8 +96,8 @@ def posed_giraffe() -> Document:
     folder = sample_images()
     document = open_picture(folder / "giraffe.png", Meshing(triangles=1000)).document
     script = load_pose_script(folder / "giraffe.json")
-    (figure,) = script.figures
-    short = replace(script, figures=(replace(figure, keys=figure.keys[:2]),))
+    (layer,) = script.layers
+    short = replace(script, layers=(replace(layer, keys=layer.keys[:2]),))
     posed, _ = pose_document(document, short, lambda _: None)
     return posed
 

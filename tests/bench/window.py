@@ -93,7 +93,7 @@ def _opening(stage: Driver, extent: Extent) -> Table:
     path = sample_images() / extent.picture
     times = [_open_and_drag(stage, path, extent.reach) for _ in range(extent.repeats)]
     names = ("until a click adds a handle", "until that handle has followed the pointer")
-    triangles = len(stage.project.figure.domain.mesh.triangles)
+    triangles = len(stage.project.layer.domain.mesh.triangles)
     return Table(
         title=f"From a dropped picture ({extent.picture}, {triangles:,} triangles) to a drag",
         rows=tuple(map(row_at_most, names, zip(*times, strict=True))),
@@ -112,13 +112,13 @@ def _open_and_drag(stage: Driver, path: Path, reach: float) -> tuple[float, floa
     stage.refresh()
     shown = time.perf_counter() - begun
     project = stage.project
-    vertices = project.figure.domain.mesh.vertices
+    vertices = project.layer.domain.mesh.vertices
     inside = complex(vertices[np.argmin(abs(vertices - vertices.mean()))])
     point = stage.point(inside)
     stage.mouse(point)
     stage.refresh()
     stage.mouse(point, down=True)
-    stage.until(lambda: bool(project.figure.handles))
+    stage.until(lambda: bool(project.layer.handles))
     stage.mouse(point + reach)
     stage.until(lambda: abs(handle_place(project) - inside) > 1.0)
     followed = time.perf_counter() - begun
@@ -130,14 +130,14 @@ def _open_and_drag(stage: Driver, path: Path, reach: float) -> tuple[float, floa
 def _sample(extent: Extent) -> files.Opened:
     """Return the animated sample on a finer mesh."""
     document = load_project(sample_images() / extent.sample)
-    figure = document.figures[0]
-    mesh = mesh_inside(*figure.domain.loops, triangles=extent.triangles)
-    domain = replace(figure.domain, mesh=mesh)
-    figure = replace(figure, domain=domain, variant=extent.variant)
-    document = document.with_figure(figure)
-    picture = decode_picture(figure.picture.data, extent.sample)
-    puppet = Puppet.of(clip_of(document, figure.id), picture)
-    return files.Opened(document, {figure.id: puppet}, ())
+    layer = document.layers[0]
+    mesh = mesh_inside(*layer.domain.loops, triangles=extent.triangles)
+    domain = replace(layer.domain, mesh=mesh)
+    layer = replace(layer, domain=domain, variant=extent.variant)
+    document = document.with_layer(layer)
+    picture = decode_picture(layer.picture.data, extent.sample)
+    puppet = Puppet.of(clip_of(document, layer.id), picture)
+    return files.Opened(document, {layer.id: puppet}, ())
 
 
 def _frames(stage: Driver, extent: Extent) -> Iterator[Table]:
@@ -149,7 +149,7 @@ def _frames(stage: Driver, extent: Extent) -> Iterator[Table]:
         "scrubbing": scrubbing(stage, count),
         "dragging a handle": dragging(stage, count, extent.reach),
     }
-    triangles = len(stage.project.figure.domain.mesh.triangles)
+    triangles = len(stage.project.layer.domain.mesh.triangles)
     what = "{:,} triangles, {} × {} pixels".format(triangles, *extent.size)
     yield Table(
         title=f"A frame by the clock until all of it is drawn: {what}, {stage.device}",
@@ -222,7 +222,7 @@ def _leave(stage: Driver, reach: float, number: int, wait: int) -> tuple[float, 
     drag.let_go()
     for _ in range(wait):
         stage.refresh()
-    first, second, *_ = project.figure.keys
+    first, second, *_ = project.layer.keys
     between = (first.frame + second.frame) // 2 + number
     moved = time.perf_counter()
     stage.ask(playback.scrub, between)
@@ -254,7 +254,7 @@ def _is_exact(project: Project) -> bool:
 
 def _is_fine(project: Project) -> bool:
     store, fine = project.puppet.store, project.puppet.fine
-    if store.mesh.domain is project.figure.domain:
+    if store.mesh.domain is project.layer.domain:
         return _is_exact(project)
     return fine is not None and fine.has(project.clip)
 

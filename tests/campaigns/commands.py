@@ -159,7 +159,7 @@ def _scenes() -> dict[str, bytes]:
         "attach": {"to": "ring", "at": [60, 80], "turn": True},
         "visible": [[0, True], [5, False]],
     }
-    scene = {"schema": 1, "loop": True, "variant": "nu", "figures": [ring, arm]}
+    scene = {"schema": 1, "loop": True, "variant": "nu", "layers": [ring, arm]}
     return {"scene.json": json.dumps(scene).encode()}
 
 

@@ -197,7 +197,7 @@ def _edit_on(tell: Callable[[int, float], None], folder: Path, document: Documen
         history=History(document, saved=True),
         path=None,
         puppets={},
-        active=document.figures[-1].id,
+        active=document.layers[-1].id,
     )
     number = 0
     session.project.history.do(scene_commands.add_marker(0, "0"))
@@ -272,9 +272,9 @@ def _check_export(
 def quick_friend() -> Document:
     """Return what moves in the sample with layers, by the variant that is prepared soonest."""
     document = load_project(FRIEND)
-    moving = [figure for figure in document.figures if len(figure.keys) > 1]
-    figures = tuple(replace(figure, variant=Variant.NU) for figure in moving)
-    return replace(document, figures=figures, choices=())
+    moving = [layer for layer in document.layers if len(layer.keys) > 1]
+    layers = tuple(replace(layer, variant=Variant.NU) for layer in moving)
+    return replace(document, layers=layers, choices=())
 
 
 def export_friend(folder: Path, name: str, background: str, project: Path = FRIEND) -> int:

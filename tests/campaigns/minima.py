@@ -61,10 +61,10 @@ def campaign(seed: int, amount: int) -> Iterator[tuple[str, dict[str, float]]]:
         found.setdefault(sort, []).append((over, state.steps, tried))
         if (number + 1) % TOLD_EVERY == 0 or number + 1 == amount:
             for sort, results in found.items():
-                yield f"{sort} requests", figures(results)
+                yield f"{sort} requests", layers(results)
 
 
-def figures(results: list[tuple[float, int, int]]) -> dict[str, float]:
+def layers(results: list[tuple[float, int, int]]) -> dict[str, float]:
     """Return how good what was found is, and what it cost."""
     over, steps, tried = np.array(results).T
     return {

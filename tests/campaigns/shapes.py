@@ -62,12 +62,12 @@ def campaign(seed: int, amount: int) -> Iterator[tuple[str, dict[str, float]]]:
         total: dict[str, float] = {}
         for number in timed(range(count)):
             try:
-                figures = shape_figures(seed, name, make, number, extremes)
+                layers = shape_layers(seed, name, make, number, extremes)
             except Exception as error:  # noqa: BLE001 - told below
                 failures.append(f"{name} shape {number}: {type(error).__name__}: {error}")
                 print(f"  {failures[-1]}", flush=True)
-                figures = {"failed": 1.0}
-            for label, value in figures.items():
+                layers = {"failed": 1.0}
+            for label, value in layers.items():
                 together = max if label.startswith("most") else add
                 total[label] = together(total.get(label, 0.0), value)
             if (number + 1) % TOLD_EVERY == 0 or number + 1 == count:
@@ -75,7 +75,7 @@ def campaign(seed: int, amount: int) -> Iterator[tuple[str, dict[str, float]]]:
     assert not failures, "\n".join(failures)
 
 
-def shape_figures(
+def shape_layers(
     seed: int, name: str, make: Maker, number: int, extremes: dict[str, int]
 ) -> dict[str, float]:
     """Return what came of one shape."""
@@ -85,8 +85,8 @@ def shape_figures(
         shape = make(rng, number)
     except EngineError:
         return {"refused in words": 1.0}
-    figures = stress(shape, rng, **extremes)
-    return {"shapes": 1.0, **figures, "seconds of the processor": process_time() - begun}
+    layers = stress(shape, rng, **extremes)
+    return {"shapes": 1.0, **layers, "seconds of the processor": process_time() - begun}
 
 
 def stress(
@@ -111,8 +111,8 @@ def stress(
             shown += 1
         maps.append(state.map)
     scaled = Shape(boundary.outline, cage, vertices, shape.triangles)
-    figures = in_betweens(maps, scaled, bounds, rng)
-    return {"maps shown": shown, **figures}
+    layers = in_betweens(maps, scaled, bounds, rng)
+    return {"maps shown": shown, **layers}
 
 
 def check_state(deformer: Deformer, state: object, bounds: Bounds) -> None:

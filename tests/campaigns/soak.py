@@ -106,7 +106,7 @@ def campaign(seed: int, amount: int) -> Iterator[tuple[str, dict[str, float]]]:
 
 
 def make_scene(window: Harness, folder: Path) -> Path:
-    """Save a project of a body, an arm that hangs on it, and a wall; each figure has handles."""
+    """Save a project of a body, an arm that hangs on it, and a wall; each layer has handles."""
     layers = [Image.new("RGBA", (160, 120)) for _ in range(2)]
     layers[0].paste(blob(90, 26), (60, 40))
     layers[1].paste(blob(60, 100, (40, 90, 180)), (20, 10))
@@ -116,9 +116,9 @@ def make_scene(window: Harness, folder: Path) -> Path:
     drawing.write_bytes(openraster((160, 120), stack, layers))
     window.session.meshing = Meshing(triangles=1000, detail="coarse")
     project = window.open(drawing)
-    arm, body = (figure.id for figure in reversed(project.document.figures[1:]))
-    for figure, places in ((body, (50 + 20j, 50 + 95j)), (arm, (70 + 67j, 140 + 67j))):
-        window.act(choose, figure)
+    arm, body = (layer.id for layer in reversed(project.document.layers[1:]))
+    for layer, places in ((body, (50 + 20j, 50 + 95j)), (arm, (70 + 67j, 140 + 67j))):
+        window.act(choose, layer)
         for place in places:
             window.act(posing.add_handle, place)
             window.settle()
@@ -127,7 +127,7 @@ def make_scene(window: Harness, folder: Path) -> Path:
     for frame in (12, 24):
         playback.seek(window.session, frame)
         window.settle()
-        handle = project.figure.handles[-1]
+        handle = project.layer.handles[-1]
         target = Target(position=handle.position + 20j * (frame / 12 - 1.5))
         posing.wish(window.session, {handle.id: target})
         window.settle()
@@ -179,7 +179,7 @@ def drag(window: Harness, rng: np.random.Generator) -> None:
     session, project = window.session, window.session.project
     playback.seek(session, int(rng.integers(0, project.document.frames.last)))
     window.frames()
-    handles = project.figure.handles
+    handles = project.layer.handles
     handle, gesture = handles[rng.integers(len(handles))], object()
     way = complex(*(8 * rng.normal(size=2)))
     for step in range(round(DRAG * RATE)):

@@ -77,17 +77,17 @@ def _pose(window: Film, path: Path) -> None:
 
 
 def _photo(folder: Path) -> Path:
-    """Make a photo of a paper figure on a wall, with a magnet beside it."""
+    """Make a photo of a paper layer on a wall, with a magnet beside it."""
     with Image.open(sample_images() / "character.png") as drawing:
-        figure = drawing.convert("RGBA")
-    width, height = figure.size
+        layer = drawing.convert("RGBA")
+    width, height = layer.size
     grain = np.random.default_rng(1).normal(0, 1, (height, width, 1))
     shade = np.linspace(212, 200, height)[:, None, None] + grain
     wall = np.clip(shade * np.array([1.0, 0.985, 0.95]), 0, 255).astype(np.uint8)
     picture = Image.fromarray(wall)
     x, y = MAGNET.real, height - MAGNET.imag
     ImageDraw.Draw(picture).ellipse((x - 50, y - 50, x + 50, y + 50), fill=(70, 120, 190))
-    picture.paste(figure, mask=figure.getchannel("A"))
+    picture.paste(layer, mask=layer.getchannel("A"))
     path = folder / "photo.jpg"
     picture.save(path, quality=92)
     return path
@@ -132,7 +132,7 @@ def _tail_wag(window: Film, path: Path) -> None:
         with window.cut():
             window.act(playback.seek, 24)
             window.settle()
-            track = project.figure.tracks[0]
+            track = project.layer.tracks[0]
             window.act(tracks.put, track.handles[0], 0j, 0.0)
             window.settle()
         window.stay(20)
@@ -163,8 +163,8 @@ def _ears(window: Film, path: Path) -> None:
     project = open_sample(window, "giraffe", frame=0)
     window.act(posing.add_handle, EAR)
     window.settle()
-    ear = project.figure.handles[-1]
-    window.act(editing.edit_figure, editing.handle_commands.rename_handle, ear.id, "ear")
+    ear = project.layer.handles[-1]
+    window.act(editing.edit_layer, editing.handle_commands.rename_handle, ear.id, "ear")
     window.show_tab("Handle")
     window.act(editing.select, frozenset({ear.id}))
     come_to_rest(window)

@@ -45,7 +45,7 @@ def place_of(window: Film, name: str) -> complex:
     project = project_of(window)
     shown = project.puppet.shown
     assert shown is not None
-    identities = [handle.id for handle in project.figure.handles]
+    identities = [handle.id for handle in project.layer.handles]
     return complex(shown.handle_places[identities.index(handle_named(project, name))])
 
 

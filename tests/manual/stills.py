@@ -96,7 +96,7 @@ def _walk(window: Film, path: Path) -> None:
     project = open_sample(window, "giraffe", frame=0)
     window.act(editing.choose_keys, frozenset({30, 38, 72}))
     window.act(editing.delete)
-    rests = {handle.name: handle.position for handle in project.figure.handles}
+    rests = {handle.name: handle.position for handle in project.layer.handles}
     for number, frame in enumerate((0, 6, 12, 18)):
         window.act(playback.seek, frame)
         window.settle()
@@ -131,7 +131,7 @@ def _poses(window: Film, path: Path) -> None:
         window.settle()
         window.act(library.keep)
         window.settle()
-        window.act(library.rename, project.figure.library[-1].name, name)
+        window.act(library.rename, project.layer.library[-1].name, name)
     window.act(playback.seek, 37)
     window.act(viewing.toggle, "onion")
     window.resize(HIGHER)
@@ -192,7 +192,7 @@ def _mesh(window: Film, path: Path) -> None:
 def _layers(window: Film, path: Path) -> None:
     """A child of many layers; the arm hangs on the body."""
     project = open_sample(window, "friend", frame=14)
-    arm = next(figure.id for figure in project.document.figures if figure.name == "right arm")
+    arm = next(layer.id for layer in project.document.layers if layer.name == "right arm")
     window.act(layering.choose, arm)
     window.act(editing.select, frozenset({handle_named(project, "hand")}))
     window.resize(LAYERED)
@@ -208,7 +208,7 @@ def _mouths(window: Film, path: Path) -> None:
     window.resize(LAYERED)
     window.show_tab("Layers")
     window.act(layering.toggle, next(row.toggle for row in project.tree if row.choice is not None))
-    head = next(figure.id for figure in project.document.figures if figure.name == "head")
+    head = next(layer.id for layer in project.document.layers if layer.name == "head")
     heighten_timeline(window, CHOICE)
     window.act(layering.choose, head)
     _still(window, path)
@@ -260,8 +260,8 @@ def _limit(window: Film, path: Path) -> None:
     project = window.open(sample_images() / "giraffe.png")
     for place in (NOSE, 390 + 540j, 590 + 460j, 352 + 65j, 485 + 80j, 580 + 65j, 265 + 80j):
         window.act(posing.add_handle, place)
-    nose = project.figure.handles[0].id
-    window.act(editing.edit_figure, editing.handle_commands.rename_handle, nose, "nose")
+    nose = project.layer.handles[0].id
+    window.act(editing.edit_layer, editing.handle_commands.rename_handle, nose, "nose")
     window.show_tab("Handle")
     window.settle()
     window.drag(window.point(NOSE), window.point(NOSE - 800 - 300j))

@@ -160,7 +160,7 @@ def test_the_search_works_on_files_and_leads_to_what_is_looked_for(tmp_path):
 def test_scripts_on_the_pages_are_read_as_such():
     text = (build.PAGES / "pose-scripts.md").read_text(encoding="utf-8")
     (script,) = re.findall(r"```json\n(.*?)```", text, flags=re.DOTALL)
-    assert len(parse_pose_script(json.loads(script)).figures[0].keys) == 3
+    assert len(parse_pose_script(json.loads(script)).layers[0].keys) == 3
 
 
 def test_the_fields_of_project_files_are_told():
@@ -176,7 +176,7 @@ def test_the_fields_of_project_files_are_told():
         for node in ast.parse(source).body
         if isinstance(node, ast.Assign) and isinstance(node.value, ast.Call)
     }
-    fields = [each for name in ("DOCUMENT", "FIGURE") for each in records[name]]
+    fields = [each for name in ("DOCUMENT", "LAYER") for each in records[name]]
     assert told == {each.args[0].value for each in fields if isinstance(each, ast.Call)}
 
 

@@ -10,8 +10,8 @@ from drawings import soft_blob
 from interpolation_shapes import around, subdivided
 from PIL import Image
 
-from app.document.figure import PictureFile, new_figure
 from app.document.keyframe import Keyframe
+from app.document.layer import PictureFile, new_layer
 from app.document.model import Document
 from app.document.settings import FrameRange, Meshing
 from engine.arrays import Bytes, Complexes
@@ -43,8 +43,8 @@ def _still_document(
     Image.fromarray(picture).save(stream, "PNG")
     file = PictureFile(data=stream.getvalue(), suffix=".png", size=(width, height))
     domain, _ = build_domain(picture, triangles=triangles, detail="normal", cut_out=cut_out)
-    figure = new_figure(file, domain, Meshing(triangles=triangles), cut_out)
-    return Document(figures=(figure,))
+    layer = new_layer(file, domain, Meshing(triangles=triangles), cut_out)
+    return Document(layers=(layer,))
 
 
 def within(document: Document, corners: Complexes) -> Document:
@@ -55,7 +55,7 @@ def within(document: Document, corners: Complexes) -> Document:
     outline = subdivided(corners, LONGEST)
     cage = around(outline, OFFSET)
     domain = Domain(outline=outline, cage=cage, mesh=triangulate(outline, 300))
-    return Document(figures=(new_figure(document.figures[0].picture, domain, Meshing()),))
+    return Document(layers=(new_layer(document.layers[0].picture, domain, Meshing()),))
 
 
 def bar_picture(length: int = 240) -> Bytes:
@@ -81,7 +81,7 @@ def round_document() -> Document:
 def moving_document(last: int = 6, cut_out: CutOut | None = None) -> Document:
     """The blob as it was drawn in frame 0, turned and bent in the last frame."""
     document = still_document(cut_out=cut_out)
-    cage, first = document.figures[0].domain.cage, document.figures[0].keys[0]
+    cage, first = document.layers[0].domain.cage, document.layers[0].keys[0]
     middle = cage.mean()
     z = cage - middle
     pose = replace(first.pose, phi=middle + z * np.exp(0.5j) + 5e-4 * z**2)
@@ -93,7 +93,7 @@ class Sliding:
     """Vertices that move by so much a frame, from where they are at rest in frame 0."""
 
     def __init__(self, document: Document, by: complex) -> None:
-        self._rest = document.figures[0].domain.mesh.vertices
+        self._rest = document.layers[0].domain.mesh.vertices
         self._by = by
 
     def positions(self, frame: float) -> Complexes:

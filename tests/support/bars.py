@@ -8,9 +8,9 @@ from harness import Harness
 from interpolation_shapes import around, subdivided
 
 from app.document import History, clip_of
-from app.document.commands import figure_commands, key_commands, scene_commands
-from app.document.figure import new_figure
+from app.document.commands import key_commands, scene_commands, shape_commands
 from app.document.keyframe import Target
+from app.document.layer import new_layer
 from app.document.model import Document
 from app.document.settings import FrameRange
 from app.editor.actions import playback, posing
@@ -48,20 +48,18 @@ def take_few_corners(project: Project) -> None:
 
     Poses and frames of it are solved several times as fast.
     """
-    figure, history = project.figure, project.history
-    x, y = figure.domain.outline.real, figure.domain.outline.imag
+    layer, history = project.layer, project.history
+    x, y = layer.domain.outline.real, layer.domain.outline.imag
     low, high = x.min() + 1j * y.min(), x.max() + 1j * y.max()
     corners = np.array([low, high.real + 1j * low.imag, high, low.real + 1j * high.imag])
     outline = subdivided(corners, LONGEST)
-    mesh = triangulate(outline, figure.meshing.triangles)
+    mesh = triangulate(outline, layer.meshing.triangles)
     domain = Domain(outline=outline, cage=around(outline, OFFSET), mesh=mesh)
-    figure = replace(
-        new_figure(figure.picture, domain, figure.meshing), id=figure.id, name=figure.name
-    )
-    document = project.document.with_figure(figure)
+    layer = replace(new_layer(layer.picture, domain, layer.meshing), id=layer.id, name=layer.name)
+    document = project.document.with_layer(layer)
     project.history = History(document, saved=history.is_saved)
     picture = project.puppet.picture
-    project.puppets[figure.id] = Puppet.of(clip_of(document, figure.id), picture)
+    project.puppets[layer.id] = Puppet.of(clip_of(document, layer.id), picture)
 
 
 def bend_bar(
@@ -85,7 +83,7 @@ def bend_bar(
         playback.seek(window.session, last)
     elif held == "loose":
         bar = window.again(bend_bar, None, "auto-pins")
-        bar.history.extend_step(figure_commands.set_stillness(bar.active, stillness=False))
+        bar.history.extend_step(shape_commands.set_stillness(bar.active, stillness=False))
     else:
         bar = window.again(open_bar)
         playback.seek(window.session, BENT)
@@ -111,9 +109,9 @@ def drag_bar(window: Harness, bar: Project) -> complex:
     return place + WAY
 
 
-def check_at_rest(document: Document, goal: complex, *, figure: int = 0, frame: int = BENT) -> None:
+def check_at_rest(document: Document, goal: complex, *, layer: int = 0, frame: int = BENT) -> None:
     """Fail unless a key has the pose in which the wish of that drag has come to rest."""
-    dragged = document.figure(figure)
+    dragged = document.layer(layer)
     pose, place = dragged.key(frame).pose, dragged.handle(1).position
     wished = pose.targets[1].position
     assert abs(wished - goal) < 1e-9, f"{wished} was wished, {goal} by the hand"

@@ -16,10 +16,10 @@ SIZE = 200.0
 VARIANTS = ("nu", "metric", "scaled-eta")
 
 
-def bent(figure, turn, bend, shift):
-    """The key pose of a figure turned by an angle, bent and moved."""
-    first = figure.keys[0].pose
-    z = figure.domain.cage - CENTRE
+def bent(layer, turn, bend, shift):
+    """The key pose of a layer turned by an angle, bent and moved."""
+    first = layer.keys[0].pose
+    z = layer.domain.cage - CENTRE
     return replace(first, phi=CENTRE + shift + z * np.exp(1j * turn) + bend * z**2)
 
 
@@ -28,21 +28,21 @@ def chain(variant="nu", count=3):
     """Discs that hang on each other, each bent otherwise, over 48 frames."""
     document = replace(disc_document(), frames=FrameRange(0, 48))
     rng = np.random.default_rng(4)
-    first = document.figures[0]
+    first = document.layers[0]
     for index in range(count):
-        figure = replace(first, id=index, name=str(index), variant=variant)
+        layer = replace(first, id=index, name=str(index), variant=variant)
         keys = tuple(
             Keyframe(
                 frame=frame,
-                pose=bent(figure, rng.normal(), 4e-4 * rng.normal(), complex(*rng.normal(size=2))),
+                pose=bent(layer, rng.normal(), 4e-4 * rng.normal(), complex(*rng.normal(size=2))),
             )
             for frame in (0, 20, 48)
         )
-        figure = replace(figure, keys=keys)
+        layer = replace(layer, keys=keys)
         if index == 0:
-            document = document.with_figure(figure)
+            document = document.with_layer(layer)
             continue
-        document = layers.add_figure(figure)(document)
+        document = layers.add_layer(layer)(document)
         joint = Attachment(to=index - 1, at=inside(rng), rest=rng.normal())
         document = layers.attach(index, inside(rng), joint)(document)
     return document
@@ -50,23 +50,23 @@ def chain(variant="nu", count=3):
 
 @cache
 def alone(clip, place):
-    """A point of a figure by itself."""
+    """A point of a layer by itself."""
     return Animation(clip, points=np.array([place]))
 
 
-def exactly(document, figure, place, frame):
-    """Where a point of a figure is by itself, and its f_z."""
-    moved = alone(clip_of(document, figure), place).frame(frame)
+def exactly(document, layer, place, frame):
+    """Where a point of a layer is by itself, and its f_z."""
+    moved = alone(clip_of(document, layer), place).frame(frame)
     return moved.positions[0], moved.fz[0]
 
 
 @cache
 def among(clip):
-    """Some points of a figure by itself."""
+    """Some points of a layer by itself."""
     return Animation(clip, points=np.array([CENTRE, CENTRE + 30j, CENTRE - 50]))
 
 
-def seen(document, figure, frame, joints=None):
-    """Where some points of a figure are in the scene; by its joints where they are known."""
-    own = among(clip_of(document, figure)).positions(frame)
-    return (joints or Joints(document)).placement(figure, frame).on(own)
+def seen(document, layer, frame, joints=None):
+    """Where some points of a layer are in the scene; by its joints where they are known."""
+    own = among(clip_of(document, layer)).positions(frame)
+    return (joints or Joints(document)).placement(layer, frame).on(own)

@@ -26,35 +26,35 @@ def crowded(kind: str, count: int) -> Document:
     """Return a document with so many keys of a kind; with none it has but its first pose."""
     document = handle_commands.add_handle(0, 60 + 47j, name="a")(drawn())
     document = replace(document, frames=FrameRange(0, max(count, 48)))
-    figure, frames = document.figures[0], range(count)
-    pose, handle = figure.keys[0].pose, figure.handles[0].id
+    layer, frames = document.layers[0], range(count)
+    pose, handle = layer.keys[0].pose, layer.handles[0].id
     match kind:
         case "keys":
-            figure = replace(figure, keys=tuple(Keyframe(frame=at, pose=pose) for at in frames))
+            layer = replace(layer, keys=tuple(Keyframe(frame=at, pose=pose) for at in frames))
         case "tracks":
             row = tuple(TrackKey(frame=at, place=0j) for at in frames)
-            figure = replace(figure, tracks=(Track(handles=(handle,), keys=row),))
+            layer = replace(layer, tracks=(Track(handles=(handle,), keys=row),))
         case "switches":
             row = tuple(Switch(at, visible=bool(at % 2)) for at in frames)
-            figure = replace(figure, switches=row)
+            layer = replace(layer, switches=row)
         case "cycles":
-            figure = replace(figure, cycles=(Cycle(first=0, last=1),))
+            layer = replace(layer, cycles=(Cycle(first=0, last=1),))
         case "changes":
-            figure = replace(
-                figure,
+            layer = replace(
+                layer,
                 movement=tuple(MoveKey(frame=at) for at in frames),
                 opacities=tuple(OpacityKey(frame=at, opacity=0.5) for at in frames),
                 placings=tuple(Placing(frame=at, beside=None) for at in frames),
             )
         case "turns":
             turns = tuple(Turn(at, at % 2) for at in frames)
-            choice = Choice(name="mouth", figures=(0, 1), turns=turns)
-            other = replace(figure, id=1, name="other")
-            return replace(document, figures=(figure, other), choices=(choice,))
+            choice = Choice(name="mouth", layers=(0, 1), turns=turns)
+            other = replace(layer, id=1, name="other")
+            return replace(document, layers=(layer, other), choices=(choice,))
         case "markers":
             row = tuple(Marker(frame=at, name=f"marker {at}") for at in frames)
             document = replace(document, markers=row)
         case "camera":
             row = tuple(CameraKey(frame=at, centre=0j, zoom=1.0) for at in frames)
             document = replace(document, camera=row)
-    return replace(document, figures=(figure,))
+    return replace(document, layers=(layer,))

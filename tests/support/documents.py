@@ -14,7 +14,6 @@ from app.document.body import Bone
 from app.document.commands import (
     Command,
     choice_commands,
-    figure_commands,
     filming_commands,
     handle_commands,
     key_commands,
@@ -22,10 +21,11 @@ from app.document.commands import (
     material_commands,
     pose_commands,
     scene_commands,
+    shape_commands,
     track_commands,
 )
-from app.document.figure import PictureFile, new_figure
 from app.document.keyframe import Handle, KeptPose, Keyframe, Passing, Pose, Target
+from app.document.layer import PictureFile, new_layer
 from app.document.layering import (
     Attachment,
     CameraKey,
@@ -60,18 +60,18 @@ def disc_domain(n: int = 12) -> Domain:
 
 
 def disc_document() -> Document:
-    """A new document: one figure with one key and no handles."""
-    return Document(figures=(new_figure(PICTURE, disc_domain(), Meshing()),))
+    """A new document: one layer with one key and no handles."""
+    return Document(layers=(new_layer(PICTURE, disc_domain(), Meshing()),))
 
 
 def altered(document: Document, **changes: object) -> Document:
-    """The document with other values in fields of its own, or of its one figure."""
-    (figure,) = document.figures
+    """The document with other values in fields of its own, or of its one layer."""
+    (layer,) = document.layers
     own = {field.name for field in dataclasses.fields(Document)} - {"unknown"}
     scene = {name: value for name, value in changes.items() if name in own}
     rest = {name: value for name, value in changes.items() if name not in own}
-    figures = (dataclasses.replace(figure, **rest),) if rest else document.figures
-    return dataclasses.replace(document, **{"figures": figures, **scene})
+    layers = (dataclasses.replace(layer, **rest),) if rest else document.layers
+    return dataclasses.replace(document, **{"layers": layers, **scene})
 
 
 def inside(rng: np.random.Generator) -> complex:
@@ -80,14 +80,14 @@ def inside(rng: np.random.Generator) -> complex:
 
 
 def random_pose(rng: np.random.Generator, document: Document, domain: Domain | None = None) -> Pose:
-    cage = document.figures[0].domain.cage if domain is None else domain.cage
+    cage = document.layers[0].domain.cage if domain is None else domain.cage
     noise = rng.normal(size=(4, len(cage)))
     return Pose(
         targets={
             handle.id: Target(
                 position=inside(rng), rotation=rng.normal() if rng.random() < 0.3 else None
             )
-            for handle in document.figures[0].handles
+            for handle in document.layers[0].handles
         },
         phi=cage * np.exp(1j * rng.normal()) + noise[0] + 1j * noise[1],
         psi=noise[2] + 1j * noise[3],
@@ -117,50 +117,48 @@ def random_command(rng: np.random.Generator, document: Document) -> Command:
 
 
 def _random_layer_command(rng: np.random.Generator, document: Document) -> Command:
-    figures = document.figures
-    figure = figures[rng.integers(len(figures))]
-    other = figures[rng.integers(len(figures))]
+    layers = document.layers
+    layer = layers[rng.integers(len(layers))]
+    other = layers[rng.integers(len(layers))]
     joint = Attachment(to=other.id, at=inside(rng), turns=bool(rng.integers(2)), rest=rng.random())
-    copy = dataclasses.replace(
-        figure, id=layer_commands.free_identity(document), corner=inside(rng)
-    )
+    copy = dataclasses.replace(layer, id=layer_commands.free_identity(document), corner=inside(rng))
     turn = complex(np.exp(1j * rng.normal()))
     flag = bool(rng.integers(2))
     commands = [
-        layer_commands.duplicate_figure(figure.id),
-        layer_commands.add_figure(copy),
-        layer_commands.add_figure(copy, 0),
-        layer_commands.remove_figure(max(each.id for each in figures)),
-        layer_commands.move_figure(figure.id, int(rng.integers(len(figures) + 1))),
-        layer_commands.rename_figure(figure.id, f"layer {rng.integers(4)}"),
-        layer_commands.set_opacity(figure.id, rng.random()),
-        layer_commands.set_hidden(figure.id, hidden=flag),
-        layer_commands.set_locked(figure.id, locked=flag),
-        layer_commands.set_reference(figure.id, reference=flag),
-        layer_commands.switch_at(figure.id, int(rng.integers(50)), visible=flag),
-        layer_commands.switch_at(figure.id, int(rng.integers(50)), visible=None),
+        layer_commands.duplicate_layer(layer.id),
+        layer_commands.add_layer(copy),
+        layer_commands.add_layer(copy, 0),
+        layer_commands.remove_layer(max(each.id for each in layers)),
+        layer_commands.move_layer(layer.id, int(rng.integers(len(layers) + 1))),
+        layer_commands.rename_layer(layer.id, f"layer {rng.integers(4)}"),
+        layer_commands.set_opacity(layer.id, rng.random()),
+        layer_commands.set_hidden(layer.id, hidden=flag),
+        layer_commands.set_locked(layer.id, locked=flag),
+        layer_commands.set_reference(layer.id, reference=flag),
+        layer_commands.switch_at(layer.id, int(rng.integers(50)), visible=flag),
+        layer_commands.switch_at(layer.id, int(rng.integers(50)), visible=None),
         layer_commands.move_switch(
-            figure.id,
-            figure.switches[0].frame if figure.switches else 3,
+            layer.id,
+            layer.switches[0].frame if layer.switches else 3,
             int(rng.integers(50)),
         ),
-        layer_commands.attach(figure.id, inside(rng), joint),
-        layer_commands.detach(figure.id, turn, inside(rng)),
+        layer_commands.attach(layer.id, inside(rng), joint),
+        layer_commands.detach(layer.id, turn, inside(rng)),
     ]
-    if figure.handles:
-        handle = figure.handles[rng.integers(len(figure.handles))].id
-        frame = figure.keys[rng.integers(len(figure.keys))].frame
+    if layer.handles:
+        handle = layer.handles[rng.integers(len(layer.handles))].id
+        frame = layer.keys[rng.integers(len(layer.keys))].frame
         commands += [
-            layer_commands.set_front(figure.id, handle, rng.uniform(-1, 1), None),
-            layer_commands.set_front(figure.id, handle, 0.5, 10 * rng.random() + 1),
-            layer_commands.key_front(figure.id, frame, handle, rng.uniform(-1, 1)),
-            layer_commands.key_front(figure.id, frame, handle, None),
+            layer_commands.set_front(layer.id, handle, rng.uniform(-1, 1), None),
+            layer_commands.set_front(layer.id, handle, 0.5, 10 * rng.random() + 1),
+            layer_commands.key_front(layer.id, frame, handle, rng.uniform(-1, 1)),
+            layer_commands.key_front(layer.id, frame, handle, None),
         ]
     return commands[rng.integers(len(commands))]
 
 
 def _random_choice_command(rng: np.random.Generator, document: Document) -> Command:
-    ids = [figure.id for figure in document.figures]
+    ids = [layer.id for layer in document.layers]
     identity, frame, to = ids[rng.integers(len(ids))], *(int(at) for at in rng.integers(50, size=2))
     choice = document.choices[0] if document.choices else None
     name = choice.name if choice else "none"
@@ -185,8 +183,8 @@ def _random_handle_command(rng: np.random.Generator, document: Document) -> Comm
         handle_commands.add_handle(0, inside(rng), name=f"é {rng.integers(4)}"),
         handle_commands.add_handle(0, CENTRE + 2 * RADIUS),
     ]
-    if document.figures[0].handles:
-        handle = document.figures[0].handles[rng.integers(len(document.figures[0].handles))]
+    if document.layers[0].handles:
+        handle = document.layers[0].handles[rng.integers(len(document.layers[0].handles))]
         commands += [
             handle_commands.move_handle(0, handle.id, inside(rng)),
             handle_commands.rename_handle(0, handle.id, f"name {rng.integers(3)}"),
@@ -200,9 +198,9 @@ def _random_handle_command(rng: np.random.Generator, document: Document) -> Comm
 
 
 def _random_key_command(rng: np.random.Generator, document: Document) -> Command:
-    count = rng.integers(1, len(document.figures[0].keys) + 1)
+    count = rng.integers(1, len(document.layers[0].keys) + 1)
     frames = [
-        key.frame for key in rng.choice(np.array(document.figures[0].keys), count, replace=False)
+        key.frame for key in rng.choice(np.array(document.layers[0].keys), count, replace=False)
     ]
     by = int(rng.integers(-8, 9))
     easing = [*PRESETS.values(), Easing(tuple(rng.random(4).tolist()))][rng.integers(6)]
@@ -215,7 +213,7 @@ def _random_key_command(rng: np.random.Generator, document: Document) -> Command
         key_commands.copy_keys(0, frames, by),
         key_commands.delete_keys(0, frames),
         key_commands.reverse_keys(0, frames),
-        key_commands.put_keys(0, [document.figures[0].key(frame) for frame in frames]),
+        key_commands.put_keys(0, [document.layers[0].key(frame) for frame in frames]),
         key_commands.put_pose(0, int(rng.integers(80)), pose, easing),
         key_commands.scale_keys(0, frames, float(rng.choice([0.5, 1.0, 1.5, 2.0]))),
         scene_commands.scale_time(float(rng.choice([0.5, 1.0, 1.5, 2.0]))),
@@ -263,11 +261,11 @@ def random_spring(rng: np.random.Generator, handle: int) -> Spring:
 
 
 def _random_track_command(rng: np.random.Generator, document: Document) -> Command:
-    figure = document.figures[0]
-    ids = [handle.id for handle in figure.handles] or [99]
+    layer = document.layers[0]
+    ids = [handle.id for handle in layer.handles] or [99]
     one, other = rng.choice(ids, 2).tolist()
     some = tuple(rng.permutation(ids)[: rng.integers(1, 4)].tolist())
-    track = figure.track_of(one) or random_track(rng, some)
+    track = layer.track_of(one) or random_track(rng, some)
     every = [key.frame for key in track.keys]
     frames = rng.choice(every, rng.integers(1, len(every) + 1), replace=False).tolist()
     by, factor = int(rng.integers(-8, 9)), float(rng.choice([0.5, 1.0, 1.5, 2.0]))
@@ -301,8 +299,8 @@ def _random_track_command(rng: np.random.Generator, document: Document) -> Comma
 
 
 def _random_material_command(rng: np.random.Generator, document: Document) -> Command:
-    figure = document.figures[0]
-    ids = [handle.id for handle in figure.handles] or [99]
+    layer = document.layers[0]
+    ids = [handle.id for handle in layer.handles] or [99]
     ends = tuple(rng.choice(ids, 2).tolist())
     amount = float(np.exp(rng.uniform(-3, 4)))
     way = [inside(rng) for _ in range(3)]
@@ -322,11 +320,11 @@ def _random_pose_command(rng: np.random.Generator, document: Document) -> Comman
     pose = random_pose(rng, document)
     commands = [
         pose_commands.keep_pose(0, pose),
-        pose_commands.keep_pose(0, document.figures[0].keys[0].pose, f"é {rng.integers(3)}"),
+        pose_commands.keep_pose(0, document.layers[0].keys[0].pose, f"é {rng.integers(3)}"),
         pose_commands.set_mirror(0, None if rng.random() < 0.3 else 200 * rng.random()),
     ]
-    if document.figures[0].library:
-        kept = document.figures[0].library[rng.integers(len(document.figures[0].library))]
+    if document.layers[0].library:
+        kept = document.layers[0].library[rng.integers(len(document.layers[0].library))]
         commands += [
             pose_commands.rename_pose(0, kept.name, f"name {rng.integers(3)}"),
             pose_commands.delete_pose(0, kept.name),
@@ -336,10 +334,10 @@ def _random_pose_command(rng: np.random.Generator, document: Document) -> Comman
 
 def _random_settings_command(rng: np.random.Generator, document: Document) -> Command:
     frames = FrameRange(int(rng.integers(4)), int(rng.integers(4, 90)))
-    poses = [random_pose(rng, document) for _ in document.figures[0].poses]
+    poses = [random_pose(rng, document) for _ in document.layers[0].poses]
     bounds = Bounds(k=0.5 + rng.random() / 3)
     domain = disc_domain(int(rng.integers(10, 16)))
-    again = [random_pose(rng, document, domain) for _ in document.figures[0].poses]
+    again = [random_pose(rng, document, domain) for _ in document.layers[0].poses]
     at = document.markers[0].frame if document.markers else 7
     commands = [
         scene_commands.set_fps(float(rng.choice([12, 23.976, 60]))),
@@ -352,15 +350,15 @@ def _random_settings_command(rng: np.random.Generator, document: Document) -> Co
         scene_commands.set_loop(loop=bool(rng.integers(2))),
         *_camera_commands(rng, document),
         scene_commands.set_pairs((("near", "far"), (f"é {rng.integers(3)}", "B"))),
-        figure_commands.set_variant(0, VARIANTS[rng.integers(len(VARIANTS))]),
-        figure_commands.set_stillness(0, stillness=bool(rng.integers(2))),
-        figure_commands.set_anchor(0, None if rng.random() < 0.3 else inside(rng)),
+        shape_commands.set_variant(0, VARIANTS[rng.integers(len(VARIANTS))]),
+        shape_commands.set_stillness(0, stillness=bool(rng.integers(2))),
+        shape_commands.set_anchor(0, None if rng.random() < 0.3 else inside(rng)),
         scene_commands.set_export(_random_export(rng)),
-        figure_commands.set_bounds(0, bounds),
-        figure_commands.set_bounds(0, bounds, poses),
-        figure_commands.replace_domain(0, domain, Meshing(detail="fine"), again),
-        figure_commands.brush(0, _random_stroke(rng)),
-        figure_commands.set_cut_out(0, CutOut(tolerance=int(rng.integers(5)))),
+        shape_commands.set_bounds(0, bounds),
+        shape_commands.set_bounds(0, bounds, poses),
+        shape_commands.replace_domain(0, domain, Meshing(detail="fine"), again),
+        shape_commands.brush(0, _random_stroke(rng)),
+        shape_commands.set_cut_out(0, CutOut(tolerance=int(rng.integers(5)))),
     ]
     return commands[rng.integers(len(commands))]
 
@@ -368,8 +366,8 @@ def _random_settings_command(rng: np.random.Generator, document: Document) -> Co
 def _camera_commands(rng: np.random.Generator, document: Document) -> list[Command]:
     frame, to = (int(at) for at in rng.integers(50, size=2))
     at = document.camera[0].frame if document.camera else frame
-    faded, moved = document.figure(0).opacities, document.figure(0).movement
-    other = int(rng.integers(len(document.figures)))
+    faded, moved = document.layer(0).opacities, document.layer(0).movement
+    other = int(rng.integers(len(document.layers)))
     key = CameraKey(frame=frame, centre=inside(rng), zoom=rng.uniform(0.1, 9), turn=rng.normal())
     return [
         filming_commands.key_camera(key),
@@ -447,7 +445,7 @@ def full_document() -> Document:
         1: Target(position=1e3 - 0.1j, rotation=-0.25, unknown=more),
         4: Target(position=complex(-0.0, 5e-324)),
     }
-    cage = empty.figures[0].domain.cage
+    cage = empty.layers[0].domain.cage
     bent = Pose(
         targets=targets,
         phi=cage * np.exp(0.3j) + 1 / 3,
@@ -460,8 +458,8 @@ def full_document() -> Document:
         psi=bent.phi,
         certificate=Certificate(k=inf, sigma_a=2.0, sigma_b=-inf, winding=None, certified=False),
     )
-    figure = dataclasses.replace(
-        empty.figures[0],
+    layer = dataclasses.replace(
+        empty.layers[0],
         id=0,
         meshing=Meshing(detail="coarse", triangles=2_000),
         cut_out=hand_made_cut_out(),
@@ -494,7 +492,7 @@ def full_document() -> Document:
     )
     return dataclasses.replace(
         empty,
-        figures=(figure, dataclasses.replace(figure, id=5, name="parent", joints=())),
+        layers=(layer, dataclasses.replace(layer, id=5, name="parent", joints=())),
         size=(640, 480),
         frames=FrameRange(1, 60),
         preview=FrameRange(3, 40),
@@ -515,8 +513,8 @@ def full_document() -> Document:
 def clocked_document() -> Document:
     """The full document with what came later: clocks of handles, material, groups, and pairs."""
     full = full_document()
-    figure = full.figures[0]
-    nose, foot = figure.handles
+    layer = full.layers[0]
+    nose, foot = layer.handles
     more = MappingProxyType({"colour": "#123456"})
     keys = (
         TrackKey(frame=2, place=0j, unknown=more),
@@ -540,14 +538,14 @@ def clocked_document() -> Document:
         unknown=more,
     )
     parent = dataclasses.replace(
-        full.figures[1],
+        full.layers[1],
         handles=(nose, dataclasses.replace(foot, free=True)),
         stillness=True,
         tracks=(planted,),
     )
-    painted = np.exp(np.linspace(-3, 4, sum(map(len, figure.domain.loops))))
+    painted = np.exp(np.linspace(-3, 4, sum(map(len, layer.domain.loops))))
     child = dataclasses.replace(
-        figure,
+        layer,
         tracks=(track,),
         springs=(spring,),
         stiffness=painted,
@@ -571,10 +569,10 @@ def clocked_document() -> Document:
         CameraKey(frame=9, centre=9j, zoom=0.1, easing=HOLD, passing=Passing.CORNER),
     )
     pairs = (("L", "R"), ("Fuß", "Tatze\n"))
-    figures = (child, parent)
+    layers = (child, parent)
     told = ImportSummary(losses=("glow: drawn normally",), matters=("Körper: left out", "ü"))
     return dataclasses.replace(
-        full, figures=figures, groups=groups, camera=camera, pairs=pairs, told=told
+        full, layers=layers, groups=groups, camera=camera, pairs=pairs, told=told
     )
 
 

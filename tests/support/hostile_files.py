@@ -41,7 +41,7 @@ STRANGE = (
     *(float("nan"), float("inf"), 1e308, -1e308, 5e-324, -1, 0, 2**31, 10**30, 1e6, 0.5),
     *(True, False, None, "", "x" * 5000, "\ud800", "../../x", "\0", [], {}, [[]], [0, 0], [1e308]),
 )
-TRAVERSING = ("../../../../tmp/evil", "/etc/evil", "figures/../../evil", "a\0b", "C:\\evil", "")
+TRAVERSING = ("../../../../tmp/evil", "/etc/evil", "layers/../../evil", "a\0b", "C:\\evil", "")
 SIZES = (0, 1, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF, 0xFFFF, 0x00FFFFFF)
 RUNS = {"pickle.find_class", "subprocess.Popen", "os.system", "os.exec", "os.fork"}
 MOVES = {"socket.connect", "os.remove", "os.rename", "os.mkdir", "ctypes.dlopen"}

@@ -4,8 +4,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from app.document.figure import Figure
 from app.document.keyframe import Pose
+from app.document.layer import Layer
 from app.editor.actions import playback
 from app.editor.project import Project
 from app.editor.session import Session
@@ -26,14 +26,14 @@ def check_invariants(session: Session) -> None:
     project = session.project
     if project is None:
         return
-    document, figure = project.document, project.figure
-    assert set(project.puppets) == {each.id for each in document.figures}
-    assert project.selected <= {handle.id for handle in figure.handles}
+    document, layer = project.document, project.layer
+    assert set(project.puppets) == {each.id for each in document.layers}
+    assert project.selected <= {handle.id for handle in layer.handles}
     for row, frames in project.chosen_of.items():
         assert frames
         assert frames <= frames_in(document, row)
     assert playback.current_frame(session, project) in document.frames
-    for each in document.figures:
+    for each in document.layers:
         frames = [key.frame for key in each.keys]
         assert frames
         assert frames == sorted(set(frames))
@@ -42,40 +42,38 @@ def check_invariants(session: Session) -> None:
             check_pose(each, key.pose)
     check_joints(project)
     if project.unkeyed is not None:
-        check_pose(figure, project.unkeyed)
+        check_pose(layer, project.unkeyed)
 
 
 def check_joints(project: Project) -> None:
     """Fail where a layer is not drawn at the point that it hangs by."""
-    for figure in project.document.figures:
-        child, joint = project.puppets[figure.id].shown, project.document.joint_at(figure, 0)
-        if joint is None or joint.to is None or joint.keeps or len(figure.joints) > 1:
+    for layer in project.document.layers:
+        child, joint = project.puppets[layer.id].shown, project.document.joint_at(layer, 0)
+        if joint is None or joint.to is None or joint.keeps or len(layer.joints) > 1:
             continue
         parent = project.puppets[joint.to].shown
         if child is None or parent is None:
             continue
-        pair = (child, figure), (parent, project.document.figure(joint.to))
-        if not all(each.is_current and each.clip.figure is now for each, now in pair):
+        pair = (child, layer), (parent, project.document.layer(joint.to))
+        if not all(each.is_current and each.clip.layer is now for each, now in pair):
             continue
-        anchor = child.placement.on(np.array([child.hinge(figure.anchor).place]))[0]
+        anchor = child.placement.on(np.array([child.hinge(layer.anchor).place]))[0]
         at = parent.placement.on(np.array([parent.hinge(joint.at).place]))[0]
-        size = np.abs(figure.domain.outline - figure.domain.outline.mean()).max()
+        size = np.abs(layer.domain.outline - layer.domain.outline.mean()).max()
         factor = parent.placement.factor * parent.hinge(joint.at).turn if joint.turns else 1.0
         gap = abs(anchor - at - factor * joint.offset)
-        assert gap < OPEN * size, (
-            f"{figure.name} is {gap} from its joint {joint}: {child}, {parent}"
-        )
+        assert gap < OPEN * size, f"{layer.name} is {gap} from its joint {joint}: {child}, {parent}"
 
 
-def check_pose(figure: Figure, pose: Pose) -> None:
-    """Fail unless a pose is of a figure, and its certificate is true."""
-    assert set(pose.targets) == {handle.id for handle in figure.handles}
-    assert len(pose.phi) == len(pose.psi) == sum(map(len, figure.domain.cages))
-    assert len(pose.logs) == len(figure.domain.holes)
+def check_pose(layer: Layer, pose: Pose) -> None:
+    """Fail unless a pose is of a layer, and its certificate is true."""
+    assert set(pose.targets) == {handle.id for handle in layer.handles}
+    assert len(pose.phi) == len(pose.psi) == sum(map(len, layer.domain.cages))
+    assert len(pose.logs) == len(layer.domain.holes)
     assert np.isfinite(pose.phi).all()
     assert np.isfinite(pose.psi).all()
     if pose.certificate.certified:
-        assert _is_true(figure.domain, pose)
+        assert _is_true(layer.domain, pose)
 
 
 @lru_cache(maxsize=512)

@@ -23,10 +23,10 @@ def drawing():
     """Return a document of the blob within a polygon, and a pose that turns and bends it."""
     circle = regular_polygon(12)
     document = within(still_document(), 60 + 47j + 54 * circle.real + 40j * circle.imag)
-    (figure,) = document.figures
-    middle = figure.domain.cage.mean()
-    z = figure.domain.cage - middle
-    return document, replace(figure.keys[0].pose, phi=middle + z * np.exp(0.5j) + 5e-4 * z**2)
+    (layer,) = document.layers
+    middle = layer.domain.cage.mean()
+    z = layer.domain.cage - middle
+    return document, replace(layer.keys[0].pose, phi=middle + z * np.exp(0.5j) + 5e-4 * z**2)
 
 
 def row(count, *, loop=False, **settings):
@@ -44,7 +44,7 @@ def row(count, *, loop=False, **settings):
 def prepared(document, store=None):
     """Return a store that has all in-betweens of a document, and how many were prepared for it."""
     clip = clip_of(document, 0)
-    store = store or IntervalStore(mesh=PosableMesh.coarse(clip.figure.domain))
+    store = store or IntervalStore(mesh=PosableMesh.coarse(clip.layer.domain))
     lacking = store.missing(clip, 0)
     store.take(store.preparing(clip, lacking)())
     assert store.has(clip)

@@ -10,12 +10,12 @@ def project_of(document: Document, pixels: Bytes, name: str) -> Project:
     """A saved project of a document, whose pictures have these pixels; the first is posed."""
     picture = Picture(rgba=pixels, notices=())
     puppets = {
-        figure.id: Puppet.of(clip_of(document, figure.id), picture) for figure in document.figures
+        layer.id: Puppet.of(clip_of(document, layer.id), picture) for layer in document.layers
     }
     return Project(
         name=name,
         history=History(document, saved=True),
         path=None,
         puppets=puppets,
-        active=document.figures[0].id,
+        active=document.layers[0].id,
     )

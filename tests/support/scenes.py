@@ -13,17 +13,17 @@ from app.document.commands import (
     Command,
     choice_commands,
     cycle_commands,
-    figure_commands,
     filming_commands,
     group_commands,
     handle_commands,
     layer_commands,
     material_commands,
     scene_commands,
+    shape_commands,
     track_commands,
 )
-from app.document.figure import Figure
 from app.document.keyframe import KeptPose, Keyframe, Passing, Pose, Target
+from app.document.layer import Layer
 from app.document.layering import Attachment, CameraKey, Placing
 from app.document.model import Document
 from app.document.settings import VARIANTS, FrameRange
@@ -32,7 +32,7 @@ from app.editor import Session
 from app.editor.project import Project
 from app.editor.timeline_view import TrackRow, frames_in
 from app.errors import LissomError
-from app.storage.layers import still_figure
+from app.storage.layers import still_layer
 from engine.geometry.motions import Parameters
 from engine.maps.certificate import Certificate
 
@@ -52,9 +52,9 @@ def drawn() -> Document:
 def random_scene(rng: np.random.Generator) -> Document:
     """Return a document of up to four layers, some of which hang on each other, move and repeat."""
     base = drawn()
-    layers = [_random_layer(rng, base.figures[0], number) for number in range(rng.integers(1, 5))]
+    layers = [_random_layer(rng, base.layers[0], number) for number in range(rng.integers(1, 5))]
     document = replace(
-        base, figures=tuple(layers), frames=FrameRange(0, LAST), loop=bool(rng.integers(2))
+        base, layers=tuple(layers), frames=FrameRange(0, LAST), loop=bool(rng.integers(2))
     )
     for _ in range(int(rng.integers(TRIES))):
         try:
@@ -64,20 +64,20 @@ def random_scene(rng: np.random.Generator) -> Document:
     return document
 
 
-def _random_layer(rng: np.random.Generator, drawn: Figure, number: int) -> Figure:
-    figure = replace(drawn, id=number, name=f"layer {number}", corner=complex(0, 0))
+def _random_layer(rng: np.random.Generator, drawn: Layer, number: int) -> Layer:
+    layer = replace(drawn, id=number, name=f"layer {number}", corner=complex(0, 0))
     if rng.random() < 0.15:
-        return still_figure(figure)
-    document = Document(figures=(replace(figure, id=0),))
+        return still_layer(layer)
+    document = Document(layers=(replace(layer, id=0),))
     for name in rng.permutation(NAMES)[: rng.integers(5)].tolist():
         place = complex(rng.uniform(30, 90), rng.uniform(30, 65))
         document = handle_commands.add_handle(0, place, name=name)(document)
-    figure = replace(document.figures[0], id=number)
+    layer = replace(document.layers[0], id=number)
     frames = rng.choice(LAST + 1, rng.integers(1, 6), replace=False)
     keys = tuple(
         Keyframe(
             frame=frame,
-            pose=random_affine(rng, figure),
+            pose=random_affine(rng, layer),
             easing=_any(rng, PRESETS.values()),
             passing=_any(rng, (Passing.THROUGH, Passing.CORNER, Passing.STOP)),
             turns=int(rng.integers(-1, 2)),
@@ -85,12 +85,12 @@ def _random_layer(rng: np.random.Generator, drawn: Figure, number: int) -> Figur
         for frame in sorted(map(int, frames))
     )
     library = tuple(
-        KeptPose(name=f"pose {count}", pose=random_affine(rng, figure))
+        KeptPose(name=f"pose {count}", pose=random_affine(rng, layer))
         for count in range(rng.integers(3))
     )
     variant = VARIANTS[rng.integers(len(VARIANTS))]
     return replace(
-        figure,
+        layer,
         keys=keys,
         library=library,
         variant=variant,
@@ -99,16 +99,16 @@ def _random_layer(rng: np.random.Generator, drawn: Figure, number: int) -> Figur
     )
 
 
-def random_affine(rng: np.random.Generator, figure: Figure) -> Pose:
-    """Return a pose of a figure that is the same map everywhere, within the usual limits."""
-    cage, middle = figure.domain.cage, figure.domain.cage.mean()
+def random_affine(rng: np.random.Generator, layer: Layer) -> Pose:
+    """Return a pose of a layer that is the same map everywhere, within the usual limits."""
+    cage, middle = layer.domain.cage, layer.domain.cage.mean()
     turn, shift = np.exp(1j * rng.normal(0, 0.4)), complex(*rng.normal(0, 8, 2))
     shear = 0.2 * rng.random() * np.exp(1j * rng.normal())
-    places = np.array([handle.position for handle in figure.handles], np.complex128) - middle
+    places = np.array([handle.position for handle in layer.handles], np.complex128) - middle
     places = middle + shift + turn * places + np.conj(shear * places)
     targets = {
         handle.id: Target(position=complex(place))
-        for handle, place in zip(figure.handles, places, strict=True)
+        for handle, place in zip(layer.handles, places, strict=True)
     }
     return Pose(
         targets=targets,
@@ -125,12 +125,12 @@ def random_affine(rng: np.random.Generator, figure: Figure) -> Pose:
 
 
 def _random_change(rng: np.random.Generator, document: Document) -> Command:
-    figure = _any(rng, document.figures)
-    other = _any(rng, document.figures)
+    layer = _any(rng, document.layers)
+    other = _any(rng, document.layers)
     one, to = sorted(int(frame) for frame in rng.integers(LAST + 1, size=2))
-    flag, ids = bool(rng.integers(2)), [each.id for each in document.figures]
+    flag, ids = bool(rng.integers(2)), [each.id for each in document.layers]
     place = complex(rng.uniform(30, 90), rng.uniform(30, 65))
-    handles = [handle.id for handle in figure.handles]
+    handles = [handle.id for handle in layer.handles]
     group = _any(rng, ("body", "body/arms", "legs"))
     joint = Attachment(
         to=None if rng.random() < 0.2 else other.id,
@@ -142,23 +142,23 @@ def _random_change(rng: np.random.Generator, document: Document) -> Command:
     until = _any(rng, (None, to, to + (to - one), LAST))
     camera = CameraKey(frame=one, centre=place, zoom=rng.uniform(0.3, 4), turn=rng.normal())
     changes = [
-        layer_commands.attach(figure.id, place, joint),
-        layer_commands.switch_at(figure.id, one, visible=flag),
+        layer_commands.attach(layer.id, place, joint),
+        layer_commands.switch_at(layer.id, one, visible=flag),
         choice_commands.form_choice(f"choice {one}", rng.permutation(ids)[:2].tolist()),
-        choice_commands.choose_at(figure.id, to),
-        *2 * [cycle_commands.repeat(figure.id, one, to, until)],
+        choice_commands.choose_at(layer.id, to),
+        *2 * [cycle_commands.repeat(layer.id, one, to, until)],
         filming_commands.key_camera(camera),
-        filming_commands.key_opacity(figure.id, one, rng.random()),
-        filming_commands.key_movement(figure.id, to, place - 60, rng.normal()),
-        filming_commands.place_at(figure.id, Placing(one, other.id, flag)),
-        group_commands.put_in_group([figure.id, other.id], group),
+        filming_commands.key_opacity(layer.id, one, rng.random()),
+        filming_commands.key_movement(layer.id, to, place - 60, rng.normal()),
+        filming_commands.place_at(layer.id, Placing(one, other.id, flag)),
+        group_commands.put_in_group([layer.id, other.id], group),
         group_commands.set_group_hidden(group, hidden=flag),
         scene_commands.add_marker(one, _any(rng, (None, "beat"))),
         scene_commands.set_preview(FrameRange(one, to) if flag else None),
         scene_commands.set_fps(float(_any(rng, (1, 12, 23.976, 60)))),
-        layer_commands.set_clipped(figure.id, clipped=flag),
-        layer_commands.set_reference(figure.id, reference=flag),
-        figure_commands.set_anchor(figure.id, place if flag else None),
+        layer_commands.set_clipped(layer.id, clipped=flag),
+        layer_commands.set_reference(layer.id, reference=flag),
+        shape_commands.set_anchor(layer.id, place if flag else None),
     ]
     if len(handles) > 1:
         some = tuple(rng.permutation(handles)[: rng.integers(1, 3)].tolist())
@@ -166,13 +166,13 @@ def _random_change(rng: np.random.Generator, document: Document) -> Command:
         track = random_track(rng, some)
         offsets = tuple(replace(key, place=complex(*rng.normal(0, 3, 2))) for key in track.keys)
         changes += [
-            *2 * [track_commands.put_track(figure.id, replace(track, planted=False, keys=offsets))],
-            track_commands.put_spring(figure.id, random_spring(rng, handles[0])),
-            material_commands.add_bone(figure.id, ends, 10.0),
-            handle_commands.group_handles(figure.id, set(some), "arms"),
-            handle_commands.lock_handles(figure.id, set(some), locked=flag),
-            layer_commands.key_front(figure.id, one, handles[0], rng.uniform(-1, 1)),
-            scene_commands.give_motion(figure, _given(rng, handles, one, to)),
+            *2 * [track_commands.put_track(layer.id, replace(track, planted=False, keys=offsets))],
+            track_commands.put_spring(layer.id, random_spring(rng, handles[0])),
+            material_commands.add_bone(layer.id, ends, 10.0),
+            handle_commands.group_handles(layer.id, set(some), "arms"),
+            handle_commands.lock_handles(layer.id, set(some), locked=flag),
+            layer_commands.key_front(layer.id, one, handles[0], rng.uniform(-1, 1)),
+            scene_commands.give_motion(layer, _given(rng, handles, one, to)),
         ]
     return changes[rng.integers(len(changes))]
 
@@ -193,21 +193,21 @@ def _given(rng: np.random.Generator, handles: list[int], first: int, last: int) 
 def random_state(rng: np.random.Generator, session: Session, project: Project) -> None:
     """Let things be chosen, in hand and under the playhead at random."""
     document = project.document
-    project.active = _any(rng, document.figures).id
-    figure = project.figure
-    project.beside = frozenset(each.id for each in document.figures if rng.random() < 0.3)
-    project.selected = frozenset(handle.id for handle in figure.handles if rng.random() < 0.5)
-    rows = [each.id for each in document.figures]
+    project.active = _any(rng, document.layers).id
+    layer = project.layer
+    project.beside = frozenset(each.id for each in document.layers if rng.random() < 0.3)
+    project.selected = frozenset(handle.id for handle in layer.handles if rng.random() < 0.5)
+    rows = [each.id for each in document.layers]
     rows += [
-        TrackRow(each.id, track.handles[0]) for each in document.figures for track in each.tracks
+        TrackRow(each.id, track.handles[0]) for each in document.layers for track in each.tracks
     ]
     for row in rows:
         frames = frozenset(frame for frame in frames_in(document, row) if rng.random() < 0.4)
         if frames and rng.random() < 0.6:
             project.chosen_of[row] = frames
-    project.timing.unfolded = frozenset(each.id for each in document.figures if rng.random() < 0.5)
-    if figure.tracks and rng.random() < 0.5:
-        project.chosen_track = _any(rng, figure.tracks).handles[0]
+    project.timing.unfolded = frozenset(each.id for each in document.layers if rng.random() < 0.5)
+    if layer.tracks and rng.random() < 0.5:
+        project.chosen_track = _any(rng, layer.tracks).handles[0]
     project.looks_through = bool(document.camera) and bool(rng.integers(2))
     project.playhead = replace(project.playhead, frame=int(rng.integers(LAST + 1)))
     session.in_timeline = bool(rng.integers(2))

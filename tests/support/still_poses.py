@@ -33,12 +33,12 @@ def drawing():
 @cache
 def dragged(number):
     """The pose to which the handles of that drawing are dragged by one of the moves."""
-    figure, move = drawing().figures[0], MOVES[number]
+    layer, move = drawing().layers[0], MOVES[number]
     targets = {
         handle.id: Target(position=handle.position + move.get(handle.name, 0))
-        for handle in figure.handles
+        for handle in layer.handles
     }
-    drag = Drag.begin(Rig.of(figure), figure.keys[0].pose)
+    drag = Drag.begin(Rig.of(layer), layer.keys[0].pose)
     while not drag.is_over:
         drag = drag.towards(targets, 50)
     return drag.pose(targets)
@@ -53,14 +53,14 @@ def posed(count=4, *, loop=False, drawn=DRAWN, variant="nu"):
     return altered(drawing(), keys=keys, frames=frames, loop=loop, variant=variant)
 
 
-def with_figure(document, **changes):
-    return document.with_figure(replace(document.figures[0], **changes))
+def with_layer(document, **changes):
+    return document.with_layer(replace(document.layers[0], **changes))
 
 
 def animate(document, points=None):
-    figure = document.figures[0]
-    handles = np.array([handle.position for handle in figure.handles])
-    points = np.concatenate([handles, figure.domain.outline]) if points is None else points
+    layer = document.layers[0]
+    handles = np.array([handle.position for handle in layer.handles])
+    points = np.concatenate([handles, layer.domain.outline]) if points is None else points
     return Animation(clip_of(document, 0), points=points)
 
 

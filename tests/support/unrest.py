@@ -15,13 +15,13 @@ def unrest(session: Session) -> str:
         return "\n".join(lines)
     lines += [f"on its way: {each.label!r} ({type(each).__name__})" for each in project.pending]
     lines += [
-        f"pull: figure {pull.figure}, frame {pull.frame}, held {pull.is_held}, left {pull.is_left},"
+        f"pull: layer {pull.layer}, frame {pull.frame}, held {pull.is_held}, left {pull.is_left},"
         f" settled {pull.is_settled}, in history {pull.is_in(project.history)}"
         for pull in project.pulls
     ]
     lines += [f"waits until nothing is on its way: {each.what!r}" for each in project.afterwards]
-    if project.stale_figure is not None:
-        lines.append(f"waits for a mesh: {project.stale_figure.name!r}")
+    if project.stale_layer is not None:
+        lines.append(f"waits for a mesh: {project.stale_layer.name!r}")
     lines += _shown(project)
     lines.append(f"settled: {promises.is_settled(project)}")
     lines.append(f"failing: {sorted(session.failing)}")
@@ -39,15 +39,15 @@ def _shown(project: Project) -> list[str]:
     for identity, puppet in project.puppets.items():
         clip, shown, store = clip_of(project.document, identity), puppet.shown, puppet.store
         if shown is None:
-            lines.append(f"layer {clip.figure.name!r}: nothing is shown")
+            lines.append(f"layer {clip.layer.name!r}: nothing is shown")
         elif not (shown.is_current or _plays(project, shown)) or shown.clip != clip:
             lines.append(
-                f"layer {clip.figure.name!r}: shows frame {shown.frame} of frames "
+                f"layer {clip.layer.name!r}: shows frame {shown.frame} of frames "
                 f"{shown.clip.frames.first} to {shown.clip.frames.last}, and the document has "
                 f"{clip.frames.first} to {clip.frames.last}; same clip {shown.clip == clip}, same "
-                f"figure {shown.clip.figure is clip.figure}, stand-in "
+                f"layer {shown.clip.layer is clip.layer}, stand-in "
                 f"{type(shown.stand_in).__name__}, rough {shown.is_rough}, still "
-                f"{clip.figure.still}, mesh of its domain {store.mesh.source is clip.figure.domain}"
+                f"{clip.layer.still}, mesh of its domain {store.mesh.source is clip.layer.domain}"
                 f", failed {[part for part in PARTS if store.has_failed(clip, part)]}"
             )
     return lines

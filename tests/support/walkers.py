@@ -7,7 +7,7 @@ import numpy as np
 from animations import still_document, within
 from PIL import Image, ImageDraw
 
-from app.document import Document, Figure, handle_commands
+from app.document import Document, Layer, handle_commands
 from engine.geometry import RigidMotion
 
 SIZE = (240, 200)
@@ -28,7 +28,7 @@ def leg(
     mirrored: bool = False,
     turned: bool = False,
     traced: bool = True,
-) -> Figure:
+) -> Layer:
     """Return a leg with a foot, moved by some whole pixels, mirrored, or turned by a quarter.
 
     Its outline is traced from its picture, or has few corners.
@@ -49,7 +49,7 @@ def leg(
         at = 2 * AXIS - at.conjugate() if mirrored else at
         at = 1j * at + SIZE[1] if turned else at
         document = handle_commands.add_handle(0, at, name=handle)(document)
-    return replace(document.figures[0], id=identity, name=name)
+    return replace(document.layers[0], id=identity, name=name)
 
 
 @cache
@@ -59,9 +59,9 @@ def walker(near: str = "near leg", far: str = "far leg") -> Document:
     ImageDraw.Draw(picture).rectangle((50, 10, 150, 70), fill=(60, 90, 200, 255))
     body = within(still_document(np.array(picture)), BODY)
     body = handle_commands.add_handle(0, 100 + 170j, name="chest")(body)
-    figures = (
+    layers = (
         leg(far, 2, FAR.shift, traced=False),
-        replace(body.figures[0], id=1, name="body"),
+        replace(body.layers[0], id=1, name="body"),
         leg(near, 0, traced=False),
     )
-    return Document(figures=figures, size=SIZE)
+    return Document(layers=layers, size=SIZE)

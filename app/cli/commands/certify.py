@@ -25,16 +25,16 @@ def run(arguments: argparse.Namespace) -> int:
     document = load_project(arguments.project)
     give_notices(motion_notices(document))
     reports = {
-        figure.name: certify_clip(
-            clip_of(document, figure.id), arguments.variant, carried_in(document, figure.id)
+        layer.name: certify_clip(
+            clip_of(document, layer.id), arguments.variant, carried_in(document, layer.id)
         )
-        for figure in document.figures
-        if not figure.still
+        for layer in document.layers
+        if not layer.still
     }
     if arguments.json:
         say(_as_json(reports))
     else:
-        # Of one figure the table is all that there is to say.
+        # Of one layer the table is all that there is to say.
         parts = [_overview(reports)] if len(reports) != 1 else []
         say("\n\n".join([*parts, *(_tables(reports) if arguments.details or not parts else [])]))
     return EXITS[_verdict(reports)]
@@ -47,7 +47,7 @@ def _verdict(reports: Mapping[str, Report]) -> Verdict:
 def _as_json(reports: Mapping[str, Report]) -> str:
     blocks = {name: _block(report) for name, report in reports.items()}
     content = (
-        {**_judged(_verdict(reports)), "figures": blocks}
+        {**_judged(_verdict(reports)), "layers": blocks}
         if len(blocks) != 1
         else next(iter(blocks.values()))
     )
@@ -61,16 +61,16 @@ def _tables(reports: Mapping[str, Report]) -> list[str]:
 
 
 def _overview(reports: Mapping[str, Report]) -> str:
-    """Return the verdict of a scene, and a line for each figure: its worst, and where it is."""
+    """Return the verdict of a scene, and a line for each layer: its worst, and where it is."""
     if not reports:
         return "All in all: proven: all that is there stands still."
     verdict, count = _verdict(reports), len(reports)
     worst = sum(report.verdict is verdict for report in reports.values())
     whole = {
-        Verdict.PROVEN: f"all {count} figures are proven to keep their bounds at every moment",
+        Verdict.PROVEN: f"all {count} layers are proven to keep their bounds at every moment",
         Verdict.MEASURED: f"no in-between folds; that bounds are kept is measured only of {worst} "
-        f"of {count} figures",
-        Verdict.OVER: f"{worst} of {count} figures are beyond their bounds, or may fold",
+        f"of {count} layers",
+        Verdict.OVER: f"{worst} of {count} layers are beyond their bounds, or may fold",
     }
     lines = [f"All in all: {WORDS[verdict]}: {whole[verdict]}."]
     shown = [(shortened(name), report) for name, report in reports.items()]
@@ -81,11 +81,11 @@ def _overview(reports: Mapping[str, Report]) -> str:
         where = ", ".join(_where(report))
         told = f"{WORDS[report.verdict]}{f' at {where}' if where else ''}"
         lines.append(_line(name, cells, told, width=width, cell=9))
-    return "\n".join([*lines, "Each figure's keys and intervals: --details."])
+    return "\n".join([*lines, "Each layer's keys and intervals: --details."])
 
 
 def _where(report: Report) -> list[str]:
-    """Return what has the verdict of a whole figure, if that is not the best one."""
+    """Return what has the verdict of a whole layer, if that is not the best one."""
     if report.verdict is Verdict.PROVEN:
         return []
     is_over = report.verdict is Verdict.OVER
@@ -184,7 +184,7 @@ def _as_table(report: Report) -> str:
     lines += _corrected_lines(report)
     lines.append(
         "In brackets: the worse of the two keyframes; of what is proven, how far that is beyond it"
-        " (or beyond the figure's bounds, where handles stay or the motion passes through a key)."
+        " (or beyond the layer's bounds, where handles stay or the motion passes through a key)."
     )
     lines.append(f"All in all: {WORDS[report.verdict]}.")
     largest = max((interval.correction for interval in report.intervals), default=0.0)

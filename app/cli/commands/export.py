@@ -43,8 +43,8 @@ def run(arguments: argparse.Namespace) -> int:
     """Export a project."""
     document = load_project(arguments.project)
     give_notices(motion_notices(document))
-    if arguments.figure is not None:
-        document = _alone(document, arguments.figure)
+    if arguments.layer is not None:
+        document = _alone(document, arguments.layer)
     name = arguments.project.stem
     named: Path = arguments.out.path
     out = named.parent / named.name.replace(PROJECT, name)
@@ -62,27 +62,27 @@ def run(arguments: argparse.Namespace) -> int:
     source = f"the picture of {arguments.project}"
     decoded = {
         file: decode_picture(file.data, source)
-        for file in {figure.picture for figure in document.figures}
+        for file in {layer.picture for layer in document.layers}
     }
     pictures = {
-        figure.id: cut_picture(decoded[figure.picture], figure.cut_out).texture
-        for figure in document.figures
+        layer.id: cut_picture(decoded[layer.picture], layer.cut_out).texture
+        for layer in document.layers
     }
     say(_make(document, pictures, request, arguments))
     return 0
 
 
 def _alone(document: Document, name: str) -> Document:
-    """Return a document of which only one figure is seen; it hangs where it hung."""
-    names = [figure.name for figure in document.figures]
+    """Return a document of which only one layer is seen; it hangs where it hung."""
+    names = [layer.name for layer in document.layers]
     if name not in names:
         raise LissomError(f"there is no layer {name!r}; the layers are {listed(names)}")
-    figures = tuple(
-        replace(figure, hidden=False, reference=figure.name != name) for figure in document.figures
+    layers = tuple(
+        replace(layer, hidden=False, reference=layer.name != name) for layer in document.layers
     )
     groups = tuple(replace(group, hidden=False) for group in document.groups)
-    alone = replace(document, figures=figures, groups=groups, size=document.canvas)
-    return seen_alone(alone, [figure.id for figure in figures if figure.name == name])
+    alone = replace(document, layers=layers, groups=groups, size=document.canvas)
+    return seen_alone(alone, [layer.id for layer in layers if layer.name == name])
 
 
 def _make(
@@ -116,11 +116,9 @@ def _make(
 
 
 def _poses(document: Document, arguments: argparse.Namespace) -> dict[int, KeptPoses]:
-    alone = [
-        Animation(clip_of(document, figure.id), arguments.variant) for figure in document.figures
-    ]
+    alone = [Animation(clip_of(document, layer.id), arguments.variant) for layer in document.layers]
     hung = hung_animations(alone, document)
-    return {figure: KeptPoses(animation) for figure, animation in hung.items()}
+    return {layer: KeptPoses(animation) for layer, animation in hung.items()}
 
 
 def _settings(own: ExportSettings, arguments: argparse.Namespace, out: Path) -> ExportSettings:

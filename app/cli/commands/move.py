@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from app.cli.console import StatusLine, give_notices, say
 from app.cli.cut_out import read_cut_out
-from app.document import Document, Figure, Meshing
+from app.document import Document, Layer, Meshing
 from app.errors import LissomError
 from app.solving import MotionOrder, ToldJoints, begin_giving, facing_in, give_on, load_joints
 from app.storage import (
@@ -51,8 +51,8 @@ def run(arguments: argparse.Namespace) -> int:
                 f"--kind is {arguments.kind!r}, but {arguments.joints} is of {told.kind!r}"
             )
     opened = _opened(arguments)
-    figure = opened.document.figures[0]
-    found = _found(figure, motion, arguments.kind or told.kind, told)
+    layer = opened.document.layers[0]
+    found = _found(layer, motion, arguments.kind or told.kind, told)
     order = MotionOrder(
         motion=arguments.motion,
         kind=found.kind,
@@ -87,7 +87,7 @@ def _parameters(arguments: argparse.Namespace) -> Parameters:
 
 
 def _opened(arguments: argparse.Namespace) -> OpenedScene:
-    """Return the drawing as a scene of one figure."""
+    """Return the drawing as a scene of one layer."""
     meshing = Meshing(triangles=arguments.triangles, detail=arguments.detail)
     open_one = open_merged if is_layered(arguments.picture) else open_picture
     opened = open_one(arguments.picture, meshing, read_cut_out(arguments))
@@ -95,9 +95,9 @@ def _opened(arguments: argparse.Namespace) -> OpenedScene:
     return opened
 
 
-def _found(figure: Figure, motion: Motion, kind: str | None, told: ToldJoints) -> _Found:
+def _found(layer: Layer, motion: Motion, kind: str | None, told: ToldJoints) -> _Found:
     """Return the kind of a drawing and its joints, guessed where they are not told."""
-    loops = figure.domain.loops
+    loops = layer.domain.loops
     if kind is None:
         if told.joints:
             raise LissomError("the file of joints does not say of which kind; add kind, or --kind")
@@ -117,9 +117,9 @@ def _found(figure: Figure, motion: Motion, kind: str | None, told: ToldJoints) -
 def _moved(document: Document, order: MotionOrder) -> Document:
     """Return the document with the motion; tell what of it is out of reach."""
     with StatusLine() as status:
-        giving = begin_giving(document, document.figures[0].id, order)
+        giving = begin_giving(document, document.layers[0].id, order)
         if order.facing is None and order.kind in {"biped-side", "four-legs"}:
-            side = "right" if facing_in(document.figures[0], order) > 0 else "left"
+            side = "right" if facing_in(document.layers[0], order) > 0 else "left"
             say(f"it looks to the {side} (guessed)")
         while not giving.is_over:
             status.show(giving.now)
@@ -130,9 +130,9 @@ def _moved(document: Document, order: MotionOrder) -> Document:
 
 def _save(arguments: argparse.Namespace, opened: OpenedScene, document: Document) -> None:
     """Write the project, and tell what is in it."""
-    (figure,) = document.figures
-    texture = cut_picture(opened.pictures[figure.id], figure.cut_out).texture
+    (layer,) = document.layers
+    texture = cut_picture(opened.pictures[layer.id], layer.cut_out).texture
     save_project(arguments.out, document, thumbnail=draw_thumbnail(texture))
     length = document.frames.last - document.frames.first
     frames = f"{length} frames, looped" if document.loop else f"{length + 1} frames"
-    say(f"{arguments.out}: {arguments.motion}, {frames}, {len(figure.keys)} keys")
+    say(f"{arguments.out}: {arguments.motion}, {frames}, {len(layer.keys)} keys")

@@ -34,14 +34,14 @@ def run(arguments: argparse.Namespace) -> int:
         document, lags = pose_document(opened.document, script, status.show)
     give_notices(lags)
     textures = {
-        figure.id: cut_picture(opened.pictures[figure.id], figure.cut_out).texture
-        for figure in document.figures
+        layer.id: cut_picture(opened.pictures[layer.id], layer.cut_out).texture
+        for layer in document.layers
     }
     picture = flattened(document, textures)
     save_project(arguments.out, document, thumbnail=draw_thumbnail(picture))
-    posed = [figure for figure in document.figures if not figure.still]
-    keys = sum(len(figure.keys) for figure in posed)
-    handles = sum(len(figure.handles) for figure in posed)
-    layers = "" if len(document.figures) == 1 else f"{len(document.figures)} layers, "
+    posed = [layer for layer in document.layers if not layer.still]
+    keys = sum(len(layer.keys) for layer in posed)
+    handles = sum(len(layer.handles) for layer in posed)
+    layers = "" if len(document.layers) == 1 else f"{len(document.layers)} layers, "
     say(f"{arguments.out}: {layers}{keys} keys, {handles} handles")
     return 0

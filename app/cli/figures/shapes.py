@@ -127,7 +127,7 @@ def sample(name: str, first: int, second: int, triangles: int) -> ShapePair:
     """
     path = sample_images() / f"{name}.lissom"
     document = load_project(path)
-    (figure,) = document.figures
+    (figure,) = document.layers
     domain = figure.domain
     mesh = mesh_inside(*domain.loops, triangles=triangles)
     domain = Domain(outline=domain.outline, cage=domain.cage, mesh=mesh, holes=domain.holes)

@@ -5,8 +5,8 @@ import argparse
 from app.cli.options import add_project, add_variant_option
 
 EPILOG = """\
-Of a scene of several figures one verdict comes first, then a line for each figure with the worst
-that it reaches, and where; --details has the tables that a drawing of one figure has at once.
+Of a scene of several layers one verdict comes first, then a line for each layer with the worst
+that it reaches, and where; --details has the tables that a drawing of one layer has at once.
 
 Keyframes are certified: their k, sigma_a and sigma_b hold at every point of the shape, not only at
 samples. For each interval between two keys the extremes of the in-betweens over time and space, as
@@ -14,7 +14,7 @@ measured, stand beside the two keys' own; below them what is proven of every mom
 The true extremes lie between what is measured and what is proven ("error" in JSON). Frames that
 fold, or that cannot be proven not to, are named.
 
-Each interval, and the whole, has one verdict, about the keyframes' bounds, or the figure's where
+Each interval, and the whole, has one verdict, about the keyframes' bounds, or the layer's where
 handles stay or the motion passes through its keys:
   proven    every moment is proven to be within; exit status 0
   measured  in-betweens never fold, but that they are within is measured only; exit status 3
@@ -40,6 +40,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_project(parser)
     add_variant_option(parser)
     parser.add_argument(
-        "--details", action="store_true", help="print the tables of all figures of a scene, too"
+        "--details", action="store_true", help="print the tables of all layers of a scene, too"
     )
     parser.add_argument("--json", action="store_true", help="print JSON instead of a table")

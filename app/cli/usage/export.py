@@ -84,7 +84,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
                 is_whole = isinstance(usual, int)
                 how = {"metavar": "N" if is_whole else "PX", "type": int if is_whole else float}
             parser.add_argument(f"--{option.flag}", dest=name, help=option.about, **how)
-    parser.add_argument("--figure", metavar="NAME", help="export this layer alone")
+    parser.add_argument("--layer", metavar="NAME", help="export this layer alone")
+    # Its name in earlier versions.
+    parser.add_argument("--figure", dest="layer", metavar="NAME", help=argparse.SUPPRESS)
     add_variant_option(parser)
     parser.add_argument("--format", choices=tuple(EXPORT_FORMATS), help="what to write")
 

@@ -31,7 +31,7 @@ in the window: what is beyond their reach moves nothing else, and is wanted wher
 
 A handle that two neighbouring keys have at one place stays there in between, as a foot does on the
 ground. With "still": false in {"at": [300, 40], "still": false} it moves as the shape takes it; the
-same at the top, or in a figure, says so of all handles. A handle has a clock of its own with
+same at the top, or in a layer, says so of all handles. A handle has a clock of its own with
 
    "tracks": [{"handle": "nose", "with": "pose", "delay": 4, "reach": 0.3,
                "keys": [{"frame": 0, "offset": [0, 0]}, {"frame": 9, "offset": [12, 5]},
@@ -87,10 +87,10 @@ from 1/30, soft, to 100; where it is above 1 the drawing also bends and stretche
 logarithms of sigma_a and sigma_b are there at most those of the bounds over the root of amount.
 
 DRAWING may have layers (OpenRaster .ora, or .psd where psd-tools is installed). Coordinates are
-pixels of the canvas then, and a script of several figures has, instead of anchor, handles, keys,
+pixels of the canvas then, and a script of several layers has, instead of anchor, handles, keys,
 tracks, springs, cycles and stiff:
 
-   "figures": [{"layer": "body", "handles": {}, "keys": [{"frame": 0}]},
+   "layers": [{"layer": "body", "handles": {}, "keys": [{"frame": 0}]},
                {"layer": "arm", "handles": {"hand": [310, 240]},
                 "keys": [{"frame": 0}, {"frame": 12, "targets": {"hand": [300, 330]}}],
                 "attach": {"to": "body", "at": [200, 260], "turn": true},
@@ -121,7 +121,7 @@ at the top lets every frame of an export show what the camera does: the point ce
 all zoom times as large (1 where left out; blended by its logarithm) and turned by so many degrees
 counter-clockwise as it is seen (0). Its frame is the canvas, from the origin to its upper right
 corner, which is as large as DRAWING where no canvas is given. Before its first key and after its
-last one it is held; in a loop the last one leads on to the first one. A figure has
+last one it is held; in a loop the last one leads on to the first one. A layer has
 
    "movement": {"keys": [{"frame": 0}, {"frame": 24, "shift": [60, 0], "turn": 90}]},
    "opacity": [[0, 1], [12, 0.2]],

@@ -1,4 +1,4 @@
-"""Ready motions that a figure was given, and from what they were made."""
+"""Ready motions that a layer was given, and from what they were made."""
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -15,7 +15,7 @@ MOST_ROUNDS = 1000
 class GivenMotion:
     """A ready motion as it was given, by which it can be given again in another way.
 
-    It says nothing of how the figure moves: that its keys do. Whether they are as they were made,
+    It says nothing of how the layer moves: that its keys do. Whether they are as they were made,
     or were edited since, tells `app.document.queries.is_as_given`.
     """
 
@@ -61,7 +61,7 @@ class GivenMotion:
 class UnreadMotion:
     """A motion in a project file that this version cannot show; it is written as it was read."""
 
-    index: int  # its place among the figure's motions in the file
+    index: int  # its place among the layer's motions in the file
     content: object  # decoded JSON
     reason: str  # why it cannot be shown, as a sentence
 

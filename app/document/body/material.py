@@ -1,4 +1,4 @@
-"""What a figure is made of: where it is stiffer or softer than usual."""
+"""What a layer is made of: where it is stiffer or softer than usual."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field

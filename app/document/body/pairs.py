@@ -127,7 +127,7 @@ def partners_of(
     axis : float
         The upright line at which they mirror each other, in pixels from the left.
     outline : complex128, shape (n,)
-        Of their figure.
+        Of their layer.
     pairs : tuple of tuple of str
         Of words that tell of sides.
     """

@@ -1,18 +1,18 @@
 """Commands: changes of a document as values, with the words that undo and redo show.
 
-In: a document, or a figure of it, and arguments.
+In: a document, or a layer of it, and arguments.
 Out: the changed document.
 Imports: the values of `app.document`.
 """
 
 from app.document.commands import (
     cycle_commands as cycle_commands,
-    figure_commands as figure_commands,
     handle_commands as handle_commands,
     key_commands as key_commands,
     material_commands as material_commands,
     pose_commands as pose_commands,
     scene_commands as scene_commands,
+    shape_commands as shape_commands,
     track_commands as track_commands,
 )
 from app.document.commands.command import (

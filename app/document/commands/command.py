@@ -5,10 +5,10 @@ alone it gives a `Command` that waits for its document:
 
     history.do(set_fps(12.0))
 
-Most commands change one figure. They are defined as pure functions of a figure, and are told by its
+Most commands change one layer. They are defined as pure functions of a layer, and are told by its
 id which one they are for:
 
-    history.do(rename_handle(figure.id, 3, "nose"))
+    history.do(rename_handle(layer.id, 3, "nose"))
 
 A command raises a `LissomError` where it is not possible, and returns the very same document where
 it changes nothing.
@@ -19,7 +19,7 @@ from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass
 from typing import Concatenate, ParamSpec
 
-from app.document.figure import Figure
+from app.document.layer import Layer
 from app.document.model import Document
 
 Arguments = ParamSpec("Arguments")
@@ -73,26 +73,26 @@ def in_turn(label: str, commands: Iterable[Command]) -> Command:
     return Command(label, change)
 
 
-def figure_command(
+def layer_command(
     label: str,
 ) -> Callable[
-    [Callable[Concatenate[Figure, Arguments], Figure]],
+    [Callable[Concatenate[Layer, Arguments], Layer]],
     Callable[Concatenate[int, Arguments], Command],
 ]:
-    """Turn a function `(figure, *arguments) → figure` into one `(figure_id, *arguments) → Command`.
+    """Turn a function `(layer, *arguments) → layer` into one `(layer_id, *arguments) → Command`.
 
-    The animation grows where keys of the figure would lie beyond its ends.
+    The animation grows where keys of the layer would lie beyond its ends.
     """
 
     def make(
-        change: Callable[Concatenate[Figure, Arguments], Figure],
+        change: Callable[Concatenate[Layer, Arguments], Layer],
     ) -> Callable[Concatenate[int, Arguments], Command]:
         @command(label)
         @functools.wraps(change)
         def bind(
-            document: Document, figure: int, /, *args: Arguments.args, **kwargs: Arguments.kwargs
+            document: Document, layer: int, /, *args: Arguments.args, **kwargs: Arguments.kwargs
         ) -> Document:
-            return document.with_figure(change(document.figure(figure), *args, **kwargs))
+            return document.with_layer(change(document.layer(layer), *args, **kwargs))
 
         return bind
 

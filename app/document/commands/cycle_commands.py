@@ -4,10 +4,10 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import TypeVar
 
-from app.document.commands.command import command, figure_command
+from app.document.commands.command import command, layer_command
 from app.document.commands.keys_in_time import Row, in_order
-from app.document.figure import Figure
 from app.document.keyframe import Keyframe
+from app.document.layer import Layer
 from app.document.layering import MoveKey, OpacityKey, repeated_joints
 from app.document.model import Document
 from app.document.queries import (
@@ -31,8 +31,8 @@ TWO_POSES_SHOWN = (
 )
 
 
-@figure_command("Repeat stretch")
-def repeat(figure: Figure, first: int, last: int, until: int | None = None) -> Figure:
+@layer_command("Repeat stretch")
+def repeat(layer: Layer, first: int, last: int, until: int | None = None) -> Layer:
     """Let a stretch of time repeat, until a frame or the end of the scene.
 
     It takes the place of what repeated from its first frame on. A key at its end that is like the
@@ -44,13 +44,13 @@ def repeat(figure: Figure, first: int, last: int, until: int | None = None) -> F
         If it overlaps another one, or keys are in its way.
     """
     cycle = Cycle(first=first, last=last, until=until)
-    keys = figure.keys
-    if until != last and {first, last} <= figure.key_frames:
-        if not are_alike(figure.key(first), figure.key(last)):
+    keys = layer.keys
+    if until != last and {first, last} <= layer.key_frames:
+        if not are_alike(layer.key(first), layer.key(last)):
             raise LissomError(TWO_POSES_SHOWN.format(first=first, last=last))
         keys = tuple(key for key in keys if key.frame != last)
-    others = (each for each in figure.cycles if each.first != first)
-    return replace(figure, keys=keys, cycles=_ordered((*others, cycle)))
+    others = (each for each in layer.cycles if each.first != first)
+    return replace(layer, keys=keys, cycles=_ordered((*others, cycle)))
 
 
 @command("Stop repeating")
@@ -59,25 +59,25 @@ def stop(document: Document, identity: int, first: int) -> Document:
 
     So do turns of a choice that repeated with it.
     """
-    cycle = cycle_from(document.figure(identity), first)
+    cycle = cycle_from(document.layer(identity), first)
     document = _with_turns(document, identity, cycle, cycle.last)
-    return document.with_figure(_stopped(document.figure(identity), first))
+    return document.with_layer(_stopped(document.layer(identity), first))
 
 
-def _stopped(figure: Figure, first: int) -> Figure:
-    cycle = cycle_from(figure, first)
-    cycles = tuple(each for each in figure.cycles if each is not cycle)
-    own = [key for key in figure.keys if cycle.has(key.frame)]
-    keys = figure.keys
-    if len(own) > 1 and own[0].frame == first and cycle.last not in figure.key_frames:
+def _stopped(layer: Layer, first: int) -> Layer:
+    cycle = cycle_from(layer, first)
+    cycles = tuple(each for each in layer.cycles if each is not cycle)
+    own = [key for key in layer.keys if cycle.has(key.frame)]
+    keys = layer.keys
+    if len(own) > 1 and own[0].frame == first and cycle.last not in layer.key_frames:
         keys = in_order((*keys, replace(own[0], frame=cycle.last)))
     return replace(
-        figure,
+        layer,
         keys=keys,
         cycles=cycles,
-        movement=_copied(figure, figure.movement, cycle, cycle.last),
-        opacities=_copied(figure, figure.opacities, cycle, cycle.last),
-        joints=repeated_joints(figure.joints, (replace(cycle, until=cycle.last),), cycle.last),
+        movement=_copied(layer, layer.movement, cycle, cycle.last),
+        opacities=_copied(layer, layer.opacities, cycle, cycle.last),
+        joints=repeated_joints(layer.joints, (replace(cycle, until=cycle.last),), cycle.last),
     )
 
 
@@ -93,7 +93,7 @@ def make_keys(document: Document, identity: int, first: int, end: int) -> Docume
     ----------
     document : Document
     identity : int
-        Of the figure.
+        Of the layer.
     first : int
     end : int
         The last frame of the scene, where the repeats end there.
@@ -103,13 +103,13 @@ def make_keys(document: Document, identity: int, first: int, end: int) -> Docume
     LissomError
         If a track acts in a part of the stretch only, and neither comes from nor leads to nothing.
     """
-    cycle = cycle_from(document.figure(identity), first)
+    cycle = cycle_from(document.layer(identity), first)
     document = _with_turns(document, identity, cycle, end if cycle.until is None else cycle.until)
-    return document.with_figure(_keyed(document.figure(identity), first, end))
+    return document.with_layer(_keyed(document.layer(identity), first, end))
 
 
 def _with_turns(document: Document, identity: int, cycle: Cycle, end: int) -> Document:
-    """Return a document in which what repeats of a figure's choice with a cycle is said in full."""
+    """Return a document in which what repeats of a layer's choice with a cycle is said in full."""
     choice = document.choice_of(identity)
     if choice is None or turning(document, choice) != cycle:
         return document
@@ -118,11 +118,11 @@ def _with_turns(document: Document, identity: int, cycle: Cycle, end: int) -> Do
     return replace(document, choices=choices)
 
 
-def _keyed(figure: Figure, first: int, end: int) -> Figure:
-    """Return a figure with the repeats of a stretch as keys."""
-    cycle = cycle_from(figure, first)
+def _keyed(layer: Layer, first: int, end: int) -> Layer:
+    """Return a layer with the repeats of a stretch as keys."""
+    cycle = cycle_from(layer, first)
     until = max(cycle.last, end if cycle.until is None else cycle.until)
-    own = [key for key in figure.keys if cycle.has(key.frame)]
+    own = [key for key in layer.keys if cycle.has(key.frame)]
     rounds = (until - first) // cycle.period
     rest = (until - first) % cycle.period
     left: tuple[Cycle, ...] = ()
@@ -132,27 +132,27 @@ def _keyed(figure: Figure, first: int, end: int) -> Figure:
         left = (moved,) if shift else (cycle,)
     starts = [first + count * cycle.period for count in range(1, rounds)]
     copies = [replace(key, frame=key.frame + at - first) for at in starts for key in own]
-    if not left and until not in figure.key_frames and len(own) > 1 and own[0].frame == first:
+    if not left and until not in layer.key_frames and len(own) > 1 and own[0].frame == first:
         copies.append(replace(own[0], frame=first + rounds * cycle.period))
-    copies = [_with_fronts(figure, cycle, key) for key in copies]
-    others = (each for each in figure.cycles if each is not cycle)
+    copies = [_with_fronts(layer, cycle, key) for key in copies]
+    others = (each for each in layer.cycles if each is not cycle)
     return replace(
-        figure,
-        keys=in_order((*figure.keys, *copies)),
+        layer,
+        keys=in_order((*layer.keys, *copies)),
         cycles=_ordered((*others, *left)),
         tracks=tuple(
-            _repeated(figure, track, cycle, starts) if cycle.takes(track.keys) else track
-            for track in figure.tracks
+            _repeated(layer, track, cycle, starts) if cycle.takes(track.keys) else track
+            for track in layer.tracks
         ),
-        movement=_copied(figure, figure.movement, cycle, until),
-        opacities=_copied(figure, figure.opacities, cycle, until),
-        switches=repeated(figure.switches, (cycle,), until, figure.switches[:1]),
-        placings=repeated(figure.placings, (cycle,), until, AS_DRAWN),
-        joints=repeated_joints(figure.joints, (cycle,), until),
+        movement=_copied(layer, layer.movement, cycle, until),
+        opacities=_copied(layer, layer.opacities, cycle, until),
+        switches=repeated(layer.switches, (cycle,), until, layer.switches[:1]),
+        placings=repeated(layer.placings, (cycle,), until, AS_DRAWN),
+        joints=repeated_joints(layer.joints, (cycle,), until),
     )
 
 
-def end_of_repeats(figure: Figure, first: int, last: int) -> int | None:
+def end_of_repeats(layer: Layer, first: int, last: int) -> int | None:
     """Return until when a stretch can repeat: whole times if it can, or to the end of the scene.
 
     Raises
@@ -160,19 +160,19 @@ def end_of_repeats(figure: Figure, first: int, last: int) -> int | None:
     LissomError
         If there is no room for a repeat before the next key, or another cycle begins within.
     """
-    for cycle in figure.cycles:
+    for cycle in layer.cycles:
         if first < cycle.first < last:
             raise LissomError(
                 f"Frames {first} to {last} cannot repeat, as {cycle.told} in them repeat already; "
                 "stop those first, or choose other keys."
             )
-    after = [frame for frame in figure.key_frames if frame > last]
-    after += [cycle.first for cycle in figure.cycles if cycle.first > first]
+    after = [frame for frame in layer.key_frames if frame > last]
+    after += [cycle.first for cycle in layer.cycles if cycle.first > first]
     if not after:
         return None
     period, limit = last - first, min(after)
     whole = last + (limit - last) // period * period
-    own = [key.frame for key in figure.keys if first <= key.frame < last]
+    own = [key.frame for key in layer.keys if first <= key.frame < last]
     ends = [frame + period for frame in own if last < frame + period <= limit]
     if whole == last and not ends:
         raise LissomError(
@@ -182,26 +182,26 @@ def end_of_repeats(figure: Figure, first: int, last: int) -> int | None:
     return whole if whole > last else max(ends)
 
 
-def nearest_end(figure: Figure, cycle: Cycle, frame: int, end: int) -> int | None:
+def nearest_end(layer: Layer, cycle: Cycle, frame: int, end: int) -> int | None:
     """Return the frame next to another one until which a cycle can repeat; None is for ever.
 
     It is one at which a key of the stretch is shown, or the end of the scene.
     """
-    after = [each for each in figure.key_frames if each >= cycle.last]
-    after += [other.first for other in figure.cycles if other.first > cycle.first]
+    after = [each for each in layer.key_frames if each >= cycle.last]
+    after += [other.first for other in layer.cycles if other.first > cycle.first]
     limit = min(after, default=end)
     if not after and frame >= end:
         return None
-    own = {each for each in figure.key_frames if cycle.has(each)} | {cycle.first}
+    own = {each for each in layer.key_frames if cycle.has(each)} | {cycle.first}
     rounds = range(1, (limit - cycle.first) // cycle.period + 1)
     shown = {each + count * cycle.period for count in rounds for each in own}
     fitting = {each for each in shown if cycle.last <= each <= limit} | {cycle.last}
     return min(fitting, key=lambda each: abs(each - frame))
 
 
-def stretched_to(figure: Figure, cycle: Cycle, frame: int) -> Cycle:
+def stretched_to(layer: Layer, cycle: Cycle, frame: int) -> Cycle:
     """Return a cycle with its end next to a frame, behind its keys; it repeats as often."""
-    own = [each for each in figure.key_frames if cycle.has(each)]
+    own = [each for each in layer.key_frames if cycle.has(each)]
     last = max([frame, cycle.first + 1, *(each + 1 for each in own)])
     until = cycle.until
     if until is not None:
@@ -211,34 +211,34 @@ def stretched_to(figure: Figure, cycle: Cycle, frame: int) -> Cycle:
     return replace(cycle, last=last, until=until)
 
 
-def cycle_from(figure: Figure, first: int) -> Cycle:
-    """Return the cycle of a figure that begins at a frame."""
-    for cycle in figure.cycles:
+def cycle_from(layer: Layer, first: int) -> Cycle:
+    """Return the cycle of a layer that begins at a frame."""
+    for cycle in layer.cycles:
         if cycle.first == first:
             return cycle
-    raise LissomError(f"Nothing of {figure.name!r} repeats from frame {first} on.")
+    raise LissomError(f"Nothing of {layer.name!r} repeats from frame {first} on.")
 
 
 def _ordered(cycles: Iterable[Cycle]) -> tuple[Cycle, ...]:
     return tuple(sorted(cycles, key=lambda cycle: cycle.first))
 
 
-def _with_fronts(figure: Figure, cycle: Cycle, copy: Keyframe) -> Keyframe:
+def _with_fronts(layer: Layer, cycle: Cycle, copy: Keyframe) -> Keyframe:
     """Return a copy of a key; where a repeat begins, it takes back what the last one ended with."""
-    own = [key for key in figure.keys if cycle.has(key.frame)]
+    own = [key for key in layer.keys if cycle.has(key.frame)]
     if not own or (copy.frame - own[0].frame) % cycle.period:
         return copy
     changed = {handle for key in own for handle in key.fronts}
-    depths = {handle.id: handle.front for handle in figure.handles}
-    for key in figure.keys:
+    depths = {handle.id: handle.front for handle in layer.handles}
+    for key in layer.keys:
         if key.frame <= own[0].frame:
             depths.update(key.fronts)
     return replace(copy, fronts={handle: depths[handle] for handle in changed})
 
 
-def _copied(figure: Figure, row: Row[Moving], cycle: Cycle, until: int) -> Row[Moving]:
+def _copied(layer: Layer, row: Row[Moving], cycle: Cycle, until: int) -> Row[Moving]:
     """Return keys of a movement or an opacity in each repeat until a frame, if they repeat."""
-    if repeating(figure, row) is not cycle:
+    if repeating(layer, row) is not cycle:
         return row
     first, last = row[0], row[-1]
     is_whole = last.frame - first.frame == cycle.period
@@ -253,14 +253,14 @@ def _copied(figure: Figure, row: Row[Moving], cycle: Cycle, until: int) -> Row[M
     return in_order(copies)
 
 
-def _repeated(figure: Figure, track: Track, cycle: Cycle, starts: list[int]) -> Track:
+def _repeated(layer: Layer, track: Track, cycle: Cycle, starts: list[int]) -> Track:
     """Return a track with its keys in each repeat."""
     first, last = track.keys[0], track.keys[-1]
     is_whole = first.frame == cycle.first and last.frame == cycle.last
     acts = [max(abs(key.place), abs(key.turn)) > NOWHERE for key in (first, last)]
     if not is_whole and starts and (track.planted or any(acts)):
         raise LissomError(
-            f"The track of {figure.handle(track.handles[0]).name!r} acts in a part of "
+            f"The track of {layer.handle(track.handles[0]).name!r} acts in a part of "
             f"{cycle.told} only, so that its repeats are no keys of one track; let it act from "
             f"frame {cycle.first} to {cycle.last}, or begin and end where the pose has the handle."
         )

@@ -9,8 +9,8 @@ from dataclasses import replace
 from itertools import chain, pairwise
 from typing import TypeVar
 
-from app.document.figure import NO_KEY
 from app.document.keyframe import Keyframe
+from app.document.layer import NO_KEY
 from app.document.layering import CameraKey, MoveKey, OpacityKey
 from app.document.timing import HOLD, LINEAR, Easing, Passing, TrackKey
 from app.errors import LissomError

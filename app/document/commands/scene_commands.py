@@ -8,7 +8,7 @@ from app.document.body import GivenMotion, SidePairs
 from app.document.commands.command import command, numbered
 from app.document.commands.key_commands import stretched
 from app.document.commands.keys_in_time import in_order, require_factor, scaled
-from app.document.figure import Figure
+from app.document.layer import Layer
 from app.document.model import Document
 from app.document.settings import ExportSettings, FrameRange, Marker
 from app.errors import LissomError
@@ -30,7 +30,7 @@ def set_frames(document: Document, frames: FrameRange) -> Document:
     """Set the first and last frame, which cut the preview range; no key may be left outside."""
     if frames == document.frames:
         return document
-    ends = [frame for figure in document.figures for frame in figure.ends]
+    ends = [frame for layer in document.layers for frame in layer.ends]
     ends += [key.frame for key in document.camera]
     outside = next((frame for frame in ends if frame not in frames), None)
     if outside is not None:
@@ -69,7 +69,7 @@ def set_pairs(document: Document, pairs: SidePairs) -> Document:
 
 @command("Set canvas")
 def set_canvas(document: Document, size: tuple[int, int]) -> Document:
-    """Set width and height of the canvas, which begins at the origin; figures stay in place."""
+    """Set width and height of the canvas, which begins at the origin; layers stay in place."""
     return document if size == document.canvas else replace(document, size=size)
 
 
@@ -86,7 +86,7 @@ def scale_time(document: Document, factor: float) -> Document:
 
     return replace(
         document,
-        figures=tuple(stretched(figure, first, factor) for figure in document.figures),
+        layers=tuple(stretched(layer, first, factor) for layer in document.layers),
         frames=scale(document.frames),
         preview=None if document.preview is None else scale(document.preview),
         markers=tuple(
@@ -151,17 +151,17 @@ def _with_markers(document: Document, markers: Iterable[Marker]) -> Document:
 
 
 @command("Give a motion")
-def give_motion(document: Document, moved: Figure, given: GivenMotion) -> Document:
-    """Put a figure with a motion in its place; where nothing moved yet, the scene becomes its loop.
+def give_motion(document: Document, moved: Layer, given: GivenMotion) -> Document:
+    """Put a layer with a motion in its place; where nothing moved yet, the scene becomes its loop.
 
     Parameters
     ----------
-    moved : Figure
-        The figure with the keys that were made, `given` among its motions.
+    moved : Layer
+        The layer with the keys that were made, `given` among its motions.
     given : GivenMotion
     """
     is_new = not _moves(document)
-    document = document.with_figure(moved)
+    document = document.with_layer(moved)
     if is_new and given.first == document.frames.first:
         loop = not given.parameters.travel and given.start == given.first
         return replace(document, frames=FrameRange(given.first, given.last), loop=loop)
@@ -181,5 +181,5 @@ def _moves(document: Document) -> bool:
         or each.opacities
         or each.placings
         or each.joints[1:]
-        for each in document.figures
+        for each in document.layers
     )

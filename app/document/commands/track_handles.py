@@ -6,44 +6,44 @@ from dataclasses import replace
 import numpy as np
 
 from app.document.body import SidePairs, partners_of
-from app.document.figure import Figure
+from app.document.layer import Layer
 from app.document.timing import Track, TrackKey
 
 
-def without_handles(figure: Figure, gone: Collection[int]) -> Figure:
-    """Return the figure whose tracks, springs and bones have nothing of some handles any more."""
-    tracks = (left(figure, track, gone) for track in figure.tracks)
+def without_handles(layer: Layer, gone: Collection[int]) -> Layer:
+    """Return the layer whose tracks, springs and bones have nothing of some handles any more."""
+    tracks = (left(layer, track, gone) for track in layer.tracks)
     springs = (
         replace(spring, root=None) if spring.root in gone else spring
-        for spring in figure.springs
+        for spring in layer.springs
         if spring.handle not in gone
     )
-    bones = (bone for bone in figure.bones if not set(bone.ends) & set(gone))
+    bones = (bone for bone in layer.bones if not set(bone.ends) & set(gone))
     return replace(
-        figure,
+        layer,
         tracks=tuple(filter(None, tracks)),
         springs=tuple(springs),
         bones=tuple(bones),
     )
 
 
-def with_moved_handle(figure: Figure, identity: int, position: complex) -> Figure:
-    """Return the figure whose tracks want what they did of a handle that is put elsewhere."""
-    old = figure.handle(identity).position
+def with_moved_handle(layer: Layer, identity: int, position: complex) -> Layer:
+    """Return the layer whose tracks want what they did of a handle that is put elsewhere."""
+    old = layer.handle(identity).position
     tracks = (
-        _replanted(figure, track, old, position) if track.handles[0] == identity else track
-        for track in figure.tracks
+        _replanted(layer, track, old, position) if track.handles[0] == identity else track
+        for track in layer.tracks
     )
-    return replace(figure, tracks=tuple(tracks))
+    return replace(layer, tracks=tuple(tracks))
 
 
-def mirrored_track(figure: Figure, track: Track, pairs: SidePairs) -> Track:
-    """Return a track mirrored at the figure's axis, for the partners of its handles."""
-    axis = figure.axis
-    partners = partners_of(figure.handles, axis, figure.domain.outline, pairs)
+def mirrored_track(layer: Layer, track: Track, pairs: SidePairs) -> Track:
+    """Return a track mirrored at the layer's axis, for the partners of its handles."""
+    axis = layer.axis
+    partners = partners_of(layer.handles, axis, layer.domain.outline, pairs)
     # Two that lie together may have one partner.
     handles = tuple(dict.fromkeys(partners.get(handle, handle) for handle in track.handles))
-    old, new = (figure.handle(each[0]).position for each in (track.handles, handles))
+    old, new = (layer.handle(each[0]).position for each in (track.handles, handles))
     # A drawing is hardly its own mirror image: what the partner is beside that of the handle.
     beside = new - _reflected(old, axis)
     keys = (
@@ -64,30 +64,30 @@ def _reflected(place: complex, axis: float) -> complex:
     return complex(2 * axis - place.real, place.imag)
 
 
-def left(figure: Figure, track: Track, gone: Collection[int]) -> Track | None:
+def left(layer: Layer, track: Track, gone: Collection[int]) -> Track | None:
     """Return what is left of a track without some handles."""
     handles = tuple(handle for handle in track.handles if handle not in gone)
-    return moved_to(figure, track, handles) if handles else None
+    return moved_to(layer, track, handles) if handles else None
 
 
-def moved_to(figure: Figure, track: Track, handles: tuple[int, ...]) -> Track:
+def moved_to(layer: Layer, track: Track, handles: tuple[int, ...]) -> Track:
     """Return a track that moves other handles alike."""
     changed = replace(track, handles=handles)
-    old, new = (figure.handle(each.handles[0]).position for each in (track, changed))
-    return _replanted(figure, changed, old, new)
+    old, new = (layer.handle(each.handles[0]).position for each in (track, changed))
+    return _replanted(layer, changed, old, new)
 
 
-def _replanted(figure: Figure, track: Track, old: complex, new: complex) -> Track:
+def _replanted(layer: Layer, track: Track, old: complex, new: complex) -> Track:
     """Return a track that was for a point of the drawing for another one.
 
     A planted key's place comes to be as far from it as the two points are apart in the pose of the
-    figure's nearest key; what is beside the pose stays so.
+    layer's nearest key; what is beside the pose stays so.
     """
     if not track.planted or old == new:
         return track
 
     def moved(key: TrackKey) -> TrackKey:
-        shape = figure.map_of(figure.nearest_key(key.frame).pose)
+        shape = layer.map_of(layer.nearest_key(key.frame).pose)
         before, after = shape(np.array([old, new])).tolist()
         return replace(key, place=key.place + after - before)
 

@@ -1,7 +1,7 @@
-"""How figures stand among each other: groups, what they hang on, when they are seen, and where.
+"""How layers stand among each other: groups, what they hang on, when they are seen, and where.
 
-In: ids of figures, and frames.
-Out: groups, joints, switches and choices; keys of the camera, and of figures as a whole.
+In: ids of layers, and frames.
+Out: groups, joints, switches and choices; keys of the camera, and of layers as a whole.
 Imports: the values of `app.document`.
 """
 

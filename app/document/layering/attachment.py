@@ -1,4 +1,4 @@
-"""What a figure hangs on."""
+"""What a layer hangs on."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -21,26 +21,26 @@ from app.document.timing import Cycle, changes_in
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Attachment:
-    """The joint by which a figure hangs on another one from a frame on, or on nothing any more.
+    """The joint by which a layer hangs on another one from a frame on, or on nothing any more.
 
-    The anchor of the figure is where the point of its parent is, at every time: the one freedom
-    that the in-betweens leave (Section 7, "a user curve for the anchor"), so that the figure is no
+    The anchor of the layer is where the point of its parent is, at every time: the one freedom
+    that the in-betweens leave (Section 7, "a user curve for the anchor"), so that the layer is no
     more distorted than without.
     """
 
-    to: int | None  # the id of the parent; None lets the figure go
+    to: int | None  # the id of the parent; None lets the layer go
     at: complex = 0j  # the point of the parent, where it is drawn at rest
-    turns: bool = True  # whether the figure turns with the parent around that point
-    rest: float = 0.0  # the parent's turn, in radians, at which the figure is as it is by itself
+    turns: bool = True  # whether the layer turns with the parent around that point
+    rest: float = 0.0  # the parent's turn, in radians, at which the layer is as it is by itself
     frame: int = 0  # from which on it holds, until the next one
-    # Where the anchor is beside that point, as the parent is turned where the figure turns with it.
+    # Where the anchor is beside that point, as the parent is turned where the layer turns with it.
     offset: complex = 0j
-    # Whether nothing jumps at that frame: in place of `rest` and `offset`, the figure goes on as it
+    # Whether nothing jumps at that frame: in place of `rest` and `offset`, the layer goes on as it
     # is beside the point and turned then; one that is let go stays there.
     keeps: bool = False
     # The frame at which it was as it is kept, where that is an earlier one; one that keeps only.
     since: int | None = None
-    # Whether it goes over, from there, to where the next joint has the figure when that begins, so
+    # Whether it goes over, from there, to where the next joint has the layer when that begins, so
     # that nothing jumps then either; one that keeps only.
     leads: bool = False
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
@@ -60,7 +60,7 @@ class Attachment:
 
     @property
     def kept_from(self) -> int:
-        """The frame at which a figure is as a joint keeps it."""
+        """The frame at which a layer is as a joint keeps it."""
         return self.frame if self.since is None else self.since
 
     def moved(self, to: Callable[[int], int]) -> Self:
@@ -74,15 +74,15 @@ def require_joints(joints: tuple[Attachment, ...]) -> None:
     for before, after in pairwise(joints):
         require(
             before.frame < after.frame,
-            f"The figure is attached anew at frame {after.frame} after frame {before.frame}.",
+            f"The layer is attached anew at frame {after.frame} after frame {before.frame}.",
         )
 
 
 def joints_repeat(joints: Sequence[Attachment], cycle: Cycle) -> bool:
-    """Tell whether what a figure hangs on changes within a cycle of it, and repeats with that.
+    """Tell whether what a layer hangs on changes within a cycle of it, and repeats with that.
 
     It does where nothing of it is said in the repeats, and at the end of the stretch at most that
-    the figure hangs on what it hung on at the beginning. Else it has its own time.
+    the layer hangs on what it hung on at the beginning. Else it has its own time.
     """
     begun = _begun(joints, cycle)
     return cycle.has_all(joint.frame for joint in joints if not _is_again(joint, begun, cycle))
@@ -96,7 +96,7 @@ def repeated_joints(
 
     Each repeat, and what follows the last one, begins as the stretch does; the last joint before
     leads there. One that keeps does so from its frame in each repeat, so that nothing jumps even
-    where what carries the figure goes on meanwhile.
+    where what carries the layer goes on meanwhile.
     """
     for cycle in cycles:
         if not (
@@ -137,6 +137,6 @@ def _is_again(joint: Attachment, begun: Attachment, cycle: Cycle) -> bool:
 
 
 def _begun(joints: Sequence[Attachment], cycle: Cycle) -> Attachment:
-    """Return the joint with which a cycle begins; before the first one a figure is by itself."""
+    """Return the joint with which a cycle begins; before the first one a layer is by itself."""
     before = [joint for joint in joints if joint.frame <= cycle.first]
     return before[-1] if before else Attachment(to=None, frame=cycle.first)

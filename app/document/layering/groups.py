@@ -1,4 +1,4 @@
-"""Groups of figures, and how colours meet."""
+"""Groups of layers, and how colours meet."""
 
 from dataclasses import dataclass, field
 from typing import Literal, get_args
@@ -9,7 +9,7 @@ from app.document.checks import NOTHING, Unknown, require
 # 1" of the W3C, Section 10).
 BlendMode = Literal["normal", "multiply", "screen"]
 BLENDS: tuple[BlendMode, ...] = get_args(BlendMode)
-# A group passes through where each of its figures meets all that lies behind it, as if there were
+# A group passes through where each of its layers meets all that lies behind it, as if there were
 # no group, and what comes of that is faded in; else they meet each other only, and then as one what
 # lies behind.
 GroupBlend = Literal["pass-through", BlendMode]
@@ -19,16 +19,16 @@ DEEPEST = 50  # groups in each other
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Group:
-    """Figures that are painted together, faded and hidden as one.
+    """Layers that are painted together, faded and hidden as one.
 
     Each run of them in the order of painting is composited by itself.
     """
 
     name: str  # with those of the groups around it, as "limbs/left"; unique in the document
     opacity: float = 1.0  # in [0, 1]
-    hidden: bool = False  # whether none of its figures is seen at any time
+    hidden: bool = False  # whether none of its layers is seen at any time
     blend: GroupBlend = "pass-through"
-    clipped: bool = False  # as of a figure
+    clipped: bool = False  # as of a layer
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:

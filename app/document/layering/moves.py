@@ -1,4 +1,4 @@
-"""Keys of the camera, and of figures moved as a whole, of their opacity and of their order."""
+"""Keys of the camera, and of layers moved as a whole, of their opacity and of their order."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -33,20 +33,20 @@ class CameraKey(MovingKey):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MoveKey(MovingKey):
-    """Where a whole figure is at a frame, beside where its poses have it."""
+    """Where a whole layer is at a frame, beside where its poses have it."""
 
     shift: complex = 0j  # pixels
     turn: float = 0.0  # counter-clockwise around its pivot, in radians
 
     def __post_init__(self) -> None:
         MovingKey.__post_init__(self)
-        require_place(self.shift, "A figure's movement")
+        require_place(self.shift, "A layer's movement")
         _require_turn(self.turn)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OpacityKey(MovingKey):
-    """How opaque a figure is at a frame; by itself it fades evenly."""
+    """How opaque a layer is at a frame; by itself it fades evenly."""
 
     opacity: float  # in [0, 1]
     passing: Passing = Passing.CORNER
@@ -58,13 +58,13 @@ class OpacityKey(MovingKey):
 
 @dataclass(frozen=True, slots=True)
 class Placing:
-    """From a frame on a figure is painted right in front of another one, or right behind it.
+    """From a frame on a layer is painted right in front of another one, or right behind it.
 
-    Beside nothing it is painted where it lies in the order of all figures.
+    Beside nothing it is painted where it lies in the order of all layers.
     """
 
     frame: int
-    beside: int | None  # the id of the other figure
+    beside: int | None  # the id of the other layer
     in_front: bool = True
 
     def __post_init__(self) -> None:

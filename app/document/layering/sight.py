@@ -1,4 +1,4 @@
-"""When figures are seen: each by itself, or one of several that take turns."""
+"""When layers are seen: each by itself, or one of several that take turns."""
 
 from bisect import bisect_right
 from collections.abc import Callable
@@ -13,7 +13,7 @@ from app.errors import LissomError
 
 @dataclass(frozen=True, slots=True)
 class Switch:
-    """From a frame on a figure is seen, or is not."""
+    """From a frame on a layer is seen, or is not."""
 
     frame: int
     visible: bool
@@ -27,39 +27,39 @@ def require_in_order(switches: tuple[Switch, ...]) -> None:
     for before, after in pairwise(switches):
         require(
             before.frame < after.frame,
-            f"The figure is shown or hidden at frame {after.frame} after frame {before.frame}.",
+            f"The layer is shown or hidden at frame {after.frame} after frame {before.frame}.",
         )
 
 
 class Turn(NamedTuple):
-    """From a frame on one figure of a choice is seen, by its id."""
+    """From a frame on one layer of a choice is seen, by its id."""
 
     frame: int
-    figure: int
+    layer: int
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Choice:
-    """Figures of one place that take turns, such as mouths: of these exactly one is seen.
+    """Layers of one place that take turns, such as mouths: of these exactly one is seen.
 
     It alone decides whether they are seen, whatever is said of each of them.
     """
 
     name: str  # unique in the document
-    figures: tuple[int, ...]  # by their ids, at least two, in the order in which they are offered
-    # In the order of their frames; before the first one its figure is seen, and without any the
-    # first figure.
+    layers: tuple[int, ...]  # by their ids, at least two, in the order in which they are offered
+    # In the order of their frames; before the first one its layer is seen, and without any the
+    # first layer.
     turns: tuple[Turn, ...] = ()
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
         require(bool(self.name.strip()), "A choice needs a name.")
-        require(len(self.figures) > 1, f"The choice {self.name!r} is between two layers or more.")
-        require_distinct(self.figures, "A choice has the layer {!r} twice.")
-        known = set(self.figures)
+        require(len(self.layers) > 1, f"The choice {self.name!r} is between two layers or more.")
+        require_distinct(self.layers, "A choice has the layer {!r} twice.")
+        known = set(self.layers)
         for turn in self.turns:
             require_frame(turn.frame, "What a choice shows")
-            if turn.figure not in known:
+            if turn.layer not in known:
                 raise LissomError(
                     f"The choice {self.name!r} shows a layer at frame {turn.frame} that it has not."
                 )
@@ -72,13 +72,13 @@ class Choice:
 
     def at_frames(self, to: Callable[[int], int]) -> Self:
         """Return the choice with its turns at other frames; of two at one frame the later holds."""
-        turns = {to(turn.frame): turn.figure for turn in self.turns}
+        turns = {to(turn.frame): turn.layer for turn in self.turns}
         return replace(self, turns=tuple(Turn(*turn) for turn in sorted(turns.items())))
 
     def at(self, frame: float) -> int:
-        """Return the id of the figure that is seen at a frame."""
+        """Return the id of the layer that is seen at a frame."""
         count = self.count_until(frame)
-        return self.turns[max(count - 1, 0)].figure if self.turns else self.figures[0]
+        return self.turns[max(count - 1, 0)].layer if self.turns else self.layers[0]
 
     def count_until(self, frame: float) -> int:
         """Return how many turns have begun at a frame."""

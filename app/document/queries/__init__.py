@@ -1,6 +1,6 @@
 """What follows from a document: which keys a moment blends, where tracks are, what falls short.
 
-In: figures, poses and handles.
+In: layers, poses and handles.
 Out: answers; nothing is changed.
 Imports: the values of `app.document`.
 """

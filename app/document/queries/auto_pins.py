@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.document.figure import Figure
 from app.document.keyframe import Pose
+from app.document.layer import Layer
 from app.document.queries.clips import Clip
 from app.document.queries.remembered import remembered
 from app.document.queries.spans import spans
@@ -50,33 +50,33 @@ class PinnedSegment(NamedTuple):
 
 def pinned_handles(clip: Clip) -> Booleans:
     """Return which handles (k, h) stay in which of a clip's segments."""
-    return _pinned(clip.figure, clip.frames, clip.loop, clip.baseline)
+    return _pinned(clip.layer, clip.frames, clip.loop, clip.baseline)
 
 
 def pinned_segments(clip: Clip) -> tuple[PinnedSegment | None, ...]:
     """Return what is pinned in each of a clip's segments; None where nothing is."""
-    return _segments(clip.figure, clip.frames, clip.loop, clip.baseline)
+    return _segments(clip.layer, clip.frames, clip.loop, clip.baseline)
 
 
 @remembered
 def _pinned(
-    figure: Figure,
+    layer: Layer,
     frames: FrameRange,
     loop: bool,  # noqa: FBT001 - a field of the clip
     baseline: Baseline | None,
 ) -> Booleans:
-    clip = Clip(figure=figure, frames=frames, loop=loop, fps=1.0, baseline=baseline)
+    clip = Clip(layer=layer, frames=frames, loop=loop, fps=1.0, baseline=baseline)
     keys = clip.keys
-    following = {spring.handle for spring in figure.springs if spring.enabled}
-    pinned = np.zeros((len(spans(clip)), len(figure.handles)), dtype=bool)
-    if not figure.stillness or baseline is not None:
+    following = {spring.handle for spring in layer.springs if spring.enabled}
+    pinned = np.zeros((len(spans(clip)), len(layer.handles)), dtype=bool)
+    if not layer.stillness or baseline is not None:
         return freeze(pinned)
     for number, span in enumerate(spans(clip)):
         one, other = keys[span.first], keys[span.last]
         # A whole turn between equal targets is meant: it would be unwound.
         if one.easing == HOLD or one.turns:
             continue
-        for index, handle in enumerate(figure.handles):
+        for index, handle in enumerate(layer.handles):
             if handle.free or handle.id in following:
                 continue
             first, second = (key.pose.targets[handle.id].position for key in (one, other))
@@ -86,12 +86,12 @@ def _pinned(
 
 @remembered
 def _segments(
-    figure: Figure,
+    layer: Layer,
     frames: FrameRange,
     loop: bool,  # noqa: FBT001 - a field of the clip
     baseline: Baseline | None,
 ) -> tuple[PinnedSegment | None, ...]:
-    clip = Clip(figure=figure, frames=frames, loop=loop, fps=1.0, baseline=baseline)
+    clip = Clip(layer=layer, frames=frames, loop=loop, fps=1.0, baseline=baseline)
     pinned = pinned_handles(clip)
     if not pinned.any():
         return (None,) * len(pinned)
@@ -113,11 +113,11 @@ def _segments(
         content = (
             pinned[number].tobytes(),
             fading.tobytes(),
-            tuple(handle.position for handle in figure.handles),
-            figure.hangs,
-            id(figure.stiffness),
+            tuple(handle.position for handle in layer.handles),
+            layer.hangs,
+            id(layer.stiffness),
             tuple(_ways(clip, each) for each in around) if len(around) > 1 else (),
-            (figure.bounds.k, figure.bounds.sigma_a, figure.bounds.sigma_b),
+            (layer.bounds.k, layer.bounds.sigma_a, layer.bounds.sigma_b),
         )
         poses = tuple(dict.fromkeys(key.pose for key in keys))
         found.append(

@@ -1,14 +1,14 @@
-"""Whether motions that a figure was given are still as they were made."""
+"""Whether motions that a layer was given are still as they were made."""
 
 import hashlib
 
 from app.document.body import GivenMotion
-from app.document.figure import Figure
 from app.document.keyframe import Keyframe
+from app.document.layer import Layer
 from app.document.model import Document
 
 
-def digest_of_keys(figure: Figure, first: int, last: int) -> str:
+def digest_of_keys(layer: Layer, first: int, last: int) -> str:
     """Return a digest of what is keyed from one frame to another, both included.
 
     It is of what a person edits: where keys are, what they want of handles, how they are passed,
@@ -16,29 +16,29 @@ def digest_of_keys(figure: Figure, first: int, last: int) -> str:
     nothing of it.
     """
     digest = hashlib.sha256()
-    for key in figure.keys:
+    for key in layer.keys:
         if first <= key.frame <= last:
             digest.update(repr(_told(key, first)).encode())
-    for cycle in figure.cycles:
+    for cycle in layer.cycles:
         if cycle.first < last and cycle.covers(first):
             digest.update(repr((cycle.first, cycle.last, cycle.until)).encode())
     return digest.hexdigest()
 
 
-def is_as_given(figure: Figure, given: GivenMotion) -> bool:
-    """Tell whether nothing of a motion was edited since it was given to a figure."""
-    return digest_of_keys(figure, given.first, given.last) == given.digest
+def is_as_given(layer: Layer, given: GivenMotion) -> bool:
+    """Tell whether nothing of a motion was edited since it was given to a layer."""
+    return digest_of_keys(layer, given.first, given.last) == given.digest
 
 
 def motion_notices(document: Document) -> tuple[str, ...]:
-    """Return a line for each figure of which the file has motions that are not shown."""
+    """Return a line for each layer of which the file has motions that are not shown."""
     notices = []
-    for figure in document.figures:
-        unread = figure.unread_motions
+    for layer in document.layers:
+        unread = layer.unread_motions
         if unread:
             count = f"{len(unread)} motions" if len(unread) > 1 else "a motion"
             notices.append(
-                f"{figure.name!r} has {count} that this version cannot show, and the file keeps: "
+                f"{layer.name!r} has {count} that this version cannot show, and the file keeps: "
                 f"{unread[0].reason}"
             )
     return tuple(notices)

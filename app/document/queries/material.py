@@ -1,4 +1,4 @@
-"""Where a figure is stiffer or softer, by what is painted and by its bones."""
+"""Where a layer is stiffer or softer, by what is painted and by its bones."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from app.document.body import Bone, joined_stiffness, usual_as_none
-from app.document.figure import Figure
 from app.document.keyframe import Pose
+from app.document.layer import Layer
 from app.document.queries.remembered import remembered
 from engine.arrays import Complexes, Floats, as_points
 from engine.domain.material import brushed, limb_around
@@ -18,47 +18,47 @@ A_SIDE = 4  # points that are looked at along a side of the outline
 
 
 class StiffOutline(NamedTuple):
-    """Points of a figure's outline and of its holes', in their order, and how stiff it is there."""
+    """Points of a layer's outline and of its holes', in their order, and how stiff it is there."""
 
     points: Complexes
     stiffness: Floats
 
 
-def stiffened(figure: Figure, boundary: Boundary) -> Boundary:
-    """Return the boundary of a figure's domain with the figure's material."""
+def stiffened(layer: Layer, boundary: Boundary) -> Boundary:
+    """Return the boundary of a layer's domain with the layer's material."""
     points = np.split(boundary.points, boundary.starts[1:])
-    return boundary.stiffened_at_samples(_stiffness_at(figure, points))
+    return boundary.stiffened_at_samples(_stiffness_at(layer, points))
 
 
 @remembered
-def stiff_outline(figure: Figure) -> StiffOutline:
-    """Return where a figure is stiff or soft, at the vertices of its loops and between them."""
+def stiff_outline(layer: Layer) -> StiffOutline:
+    """Return where a layer is stiff or soft, at the vertices of its loops and between them."""
     share = np.arange(A_SIDE) / A_SIDE
     points = [
         (loop[:, None] + (np.roll(loop, -1) - loop)[:, None] * share).ravel()
-        for loop in figure.domain.loops
+        for loop in layer.domain.loops
     ]
-    return StiffOutline(np.concatenate(points), _stiffness_at(figure, points))
+    return StiffOutline(np.concatenate(points), _stiffness_at(layer, points))
 
 
-def are_as_stiff(figure: Figure, other: Figure) -> bool:
-    """Tell whether two figures of one domain are stiff in the same places."""
+def are_as_stiff(layer: Layer, other: Layer) -> bool:
+    """Tell whether two layers of one domain are stiff in the same places."""
     own, others = (
         [(bone.amount, *(each.handle(end).position for end in bone.ends)) for bone in each.bones]
-        for each in (figure, other)
+        for each in (layer, other)
     )
-    return figure.stiffness is other.stiffness and own == others
+    return layer.stiffness is other.stiffness and own == others
 
 
-def spends_local_limits(figure: Figure, pose: Pose, share: float) -> bool:
-    """Tell whether a pose spends such a share of the tighter limits where its figure is stiff."""
-    points, stiffness = stiff_outline(figure)
+def spends_local_limits(layer: Layer, pose: Pose, share: float) -> bool:
+    """Tell whether a pose spends such a share of the tighter limits where its layer is stiff."""
+    points, stiffness = stiff_outline(layer)
     is_stiff = stiffness > 1.0
     if not is_stiff.any():
         return False
-    f, g = figure.map_of(pose).derivatives(points[is_stiff])
+    f, g = layer.map_of(pose).derivatives(points[is_stiff])
     a, b = np.abs(f), np.abs(g)
-    limits = figure.bounds.stiffened(stiffness[is_stiff])
+    limits = layer.bounds.stiffened(stiffness[is_stiff])
     # A map that folds spends them, too: its logarithms are infinite or no numbers.
     with np.errstate(all="ignore"):
         spent = [
@@ -69,25 +69,25 @@ def spends_local_limits(figure: Figure, pose: Pose, share: float) -> bool:
     return not bool(np.max(spent) <= share)
 
 
-def _stiffness_at(figure: Figure, points: Sequence[Complexes]) -> Floats:
+def _stiffness_at(layer: Layer, points: Sequence[Complexes]) -> Floats:
     """Return the stiffness at points of each loop in its order, from its first vertex on.
 
     A bone that has come to leave the drawing, as by another cut-out, does nothing.
     """
     every = np.concatenate(points)
     parts = [np.ones(len(every))]
-    if figure.stiffness is not None:
-        parts[0] = along_loops(figure.stiffness, figure.domain.loops, points)
-    for bone in figure.bones:
+    if layer.stiffness is not None:
+        parts[0] = along_loops(layer.stiffness, layer.domain.loops, points)
+    for bone in layer.bones:
         try:
-            share = limb_of(figure, bone, every)
+            share = limb_of(layer, bone, every)
         except EngineError:
             continue
         parts.append(bone.amount**share)
     return joined_stiffness(parts)
 
 
-def limb_of(figure: Figure, bone: Bone, points: Complexes) -> Floats:
+def limb_of(layer: Layer, bone: Bone, points: Complexes) -> Floats:
     """Return how much of a bone's stiffness points of the drawing's boundary have (t,), 0 to 1.
 
     Raises
@@ -95,19 +95,19 @@ def limb_of(figure: Figure, bone: Bone, points: Complexes) -> Floats:
     EngineError
         If the bone leaves the drawing or crosses a hole.
     """
-    start, end = (figure.handle(identity).position for identity in bone.ends)
-    return limb_around(figure.domain.loops, start, end, points)
+    start, end = (layer.handle(identity).position for identity in bone.ends)
+    return limb_around(layer.domain.loops, start, end, points)
 
 
 def brushed_stiffness(
-    figure: Figure,
+    layer: Layer,
     places: Sequence[complex],
     *,
     radius: float,
     amount: float,
     softness: float = 0.5,
 ) -> tuple[Floats | None, bool]:
-    """Return what is painted on a figure after a stroke, and whether that reached any outline.
+    """Return what is painted on a layer after a stroke, and whether that reached any outline.
 
     Parameters
     ----------
@@ -120,9 +120,9 @@ def brushed_stiffness(
     softness : float
         The part of the radius over which that becomes less, 0 to 1.
     """
-    loops = figure.domain.loops
+    loops = layer.domain.loops
     shares = brushed(loops, as_points(list(places), "places"), radius, softness)
     if not shares.any():
-        return figure.stiffness, False
-    before = np.ones(len(shares)) if figure.stiffness is None else figure.stiffness
+        return layer.stiffness, False
+    before = np.ones(len(shares)) if layer.stiffness is None else layer.stiffness
     return usual_as_none(before ** (1 - shares) * amount**shares), True

@@ -1,4 +1,4 @@
-"""What was found out about a figure or a domain, kept as long as that is there."""
+"""What was found out about a layer or a domain, kept as long as that is there."""
 
 from collections.abc import Callable
 from functools import wraps
@@ -12,9 +12,9 @@ MOST: Final = 16  # answers about one
 
 
 def remembered(query: Callable[[Whose, *Given], T]) -> Callable[[Whose, *Given], T]:
-    """Let a query about a figure or a domain give the last answers again; none may hold it.
+    """Let a query about a layer or a domain give the last answers again; none may hold it.
 
-    However many figures there are, none makes others be asked about anew, and those of a project
+    However many layers there are, none makes others be asked about anew, and those of a project
     that was closed go with it.
     """
     known: WeakKeyDictionary[Whose, dict[object, T]] = WeakKeyDictionary()

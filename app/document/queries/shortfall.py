@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from math import log
 from typing import NamedTuple
 
-from app.document.figure import Figure
 from app.document.keyframe import Pose
+from app.document.layer import Layer
 from app.document.queries.material import spends_local_limits
 from app.document.queries.remembered import remembered
 from engine.arrays import Complexes
@@ -114,25 +114,25 @@ class Shortfall:
         return "held back by the other handles and the shape's stiffness"
 
 
-def falls_short(figure: Figure, lag: float) -> bool:
+def falls_short(layer: Layer, lag: float) -> bool:
     """Tell whether a handle so many pixels from its target has not arrived there."""
-    return lag > _least_lag(figure)
+    return lag > _least_lag(layer)
 
 
 @remembered
-def _least_lag(figure: Figure) -> float:
-    return LAG * box_diagonal(figure.domain.outline)
+def _least_lag(layer: Layer) -> float:
+    return LAG * box_diagonal(layer.domain.outline)
 
 
 @remembered
-def find_shortfall(figure: Figure, pose: Pose) -> Shortfall:
-    """Return which handles of a figure fall short in a pose, and why; none that follow does."""
+def find_shortfall(layer: Layer, pose: Pose) -> Shortfall:
+    """Return which handles of a layer fall short in a pose, and why; none that follow does."""
     lags = {
         identity: lag
-        for identity, lag in figure.lags(pose).items()
-        if identity not in figure.followers and falls_short(figure, lag)
+        for identity, lag in layer.lags(pose).items()
+        if identity not in layer.followers and falls_short(layer, lag)
     }
-    at_limits = any(use.is_all for use in Extremes.of(pose).uses(figure.bounds)) or (
-        bool(lags) and spends_local_limits(figure, pose, AT_LIMIT)
+    at_limits = any(use.is_all for use in Extremes.of(pose).uses(layer.bounds)) or (
+        bool(lags) and spends_local_limits(layer, pose, AT_LIMIT)
     )
     return Shortfall(lags=lags, at_limits=at_limits)

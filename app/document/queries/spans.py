@@ -9,7 +9,7 @@ from bisect import bisect_left, bisect_right
 from itertools import pairwise
 from typing import NamedTuple
 
-from app.document.figure import Figure
+from app.document.layer import Layer
 from app.document.queries.clips import Clip
 from app.document.queries.remembered import remembered
 from app.document.settings import FrameRange
@@ -68,17 +68,17 @@ def closing_span(clip: Clip) -> KeySpan | None:
 
 def layout(clip: Clip) -> Layout:
     """Return the spans of a clip, and its cycles."""
-    return _layout(clip.figure, clip.frames, clip.loop)
+    return _layout(clip.layer, clip.frames, clip.loop)
 
 
 @remembered
 def _layout(
-    figure: Figure,
+    layer: Layer,
     frames: FrameRange,
     loop: bool,  # noqa: FBT001 - a field of the clip
 ) -> Layout:
-    at = [key.frame for key in figure.keys]
-    rings = [_ring(cycle, at, frames) for cycle in figure.cycles]
+    at = [key.frame for key in layer.keys]
+    rings = [_ring(cycle, at, frames) for cycle in layer.cycles]
     ring_of = {index: ring for ring in rings for index in ring.keys}
     found = [span for ring in rings for span in _around(ring, at)]
     for first, last in pairwise(range(len(at))):

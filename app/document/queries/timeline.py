@@ -4,8 +4,8 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import NamedTuple
 
-from app.document.figure import Figure
 from app.document.keyframe import Pose
+from app.document.layer import Layer
 from app.document.model import Document
 from app.document.queries.clips import Clip, clip_of
 from app.document.queries.spans import place_at, spans
@@ -59,22 +59,22 @@ def changed_stretches(before: Document, after: Document) -> list[FrameRange]:
     A change of everything that is shown, such as of handles or of a domain, is nowhere.
     """
     stretches: list[FrameRange] = []
-    others = {figure.id: figure for figure in before.figures}
-    for figure in after.figures:
-        other = others.get(figure.id)
-        is_alike = other and other.domain is figure.domain and other.handles == figure.handles
-        if other and is_alike and other.keys is not figure.keys:
-            stretches += _changed_keys(other, figure)
+    others = {layer.id: layer for layer in before.layers}
+    for layer in after.layers:
+        other = others.get(layer.id)
+        is_alike = other and other.domain is layer.domain and other.handles == layer.handles
+        if other and is_alike and other.keys is not layer.keys:
+            stretches += _changed_keys(other, layer)
         if other:
-            changed = {*other.cycles} ^ {*figure.cycles}
+            changed = {*other.cycles} ^ {*layer.cycles}
             stretches += [FrameRange(each.first, each.until or each.last) for each in changed]
-            frames = {after.frames.clamp(frame) for frame in _changed_in_tracks(other, figure)}
+            frames = {after.frames.clamp(frame) for frame in _changed_in_tracks(other, layer)}
             stretches += [FrameRange(frame, frame) for frame in sorted(frames)]
     marks = set(before.markers) ^ set(after.markers)
     return stretches + [FrameRange(marker.frame, marker.frame) for marker in marks]
 
 
-def _changed_keys(before: Figure, after: Figure) -> list[FrameRange]:
+def _changed_keys(before: Layer, after: Layer) -> list[FrameRange]:
     """Return the frames of the keys that differ, each up to the next one if only its way does."""
     keys = {key.frame: key for key in before.keys}
     following = dict(pairwise(key.frame for key in after.keys))
@@ -88,11 +88,11 @@ def _changed_keys(before: Figure, after: Figure) -> list[FrameRange]:
     return stretches
 
 
-def _changed_in_tracks(before: Figure, after: Figure) -> set[int]:
+def _changed_in_tracks(before: Layer, after: Layer) -> set[int]:
     """Return the frames of tracks' keys that differ, or of all keys of tracks that differ else."""
     one, other = (
-        {(track.handles, track.delay, key) for track in figure.tracks for key in track.keys}
-        for figure in (before, after)
+        {(track.handles, track.delay, key) for track in layer.tracks for key in track.keys}
+        for layer in (before, after)
     )
     if one != other:
         return {delay + key.frame for _, delay, key in one ^ other}
@@ -125,26 +125,26 @@ def framed_frames(document: Document, exported: FrameRange) -> FrameRange:
 
 def _is_same(document: Document, first: int, second: int) -> bool:
     """Tell whether two frames show the same pose, or two that were solved for the same wishes."""
-    clips = (clip_of(document, figure.id) for figure in document.figures)
+    clips = (clip_of(document, layer.id) for layer in document.layers)
     return _moves_alike(document, first, second) and all(
         _poses_alike(clip, time_of(clip, first), time_of(clip, second))
         and all(
             track_at(track, clip, first) == track_at(track, clip, second)
-            for track in clip.figure.tracks
+            for track in clip.layer.tracks
         )
         for clip in clips
     )
 
 
 def _moves_alike(document: Document, first: int, second: int) -> bool:
-    """Tell whether the camera, and all figures as a whole, are alike at two frames."""
+    """Tell whether the camera, and all layers as a whole, are alike at two frames."""
     shots = [camera_at(document, frame) for frame in (first, second)]
     pairs: list[list[RigidMotion | Similarity]] = [
         [shot.on_canvas(document.canvas) for shot in shots if shot is not None]
     ]
     pairs += [
         [movement_at(document, each, frame) for frame in (first, second)]
-        for each in document.figures
+        for each in document.layers
     ]
     # After a whole turn things are where they were, up to rounding.
     return all(
@@ -152,7 +152,7 @@ def _moves_alike(document: Document, first: int, second: int) -> bool:
         for one, other in filter(None, pairs)
     ) and all(
         opacity_at(document, each, first) == opacity_at(document, each, second)
-        for each in document.figures
+        for each in document.layers
     )
 
 
@@ -167,7 +167,7 @@ def _poses_alike(clip: Clip, first: Moment, second: Moment) -> bool:
         and target.rotation == other.targets[handle].rotation
         for handle, target in one.targets.items()
         # Those that follow are not wished anywhere: poses have them where the body carries them.
-        if handle not in clip.figure.followers
+        if handle not in clip.layer.followers
     )
 
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.document.figure import Figure
+from app.document.layer import Layer
 from app.document.queries.clips import Clip
 from app.document.queries.passages import Leg, Moved, Passages, Value, slopes_on, value_on
 from app.document.queries.remembered import remembered
@@ -91,7 +91,7 @@ def _time(track: Track, clip: Clip, frame: float) -> float | None:
 
 def cycle_of(track: Track, clip: Clip) -> Cycle | None:
     """Return the cycle with which a track repeats, if there is one."""
-    return next((cycle for cycle in clip.figure.cycles if cycle.takes(track.keys)), None)
+    return next((cycle for cycle in clip.layer.cycles if cycle.takes(track.keys)), None)
 
 
 def _interval(track: Track, time: float) -> int:
@@ -122,7 +122,7 @@ def _value(track: Track, clip: Clip, time: float, moved: Moved[TrackKey, Value])
     return value_on(_passages(track, clip, moved), leg, share, moved)
 
 
-def root_of(figure: Figure, spring: Spring) -> int | None:
+def root_of(layer: Layer, spring: Spring) -> int | None:
     """Return the id of the handle about which a spring swings; None where there is none.
 
     It is the spring's own. If that follows by a spring, it is the root of that one, and so on.
@@ -132,22 +132,22 @@ def root_of(figure: Figure, spring: Spring) -> int | None:
     """
     seen = {spring.handle}
     while spring.root is not None:
-        following = figure.spring_of(spring.root)
+        following = layer.spring_of(spring.root)
         if following is None or not following.enabled:
             return spring.root
         if spring.root in seen:
             break
         seen.add(spring.root)
         spring = following
-    following_ids = {each.handle for each in figure.springs if each.enabled} | seen
-    held = [each for each in figure.handles if each.id not in following_ids]
-    bones = [bone.ends for bone in figure.bones if spring.handle in bone.ends]
+    following_ids = {each.handle for each in layer.springs if each.enabled} | seen
+    held = [each for each in layer.handles if each.id not in following_ids]
+    bones = [bone.ends for bone in layer.bones if spring.handle in bone.ends]
     on_bones = [each for each in held if any(each.id in ends for ends in bones)]
     nearest = on_bones or held
     if not nearest:
         return None
-    places = (figure.handle(spring.handle).position, *(each.position for each in nearest))
-    return nearest[int(np.argmin(_distances(figure.domain, places)))].id
+    places = (layer.handle(spring.handle).position, *(each.position for each in nearest))
+    return nearest[int(np.argmin(_distances(layer.domain, places)))].id
 
 
 @remembered

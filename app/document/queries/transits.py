@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.document.figure import Figure
 from app.document.keyframe import Keyframe
+from app.document.layer import Layer
 from app.document.queries.clips import Clip
 from app.document.queries.passages import Leg, Passed, passed, rest
 from app.document.queries.remembered import remembered
@@ -73,17 +73,17 @@ class Transit:
 
 def transits(clip: Clip) -> tuple[Transit, ...]:
     """Return the transits of a clip's intervals, in their order."""
-    return _transits(clip.figure, clip.frames, clip.loop, clip.baseline)
+    return _transits(clip.layer, clip.frames, clip.loop, clip.baseline)
 
 
 @remembered
 def _transits(
-    figure: Figure,
+    layer: Layer,
     frames: FrameRange,
     loop: bool,  # noqa: FBT001 - a field of the clip
     baseline: Baseline | None,
 ) -> tuple[Transit, ...]:
-    clip = Clip(figure=figure, frames=frames, loop=loop, fps=1.0, baseline=baseline)
+    clip = Clip(layer=layer, frames=frames, loop=loop, fps=1.0, baseline=baseline)
     return tuple(_transit(clip, number, *around) for number, around in enumerate(passings_of(clip)))
 
 

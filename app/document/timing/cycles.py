@@ -101,7 +101,7 @@ def require_apart(cycles: Sequence[Cycle]) -> None:
 
 
 def require_repeatable(cycle: Cycle, keys: Sequence[int]) -> None:
-    """Raise a `LissomError` unless motion comes into a cycle, round, and on to a figure's keys.
+    """Raise a `LissomError` unless motion comes into a cycle, round, and on to a layer's keys.
 
     These are told by their frames, in order.
     """

@@ -58,7 +58,7 @@ class TrackKey(MovingKey):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Track:
-    """A clock of one handle's own, or of some that move together, over the figure's motion.
+    """A clock of one handle's own, or of some that move together, over the layer's motion.
 
     It acts from its first key to its last one, both included, and nowhere else.
     """

@@ -24,7 +24,7 @@ from app.editor.actions import playback, posing
 from app.editor.actions.posing.moving import giving, placing
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.timeline_view import KeyRow, KeysOf, TrackRow, figure_of, frames_in
+from app.editor.timeline_view import KeyRow, KeysOf, TrackRow, frames_in, layer_of
 from app.editor.work import Puppet
 from app.storage import decode_picture
 
@@ -58,7 +58,7 @@ def edit(_: Session, project: Project, command: Command) -> None:
 
 
 @with_project
-def edit_figure(
+def edit_layer(
     session: Session,
     project: Project,
     /,
@@ -66,7 +66,7 @@ def edit_figure(
     *args: Arguments.args,
     **kwargs: Arguments.kwargs,
 ) -> None:
-    """Run a command on the figure that is posed."""
+    """Run a command on the layer that is posed."""
     edit(session, command(project.active, *args, **kwargs))
 
 
@@ -171,10 +171,10 @@ def select_all(session: Session, project: Project) -> None:
     """Select every handle or, in the timeline, the keys in all rows of layers that are posed."""
     if session.in_timeline:
         document = project.document
-        posed = [row for row in project.rows if not document.figure(figure_of(row)).still]
+        posed = [row for row in project.rows if not document.layer(layer_of(row)).still]
         choose_keys_of(session, {row: frames_in(document, row) for row in posed})
     else:
-        select(session, frozenset(handle.id for handle in project.figure.handles))
+        select(session, frozenset(handle.id for handle in project.layer.handles))
 
 
 @with_project
@@ -192,7 +192,7 @@ def deselect_keys(_: Session, project: Project) -> None:
 @with_project
 def select_mirrored(session: Session, project: Project) -> None:
     """Select the partners of the selected handles on the other side, as their names tell."""
-    pairs = pairs_by_name(project.figure.handles, project.document.pairs)
+    pairs = pairs_by_name(project.layer.handles, project.document.pairs)
     partners = frozenset(pairs[handle] for handle in project.selected if handle in pairs)
     if partners:
         select(session, partners)
@@ -207,25 +207,25 @@ def select_mirrored(session: Session, project: Project) -> None:
 def lock(session: Session, project: Project) -> None:
     """Lock the selected handles, or unlock them if all are locked."""
     if project.selected:
-        chosen = [handle for handle in project.figure.handles if handle.id in project.selected]
+        chosen = [handle for handle in project.layer.handles if handle.id in project.selected]
         locked = not all(handle.locked for handle in chosen)
-        edit_figure(session, handle_commands.lock_handles, project.selected, locked=locked)
+        edit_layer(session, handle_commands.lock_handles, project.selected, locked=locked)
 
 
 @with_project
 def group(session: Session, project: Project) -> None:
     """Let the selected handles be taken together."""
     if len(project.selected) > 1:
-        taken = {handle.group for handle in project.figure.handles}
+        taken = {handle.group for handle in project.layer.handles}
         name = next(f"group {n}" for n in count(1) if f"group {n}" not in taken)
-        edit_figure(session, handle_commands.group_handles, project.selected, name)
+        edit_layer(session, handle_commands.group_handles, project.selected, name)
 
 
 @with_project
 def ungroup(session: Session, project: Project) -> None:
     """Part the groups that the selected handles belong to."""
-    fellows = frozenset[int]().union(*map(project.figure.together_with, project.selected))
-    edit_figure(session, handle_commands.group_handles, fellows, "")
+    fellows = frozenset[int]().union(*map(project.layer.together_with, project.selected))
+    edit_layer(session, handle_commands.group_handles, fellows, "")
 
 
 @with_project
@@ -265,45 +265,45 @@ def delete(session: Session, project: Project) -> None:
     elif project.chosen_of:
         edit(session, change_keys(DELETE, project.chosen_of))
     elif session.in_timeline and project.chosen_track is not None:
-        edit_figure(session, track_commands.remove_tracks, (project.chosen_track,))
+        edit_layer(session, track_commands.remove_tracks, (project.chosen_track,))
     elif project.selected:
         posing.remove_handles(session, project.selected)
 
 
-def follow_figures(project: Project) -> None:
-    """Let the window have the figures that the document has, and no others."""
+def follow_layers(project: Project) -> None:
+    """Let the window have the layers that the document has, and no others."""
     document = project.document
-    gone = project.puppets.keys() - {figure.id for figure in document.figures}
+    gone = project.puppets.keys() - {layer.id for layer in document.layers}
     for identity in gone:
         del project.puppets[identity]
     # Those of layers that undo and redo may bring back are kept as well.
-    spare = project.pictures.keys() - {figure.picture for figure in document.figures}
+    spare = project.pictures.keys() - {layer.picture for layer in document.layers}
     for file in spare - project.history.picture_files if spare else ():
         del project.pictures[file]
-    for figure in document.figures:
-        puppet = project.puppets.get(figure.id)
-        if puppet is not None and puppet.file is figure.picture:
-            project.pictures[figure.picture] = puppet.picture
+    for layer in document.layers:
+        puppet = project.puppets.get(layer.id)
+        if puppet is not None and puppet.file is layer.picture:
+            project.pictures[layer.picture] = puppet.picture
             continue
-        if figure.picture not in project.pictures:
-            decoded = decode_picture(figure.picture.data, figure.name)
-            project.pictures[figure.picture] = decoded
-        picture = project.pictures[figure.picture]
-        project.puppets[figure.id] = Puppet.of(
-            clip_of(document, figure.id), picture, among=len(document.figures)
+        if layer.picture not in project.pictures:
+            decoded = decode_picture(layer.picture.data, layer.name)
+            project.pictures[layer.picture] = decoded
+        picture = project.pictures[layer.picture]
+        project.puppets[layer.id] = Puppet.of(
+            clip_of(document, layer.id), picture, among=len(document.layers)
         )
     if project.active not in project.puppets:
-        posable = [figure.id for figure in document.figures if not figure.still]
-        project.active = (posable or [figure.id for figure in document.figures])[-1]
+        posable = [layer.id for layer in document.layers if not layer.still]
+        project.active = (posable or [layer.id for layer in document.layers])[-1]
         project.selected = project.chosen = frozenset()
 
 
 def _forget_what_is_gone(project: Project) -> None:
     document = project.document
-    follow_figures(project)
+    follow_layers(project)
     project.beside &= project.puppets.keys()
     project.solo &= project.puppets.keys()
-    project.selected &= {handle.id for handle in project.figure.handles}
+    project.selected &= {handle.id for handle in project.layer.handles}
     chosen = {row: at & frames_in(document, row) for row, at in project.chosen_of.items()}
     project.chosen_of = {row: frames for row, frames in chosen.items() if frames}
     if project.playhead.frame not in document.frames:
@@ -321,13 +321,13 @@ def set_depth(session: Session, project: Project, identity: int, front: float) -
     """Set what is painted in front around a handle, in the present key if it says so already."""
     if identity in _fronts_here(session, project):
         frame = playback.posed_frame(session, project)
-        edit_figure(session, layer_commands.key_front, frame, identity, front)
+        edit_layer(session, layer_commands.key_front, frame, identity, front)
     else:
-        extent = project.figure.handle(identity).extent
-        edit_figure(session, layer_commands.set_front, identity, front, extent)
+        extent = project.layer.handle(identity).extent
+        edit_layer(session, layer_commands.set_front, identity, front, extent)
 
 
 def _fronts_here(session: Session, project: Project) -> Mapping[int, float]:
     """Return what the key at the present frame says, if there is one."""
-    frame, figure = playback.posed_frame(session, project), project.figure
-    return figure.key(frame).fronts if frame in figure.key_frames else {}
+    frame, layer = playback.posed_frame(session, project), project.layer
+    return layer.key(frame).fronts if frame in layer.key_frames else {}

@@ -201,14 +201,14 @@ def _prepare(
     """Let a worker prepare an export that was checked, and then begin."""
     document, format_ = project.document, EXPORT_FORMATS[request.settings.format]
     unkeyed = project.history.unkeyed
-    if format_.is_still and unkeyed is not None and unkeyed.figure == project.active:
+    if format_.is_still and unkeyed is not None and unkeyed.layer == project.active:
         frames = request.settings.frames
         if frames is not None and unkeyed.frame in frames:
             document = posing.as_key(session, project, unkeyed)(document)
-    pictures = {figure: puppet.cut.value.texture for figure, puppet in project.puppets.items()}
+    pictures = {layer: puppet.cut.value.texture for layer, puppet in project.puppets.items()}
     samplers = {
-        figure: (puppet.fine or puppet.store).sampler or puppet.store.sampler
-        for figure, puppet in project.puppets.items()
+        layer: (puppet.fine or puppet.store).sampler or puppet.store.sampler
+        for layer, puppet in project.puppets.items()
     }
     extent = project.extent
     box = extent.value if extent.follows(extent_source(document)) else None
@@ -218,11 +218,10 @@ def _prepare(
         detail = request.settings.shapes.triangles
         exported = document if format_.is_drawn else with_light_meshes(document, detail)
         alone = [
-            _animation(clip_of(exported, figure.id), samplers[figure.id])
-            for figure in exported.figures
+            _animation(clip_of(exported, layer.id), samplers[layer.id]) for layer in exported.layers
         ]
         hung = hung_animations(alone, exported)
-        poses = {figure: KeptPoses(animation, cancellation) for figure, animation in hung.items()}
+        poses = {layer: KeptPoses(animation, cancellation) for layer, animation in hung.items()}
         plan = plan_export(exported, request, poses, box)
         return ExportRun(document=exported, pictures=pictures, poses=poses, plan=plan)
 
@@ -231,10 +230,10 @@ def _prepare(
 
 def _animation(clip: Clip, sibling: PoseSampler | None) -> Animation:
     """Return the motion for an export, which neither waits for the window's own nor disturbs it."""
-    figure = clip.figure
-    is_sibling = sibling is not None and sibling.domain.cage is figure.domain.cage
+    layer = clip.layer
+    is_sibling = sibling is not None and sibling.domain.cage is layer.domain.cage
     sampler = PoseSampler(
-        figure.domain, anchor=figure.anchor, sibling=sibling if is_sibling else None
+        layer.domain, anchor=layer.anchor, sibling=sibling if is_sibling else None
     )
     return Animation(clip, sampler=sampler)
 

@@ -237,7 +237,7 @@ def _show(
     saving.put_project(session, project)
     if path.parent != sample_images():
         session.preferences = session.preferences.with_recent(path)
-    elif any(len(figure.keys) > 1 for figure in opened.document.figures):
+    elif any(len(layer.keys) > 1 for layer in opened.document.layers):
         playback.toggle_play(session)
     for notice in opened.notices:
         session.tell(sentence(notice))
@@ -276,15 +276,15 @@ def fold_summary(_: Session, project: Project) -> None:
 
 
 def _foremost(document: Document) -> int:
-    """Return the figure that is posed first: the one in front, stills aside."""
+    """Return the layer that is posed first: the one in front, stills aside."""
     return next(
-        (figure.id for figure in reversed(document.figures) if not figure.still),
-        document.figures[-1].id,
+        (layer.id for layer in reversed(document.layers) if not layer.still),
+        document.layers[-1].id,
     )
 
 
 def with_puppets(opened: OpenedScene) -> Opened:
-    """Return a scene with its figures as a window has them."""
+    """Return a scene with its layers as a window has them."""
     puppets = _puppets(opened.document, opened.pictures)
     return Opened(opened.document, puppets, opened.notices)
 
@@ -295,7 +295,7 @@ def _puppets(document: Document, pictures: Mapping[int, Picture]) -> dict[int, P
         pictures = {identity: kept[id(each)] for identity, each in pictures.items()}
     made = side_by_side(
         lambda identity: Puppet.of(
-            clip_of(document, identity), pictures[identity], among=len(document.figures)
+            clip_of(document, identity), pictures[identity], among=len(document.layers)
         ),
         pictures,
         (picture.size for picture in pictures.values()),
@@ -317,11 +317,11 @@ def _read_project(path: Path) -> Opened:
 
 
 def decoded(document: Document, name: str) -> Opened:
-    """Return a project's document with its figures as a window has them."""
-    files = list(dict.fromkeys(figure.picture for figure in document.figures))
+    """Return a project's document with its layers as a window has them."""
+    files = list(dict.fromkeys(layer.picture for layer in document.layers))
     decoded = decode_pictures([(file.data, f"the picture of {name}") for file in files])
     by_file = dict(zip(files, decoded, strict=True))
-    pictures = {figure.id: by_file[figure.picture] for figure in document.figures}
+    pictures = {layer.id: by_file[layer.picture] for layer in document.layers}
     return Opened(document, _puppets(document, pictures), motion_notices(document))
 
 

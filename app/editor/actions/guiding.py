@@ -4,8 +4,8 @@ from dataclasses import replace
 
 from app.document import (
     Document,
-    Figure,
     FrameRange,
+    Layer,
     handle_commands,
     key_commands,
     scene_commands,
@@ -76,19 +76,19 @@ def is_led(session: Session) -> bool:
     return session.guide is not None and session.guide.project is not None
 
 
-def is_posed(figure: Figure) -> bool:
+def is_posed(layer: Layer) -> bool:
     """Tell whether the first pose is another than the one in which the picture was drawn."""
-    rest = HarmonicMap.identity(figure.domain.cage, figure.domain.holes)
-    return not figure.map_of(figure.keys[0].pose).is_same(rest)
+    rest = HarmonicMap.identity(layer.domain.cage, layer.domain.holes)
+    return not layer.map_of(layer.keys[0].pose).is_same(rest)
 
 
 def _read() -> tuple[files.Opened, Guide]:
     document = load_project(sample_images() / SAMPLE)
-    figure = document.figures[0]
-    led = next(handle for handle in figure.handles if handle.name == LED)
+    layer = document.layers[0]
+    led = next(handle for handle in layer.handles if handle.name == LED)
     goal = next(
         target.position
-        for key in figure.keys[1:]
+        for key in layer.keys[1:]
         if (target := key.pose.targets.get(led.id)) and target.position is not None
     )
     opened = files.decoded(_at_rest(document), SAMPLE)
@@ -97,11 +97,11 @@ def _read() -> tuple[files.Opened, Guide]:
 
 def _at_rest(document: Document) -> Document:
     """Return a document with its first key only, and only those handles that hold still."""
-    figure = document.figures[0]
-    free = [handle.id for handle in figure.handles if not handle.name.endswith(HELD)]
+    layer = document.layers[0]
+    free = [handle.id for handle in layer.handles if not handle.name.endswith(HELD)]
     for command in (
-        key_commands.delete_keys(figure.id, [key.frame for key in figure.keys[1:]]),
-        handle_commands.remove_handles(figure.id, free),
+        key_commands.delete_keys(layer.id, [key.frame for key in layer.keys[1:]]),
+        handle_commands.remove_handles(layer.id, free),
         scene_commands.set_frames(FrameRange(0, LAST)),
         scene_commands.set_export(replace(document.export.in_format(FORMAT), size=SIZE)),
     ):
@@ -120,16 +120,14 @@ def _attached(session: Session, guide: Guide) -> Guide:
 
 
 def _handles(document: Document) -> frozenset[tuple[int, int]]:
-    return frozenset(
-        (figure.id, handle.id) for figure in document.figures for handle in figure.handles
-    )
+    return frozenset((layer.id, handle.id) for layer in document.layers for handle in layer.handles)
 
 
 def _advanced(session: Session, project: Project, guide: Guide) -> Guide:
     """Return a guide at the step that is next; the same one where nothing has changed."""
     if guide.step == "done":
         return guide
-    moves = any(map(_moves, project.document.figures))
+    moves = any(map(_moves, project.document.layers))
     has_played = moves and (guide.has_played or project.playhead.since is not None)
     step = _next_step(project, guide, moves=moves, has_played=has_played)
     exported = session.exported
@@ -145,15 +143,15 @@ def _next_step(project: Project, guide: Guide, *, moves: bool, has_played: bool)
         return "export" if has_played else "play"
     new = _handles(project.document) - guide.handles
     wanted = HOLDS_AND_MOVES if guide.aim is None else 1
-    if len(new) < wanted and not any(map(is_posed, project.document.figures)):
+    if len(new) < wanted and not any(map(is_posed, project.document.layers)):
         return "handle"
-    playhead, first = project.playhead, project.figure.keys[0].frame
+    playhead, first = project.playhead, project.layer.keys[0].frame
     return "time" if playhead.since is not None or playhead.frame == first else "pose"
 
 
-def _moves(figure: Figure) -> bool:
-    """Tell whether a figure has poses of its own to go between, or a track that moves a handle."""
-    if any(len(track.keys) > 1 for track in figure.tracks):
+def _moves(layer: Layer) -> bool:
+    """Tell whether a layer has poses of its own to go between, or a track that moves a handle."""
+    if any(len(track.keys) > 1 for track in layer.tracks):
         return True
-    first = figure.map_of(figure.keys[0].pose)
-    return any(not figure.map_of(key.pose).is_same(first) for key in figure.keys[1:])
+    first = layer.map_of(layer.keys[0].pose)
+    return any(not layer.map_of(key.pose).is_same(first) for key in layer.keys[1:])

@@ -126,8 +126,8 @@ def current_frame(session: Session, project: Project) -> int:
 
 
 def posed_frame(session: Session, project: Project) -> int:
-    """Return the frame at which what the figure that is posed shows now is keyed.
+    """Return the frame at which what the layer that is posed shows now is keyed.
 
     It is another one than the present frame where a stretch repeats.
     """
-    return project.figure.source_of(current_frame(session, project))
+    return project.layer.source_of(current_frame(session, project))

@@ -79,7 +79,7 @@ def replace_changed(session: Session, project: Project, path: Path, then: Action
 def write_now(session: Session, project: Project, path: Path, then: Action | None) -> None:
     """Save the project in a file as it is."""
     document, known = project.document, project.read_as if path == project.path else None
-    textures = {figure: puppet.cut.value.texture for figure, puppet in project.puppets.items()}
+    textures = {layer: puppet.cut.value.texture for layer, puppet in project.puppets.items()}
     drawings = tuple(project.drawings)
 
     def work() -> str:
@@ -255,7 +255,7 @@ def key_and_save(session: Session, project: Project, then: Action) -> None:
     """Make a key of the pose that no key holds, and save the project."""
     unkeyed = project.history.unkeyed
     if unkeyed is not None:
-        posing.insert_key_at(session, unkeyed.figure, unkeyed.frame)
+        posing.insert_key_at(session, unkeyed.layer, unkeyed.frame)
     save_then(session, then)
 
 

@@ -77,10 +77,10 @@ def ask_for_missing(session: Session, project: Project) -> None:
         for job in missing(session, project):
             if job.kind not in session.jobs.kinds:
                 session.jobs.put(job)
-    shortfalls, figure = project.timing.shortfalls, project.figure
-    if not shortfalls.follows(figure):
+    shortfalls, layer = project.timing.shortfalls, project.layer
+    if not shortfalls.follows(layer):
         # Little work: of the poses that were not measured before, and there is one at a time.
-        shortfalls.set(figure, measure_shortfalls(figure, shortfalls))
+        shortfalls.set(layer, measure_shortfalls(layer, shortfalls))
 
 
 @with_project
@@ -165,13 +165,13 @@ def _pin(session: Session, project: Project) -> None:
     """Tell all stores which clips are present, and to which ones undo and redo lead."""
     frame, tried = playback.current_frame(session, project), posing.tried_clips(project)
     for clip, puppet in _clips(project):
-        figure, twin = clip.figure.id, puppet.twin
-        others = [each for each in tried if each.figure.id == figure]
+        layer, twin = clip.layer.id, puppet.twin
+        others = [each for each in tried if each.layer.id == layer]
         others += [] if twin is None else [twin.clip(project.document)]
         nearby = [
-            clip_of(document, figure)
+            clip_of(document, layer)
             for document in project.history.nearby
-            if figure in [other.id for other in document.figures]
+            if layer in [other.id for other in document.layers]
         ]
         puppet.store.pin([clip, *others], nearby, frame)
         if puppet.fine is not None:
@@ -179,7 +179,7 @@ def _pin(session: Session, project: Project) -> None:
 
 
 def missing(session: Session, project: Project) -> Iterator[Job]:
-    """Yield what the worker is to do next: what is missed most, of any figure."""
+    """Yield what the worker is to do next: what is missed most, of any layer."""
     yield from _cut(session, project)
     # First of all: they are watched while the hand moves, and are of few points only.
     yield from _trace(session, project)
@@ -228,14 +228,14 @@ def _prepares_all(session: Session, project: Project) -> bool:
 
 
 def _clips(project: Project) -> list[tuple[Clip, Puppet]]:
-    return [(clip_of(project.document, figure), each) for figure, each in project.puppets.items()]
+    return [(clip_of(project.document, layer), each) for layer, each in project.puppets.items()]
 
 
 def _make_frames(session: Session, project: Project) -> Iterator[Job]:
     """Yield the in-betweens at the playhead, before and beside all others of their intervals."""
     frame = playback.current_frame(session, project)
     for clip, puppet in _clips(project):
-        is_posed = clip.figure.id == project.active and project.unkeyed is not None
+        is_posed = clip.layer.id == project.active and project.unkeyed is not None
         # What fails at one frame would at others, and is told of once.
         if not is_posed and not puppet.store.has_failed(clip, "frame"):
             work = puppet.store.making_frame(clip, frame)
@@ -275,7 +275,7 @@ def _wanted(session: Session, project: Project) -> Iterator[tuple[Kind, Puppet, 
             if is_wanted(clip, puppet.store):
                 yield SKETCHING, puppet, clip
     for clip in posing.tried_clips(project, left=not prepares_all):
-        yield SKETCHING, project.puppets[clip.figure.id], clip
+        yield SKETCHING, project.puppets[clip.layer.id], clip
     if project.is_posing:
         return
     for puppet in project.puppets.values():
@@ -284,7 +284,7 @@ def _wanted(session: Session, project: Project) -> Iterator[tuple[Kind, Puppet, 
             if is_wanted(twin, puppet.store):
                 yield COMPARING, puppet, twin
     for clip, puppet in clips:
-        if puppet.store.mesh.domain is not clip.figure.domain and (
+        if puppet.store.mesh.domain is not clip.layer.domain and (
             puppet.fine is None or is_wanted(clip, puppet.fine)
         ):
             yield REFINING, puppet, clip
@@ -294,7 +294,7 @@ def _prepare(
     session: Session, project: Project, kind: Kind, puppet: Puppet, clip: Clip
 ) -> Job | None:
     """Return what prepares the nearest in-betweens that a clip lacks, or its mesh."""
-    domain, among = clip.figure.domain, len(project.puppets)
+    domain, among = clip.layer.domain, len(project.puppets)
     is_fine, frame = kind == REFINING, playback.current_frame(session, project)
     store = puppet.fine if is_fine else puppet.store
     if store is None or store.mesh.source is not domain:
@@ -391,8 +391,8 @@ def _derive(
 
 def _cut(session: Session, project: Project) -> Iterator[Job]:
     """Yield what is to be cut out of pictures anew, and the small ones of the list of layers."""
-    for figure in project.document.figures:
-        puppet, cut_out = project.puppets[figure.id], figure.cut_out
+    for layer in project.document.layers:
+        puppet, cut_out = project.puppets[layer.id], layer.cut_out
         cut = partial(cut_picture, puppet.picture, cut_out)
         yield from _derive(session, CUTTING, puppet.cut, cut_out, cut)
         whole = puppet.cut.value
@@ -401,14 +401,14 @@ def _cut(session: Session, project: Project) -> Iterator[Job]:
 
 
 def _trace(session: Session, project: Project) -> Iterator[Job]:
-    """Yield the paths of the active figure's handles, while some are shown."""
+    """Yield the paths of the active layer's handles, while some are shown."""
     clip, paths = project.clip, project.paths
     if session.overlays.paths and project.selected:
         document, known, siblings = project.document, paths.value, project.samplers
         sibling = project.puppet.store.sampler
 
         def trace() -> MotionPaths:
-            carried = carried_in(document, clip.figure.id, siblings)
+            carried = carried_in(document, clip.layer.id, siblings)
             return trace_paths(clip, known, sibling, carried)
 
         yield from _derive(session, TRACING, paths, clip, trace)
@@ -455,10 +455,10 @@ def _span(session: Session, project: Project) -> Iterator[Job]:
     clips = _clips(project)
     if extent.follows(source) or not all(each.store.has(clip) for clip, each in clips):
         return
-    corrected = {clip.figure.id: each.corrected for clip, each in clips if each.corrected}
+    corrected = {clip.layer.id: each.corrected for clip, each in clips if each.corrected}
     if not all(each.is_whole for each in corrected.values()):
         return
-    stores = {figure: puppet.store.snapshot() for figure, puppet in project.puppets.items()}
+    stores = {layer: puppet.store.snapshot() for layer, puppet in project.puppets.items()}
     span = partial(measure_extent, document, stores, project.joints.value, corrected)
     yield from _derive(session, SPANNING, extent, source, span)
 
@@ -481,23 +481,23 @@ def _show(session: Session, project: Project) -> None:
         project.moved_at = session.clock()
     is_moving = _is_moving(session, project)
     for clip, puppet in _clips(project):
-        figure, twin = clip.figure.id, puppet.twin
-        pose = project.unkeyed if figure == project.active else None
+        layer, twin = clip.layer.id, puppet.twin
+        pose = project.unkeyed if layer == project.active else None
         if pose is not None:
-            poses[figure] = pose
+            poses[layer] = pose
         fine = [puppet.fine] if puppet.fine is not None and not is_moving else []
         stores = [*fine, puppet.store]
-        shown[figure] = show(clip, frame, pose, stores, puppet.shown, puppet.corrected)
+        shown[layer] = show(clip, frame, pose, stores, puppet.shown, puppet.corrected)
         if twin is not None:
-            earlier, other = twin.shown or shown[figure], twin.clip(document)
+            earlier, other = twin.shown or shown[layer], twin.clip(document)
             # What a pose shows is the same in both.
-            twins[figure] = show(other, frame, pose, [puppet.store], earlier)
+            twins[layer] = show(other, frame, pose, [puppet.store], earlier)
     known = project.joints.value
-    for figure, hung in hang_shown(document, shown, project.hung, poses, known).items():
-        project.puppets[figure].shown = hung
-    # By the meshes alone: the joints that are followed exactly are of the figures' own methods.
-    for figure, hung in hang_shown(document, twins, None, {}, known).items():
-        if (twin := project.puppets[figure].twin) is not None:
+    for layer, hung in hang_shown(document, shown, project.hung, poses, known).items():
+        project.puppets[layer].shown = hung
+    # By the meshes alone: the joints that are followed exactly are of the layers' own methods.
+    for layer, hung in hang_shown(document, twins, None, {}, known).items():
+        if (twin := project.puppets[layer].twin) is not None:
             twin.shown = hung
 
 

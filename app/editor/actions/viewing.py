@@ -26,7 +26,7 @@ from app.storage import (
 
 SCALE_STEP = 0.25
 LEAST_PART = 0.05  # of the viewport's width, that is left to either method
-AROUND_HANDLES = 0.12  # of the figure's diagonal, on each side of the handles that are fitted
+AROUND_HANDLES = 0.12  # of the layer's diagonal, on each side of the handles that are fitted
 OverlayName = Literal["handles", "wireframe", "outline", "cage", "onion", "mirror", "paths"]
 HEAT_MAPS: tuple[HeatMap, ...] = ("none", "k", "sigma_a", "sigma_b")
 
@@ -40,7 +40,7 @@ def look_from(_: Session, project: Project, camera: View | None) -> None:
 
 @with_project
 def fit_pose(session: Session, project: Project) -> None:
-    """Show all figures as they are in this frame, whole."""
+    """Show all layers as they are in this frame, whole."""
     shown = [puppet.shown for puppet in project.puppets.values()]
     boxes = [box_around(each.placement.on(each.positions)) for each in shown if each is not None]
     if boxes:
@@ -49,18 +49,18 @@ def fit_pose(session: Session, project: Project) -> None:
 
 @with_project
 def fit_motion(_: Session, project: Project) -> None:
-    """Show where all figures get to in any frame, as soon as that is measured."""
+    """Show where all layers get to in any frame, as soon as that is measured."""
     project.awaits_extent = True
 
 
 @with_project
 def fit_selection(session: Session, project: Project) -> None:
-    """Show the selected handles with some of the figure around them, or the whole figure."""
+    """Show the selected handles with some of the layer around them, or the whole layer."""
     shown = project.puppet.shown
     if shown is None:
         return
     box = box_around(shown.placement.on(shown.positions))
-    selected = [handle.id in project.selected for handle in shown.clip.figure.handles]
+    selected = [handle.id in project.selected for handle in shown.clip.layer.handles]
     if any(selected):
         room = AROUND_HANDLES * abs(box.upper - box.lower) * (1 + 1j)
         box = box_around(shown.placement.on(shown.handle_places[selected]))

@@ -1,7 +1,7 @@
 """What a person does with layers: choosing, ordering, hiding, replacing, joining them.
 
-In: a session, and the ids of figures.
-Out: other figures, or others in another order; which of them is posed.
+In: a session, and the ids of layers.
+Out: other layers, or others in another order; which of them is posed.
 Imports: `app.editor`, `app.document`, `app.motion`, `app.solving`, `app.storage`.
 """
 
@@ -12,10 +12,10 @@ from app.editor.layering.arranging import (
     duplicate as duplicate,
     fade as fade,
     fade_group as fade_group,
-    figure_at as figure_at,
     group as group,
     group_together as group_together,
     is_at as is_at,
+    layer_at as layer_at,
     list_active as list_active,
     lock as lock,
     move as move,

@@ -23,10 +23,10 @@ from app.editor.session import Session, with_project
 from engine.geometry import contains
 
 
-def figure_at(
+def layer_at(
     project: Project, place: complex, *, below: int | None = None, besides: int | None = None
 ) -> int | None:
-    """Return the figure that is seen in front at a place of the scene, None where there is none.
+    """Return the layer that is seen in front at a place of the scene, None where there is none.
 
     Still, hidden and locked ones are passed through.
 
@@ -34,9 +34,9 @@ def figure_at(
     ----------
     place : complex
     below : int, optional
-        Where that figure is there, too, the next one behind it is returned, or at last the first.
+        Where that layer is there, too, the next one behind it is returned, or at last the first.
     besides : int, optional
-        A figure that is passed through.
+        A layer that is passed through.
     """
     shown = project.puppet.shown
     frame = project.playhead.frame if shown is None else shown.frame
@@ -54,7 +54,7 @@ def figure_at(
 
 
 def is_at(project: Project, identity: int, place: complex) -> bool:
-    """Tell whether a figure is seen at a place of the scene."""
+    """Tell whether a layer is seen at a place of the scene."""
     shown = project.puppets[identity].shown
     document = project.document
     if shown is None or (project.solo and identity not in project.solo):
@@ -65,7 +65,7 @@ def is_at(project: Project, identity: int, place: complex) -> bool:
     x, y = outline.real, outline.imag
     if not (x.min() <= place.real <= x.max() and y.min() <= place.imag <= y.max()):
         return False
-    if not is_visible(document, document.figure(identity), shown.frame):
+    if not is_visible(document, document.layer(identity), shown.frame):
         return False
     return bool(contains(outline, np.array([place]))[0])
 
@@ -73,12 +73,12 @@ def is_at(project: Project, identity: int, place: complex) -> bool:
 def rename(session: Session, identity: int, name: str) -> None:
     """Give a layer another name."""
     if name.strip():
-        editing.edit(session, layer_commands.rename_figure(identity, name))
+        editing.edit(session, layer_commands.rename_layer(identity, name))
 
 
 def move(session: Session, identity: int, index: int) -> None:
     """Put a layer at an index in the order from back to front."""
-    editing.edit(session, layer_commands.move_figure(identity, index))
+    editing.edit(session, layer_commands.move_layer(identity, index))
 
 
 @with_project
@@ -97,21 +97,21 @@ def move_beside(
     if whole:
         editing.edit(session, group_commands.put_group_beside(whole, beside, in_front=in_front))
         return
-    order = [figure.id for figure in project.document.figures]
+    order = [layer.id for layer in project.document.layers]
     moved = [each for each in order if each in identities and each != beside]
     commands = []
     for count, each in enumerate(moved):
         order.remove(each)
         index = order.index(moved[count - 1] if count else beside) + (count > 0 or in_front)
         order.insert(index, each)
-        commands.append(layer_commands.move_figure(each, index))
+        commands.append(layer_commands.move_layer(each, index))
     editing.edit(session, in_turn(_of("Move", moved), commands))
 
 
 @with_project
 def show(session: Session, project: Project, *identities: int) -> None:
     """Hide layers, or show them again: the other way than the first of them is."""
-    hidden = not project.document.figure(identities[0]).hidden
+    hidden = not project.document.layer(identities[0]).hidden
     commands = [layer_commands.set_hidden(each, hidden=hidden) for each in identities]
     editing.edit(session, in_turn(_of("Hide" if hidden else "Show", identities), commands))
 
@@ -119,7 +119,7 @@ def show(session: Session, project: Project, *identities: int) -> None:
 @with_project
 def lock(session: Session, project: Project, *identities: int) -> None:
     """Let clicks on the drawing pass through layers, or stop at them: other than at the first."""
-    locked = not project.document.figure(identities[0]).locked
+    locked = not project.document.layer(identities[0]).locked
     commands = [layer_commands.set_locked(each, locked=locked) for each in identities]
     editing.edit(session, in_turn(_of("Lock" if locked else "Unlock", identities), commands))
 
@@ -133,7 +133,7 @@ def group(session: Session, path: str, *identities: int) -> None:
 def group_together(session: Session, project: Project) -> None:
     """Put the chosen layers in a new group, in the innermost one that all of them are in."""
     document, chosen = project.document, project.selected_layers
-    around = reduce(shared_path, (document.figure(each).group for each in chosen))
+    around = reduce(shared_path, (document.layer(each).group for each in chosen))
     taken = {each.name for each in document.groups}
     free = layer_commands.numbered_name(f"{around}/group".removeprefix("/"), taken)
     group(session, free, *chosen)
@@ -152,8 +152,8 @@ def take_in(session: Session, project: Project, path: str, *identities: int) -> 
 def _whole_group(project: Project, identities: Sequence[int]) -> str:
     """Return the path of the outermost group that is made of several layers; "" if none is."""
     document = project.document
-    for path in paths_to(document.figure(identities[0]).group):
-        inside = {each.id for each in document.figures if path in paths_to(each.group)}
+    for path in paths_to(document.layer(identities[0]).group):
+        inside = {each.id for each in document.layers if path in paths_to(each.group)}
         if len(inside) > 1 and inside == set(identities):
             return path
     return ""
@@ -176,7 +176,7 @@ def _of(verb: str, identities: Sequence[int]) -> str:
 @with_project
 def refer(session: Session, project: Project, identity: int) -> None:
     """Leave a layer out of exports, or take it in again."""
-    reference = project.document.figure(identity).reference
+    reference = project.document.layer(identity).reference
     editing.edit(session, layer_commands.set_reference(identity, reference=not reference))
 
 
@@ -193,7 +193,7 @@ def blend(session: Session, identity: int, mode: BlendMode) -> None:
 @with_project
 def clip(session: Session, project: Project, identity: int) -> None:
     """Let a layer be seen only where what lies below it is, or everywhere again."""
-    clipped = project.document.figure(identity).clipped
+    clipped = project.document.layer(identity).clipped
     editing.edit(session, layer_commands.set_clipped(identity, clipped=not clipped))
 
 
@@ -217,7 +217,7 @@ def switch_here(session: Session, project: Project, identity: int) -> None:
     """
     frame = playback.current_frame(session, project)
     document = project.document
-    visible = not is_visible(document, document.figure(identity), frame)
+    visible = not is_visible(document, document.layer(identity), frame)
     if document.choice_of(identity) is None:
         editing.edit(session, layer_commands.switch_at(identity, frame, visible=visible))
     elif visible:
@@ -246,5 +246,5 @@ def ask_name(session: Session, identity: int | None) -> None:
 def duplicate(session: Session, project: Project, identity: int) -> None:
     """Put a copy of a layer in front of it, and choose it."""
     free = layer_commands.free_identity(project.document)
-    editing.edit(session, layer_commands.duplicate_figure(identity))
+    editing.edit(session, layer_commands.duplicate_layer(identity))
     choose(session, free)

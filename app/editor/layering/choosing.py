@@ -7,7 +7,7 @@ from app.editor.session import Session, with_project
 
 @with_project
 def choose(session: Session, project: Project, identity: int) -> None:
-    """Let a figure be the one whose handles and keys are shown and changed, and no other."""
+    """Let a layer be the one whose handles and keys are shown and changed, and no other."""
     project.beside = frozenset()
     if identity == project.active:
         return
@@ -34,14 +34,14 @@ def choose_too(session: Session, project: Project, *identities: int) -> None:
     chosen = frozenset(project.selected_layers)
     left = chosen - set(identities) if chosen.issuperset(identities) else chosen | set(identities)
     if left:
-        ordered = [each for each in project.document.figures[::-1] if each.id in left]
+        ordered = [each for each in project.document.layers[::-1] if each.id in left]
         choose_all(session, *(each.id for each in ordered))
 
 
 @with_project
 def choose_up_to(session: Session, project: Project, identity: int) -> None:
     """Choose the layers that are listed from the one that is posed to another one."""
-    listed = [row.figure.id for row in project.tree if row.figure is not None]
+    listed = [row.layer.id for row in project.tree if row.layer is not None]
     ends = sorted((listed.index(project.active), listed.index(identity)))
     choose_all(session, *listed[ends[0] : ends[1] + 1])
 

@@ -52,7 +52,7 @@ def hang(
         Of the joint, in the scene; by default the anchor's, or the middle of where they overlap.
     """
     if hangs_on(project, parent, child):
-        names = [project.document.figure(identity).name for identity in (parent, child)]
+        names = [project.document.layer(identity).name for identity in (parent, child)]
         session.tell(
             HANGS_IN_CIRCLE.format(name=names[0], parent=names[1], other=names[1], hung=names[0]),
             tone="error",
@@ -128,11 +128,11 @@ def let_hang(session: Session, project: Project, child: int) -> None:
 
     One that hangs on others at other times is let go as long as the present joint holds.
     """
-    shown, figure = project.puppets[child].shown, project.document.figure(child)
-    joint = figure.keyed_joint(playback.current_frame(session, project))
-    if joint is not None and len(figure.joints) > 1:
+    shown, layer = project.puppets[child].shown, project.document.layer(child)
+    joint = layer.keyed_joint(playback.current_frame(session, project))
+    if joint is not None and len(layer.joints) > 1:
         free = Attachment(to=None, frame=joint.frame, keeps=True)
-        editing.edit(session, layer_commands.attach(child, anchor_of(figure), free))
+        editing.edit(session, layer_commands.attach(child, anchor_of(layer), free))
     elif shown is not None:
         editing.edit(session, _detach(project.document, child, shown.frame, shown.placement))
 
@@ -141,7 +141,7 @@ def let_hang(session: Session, project: Project, child: int) -> None:
 def turn_with(session: Session, project: Project, child: int, turns: bool) -> None:  # noqa: FBT001 - of an action
     """Let a layer turn with the one that it hangs on, or keep its own turn; nothing moves now."""
     frame = playback.current_frame(session, project)
-    joint = project.document.figure(child).keyed_joint(frame)
+    joint = project.document.layer(child).keyed_joint(frame)
     if joint is not None and joint.to is not None and turns != joint.turns:
         hang(session, child, joint.to, turns)
 
@@ -149,18 +149,18 @@ def turn_with(session: Session, project: Project, child: int, turns: bool) -> No
 @with_project
 def hand_over(session: Session, project: Project, child: int, parent: int | None) -> None:
     """Let a layer hang on another one, or on none, from the present frame on; nothing jumps."""
-    figure = project.document.figure(child)
-    frame = figure.joint_frame(playback.current_frame(session, project))
+    layer = project.document.layer(child)
+    frame = layer.joint_frame(playback.current_frame(session, project))
     if parent is None:
-        anchor, joint = anchor_of(figure), Attachment(to=None, frame=frame, keeps=True)
+        anchor, joint = anchor_of(layer), Attachment(to=None, frame=frame, keeps=True)
         editing.edit(session, layer_commands.attach(child, anchor, joint))
         return
 
     def find(joints: Joints) -> Command:
-        held = figure.keyed_joint(frame)
+        held = layer.keyed_joint(frame)
         turns = held is None or held.turns
         joint = joint_that_keeps(joints, child, parent, frame, turns=turns)
-        return layer_commands.attach(child, anchor_of(figure), joint)
+        return layer_commands.attach(child, anchor_of(layer), joint)
 
     joining = do(_join, (child, parent), find)
     promises.once_settled(session, joining, "Hand the layer over")
@@ -175,10 +175,10 @@ def take_back_joint(session: Session, _: Project, child: int, frame: int) -> Non
 @with_project
 def remove(session: Session, project: Project, *identities: int) -> None:
     """Delete layers. What hung on them hangs on what they hung on, and nothing moves now."""
-    gone, figures = set(identities), project.document.figures
-    if len(gone) == len(figures):
+    gone, layers = set(identities), project.document.layers
+    if len(gone) == len(layers):
         session.tell("A scene has at least one layer. Add another one first.", tone="error")
-    elif any(joint.to in gone for figure in figures for joint in figure.joints):
+    elif any(joint.to in gone for layer in layers for joint in layer.joints):
         promises.once_settled(session, do(_hand_down, *identities), "Delete the layer")
     else:
         _remove(session, identities, [])
@@ -192,8 +192,8 @@ def _hand_down(session: Session, project: Project, *identities: int) -> None:
 
     def find() -> list[Command]:
         joints = Joints(document, siblings)
-        figures = [figure.id for figure in document.figures if figure.id not in identities]
-        return [_inherit(joints, child, identities, frame) for child in figures]
+        layers = [layer.id for layer in document.layers if layer.id not in identities]
+        return [_inherit(joints, child, identities, frame) for child in layers]
 
     def done(inherited: list[Command]) -> None:
         if project.document is document:
@@ -205,21 +205,21 @@ def _hand_down(session: Session, project: Project, *identities: int) -> None:
 
 
 def _inherit(joints: Joints, child: int, gone: Collection[int], frame: int) -> Command:
-    """Return the command by which a figure hangs on what carries those that go, at all times.
+    """Return the command by which a layer hangs on what carries those that go, at all times.
 
     At the frame nothing moves; where it is handed over to one of them it does not jump.
     """
     document = joints.document
-    figure, here = document.figure(child), document.figure(child).keyed_joint(frame)
-    lost = [joint for joint in figure.joints if joint.to in gone]
+    layer, here = document.layer(child), document.layer(child).keyed_joint(frame)
+    lost = [joint for joint in layer.joints if joint.to in gone]
     found: list[Command] = []
-    hangs = len(lost) < len(figure.joints)
+    hangs = len(lost) < len(layer.joints)
     for joint in lost:
         at = frame if joint is here else joint.frame
         carriers = document.carriers(child, at)[1:]
         heir = next((each.id for each in carriers if each.id not in gone), None)
         hangs |= heir is not None
-        held = anchor_of(figure), Attachment(to=None, frame=joint.frame, keeps=True)
+        held = anchor_of(layer), Attachment(to=None, frame=joint.frame, keeps=True)
         if heir is not None and joint.keeps and joint is not here:
             held = held[0], joint_that_keeps(joints, child, heir, at, turns=joint.turns)
         elif heir is not None:
@@ -231,11 +231,11 @@ def _inherit(joints: Joints, child: int, gone: Collection[int], frame: int) -> C
 
 
 def _detach(document: Document, child: int, frame: int, placement: RigidMotion) -> Command:
-    """Return the command by which a figure hangs on nothing and stays where it is at a frame.
+    """Return the command by which a layer hangs on nothing and stays where it is at a frame.
 
     From then on it is moved by its own movement.
     """
-    own = movement_at(document, document.figure(child), frame)
+    own = movement_at(document, document.layer(child), frame)
     return layer_commands.detach(child, *own.inverse.after(placement))
 
 
@@ -243,8 +243,8 @@ def _detach(document: Document, child: int, frame: int, placement: RigidMotion) 
 def _remove(
     session: Session, project: Project, identities: Sequence[int], inherited: Sequence[Command]
 ) -> None:
-    order = [figure.id for figure in project.document.figures]
-    removals = [layer_commands.remove_figure(identity) for identity in identities]
+    order = [layer.id for layer in project.document.layers]
+    removals = [layer_commands.remove_layer(identity) for identity in identities]
     label = "Delete layer" if len(identities) == 1 else f"Delete {len(identities)} layers"
     was_active, index = project.active in identities, order.index(project.active)
     editing.edit(session, in_turn(label, [*inherited, *removals]))

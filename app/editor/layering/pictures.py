@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 from app.document import (
     Document,
-    Figure,
     Group,
+    Layer,
     Meshing,
     clip_of,
     group_commands,
@@ -36,7 +36,7 @@ from app.storage import (
     read_file,
     read_layered,
     require_memory,
-    still_figure,
+    still_layer,
     still_picture,
 )
 
@@ -45,9 +45,9 @@ LONGEST = 28  # characters of a name on a button
 
 
 class _Made(NamedTuple):
-    """A figure, its decoded picture, what was done, in words, and the figure as a window has it."""
+    """A layer, its decoded picture, what was done, in words, and the layer as a window has it."""
 
-    figure: Figure
+    layer: Layer
     picture: Picture
     notices: tuple[str, ...]
     puppet: Puppet | None = None
@@ -56,34 +56,34 @@ class _Made(NamedTuple):
 @with_project
 def stand_still(session: Session, project: Project, identity: int) -> None:
     """Make a layer a still picture, without handles and keys."""
-    still = still_figure(project.document.figure(identity))
-    command = layer_commands.replace_figure(identity, still)
+    still = still_layer(project.document.layer(identity))
+    command = layer_commands.replace_layer(identity, still)
     editing.edit(session, replace(command, label="Make still"))
 
 
 @with_project
 def stand_up(session: Session, project: Project, identity: int) -> None:
     """Let a still picture be posed: the shape that is drawn on it, as it was drawn."""
-    figure, picture = project.document.figure(identity), project.puppets[identity].picture
+    layer, picture = project.document.layer(identity), project.puppets[identity].picture
     imported = ImportedLayer(
-        name=figure.name, data=figure.picture.data, picture=picture, corner=figure.corner
+        name=layer.name, data=layer.picture.data, picture=picture, corner=layer.corner
     )
     meshing = session.meshing
 
-    def work() -> Figure:
-        return as_layer(_shape(imported, identity, meshing).figure, figure)
+    def work() -> Layer:
+        return as_layer(_shape(imported, identity, meshing).layer, layer)
 
-    def done(made: Figure) -> None:
-        command = layer_commands.replace_figure(identity, made)
+    def done(made: Layer) -> None:
+        command = layer_commands.replace_layer(identity, made)
         editing.edit(session, replace(command, label="Let be posed"))
         choose(session, identity)
 
-    kind = Kind("Finding a shape", f"{figure.name} cannot be posed")
+    kind = Kind("Finding a shape", f"{layer.name} cannot be posed")
     promises.begin(session, project, kind, work, done)
 
 
 def _shape(imported: ImportedLayer, identity: int, meshing: Meshing) -> _Made:
-    """Return the figure of a layer that can be posed."""
+    """Return the layer of a layer that can be posed."""
     # Where nothing is transparent, a plain background is taken off first.
     is_cut_out = bool((imported.picture.rgba[..., 3] == 0).any())
     made, notices = posable_layer(imported, identity, meshing, is_cut_out=is_cut_out)
@@ -101,8 +101,8 @@ def replace_picture(session: Session, identity: int, path: Path) -> None:
 def _replace_picture(session: Session, project: Project, identity: int, path: Path) -> None:
     if identity not in project.puppets:
         return
-    before, canvas = project.document.figure(identity), project.document.canvas
-    scene = project.document.figures
+    before, canvas = project.document.layer(identity), project.document.canvas
+    scene = project.document.layers
 
     def work() -> tuple[Renewal, _Made]:
         data = read_file(path)
@@ -113,14 +113,14 @@ def _replace_picture(session: Session, project: Project, identity: int, path: Pa
         else:
             imported = ImportedLayer(name=before.name, data=data, picture=picture)
             made = _shape(imported, identity, before.meshing)
-        return begin_replacing(before, made.figure, canvas), made
+        return begin_replacing(before, made.layer, canvas), made
 
     def done(begun: tuple[Renewal, _Made]) -> None:
         renewal, made = begun
         project.drawings.add(path)
-        project.pictures[made.figure.picture] = made.picture
+        project.pictures[made.layer.picture] = made.picture
         rebuilding.begin(session, renewal)
-        if renewal.before in project.document.figures:
+        if renewal.before in project.document.layers:
             choose(session, identity)
             for notice in made.notices:
                 session.tell(sentence(notice))
@@ -140,22 +140,22 @@ def add(session: Session, project: Project, paths: Sequence[Path]) -> None:
         made: list[_Made] = []
         for path in paths:
             drawing = _with_free_groups(_drawing(path), document)
-            _require_room(document.figures, [imported.picture for imported in drawing.layers])
+            _require_room(document.layers, [imported.picture for imported in drawing.layers])
             document = group_commands.add_groups(drawing.groups)(document)
             summary += drawing.summary
             across, up = ((ours - its) // 2 for ours, its in zip(canvas, drawing.size, strict=True))
             for imported in drawing.layers:
                 moved = replace(imported, corner=imported.corner + complex(across, up))
                 identity = layer_commands.free_identity(document)
-                figure, notices = posable_layer(
+                layer, notices = posable_layer(
                     moved, identity, meshing, is_cut_out=is_layered(path)
                 )
-                document = layer_commands.add_figure(figure)(document)
+                document = layer_commands.add_layer(layer)(document)
                 # Here, and not while the window waits: it takes a tenth of a second.
                 puppet = Puppet.of(clip_of(document, identity), imported.picture)
                 for notice in imported.picture.notices + notices:
-                    told.note(document.figures[-1].name, notice)
-                made.append(_Made(figure, imported.picture, (), puppet))
+                    told.note(document.layers[-1].name, notice)
+                made.append(_Made(layer, imported.picture, (), puppet))
         return made, summary + told.summary, document.groups[len(before.groups) :]
 
     def done(read: tuple[list[_Made], ImportSummary, Sequence[Group]]) -> None:
@@ -164,23 +164,23 @@ def add(session: Session, project: Project, paths: Sequence[Path]) -> None:
         gesture = object()
         project.history.do(layer_commands.keep_told(summary), gesture=gesture)
         project.history.do(group_commands.add_groups(groups), gesture=gesture)
-        for figure, picture, _, puppet in made:
+        for layer, picture, _, puppet in made:
             identity = layer_commands.free_identity(project.document)
-            project.pictures[figure.picture] = picture
-            command = layer_commands.add_figure(replace(figure, id=identity))
+            project.pictures[layer.picture] = picture
+            command = layer_commands.add_layer(replace(layer, id=identity))
             project.history.do(command, gesture=gesture)
-            if puppet is not None and identity == figure.id:
+            if puppet is not None and identity == layer.id:
                 project.puppets[identity] = puppet
-        editing.follow_figures(project)
+        editing.follow_layers(project)
         choose(session, identity)
         files.tell_of_import(session, project, summary)
 
     promises.begin(session, project, ADDING, work, done)
 
 
-def _require_room(figures: Iterable[Figure], pictures: Iterable[Picture]) -> None:
-    """Refuse more pictures beside those of figures than could be opened together."""
-    there = {figure.picture for figure in figures}
+def _require_room(layers: Iterable[Layer], pictures: Iterable[Picture]) -> None:
+    """Refuse more pictures beside those of layers than could be opened together."""
+    there = {layer.picture for layer in layers}
     require_memory([*(file.size for file in there), *(picture.size for picture in pictures)])
 
 
@@ -220,7 +220,7 @@ def ask(session: Session) -> None:
 @with_project
 def ask_replace(session: Session, project: Project, identity: int) -> None:
     """Ask for a picture that takes the place of a layer's own."""
-    title = f"Replace the picture of {project.document.figure(identity).name}"
+    title = f"Replace the picture of {project.document.layer(identity).name}"
     session.ask_file(title, files.PICTURES, lambda path: do(replace_picture, identity, path))
 
 
@@ -248,7 +248,7 @@ def drop(session: Session, paths: Sequence[Path]) -> None:
     if is_one:
         onto = session.pointed_layer
         identity = project.active if onto is None else onto
-        name = project.document.figure(identity).name
+        name = project.document.layer(identity).name
         name = name if len(name) <= LONGEST else f"{name[: LONGEST - 1].rstrip()}…"
         answers.insert(onto is None, (f"Replace {name}", do(replace_picture, identity, first)))
         text = (

@@ -3,13 +3,13 @@
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
-from app.document import Clip, Figure, Keyframe, Pose, clip_of, resting_pose, time_of
+from app.document import Clip, Keyframe, Layer, Pose, clip_of, resting_pose, time_of
 from app.editor import promises
 from app.editor.actions import playback, posing
 from app.editor.poses import putting
 from app.editor.project import Project
 from app.editor.session import CopiedKeys, CopiedTrack, Session, with_project
-from app.editor.timeline_view import TrackRow, figure_of
+from app.editor.timeline_view import TrackRow, layer_of
 from app.editor.work import Kind
 from app.motion import PoseSampler
 from app.solving import Rig, pose_at
@@ -36,34 +36,34 @@ def copy(session: Session, project: Project) -> None:
 @with_project
 def copy_all(session: Session, project: Project) -> None:
     """Copy the poses that all layers have at the playhead."""
-    _copy_poses(session, project, [figure.id for figure in project.document.figures])
+    _copy_poses(session, project, [layer.id for layer in project.document.layers])
 
 
 def _copy_poses(session: Session, project: Project, chosen: Sequence[int]) -> None:
     """Copy the poses of layers at the playhead; the worker finds those in between."""
     frame, document = playback.current_frame(session, project), project.document
-    figures = [
+    layers = [
         each
-        for each in document.figures
+        for each in document.layers
         if each.id in chosen and (each.handles or len(each.keys) > 1)
     ]
     known: dict[int, Pose] = {}
     works = {}
-    for figure in figures:
-        clip, puppet = clip_of(document, figure.id), project.puppets[figure.id]
-        is_active = figure.id == project.active
+    for layer in layers:
+        clip, puppet = clip_of(document, layer.id), project.puppets[layer.id]
+        is_active = layer.id == project.active
         pose = posing.pose_here(session, project) if is_active else None
         pose = pose or resting_pose(clip, time_of(clip, frame))
         if pose is None:
-            rig = partial(Rig.of, figure, puppet.rig)
-            works[figure.id] = partial(_between, rig, clip, frame, puppet.store.sampler)
+            rig = partial(Rig.of, layer, puppet.rig)
+            works[layer.id] = partial(_between, rig, clip, frame, puppet.store.sampler)
         else:
-            known[figure.id] = pose
+            known[layer.id] = pose
 
     def take(found: Mapping[int, Pose]) -> None:
         poses = {**known, **found}
-        keys = [(each, Keyframe(frame=frame, pose=poses[each.id])) for each in figures]
-        session.copied = tuple(CopiedKeys(figure, (key,), is_pose=True) for figure, key in keys)
+        keys = [(each, Keyframe(frame=frame, pose=poses[each.id])) for each in layers]
+        session.copied = tuple(CopiedKeys(layer, (key,), is_pose=True) for layer, key in keys)
         session.copied_tracks = ()
         session.tell(f"Poses of {len(keys)} layers at frame {frame} copied.", topic="copy")
 
@@ -71,7 +71,7 @@ def _copy_poses(session: Session, project: Project, chosen: Sequence[int]) -> No
         promises.begin(
             session, project, COPYING, lambda: {i: work() for i, work in works.items()}, take
         )
-    elif figures:
+    elif layers:
         take({})
     else:
         session.tell("No layer has a handle or a second key: there are no poses to copy.")
@@ -87,12 +87,12 @@ def copy_keys(session: Session, project: Project) -> None:
     """Copy the chosen keys; poses on their way come to rest in the copies, too."""
     keys, tracks = [], []
     for row, at in project.chosen_of.items():
-        figure, track = project.document.figure(figure_of(row)), project.track_in(row)
+        layer, track = project.document.layer(layer_of(row)), project.track_in(row)
         if isinstance(row, TrackRow) and track is not None:
             taken = tuple(key for key in track.keys if key.frame in at)
-            tracks.append(CopiedTrack(figure, track, taken))
+            tracks.append(CopiedTrack(layer, track, taken))
         else:
-            keys.append(CopiedKeys(figure, tuple(map(figure.key, sorted(at)))))
+            keys.append(CopiedKeys(layer, tuple(map(layer.key, sorted(at)))))
     _take(session, keys, tracks)
 
 
@@ -100,8 +100,8 @@ def _between(rig: Callable[[], Rig], clip: Clip, frame: int, sibling: PoseSample
     return pose_at(rig(), clip, frame, sibling)
 
 
-def _copy(session: Session, frame: int, figure: Figure, pose: Pose) -> None:
-    _take(session, [CopiedKeys(figure, (Keyframe(frame=frame, pose=pose),))])
+def _copy(session: Session, frame: int, layer: Layer, pose: Pose) -> None:
+    _take(session, [CopiedKeys(layer, (Keyframe(frame=frame, pose=pose),))])
 
 
 def _take(

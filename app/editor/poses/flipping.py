@@ -10,10 +10,10 @@ from app.editor.session import CopiedKeys, Session, with_project
 def is_fresh(project: Project) -> bool:
     """Tell whether what was flipped last is still what the chosen keys hold."""
     flip = project.flip
-    if flip is None or project.chosen != flip.frames or project.active != flip.figure:
+    if flip is None or project.chosen != flip.frames or project.active != flip.layer:
         return False
     return all(
-        project.figure.key(frame).pose is pose
+        project.layer.key(frame).pose is pose
         for frame, pose in zip(sorted(flip.frames), flip.poses, strict=True)
     )
 
@@ -34,8 +34,8 @@ def flip_again(session: Session, project: Project, gesture: object) -> None:
     """Flip once more what was flipped last, at the axis of now."""
     flip = project.flip
     if flip is not None and is_fresh(project):
-        copied = CopiedKeys(project.figure, flip.keys)
-        found = [landing_on(project.document, copied, project.figure, "flipped")]
+        copied = CopiedKeys(project.layer, flip.keys)
+        found = [landing_on(project.document, copied, project.layer, "flipped")]
         by = min(flip.frames) - min(key.frame for key in flip.keys)
         pasting.bring(session, project, found, "flipped", by, gesture=gesture)
 

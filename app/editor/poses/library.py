@@ -5,7 +5,7 @@ from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
-from app.document import Figure, KeptPose, Keyframe, Pose, Target, pose_commands
+from app.document import KeptPose, Keyframe, Layer, Pose, Target, pose_commands
 from app.editor.actions import editing, playback, posing
 from app.editor.poses import pasting, putting
 from app.editor.poses.receiving import Landing, landing_on
@@ -22,33 +22,33 @@ def keep(session: Session, project: Project) -> None:
     putting.take_pose(session, project, KEEPING, partial(_keep, session, project))
 
 
-def _keep(session: Session, project: Project, figure: Figure, pose: Pose) -> None:
-    if figure.domain is not project.figure.domain:
+def _keep(session: Session, project: Project, layer: Layer, pose: Pose) -> None:
+    if layer.domain is not project.layer.domain:
         session.tell("The pose was not kept: the shape changed meanwhile.")
         return
     taken = [Keyframe(frame=0, pose=pose)]
-    (key,) = putting.fitted(project, project.active, taken, figure.bounds)
+    (key,) = putting.fitted(project, project.active, taken, layer.bounds)
     editing.edit(session, pose_commands.keep_pose(project.active, key.pose))
-    project.picked_pose = project.figure.library[-1].name
+    project.picked_pose = project.layer.library[-1].name
 
 
 class PoseOffer(NamedTuple):
-    """A pose of a library that the figure that is posed can take, and whose it is."""
+    """A pose of a library that the layer that is posed can take, and whose it is."""
 
-    owner: Figure
+    owner: Layer
     kept: KeptPose
 
 
 def offers(project: Project) -> list[PoseOffer]:
-    """Return the poses of the figure's own library, then those of others with its handles' names.
+    """Return the poses of the layer's own library, then those of others with its handles' names.
 
     They come to it as they do by pasting.
     """
-    own = project.figure
-    figures = [own, *(each for each in project.document.figures if each is not own)]
+    own = project.layer
+    layers = [own, *(each for each in project.document.layers if each is not own)]
     return [
         PoseOffer(each, kept)
-        for each in figures
+        for each in layers
         if each.library and not _landing(project, PoseOffer(each, each.library[0])).hindrance
         for kept in each.library
     ]
@@ -56,7 +56,7 @@ def offers(project: Project) -> list[PoseOffer]:
 
 @with_project
 def apply(session: Session, project: Project, name: str, owner: int | None = None) -> None:
-    """Put a pose of a library into a key at the present frame; by default the figure's own."""
+    """Put a pose of a library into a key at the present frame; by default the layer's own."""
     _put(session, project, _offer(project, name, owner), putting.stand_at_frame(session, project))
 
 
@@ -71,13 +71,13 @@ def apply_at(
 
 
 def _offer(project: Project, name: str, owner: int | None) -> PoseOffer:
-    figure = project.figure if owner is None else project.document.figure(owner)
-    return PoseOffer(figure, figure.kept_pose(name))
+    layer = project.layer if owner is None else project.document.layer(owner)
+    return PoseOffer(layer, layer.kept_pose(name))
 
 
 def _landing(project: Project, offer: PoseOffer) -> Landing:
     copied = CopiedKeys(offer.owner, (Keyframe(frame=0, pose=offer.kept.pose),))
-    return landing_on(project.document, copied, project.figure, "as it is")
+    return landing_on(project.document, copied, project.layer, "as it is")
 
 
 def _put(session: Session, project: Project, offer: PoseOffer, frame: int) -> None:
@@ -102,7 +102,7 @@ def blend(
         Of the pose in the library: 0 changes nothing, 1 is that pose itself. Between them the
         handles are on the way, and the shape follows within its limits.
     owner : int, optional
-        Whose pose it is; by default the figure's own.
+        Whose pose it is; by default the layer's own.
     """
     offer = _offer(project, name, owner)
     begun = project.blend
@@ -128,7 +128,7 @@ def end_blend(session: Session, project: Project) -> None:
     posing.let_go(session)
     if blend is not None and blend.share >= 1.0 and blend.owner == project.active:
         for pull in [pull for pull in project.pulls if blend.gesture in pull.wishes]:
-            pose = project.document.figure(pull.figure).kept_pose(blend.name).pose
+            pose = project.document.layer(pull.layer).kept_pose(blend.name).pose
             posing.end_at(session, project, pull, pose)
 
 
@@ -144,10 +144,10 @@ def _between(one: Target, other: Target, share: float) -> Target:
 @with_project
 def rename(session: Session, project: Project, name: str, to: str) -> None:
     """Give a pose of the library another name."""
-    editing.edit_figure(session, pose_commands.rename_pose, name, to)
+    editing.edit_layer(session, pose_commands.rename_pose, name, to)
     project.picked_pose = to
 
 
 def delete(session: Session, name: str) -> None:
     """Take a pose out of the library; keys that were made of it stay."""
-    editing.edit_figure(session, pose_commands.delete_pose, name)
+    editing.edit_layer(session, pose_commands.delete_pose, name)

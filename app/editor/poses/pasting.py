@@ -76,8 +76,8 @@ def _paste(session: Session, project: Project, frame: int, way: PasteWay) -> Non
             paste_track(session, project, row, each, by, gesture)
         for reason in told:
             session.tell(reason)
-        names = [each.figure.name for each in found]
-        if any(each.figure.id != project.active for each in found):
+        names = [each.layer.name for each in found]
+        if any(each.layer.id != project.active for each in found):
             whose = f"{len(names)} layers" if len(names) > 1 else names[0]
             session.tell(f"Pasted onto {whose}.", topic="paste")
 
@@ -99,9 +99,9 @@ def bring(
     gesture: object | None = None,
     then: Callable[[], None] = lambda: None,
 ) -> None:
-    """Put keys onto the figures that take them over, so many frames later than they were.
+    """Put keys onto the layers that take them over, so many frames later than they were.
 
-    What is no figure's own pose is solved by the worker; all of it comes as one step.
+    What is no layer's own pose is solved by the worker; all of it comes as one step.
 
     Parameters
     ----------
@@ -116,20 +116,20 @@ def bring(
         Done after the keys are there.
     """
     gesture, label = gesture or object(), label or LABELS.get(way)
-    keys = {each.figure.id: _fitted(project, each) for each in found if each.is_direct(way)}
+    keys = {each.layer.id: _fitted(project, each) for each in found if each.is_direct(way)}
     works = {
-        each.figure.id: _solving(project, each, way, by)
+        each.layer.id: _solving(project, each, way, by)
         for each in found
-        if each.figure.id not in keys
+        if each.layer.id not in keys
     }
     frame = min(key.frame for each in found for key in each.copied.keys) + by
 
     def put(solved: Mapping[int, Sequence[Keyframe]]) -> None:
-        everything = {each.figure.id: {**keys, **solved}[each.figure.id] for each in found}
-        poses = {each.figure.id for each in found if each.copied.is_pose}
+        everything = {each.layer.id: {**keys, **solved}[each.layer.id] for each in found}
+        poses = {each.layer.id for each in found if each.copied.is_pose}
         putting.put(session, project, frame, everything, poses=poses, label=label, gesture=gesture)
         if way == "flipped" and len(found) == 1 and found[0].is_own:
-            _note_flip(project, found[0], everything[found[0].figure.id])
+            _note_flip(project, found[0], everything[found[0].layer.id])
         then()
 
     def done(solved: Mapping[int, Sequence[Keyframe]]) -> None:
@@ -165,58 +165,58 @@ def paste_on_selected(session: Session, project: Project, way: PasteWay = "as it
 
 
 def wishes_of(project: Project, landing: Landing, way: PasteWay) -> Mapping[int, Target]:
-    """Return where a figure's handles are wanted by the first of some keys, by their ids."""
+    """Return where a layer's handles are wanted by the first of some keys, by their ids."""
     if landing.is_own:
-        pose, figure = _fitted(project, landing)[0].pose, landing.figure
+        pose, layer = _fitted(project, landing)[0].pose, landing.layer
         if way == "flipped":
-            return flipped_targets(figure, pose, figure.axis, project.document.pairs)
+            return flipped_targets(layer, pose, layer.axis, project.document.pairs)
         if landing.is_direct(way):
             return pose.targets
-    return landing.carriage(way).targets(landing.figure, landing.copied.keys[0].pose)
+    return landing.carriage(way).targets(landing.layer, landing.copied.keys[0].pose)
 
 
 def _is_as_it_was(project: Project, landing: Landing) -> bool:
-    """Tell whether a figure still has the shape and the handles that poses were solved for."""
-    was = landing.figure
+    """Tell whether a layer still has the shape and the handles that poses were solved for."""
+    was = landing.layer
     return any(
         each.id == was.id and each.domain is was.domain and each.handles == was.handles
-        for each in project.document.figures
+        for each in project.document.layers
     )
 
 
 def _fitted(project: Project, landing: Landing) -> list[Keyframe]:
     copied = landing.copied
-    return putting.fitted(project, landing.figure.id, copied.keys, copied.figure.bounds)
+    return putting.fitted(project, landing.layer.id, copied.keys, copied.layer.bounds)
 
 
 def _solving(
     project: Project, landing: Landing, way: PasteWay, by: int
 ) -> Callable[[], Sequence[Keyframe]]:
-    """Return what solves the poses for a figure, on the worker's thread."""
-    figure, puppet = landing.figure, project.puppets[landing.figure.id]
+    """Return what solves the poses for a layer, on the worker's thread."""
+    layer, puppet = landing.layer, project.puppets[landing.layer.id]
     earlier, sibling = puppet.rig, puppet.store.sampler
     if landing.is_own and way == "flipped":
         keys, pairs = _fitted(project, landing), project.document.pairs
 
         def flip() -> Sequence[Keyframe]:
-            rig = Rig.of(figure, earlier)
-            poses = flip_poses(rig, [key.pose for key in keys], figure.axis, pairs)
-            partners = pairs_by_name(figure.handles, pairs)
-            own = {handle.id: partners.get(handle.id, handle.id) for handle in figure.handles}
+            rig = Rig.of(layer, earlier)
+            poses = flip_poses(rig, [key.pose for key in keys], layer.axis, pairs)
+            partners = pairs_by_name(layer.handles, pairs)
+            own = {handle.id: partners.get(handle.id, handle.id) for handle in layer.handles}
             return [
                 _carried(key, own, turns=-1, pose=pose)
                 for key, pose in zip(keys, poses, strict=True)
             ]
 
         return flip
-    carriage, clip = landing.carriage(way), clip_of(project.document, figure.id)
+    carriage, clip = landing.carriage(way), clip_of(project.document, layer.id)
     turns = -1 if carriage.likeness.mirrors else 1
     # What is in front is not what moves: within one layer it stays where it is.
-    fronts = {handle.id: handle.id for handle in figure.handles}
+    fronts = {handle.id: handle.id for handle in layer.handles}
     fronts = fronts if landing.is_own else dict(landing.pairs)
 
     def carry() -> Sequence[Keyframe]:
-        rig = Rig.of(figure, earlier)
+        rig = Rig.of(layer, earlier)
         is_whole = {handle.id for handle in rig.handles} <= landing.pairs.keys()
         solved = []
         for key in landing.copied.keys:
@@ -236,10 +236,10 @@ def _carried(key: Keyframe, fronts: Mapping[int, int], *, turns: int, pose: Pose
 
 def _note_flip(project: Project, landing: Landing, flipped: Sequence[Keyframe]) -> None:
     """Note what was flipped, so that it is flipped again where the axis is moved."""
-    figure = landing.figure.id
+    layer = landing.layer.id
     project.flip = Flip(
-        figure=figure,
+        layer=layer,
         keys=tuple(_fitted(project, landing)),
-        frames=project.chosen_of.get(figure, frozenset()),
+        frames=project.chosen_of.get(layer, frozenset()),
         poses=tuple(key.pose for key in flipped),
     )

@@ -25,19 +25,19 @@ def tracks_here(
         ours = {other: identity for identity, other in landing.pairs.items()}
         for each in copied:
             handles = tuple(ours[each_id] for each_id in each.track.handles if each_id in ours)
-            if each.figure.id == landing.copied.figure.id and each.track.handles[0] in ours:
+            if each.layer.id == landing.copied.layer.id and each.track.handles[0] in ours:
                 track = _carried_track(landing, each, way, handles)
-                carried[TrackRow(landing.figure.id, handles[0])] = track
+                carried[TrackRow(landing.layer.id, handles[0])] = track
     return carried
 
 
 def _carried_track(
     landing: Landing, copied: CopiedTrack, way: PasteWay, handles: tuple[int, ...]
 ) -> CopiedTrack:
-    """Return a track that was copied as one of a figure's handles."""
+    """Return a track that was copied as one of a layer's handles."""
     likeness = landing.carriage(way).likeness
-    old = landing.copied.figure.handle(copied.track.handles[0]).position
-    new = landing.figure.handle(handles[0]).position
+    old = landing.copied.layer.handle(copied.track.handles[0]).position
+    new = landing.layer.handle(handles[0]).position
     # Beside the pose ways count, and in the picture places, with what the handle is beside them.
     start = -likeness.shift if not copied.track.planted else new - likeness.to(old)
     keys = tuple(
@@ -58,8 +58,8 @@ def paste_track(
     session: Session, project: Project, row: TrackRow, copied: CopiedTrack, by: int, gesture: object
 ) -> None:
     """Put keys of a track into that of a row so many frames later; these are chosen then."""
-    figure = project.document.figure(row.figure)
-    track, name = figure.track_of(row.handle), figure.handle(row.handle).name
+    layer = project.document.layer(row.layer)
+    track, name = layer.track_of(row.handle), layer.handle(row.handle).name
     if track is not None and track.planted != copied.track.planted:
         session.tell(
             f"The keys that were copied are {_kind(copied.track)}, those of {name} are "
@@ -74,7 +74,7 @@ def paste_track(
     if track is None:
         handles = copied.track.handles if copied.track.handles[0] == row.handle else (row.handle,)
         track = replace(copied.track, handles=handles, keys=keys)
-        command = track_commands.put_track(row.figure, track)
+        command = track_commands.put_track(row.layer, track)
     else:
         command = track_commands.put_track_keys(*row, keys)
     project.history.do(command, gesture=gesture)

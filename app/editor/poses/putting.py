@@ -4,7 +4,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
-from app.document import Figure, Keyframe, Pose, key_commands, retargeted
+from app.document import Keyframe, Layer, Pose, key_commands, retargeted
 from app.editor.actions import playback, posing
 from app.editor.project import Project
 from app.editor.session import Session
@@ -13,7 +13,7 @@ from app.editor.work import Kind
 from app.solving import Rig
 from engine.maps import Bounds, certify
 
-Putting = Callable[[Figure, Pose], None]
+Putting = Callable[[Layer, Pose], None]
 
 
 def put(
@@ -35,9 +35,9 @@ def put(
     frame : int
         Where the first of them comes.
     keys_of : mapping of int to sequence of Keyframe
-        By the ids of their figures.
+        By the ids of their layers.
     poses : collection of int
-        Figures of which the pose alone is taken, too.
+        Layers of which the pose alone is taken, too.
     label : str, optional
         What this does in words; by default it pastes.
     gesture : object, optional
@@ -47,20 +47,20 @@ def put(
     first = min(key.frame for keys in keys_of.values() for key in keys)
     chosen_of: dict[KeyRow, frozenset[int]] = {}
     is_alone = sum(map(len, keys_of.values())) == 1
-    for figure, keys in keys_of.items():
-        is_pose = is_alone or figure in poses
+    for layer, keys in keys_of.items():
+        is_pose = is_alone or layer in poses
         # One pose changes all repeats; several keys have no place in them.
-        at = project.document.figure(figure).source_of(frame) if is_pose else frame
+        at = project.document.layer(layer).source_of(frame) if is_pose else frame
         moved = [replace(key, frame=key.frame + at - first) for key in keys]
         if is_pose:
             easing = session.preferences.easing
-            command = key_commands.put_pose(figure, at, moved[0].pose, easing)
+            command = key_commands.put_pose(layer, at, moved[0].pose, easing)
         else:
-            command = key_commands.put_keys(figure, moved)
+            command = key_commands.put_keys(layer, moved)
         project.history.do(replace(command, label=label or command.label), gesture=gesture)
-        chosen_of[figure] = frozenset(key.frame for key in moved)
+        chosen_of[layer] = frozenset(key.frame for key in moved)
     unkeyed = project.history.unkeyed
-    if unkeyed is not None and unkeyed.frame in chosen_of.get(unkeyed.figure, ()):
+    if unkeyed is not None and unkeyed.frame in chosen_of.get(unkeyed.layer, ()):
         project.history.pose(None, gesture=gesture)
     project.selected, project.chosen_of = frozenset(), chosen_of
 
@@ -74,45 +74,45 @@ def stand_at_frame(session: Session, project: Project) -> int:
 def fitted(
     project: Project, identity: int, keys: Sequence[Keyframe], bounds: Bounds
 ) -> list[Keyframe]:
-    """Return keys with poses that have a figure's handles of now, and are proven for its limits.
+    """Return keys with poses that have a layer's handles of now, and are proven for its limits.
 
     Parameters
     ----------
     identity : int
-        Of the figure.
+        Of the layer.
     keys : sequence of Keyframe
         Of an earlier state of it, or of one with the same domain.
     bounds : Bounds
         Those that it had then.
     """
-    figure = project.document.figure(identity)
-    known = {handle.id for handle in figure.handles}
+    layer = project.document.layer(identity)
+    known = {handle.id for handle in layer.handles}
     return [
         replace(
             key,
-            pose=_fitted(project, figure, key.pose, bounds),
+            pose=_fitted(project, layer, key.pose, bounds),
             fronts={i: front for i, front in key.fronts.items() if i in known},
         )
         for key in keys
     ]
 
 
-def _fitted(project: Project, figure: Figure, pose: Pose, bounds: Bounds) -> Pose:
-    if pose.targets.keys() != {handle.id for handle in figure.handles}:
-        pose = retargeted(figure, pose)
-    if figure.bounds == bounds:
+def _fitted(project: Project, layer: Layer, pose: Pose, bounds: Bounds) -> Pose:
+    if pose.targets.keys() != {handle.id for handle in layer.handles}:
+        pose = retargeted(layer, pose)
+    if layer.bounds == bounds:
         return pose
-    puppet = project.puppets[figure.id]
-    puppet.rig = rig = Rig.of(figure, puppet.rig)
-    proven = certify(figure.map_of(pose), rig.deformer.boundary, figure.bounds)
+    puppet = project.puppets[layer.id]
+    puppet.rig = rig = Rig.of(layer, puppet.rig)
+    proven = certify(layer.map_of(pose), rig.deformer.boundary, layer.bounds)
     return replace(pose, certificate=proven)
 
 
 def take_pose(session: Session, project: Project, kind: Kind, take: Putting) -> None:
     """Hand over the pose at the playhead; for an in-between, the worker finds the nearest one."""
-    figure, pose = project.figure, posing.pose_here(session, project)
+    layer, pose = project.layer, posing.pose_here(session, project)
     if pose is not None:
-        take(figure, pose)
+        take(layer, pose)
         return
     clip, frame = project.clip, playback.current_frame(session, project)
-    posing.fit_pose(session, project, clip, frame, partial(take, figure), kind=kind)
+    posing.fit_pose(session, project, clip, frame, partial(take, layer), kind=kind)

@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from app.document import Document, Figure, SidePairs, mirrored_name
+from app.document import Document, Layer, SidePairs, mirrored_name
 from app.editor.project import Project
 from app.editor.session import CopiedKeys, Session
 from app.solving import Carriage, Likeness
@@ -19,19 +19,19 @@ MOST_NAMED = 3  # handles in a sentence
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Landing:
-    """A figure that takes keys over, and from which of their handles.
+    """A layer that takes keys over, and from which of their handles.
 
     Parameters
     ----------
-    figure : Figure
+    layer : Layer
     copied : CopiedKeys
     pairs : mapping of int to int
-        The figure's handles, and those of the figure that was copied, by their ids.
+        The layer's handles, and those of the layer that was copied, by their ids.
     is_own : bool
-        Whether they are the figure's own keys, on the same domain and handles.
+        Whether they are the layer's own keys, on the same domain and handles.
     """
 
-    figure: Figure
+    layer: Layer
     copied: CopiedKeys
     pairs: Mapping[int, int]
     is_own: bool
@@ -39,9 +39,9 @@ class Landing:
     @property
     def hindrance(self) -> str:
         """In a sentence why nothing is taken over; empty where it is."""
-        figure, source = self.figure, self.copied.figure
-        if figure.still:
-            return f"“{figure.name}” is a still picture, which has no poses."
+        layer, source = self.layer, self.copied.layer
+        if layer.still:
+            return f"“{layer.name}” is a still picture, which has no poses."
         if self.is_own or self.pairs:
             return ""
         if not source.handles:
@@ -54,7 +54,7 @@ class Landing:
             names = [*names[:MOST_NAMED], f"{len(names) - MOST_NAMED} others"]
         *some, last = names
         listed = f"{', '.join(some)} or {last}" if some else last
-        return f"“{figure.name}” has no handle called {listed}."
+        return f"“{layer.name}” has no handle called {listed}."
 
     def is_direct(self, way: PasteWay) -> bool:
         """Tell whether the poses are taken as they are."""
@@ -62,22 +62,22 @@ class Landing:
         return self.is_own and (way == "as it is" or (way == "swapped" and stays))
 
     def carriage(self, way: PasteWay) -> Carriage:
-        """Return the way from the poses that were copied to this figure's."""
-        source, likeness = self.copied.figure, Likeness()
+        """Return the way from the poses that were copied to this layer's."""
+        source, likeness = self.copied.layer, Likeness()
         if self.is_own and way == "flipped":
-            likeness = Likeness.reflection(self.figure.axis)
+            likeness = Likeness.reflection(self.layer.axis)
         elif not self.is_own:
             handles = self.pairs.items()
             places = np.array([source.handle(other).position for _, other in handles])
-            images = np.array([self.figure.handle(identity).position for identity, _ in handles])
+            images = np.array([self.layer.handle(identity).position for identity, _ in handles])
             likeness = Likeness.of(places, images, mirrors=True if way == "flipped" else None)
         return Carriage(source=source, pairs=self.pairs, likeness=likeness, is_within=self.is_own)
 
 
 def landings(session: Session, project: Project, way: PasteWay) -> list[Landing]:
-    """Return which figures take over what was copied, each of them once.
+    """Return which layers take over what was copied, each of them once.
 
-    Keys of several figures go to those that they are of, by their names, or to the partners of
+    Keys of several layers go to those that they are of, by their names, or to the partners of
     these. Keys of one go to that which is posed, or to all that are chosen; where sides exchange,
     the one that is posed gives its own to its partner.
     """
@@ -86,12 +86,12 @@ def landings(session: Session, project: Project, way: PasteWay) -> list[Landing]
 
 
 def landing_here(session: Session, project: Project, way: PasteWay) -> Landing | None:
-    """Return how the figure that is posed takes over what was copied; None where it is not to."""
+    """Return how the layer that is posed takes over what was copied; None where it is not to."""
     copied = session.copied
     if len(copied) == 1:
-        return landing_on(project.document, copied[0], project.figure, way)
+        return landing_on(project.document, copied[0], project.layer, way)
     found = _landings(session, project, way)
-    return next((e for e in found if e.figure.id == project.active and e.copied.keys), None)
+    return next((e for e in found if e.layer.id == project.active and e.copied.keys), None)
 
 
 def hindrance(session: Session, project: Project, way: PasteWay) -> str:
@@ -101,7 +101,7 @@ def hindrance(session: Session, project: Project, way: PasteWay) -> str:
         return NOTHING_COPIED
     found = _landings(session, project, way)
     if not found:
-        names = ", ".join(f"“{each.figure.name}”" for each in copied[:MOST_NAMED])
+        names = ", ".join(f"“{each.layer.name}”" for each in copied[:MOST_NAMED])
         return f"No layer of this drawing is called {names}, as those that were copied are."
     reasons = [landing.hindrance for landing in found]
     if all(reasons):
@@ -122,30 +122,30 @@ def left_out(session: Session, project: Project, way: PasteWay) -> list[str]:
     return [landing.hindrance for landing in found if landing.hindrance]
 
 
-def landing_on(document: Document, copied: CopiedKeys, figure: Figure, way: PasteWay) -> Landing:
-    """Return how a figure takes keys over."""
-    source = copied.figure
+def landing_on(document: Document, copied: CopiedKeys, layer: Layer, way: PasteWay) -> Landing:
+    """Return how a layer takes keys over."""
+    source = copied.layer
     names = {handle.id: handle.name for handle in source.handles}
-    is_own = source.domain is figure.domain and (
-        source.id == figure.id
-        or all(names.get(each.id, each.name) == each.name for each in figure.handles)
+    is_own = source.domain is layer.domain and (
+        source.id == layer.id
+        or all(names.get(each.id, each.name) == each.name for each in layer.handles)
     )
-    pairs = common_handles(source, figure, document.pairs, way)
-    return Landing(figure=figure, copied=copied, pairs=pairs, is_own=is_own)
+    pairs = common_handles(source, layer, document.pairs, way)
+    return Landing(layer=layer, copied=copied, pairs=pairs, is_own=is_own)
 
 
 def common_handles(
-    source: Figure, figure: Figure, pairs: SidePairs, way: PasteWay
+    source: Layer, layer: Layer, pairs: SidePairs, way: PasteWay
 ) -> Mapping[int, int]:
-    """Return which of a figure's handles take over from which of another's, by their names.
+    """Return which of a layer's handles take over from which of another's, by their names.
 
     Where sides are exchanged, a handle takes over from its partner on the other side. Between
     layers whose handles have no name in common it does so, too.
     """
     theirs = {handle.name: handle.id for handle in source.handles}
-    ours = {handle.name: handle.id for handle in figure.handles}
+    ours = {handle.name: handle.id for handle in layer.handles}
     same = {identity: theirs[name] for name, identity in ours.items() if name in theirs}
-    if way == "as it is" and (same or source.id == figure.id):
+    if way == "as it is" and (same or source.id == layer.id):
         return same
     found = {}
     for name, identity in ours.items():
@@ -161,32 +161,32 @@ def _landings(session: Session, project: Project, way: PasteWay) -> list[Landing
     found: dict[int, Landing] = {}
     document, copied = project.document, _copied(session)
     for each in copied:
-        for figure in _receivers(project, each.figure, way, is_alone=len(copied) == 1):
-            found.setdefault(figure.id, landing_on(document, each, figure, way))
+        for layer in _receivers(project, each.layer, way, is_alone=len(copied) == 1):
+            found.setdefault(layer.id, landing_on(document, each, layer, way))
     return list(found.values())
 
 
 def _copied(session: Session) -> list[CopiedKeys]:
-    """Return the keys that were copied of each figure; none where only those of tracks were."""
-    copied = {each.figure.id: each for each in session.copied}
+    """Return the keys that were copied of each layer; none where only those of tracks were."""
+    copied = {each.layer.id: each for each in session.copied}
     for each in session.copied_tracks:
-        copied.setdefault(each.figure.id, CopiedKeys(each.figure, ()))
+        copied.setdefault(each.layer.id, CopiedKeys(each.layer, ()))
     return list(copied.values())
 
 
 def _receivers(
-    project: Project, source: Figure, way: PasteWay, *, is_alone: bool
-) -> Iterator[Figure]:
-    """Yield the figures that take over what was copied of another one."""
+    project: Project, source: Layer, way: PasteWay, *, is_alone: bool
+) -> Iterator[Layer]:
+    """Yield the layers that take over what was copied of another one."""
     document = project.document
-    names = {figure.name: figure for figure in document.figures}
+    names = {layer.name: layer for layer in document.layers}
     # A layer may have been given another name since.
-    kin = (each for each in document.figures if each.id == source.id)
+    kin = (each for each in document.layers if each.id == source.id)
     own = names.get(source.name) or next((f for f in kin if f.domain is source.domain), None)
     if is_alone and way == "as it is":
-        yield from map(document.figure, project.selected_layers)
+        yield from map(document.layer, project.selected_layers)
     elif is_alone and (own is None or own.id != project.active):
-        yield project.figure
+        yield project.layer
     elif own is not None:
         other = None if way == "as it is" else mirrored_name(own.name, document.pairs)
         yield own if other is None else names.get(other, own)

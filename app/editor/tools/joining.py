@@ -40,7 +40,7 @@ class Joining(Tool):
         """Take hold of the anchor; where a handle is the anchor, with Ctrl."""
         if not _takes_anchor(session, project, spot) or (spot.handle is not None and not spot.ctrl):
             return None
-        names = {figure.id: figure.name for figure in project.document.figures}
+        names = {layer.id: layer.name for layer in project.document.layers}
         child = project.active
         return cls(project=project, spot=spot, child=child, names=names, place=spot.place)
 
@@ -51,7 +51,7 @@ class Joining(Tool):
         self.moved = self.moved or self.is_away(session, self.spot.place, place)
         if self.moved and project.active == self.child:
             there = on_scene(project, place)
-            self.parent = parent = layering.figure_at(project, there, besides=self.child)
+            self.parent = parent = layering.layer_at(project, there, besides=self.child)
             self.is_circle = parent is not None and layering.hangs_on(project, parent, self.child)
 
     def end(self, session: Session, place: complex) -> None:
@@ -66,7 +66,7 @@ class Joining(Tool):
                 gesture.end(session, place)
         elif self.parent is not None:
             frame = playback.current_frame(session, project)
-            joint = project.document.figure(self.child).keyed_joint(frame)
+            joint = project.document.layer(self.child).keyed_joint(frame)
             turns = joint is None or joint.turns
             # On both of them the joint is just there; else by the anchor.
             there = on_scene(project, place)
@@ -104,4 +104,4 @@ class Joining(Tool):
 def _takes_anchor(session: Session, project: Project, spot: Spot) -> bool:
     """Tell whether a press takes the anchor of a layer, in a scene of several."""
     is_free = not (spot.shift or spot.alt or spot.on_ring) and session.overlays.handles
-    return spot.on_anchor and is_free and len(project.document.figures) > 1
+    return spot.on_anchor and is_free and len(project.document.layers) > 1

@@ -29,7 +29,7 @@ class Mirroring(Tool):
         """Take hold of the axis."""
         if not spot.on_axis:
             return None
-        axis = project.figure.axis
+        axis = project.layer.axis
         return cls(project=project, axis=axis, start=spot.place, place=spot.place)
 
     def move(self, session: Session, place: complex) -> None:

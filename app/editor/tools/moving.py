@@ -1,9 +1,9 @@
-"""Moving the whole figure as it is, and all that hangs on it."""
+"""Moving the whole layer as it is, and all that hangs on it."""
 
 from dataclasses import dataclass
 from typing import Self
 
-from app.document import Figure
+from app.document import Layer
 from app.editor import layering
 from app.editor.actions import drafting, playback, posing
 from app.editor.project import Project
@@ -14,16 +14,16 @@ from app.editor.tools.tool import Spot, on_scene
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class Moving(Pulling):
-    """The pointer moves a figure; the last one was posed before it."""
+    """The pointer moves a layer; the last one was posed before it."""
 
     last: int
-    is_free: bool  # whether the figure can be moved
+    is_free: bool  # whether the layer can be moved
 
     @classmethod
     def hints(cls, session: Session, project: Project, spot: Spot) -> tuple[Hint, ...]:
         """Tell what moves."""
         if session.moves:
-            return (Hint("drag", f"to move all of {_carrier(session, project, spot.figure).name}"),)
+            return (Hint("drag", f"to move all of {_carrier(session, project, spot.layer).name}"),)
         return (Hint("drag", "to move all of it", "ctrl+shift"),) if _is_beside(spot) else ()
 
     @classmethod
@@ -33,7 +33,7 @@ class Moving(Pulling):
         if not is_by_keys and (spot.ctrl or not session.moves):
             return None
         start, last = on_scene(project, spot.place), project.active
-        is_free = _choose_carrier(session, project, spot.figure if session.moves else None)
+        is_free = _choose_carrier(session, project, spot.layer if session.moves else None)
         return cls(project=project, start=start, last=last, is_free=is_free)
 
     def _pull(self, session: Session) -> None:
@@ -53,7 +53,7 @@ class Moving(Pulling):
 
 @with_project
 def take_up(session: Session, project: Project) -> None:
-    """Let drags and arrows move the whole figure, or pose it again."""
+    """Let drags and arrows move the whole layer, or pose it again."""
     if session.pointer is None:
         in_hand = session.cutting, session.material, project.draft
         is_other = any(each is not None for each in in_hand)
@@ -72,7 +72,7 @@ def pose(session: Session, project: Project) -> None:
 
 @with_project
 def nudge(session: Session, project: Project, step: complex) -> None:
-    """Move the figure that is posed, with all that it hangs on, by a few pixels."""
+    """Move the layer that is posed, with all that it hangs on, by a few pixels."""
     if _choose_carrier(session, project, None):
         posing.move(session, step)
         posing.let_go(session)
@@ -82,15 +82,15 @@ def _is_beside(spot: Spot) -> bool:
     return spot.handle is None and not (spot.on_shape or spot.on_ring)
 
 
-def _carrier(session: Session, project: Project, figure: int | None) -> Figure:
-    """Return what a figure, by default the one that is posed, hangs on in the end; or itself."""
+def _carrier(session: Session, project: Project, layer: int | None) -> Layer:
+    """Return what a layer, by default the one that is posed, hangs on in the end; or itself."""
     frame = playback.current_frame(session, project)
-    return project.document.carriers(project.active if figure is None else figure, frame)[-1]
+    return project.document.carriers(project.active if layer is None else layer, frame)[-1]
 
 
-def _choose_carrier(session: Session, project: Project, figure: int | None) -> bool:
+def _choose_carrier(session: Session, project: Project, layer: int | None) -> bool:
     """Choose what moves with all that hangs on it; tell why, and return False, if it stays."""
-    carrier = _carrier(session, project, figure)
+    carrier = _carrier(session, project, layer)
     if carrier.still or carrier.locked:
         what = "a still picture" if carrier.still else "locked"
         session.tell(f"{carrier.name} is {what}: it stays where it is, with all that hangs on it.")

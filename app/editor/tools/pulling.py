@@ -40,7 +40,7 @@ class Pulling(Tool):
     def hints(cls, session: Session, project: Project, spot: Spot) -> tuple[Hint, ...]:
         """Tell that handles are dragged, and that a click adds one."""
         if spot.handle is not None:
-            if project.figure.is_locked(spot.handle):
+            if project.layer.is_locked(spot.handle):
                 return (Hint("click", "to select; it is locked"),)
             if session.records:
                 return (Hint("drag", "to record how it moves"),)
@@ -74,7 +74,7 @@ class Pulling(Tool):
     def _take(cls, session: Session, project: Project, spot: Spot, handle: int) -> Self:
         pulling = cls(project=project, start=spot.place, taken=handle, at_target=spot.at_target)
         if handle not in project.selected:
-            editing.select(session, project.figure.together_with(handle))
+            editing.select(session, project.layer.together_with(handle))
         pulling.handles = _movable(project)
         if handle in pulling.handles:
             pulling._take_to_track(session, handle)
@@ -85,13 +85,13 @@ class Pulling(Tool):
         project, shown = self.project, self.project.puppet.shown
         track = tracking.carried_track(project, pressed)
         if session.records:
-            track = project.figure.track_of(pressed)
+            track = project.layer.track_of(pressed)
         elif track is None:
             return
         if shown is None:
             return
         self.tracked = pressed if track is None else track.handles[0]
-        identities = [handle.id for handle in shown.clip.figure.handles]
+        identities = [handle.id for handle in shown.clip.layer.handles]
         self.origin = complex(shown.handle_places[identities.index(self.tracked)])
         if self.at_target and shown.correction is not None:
             self.origin = shown.correction.wishes.get(self.tracked, self.origin)
@@ -104,7 +104,7 @@ class Pulling(Tool):
 
     def _take_key(self, session: Session, handle: int, frame: int) -> None:
         """Take hold of the key of a track that is seen at a frame; the playhead goes there."""
-        project, track = self.project, self.project.figure.track_of(handle)
+        project, track = self.project, self.project.layer.track_of(handle)
         place = None if track is None else tracking.wished(project, track, frame)
         if track is not None and place is not None:
             self.tracked, self.origin = track.handles[0], place
@@ -138,7 +138,7 @@ class Pulling(Tool):
             elif self.moved:
                 tracking.carry(session, self.tracked, place, gesture=self)
             return
-        pulled = self.handles & {handle.id for handle in self.project.figure.handles}
+        pulled = self.handles & {handle.id for handle in self.project.layer.handles}
         if not (self.moved and pulled):
             return
         way = self.way
@@ -165,7 +165,7 @@ class Pulling(Tool):
         else:
             posing.let_go(session)
         if not self.moved and self.taken is not None:
-            editing.select(session, self.project.figure.together_with(self.taken))
+            editing.select(session, self.project.layer.together_with(self.taken))
 
     def cancel(self, session: Session) -> None:
         """Take back what it did; the playhead goes back to where it was."""
@@ -198,5 +198,5 @@ class Pulling(Tool):
 
 def _movable(project: Project) -> frozenset[int]:
     """Return the selected handles but those that are locked."""
-    handles = project.figure.handles
+    handles = project.layer.handles
     return frozenset(h.id for h in handles if h.id in project.selected and not h.locked)

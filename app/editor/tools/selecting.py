@@ -34,7 +34,7 @@ class Selecting(Tool):
             return None
         selecting = cls(project=project, start=at, place=at, adds=spot.shift, has_box=has_box)
         if spot.handle is not None:
-            fellows = project.figure.together_with(spot.handle)
+            fellows = project.layer.together_with(spot.handle)
             is_selected = spot.handle in project.selected
             chosen = project.selected - fellows if is_selected else project.selected | fellows
             editing.select(session, chosen)
@@ -51,7 +51,7 @@ class Selecting(Tool):
             return
         x, y = sorted((self.start.real, place.real)), sorted((self.start.imag, place.imag))
         box = Box(complex(x[0], y[0]), complex(x[1], y[1]))
-        places = zip(shown.clip.figure.handles, shown.handle_places, strict=True)
+        places = zip(shown.clip.layer.handles, shown.handle_places, strict=True)
         inside = {
             handle.id
             for handle, at in places
@@ -74,19 +74,19 @@ class Choosing(Tool):
     @classmethod
     def hints(cls, _: Session, project: Project, spot: Spot) -> tuple[Hint, ...]:
         """Tell which layer a click chooses."""
-        figure = _other(project, spot)
-        if figure is None:
+        layer = _other(project, spot)
+        if layer is None:
             return ()
-        return (Hint("click", f"to pose {project.document.figure(figure).name}"),)
+        return (Hint("click", f"to pose {project.document.layer(layer).name}"),)
 
     @classmethod
     def press(cls, session: Session, project: Project, spot: Spot) -> Self | None:
         """Choose the layer that is seen there, if it is another one."""
-        figure = _other(project, spot)
-        if figure is None:
+        layer = _other(project, spot)
+        if layer is None:
             return None
         choosing = cls(project=project, last=project.active)
-        layering.choose(session, figure)
+        layering.choose(session, layer)
         return choosing
 
     def cancel(self, session: Session) -> None:
@@ -98,4 +98,4 @@ def _other(project: Project, spot: Spot) -> int | None:
     """Return the layer that a press at a spot is for, if it is not the one that is posed."""
     if spot.handle is not None or spot.on_ring or spot.ctrl or spot.shift:
         return None
-    return None if spot.figure in {None, project.active} else spot.figure
+    return None if spot.layer in {None, project.active} else spot.layer

@@ -21,11 +21,11 @@ class Spot:
     at_target: bool = False  # whether it is wanted there, and has not arrived
     track_key: int | None = None  # the frame of the key under it, on the path of the chosen track
     on_axis: bool = False  # on the grip of the axis at which poses are flipped
-    on_anchor: bool = False  # on the anchor of the figure that is posed
+    on_anchor: bool = False  # on the anchor of the layer that is posed
     on_ring: bool = False  # on the ring around the selected handle
-    on_shape: bool = False  # on the figure that is posed
+    on_shape: bool = False  # on the layer that is posed
     # The one seen there; with Alt held the next one behind the one that is posed.
-    figure: int | None = None
+    layer: int | None = None
     ctrl: bool = False  # which keys are held
     shift: bool = False
     alt: bool = False

@@ -43,7 +43,7 @@ class Turning(Tool):
             is_alone = tracking.carried_track(project, handle) is not None
             what = "to key its turn alone" if is_alone else "to turn the shape around the handle"
             return (Hint("drag", what),)
-        if spot.handle is None or project.figure.is_locked(spot.handle):
+        if spot.handle is None or project.layer.is_locked(spot.handle):
             return ()
         # Of both gestures the one that no window manager takes for itself, as many do Alt+drag.
         return (Hint("drag its ring", "to turn"),)
@@ -57,8 +57,8 @@ class Turning(Tool):
         if shown is None or not (is_by_key or is_by_ring):
             return None
         handle = spot.handle if is_by_key else next(iter(project.selected))
-        identities = [handle.id for handle in shown.clip.figure.handles]
-        if handle is None or handle not in identities or project.figure.is_locked(handle):
+        identities = [handle.id for handle in shown.clip.layer.handles]
+        if handle is None or handle not in identities or project.layer.is_locked(handle):
             return None
         index = identities.index(handle)
         on_track = tracking.carried_track(project, handle) is not None
@@ -103,7 +103,7 @@ class Turning(Tool):
 
     def _turn(self, session: Session) -> None:
         handle, swept = self.handle, self.swept
-        if handle not in {each.id for each in self.project.figure.handles}:
+        if handle not in {each.id for each in self.project.layer.handles}:
             return
         if self.on_track:
             tracking.turn(session, handle, self.turn + swept, gesture=self)

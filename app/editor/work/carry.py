@@ -16,21 +16,21 @@ class Carry(Promise):
 
     Parameters
     ----------
-    figure, handle : int
+    layer, handle : int
         Ids; the handle is the first one of the track's.
     frame : int
         Of the scene.
     gesture : object
         What is one step of undo together.
     place : complex
-        Where the handle is wanted, on the figure by itself.
+        Where the handle is wanted, on the layer by itself.
     turn : float, optional
         By how much the shape is to be turned there, in radians; the place is then where the handle
         is, for a track that wants it nowhere yet.
     """
 
     label: str = "Keys of a handle"
-    figure: int
+    layer: int
     handle: int
     frame: int
     gesture: object
@@ -51,7 +51,7 @@ class Take:
 
     Parameters
     ----------
-    figure, handle : int
+    layer, handle : int
         Ids; the handle is the first one of the track's.
     gesture : object
         What is one step of undo together.
@@ -78,7 +78,7 @@ class Take:
         The document with the recorded track; None until it has that.
     """
 
-    figure: int
+    layer: int
     handle: int
     gesture: object
     before: Track | None

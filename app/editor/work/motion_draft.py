@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Self
 
-from app.document import Document, Figure, GivenMotion
+from app.document import Document, GivenMotion, Layer
 from app.solving import Giving
 from engine.domain import Domain
 from engine.geometry.motions import (
@@ -22,10 +22,10 @@ MOST_UNDONE = 100
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class MotionDraft:
-    """What is to be given to a figure, before it is solved."""
+    """What is to be given to a layer, before it is solved."""
 
-    figure: int  # its id
-    domain: Domain  # of the figure then: joints are places in it
+    layer: int  # its id
+    domain: Domain  # of the layer then: joints are places in it
     kind: str
     motion: str
     joints: JointPlaces
@@ -78,12 +78,12 @@ class MotionDraft:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class MotionErrand:
-    """A motion on its way to a figure, and the draft by which it was asked for.
+    """A motion on its way to a layer, and the draft by which it was asked for.
 
     Parameters
     ----------
     draft : MotionDraft
-    before : Figure
+    before : Layer
         As it has to be when the motion comes.
     base : Document
         What it is given to: without the motion that it takes the place of.
@@ -92,7 +92,7 @@ class MotionErrand:
     """
 
     draft: MotionDraft
-    before: Figure
+    before: Layer
     base: Document
     giving: Giving | None = None
 

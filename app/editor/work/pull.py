@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from app.document import Clip, Document, Figure, History, Pose, Settled, Target
+from app.document import Clip, Document, History, Layer, Pose, Settled, Target
 from app.editor.work.derived import Derived
 from app.editor.work.promise import Promise
 from app.solving import Drag
@@ -19,7 +19,7 @@ ROUNDING = 1e-9  # pixels
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Start:
-    """A pose as a pull begins with it, by the ids of the figure's handles.
+    """A pose as a pull begins with it, by the ids of the layer's handles.
 
     Parameters
     ----------
@@ -36,10 +36,10 @@ class Start:
     targets: Mapping[int, Target]
 
     @classmethod
-    def of(cls, figure: Figure, pose: Pose) -> "Start":
-        """Return the start that a pose of a figure is."""
-        f, identities = figure.map_of(pose), [handle.id for handle in figure.handles]
-        at = np.array([handle.position for handle in figure.handles], dtype=np.complex128)
+    def of(cls, layer: Layer, pose: Pose) -> "Start":
+        """Return the start that a pose of a layer is."""
+        f, identities = layer.map_of(pose), [handle.id for handle in layer.handles]
+        at = np.array([handle.position for handle in layer.handles], dtype=np.complex128)
         places = dict(zip(identities, f(at).tolist(), strict=True))
         turns = dict(zip(identities, np.angle(f.derivatives(at)[0]).tolist(), strict=True))
         return cls.at(places, turns, pose.targets)
@@ -62,7 +62,7 @@ WishFrom = Callable[[Start, Mapping[int, Target]], Mapping[int, Target]]
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class Pull(Promise):
-    """Handles of a figure at a frame, wished elsewhere, and how far the solver has followed.
+    """Handles of a layer at a frame, wished elsewhere, and how far the solver has followed.
 
     It lives until the pose rests, wherever the playhead goes and whatever else is done meanwhile:
     each pose that the solver finds takes the place of the one before, in the step of history that
@@ -71,7 +71,7 @@ class Pull(Promise):
     Parameters
     ----------
     clip : Clip
-        The figure as it was when it began, which the solver knows, in its scene's time.
+        The layer as it was when it began, which the solver knows, in its scene's time.
     frame : int
         Where the pose belongs now: it moves with its key.
     gesture : object
@@ -87,7 +87,7 @@ class Pull(Promise):
     hands : dict of object to Hand
         By the gestures that pull handles, told by their ids, until the pose has come to rest.
     ways : dict of object to complex
-        By the gestures that move the figure as a whole. The solver knows nothing of that: what it
+        By the gestures that move the layer as a whole. The solver knows nothing of that: what it
         finds is moved, as exactly as it is.
     rests : bool
         Whether the pose that it begins with is at rest: merely moved, it stays as it is.
@@ -108,13 +108,13 @@ class Pull(Promise):
     found : Pose, optional
         Where the solver is, as a pose; at first the one that was there before.
     newest : Pose, optional
-        The same, moved as the figure is moved.
+        The same, moved as the layer is moved.
     kept : Pose, optional
         What the document has of it; None as long as that is nothing.
     tried : Pose, optional
         The one whose in-betweens are being prepared, once the hand has let go.
     trial : Derived
-        The figure's clip with it, as long as the document stays: several ask for it in each frame.
+        The layer's clip with it, as long as the document stays: several ask for it in each frame.
     ready : Pose, optional
         The newest one whose in-betweens are there: the playhead that leaves it finds them.
     is_left : bool
@@ -157,7 +157,7 @@ class Pull(Promise):
         self.aim()
 
     def move(self, gesture: object, way: complex) -> None:
-        """Let a gesture move the figure as a whole, so far from where it began."""
+        """Let a gesture move the layer as a whole, so far from where it began."""
         self.ways[gesture] = way
         self.wish(gesture, _nothing)
         pose = self.found or self.before
@@ -168,7 +168,7 @@ class Pull(Promise):
         """Take note of where the solver is; return that as it is moved."""
         way = sum(self.ways.values())
         self.found = pose
-        self.newest = _moved_pose(self.clip.figure, pose, way) if way else pose
+        self.newest = _moved_pose(self.clip.layer, pose, way) if way else pose
         return self.newest
 
     def forget(self, gesture: object) -> None:
@@ -212,7 +212,7 @@ class Pull(Promise):
 
     @property
     def asked(self) -> Mapping[int, Target] | None:
-        """The targets, moved as the figure is; None as long as there is no start."""
+        """The targets, moved as the layer is; None as long as there is no start."""
         return None if self.targets is None else self._moved(self.targets)
 
     def _moved(self, targets: Mapping[int, Target]) -> Mapping[int, Target]:
@@ -229,9 +229,9 @@ class Pull(Promise):
             self.pulled = pulled_by(self.start, self.wishes.values())
 
     @property
-    def figure(self) -> int:
-        """The id of its figure."""
-        return self.clip.figure.id
+    def layer(self) -> int:
+        """The id of its layer."""
+        return self.clip.layer.id
 
     @property
     def is_rigid(self) -> bool:
@@ -257,25 +257,25 @@ class Pull(Promise):
         """Tell whether the document, as it is now, has a pose of it, or is to have the first."""
         if self.kept is None:
             return True
-        figures = history.document.figures
-        figure = next((figure for figure in figures if figure.id == self.figure), None)
-        if figure is None:
+        layers = history.document.layers
+        layer = next((layer for layer in layers if layer.id == self.layer), None)
+        if layer is None:
             return False
-        poses = list(figure.poses)
+        poses = list(layer.poses)
         if history.unkeyed is not None:
             poses.append(history.unkeyed.pose)
         return any(pose.phi is self.kept.phi for pose in poses)
 
     def brought_to(self, pose: Pose) -> Settled:
-        """Return how a figure of any step of history has a pose of this pull."""
-        then = {handle.id: handle.position for handle in self.clip.figure.handles}
+        """Return how a layer of any step of history has a pose of this pull."""
+        then = {handle.id: handle.position for handle in self.clip.layer.handles}
 
-        def of(figure: Figure, earlier: Pose) -> Pose:
-            now = {handle.id: handle.position for handle in figure.handles}
+        def of(layer: Layer, earlier: Pose) -> Pose:
+            now = {handle.id: handle.position for handle in layer.handles}
             if now == then and earlier.targets.keys() == pose.targets.keys() == then.keys():
                 return pose
             # Handles came, went or were put elsewhere since: of those nothing is wished yet.
-            start = Start.of(figure, replace(pose, targets=earlier.targets))
+            start = Start.of(layer, replace(pose, targets=earlier.targets))
             targets = {}
             for identity, position in now.items():
                 here = replace(start.targets[identity], position=start.places[identity])
@@ -303,10 +303,10 @@ def _moved_targets(
     }
 
 
-def _moved_pose(figure: Figure, pose: Pose, way: complex) -> Pose:
-    """Return a pose of a figure moved, with all that is wanted of it; it is as distorted."""
+def _moved_pose(layer: Layer, pose: Pose, way: complex) -> Pose:
+    """Return a pose of a layer moved, with all that is wanted of it; it is as distorted."""
     targets = _moved_targets(pose.targets, dict.fromkeys(pose.targets, way))
-    return replace(pose.with_map(figure.map_of(pose).moved(1.0, way)), targets=targets)
+    return replace(pose.with_map(layer.map_of(pose).moved(1.0, way)), targets=targets)
 
 
 def _nothing(_: Start, __: Mapping[int, Target]) -> Mapping[int, Target]:

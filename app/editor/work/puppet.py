@@ -1,9 +1,9 @@
-"""A figure as a window has it, and its twin by another method."""
+"""A layer as a window has it, and its twin by another method."""
 
 from dataclasses import dataclass, field, replace
 from typing import Self
 
-from app.document import Baseline, Clip, Document, Figure, PictureFile, Variant, clip_of
+from app.document import Baseline, Clip, Document, Layer, PictureFile, Variant, clip_of
 from app.editor.work.derived import Derived
 from app.motion import CorrectedFrames, IntervalStore, PosableMesh, Shown, is_corrected
 from app.solving import Rig
@@ -14,22 +14,22 @@ from engine.domain import CutOut
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class Twin:
-    """A figure by another method, which its own is compared with."""
+    """A layer by another method, which its own is compared with."""
 
-    original: Figure  # the figure as it is
-    figure: Figure  # the same by the other variant, where the method is one
+    original: Layer  # the layer as it is
+    layer: Layer  # the same by the other variant, where the method is one
     method: Variant | Baseline
     shown: Shown | None = None
 
     def clip(self, document: Document) -> Clip:
         """Return it in the time of its scene."""
         baseline = self.method if isinstance(self.method, Baseline) else None
-        return replace(clip_of(document, self.figure.id), figure=self.figure, baseline=baseline)
+        return replace(clip_of(document, self.layer.id), layer=self.layer, baseline=baseline)
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class Puppet:
-    """A figure as a window has it."""
+    """A layer as a window has it."""
 
     file: PictureFile
     picture: Picture  # decoded from that
@@ -47,17 +47,17 @@ class Puppet:
 
     @classmethod
     def of(cls, clip: Clip, picture: Picture, *, among: int = 1) -> Self:
-        """Return a figure as the window has it at first: its keys are shown; in-betweens follow.
+        """Return a layer as the window has it at first: its keys are shown; in-betweens follow.
 
-        `among` tells how many figures there are.
+        `among` tells how many layers there are.
         """
         return cls(
             picture=picture,
             is_opaque=picture.is_opaque,
-            file=clip.figure.picture,
-            store=IntervalStore(mesh=PosableMesh.coarse(clip.figure.domain, among=among)),
+            file=clip.layer.picture,
+            store=IntervalStore(mesh=PosableMesh.coarse(clip.layer.domain, among=among)),
             cut=Derived(
-                cut_picture(picture, clip.figure.cut_out, is_alone=among == 1), clip.figure.cut_out
+                cut_picture(picture, clip.layer.cut_out, is_alone=among == 1), clip.layer.cut_out
             ),
         )
 
@@ -74,7 +74,7 @@ class Puppet:
     def rest(self, clip: Clip) -> None:
         """Let go of what all that is shown of a clip was made with; an edit needs it again.
 
-        It is most of what a figure with keys takes.
+        It is most of what a layer with keys takes.
         """
         stores = [store for store in (self.store, self.fine) if store is not None]
         if is_corrected(clip) or not all(store.has(clip) for store in stores):

@@ -18,7 +18,7 @@ from app.storage import strict_json
 from engine.arrays import Complexes, Floats
 
 PIXELS_PER_METRE: Final = 100  # as engines take sprites
-_LAYER: Final = 0.01  # metres from a figure to the one in front of it
+_LAYER: Final = 0.01  # metres from a layer to the one in front of it
 _UNLIT: Final = "KHR_materials_unlit"
 # As glTF numbers them.
 _UINT16, _UINT32, _FLOAT = 5123, 5125, 5126
@@ -29,7 +29,7 @@ _COMPONENTS: Final = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}
 
 
 def glb_file(scene: MovingScene, plan: ExportPlan) -> bytes:
-    """Return a glTF file of figures, the one behind all others first."""
+    """Return a glTF file of layers, the one behind all others first."""
     asset = _Asset(plan)
     for shape in scene.shapes:
         asset.add(shape)
@@ -49,7 +49,7 @@ class _Asset:
         self._plan = plan
 
     def add(self, shape: MovingShape) -> None:
-        """Add a figure as a node with a mesh, a material and an animation."""
+        """Add a layer as a node with a mesh, a material and an animation."""
         base, targets = shape.motion.base - self._origin, shape.motion.targets
         weights = np.clip(shape.motion.weights, 0.0, 1.0)
         primitive: dict[str, Any] = {
@@ -185,7 +185,7 @@ class _Asset:
         material = {
             "name": shape.name,
             "pbrMetallicRoughness": {
-                # A faint figure shines through itself where it lies over itself.
+                # A faint layer shines through itself where it lies over itself.
                 "baseColorFactor": [1.0, 1.0, 1.0, shape.opacity],
                 "baseColorTexture": {"index": texture},
                 "metallicFactor": 0.0,

@@ -1,4 +1,4 @@
-"""A page that plays figures by WebGL 2, with all that it needs in one file."""
+"""A page that plays layers by WebGL 2, with all that it needs in one file."""
 
 import base64
 import html
@@ -34,7 +34,7 @@ _SHADERS: Final = (
 
 
 def html_page(scene: MovingScene, plan: ExportPlan) -> bytes:
-    """Return a page of figures, the one behind all others first."""
+    """Return a page of layers, the one behind all others first."""
     box = shown_box(plan.view)
     (first, last), colour = plan.span, plan.background
     film = {
@@ -58,7 +58,7 @@ def html_page(scene: MovingScene, plan: ExportPlan) -> bytes:
 
 
 def _packed(shape: MovingShape) -> dict[str, Any]:
-    """Return a figure as the page unpacks it: numbers one after the other, and a picture."""
+    """Return a layer as the page unpacks it: numbers one after the other, and a picture."""
     motion = shape.motion
     numbers = [
         _pairs(motion.base),
@@ -82,7 +82,7 @@ def _packed(shape: MovingShape) -> dict[str, Any]:
 
 
 def _parts(parts: Sequence[int | Composite[int]]) -> list[Any]:
-    """Return how figures are composited: their numbers, and objects of such."""
+    """Return how layers are composited: their numbers, and objects of such."""
     return [
         part
         if isinstance(part, int)

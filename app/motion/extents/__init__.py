@@ -1,6 +1,6 @@
 """How far an animation moves over the plane, in few frames or very many.
 
-In: documents, and where their figures are in a frame.
+In: documents, and where their layers are in a frame.
 Out: boxes.
 Imports: `app.document`, `app.errors`, what else is in `app.motion`.
 """

@@ -40,18 +40,18 @@ def extent_source(document: Document) -> tuple[object, ...]:
     """Return all of a document that its extent depends on; equal where the extent is."""
     motions = [
         (
-            figure.domain,
-            figure.keys,
-            figure.cycles,
-            figure.anchor,
-            figure.variant,
-            figure.bounds,
-            figure.joints,
-            figure.movement,
-            figure in document.exported,
-            (figure.stillness, figure.handles, figure.tracks, figure.springs),
+            layer.domain,
+            layer.keys,
+            layer.cycles,
+            layer.anchor,
+            layer.variant,
+            layer.bounds,
+            layer.joints,
+            layer.movement,
+            layer in document.exported,
+            (layer.stillness, layer.handles, layer.tracks, layer.springs),
         )
-        for figure in document.figures
+        for layer in document.layers
     ]
     frames = framed_frames(document, exported_frames(document))
     return (*motions, document.frames, document.loop, document.fps, frames)
@@ -68,22 +68,22 @@ def measure_extent(
     Parameters
     ----------
     stores : mapping of int to IntervalStore
-        One for each figure, by its id, that has its in-betweens.
+        One for each layer, by its id, that has its in-betweens.
     joints : Joints, optional
         What is true of them is used again.
     corrected : mapping of int to CorrectedFrames, optional
-        Whole, by the figures' ids.
+        Whole, by the layers' ids.
     """
-    clips = {figure: clip_of(document, figure) for figure in stores}
+    clips = {layer: clip_of(document, layer) for layer in stores}
     frames = framed_frames(document, exported_frames(document))
-    samplers = {figure: store.sampler for figure, store in stores.items()}
-    joints = Joints(document, {figure: each for figure, each in samplers.items() if each}, joints)
+    samplers = {layer: store.sampler for layer, store in stores.items()}
+    joints = Joints(document, {layer: each for layer, each in samplers.items() if each}, joints)
 
-    def place(figure: int, frame: int) -> Complexes | None:
-        own = corrected.get(figure) if corrected else None
-        correction = own.at(clips[figure], frame) if own else None
-        positions = stores[figure].positions(clips[figure], frame, correction)
-        return None if positions is None else joints.placement(figure, frame).on(positions)
+    def place(layer: int, frame: int) -> Complexes | None:
+        own = corrected.get(layer) if corrected else None
+        correction = own.at(clips[layer], frame) if own else None
+        positions = stores[layer].positions(clips[layer], frame, correction)
+        return None if positions is None else joints.placement(layer, frame).on(positions)
 
     box = motion_box(document, frames, place)
     if box is None:
@@ -98,13 +98,13 @@ class _Missing(Exception):  # noqa: N818 - it ends a search
 def motion_box(
     document: Document, frames: FrameRange, place: Callable[[int, int], Complexes | None]
 ) -> Box | None:
-    """Return the box around all figures in all of these frames, of which few may be measured.
+    """Return the box around all layers in all of these frames, of which few may be measured.
 
     Parameters
     ----------
     frames : FrameRange
     place : callable
-        Returns where the vertices of a figure, by its id, are in a frame; None ends the search.
+        Returns where the vertices of a layer, by its id, are in a frame; None ends the search.
 
     Raises
     ------
@@ -116,8 +116,8 @@ def motion_box(
 
     def reaches(frame: int) -> Floats:
         boxes = []
-        for figure in document.exported:
-            positions = place(figure.id, frame)
+        for layer in document.exported:
+            positions = place(layer.id, frame)
             if positions is None:
                 raise _Missing
             boxes.append(box_around(positions))

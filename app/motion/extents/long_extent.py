@@ -1,6 +1,6 @@
-"""How far the figures reach in more frames than are measured one by one.
+"""How far the layers reach in more frames than are measured one by one.
 
-Between two frames at which anything is keyed, figures move smoothly, or as often before in a cycle.
+Between two frames at which anything is keyed, layers move smoothly, or as often before in a cycle.
 There some frames are measured. Where a box that bends, or moves fast, may stick out of all between
 two of them, the one in the middle is measured, too, and so on. What is left when too many were
 measured counts as far as it may reach, so that nothing is beyond what is found.
@@ -14,7 +14,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from app.document import Document, Figure, FrameRange
+from app.document import Document, FrameRange, Layer
 from engine.arrays import Floats
 
 MOST_MEASURED: Final = 1_000  # frames; up to so many are all measured
@@ -33,7 +33,7 @@ TOLERANCE: Final = 0.002
 BEYOND: Final = 0.25
 GOLDEN: Final = (5**0.5 - 1) / 2
 
-# How far the figures reach in a frame: to the left, down, right and up, (f, 4).
+# How far the layers reach in a frame: to the left, down, right and up, (f, 4).
 Reaches = Floats
 Measure = Callable[[int], Reaches]
 
@@ -67,7 +67,7 @@ class _Gap(NamedTuple):
 
 
 def farthest_reach(document: Document, frames: FrameRange, measure: Measure) -> Floats:
-    """Return how far the figures reach in any of these frames: left, down, right and up, (4,)."""
+    """Return how far the layers reach in any of these frames: left, down, right and up, (4,)."""
     if frames.last - frames.first < MOST_MEASURED:
         every = [measure(frame).max(axis=0) for frame in range(frames.first, frames.last + 1)]
         whole: Floats = np.max(every, axis=0)
@@ -124,7 +124,7 @@ class _Search:
         return float(np.max(gap.bound - self._farthest))
 
     def _reach(self, frames: Sequence[int]) -> Floats:
-        """Measure some frames; return how far the figures reach in each, (p, f, 4)."""
+        """Measure some frames; return how far the layers reach in each, (p, f, 4)."""
         reaches = np.array([self._measure(frame) for frame in frames])
         self._farthest = np.maximum(self._farthest, reaches.max(axis=(0, 1)))
         self._measured += len(frames)
@@ -151,14 +151,14 @@ class _Search:
 
 def _stretches(document: Document, frames: FrameRange) -> list[UnkeyedFrames]:
     """Return the stretches between the frames at which anything is keyed."""
-    sprung = [each for each in document.figures if any(spring.enabled for spring in each.springs)]
+    sprung = [each for each in document.layers if any(spring.enabled for spring in each.springs)]
     swinging = {each.id for each in sprung}
     # What carries springs sets them swinging, too.
-    swinging |= {each.id for figure in sprung for each in document.all_carriers(figure.id)}
+    swinging |= {each.id for layer in sprung for each in document.all_carriers(layer.id)}
     keyed = {
         frame
-        for figure in document.figures
-        for frame in _keyed(document, figure, SETTLING if figure.id in swinging else 0)
+        for layer in document.layers
+        for frame in _keyed(document, layer, SETTLING if layer.id in swinging else 0)
     }
     inside = {frame for frame in keyed if frame in frames}
     ends = sorted({frames.first, frames.last, *inside})
@@ -172,16 +172,16 @@ def _stretches(document: Document, frames: FrameRange) -> list[UnkeyedFrames]:
     return found
 
 
-def _keyed(document: Document, figure: Figure, settling: int) -> Iterator[int]:
-    """Yield the frames at which a figure's motion is keyed, and those beside where it may jump.
+def _keyed(document: Document, layer: Layer, settling: int) -> Iterator[int]:
+    """Yield the frames at which a layer's motion is keyed, and those beside where it may jump.
 
     Springs that it sets swinging take `settling` frames after each of these.
     """
-    moves = [*figure.key_frames, *(key.frame for key in figure.movement)]
-    jumps = [frame for cycle in figure.cycles for frame in (cycle.first, cycle.last)]
-    jumps += [cycle.until for cycle in figure.cycles if cycle.until is not None]
-    jumps += [frame for joint in figure.joints for frame in (joint.frame, joint.kept_from)]
-    for track in figure.tracks:
+    moves = [*layer.key_frames, *(key.frame for key in layer.movement)]
+    jumps = [frame for cycle in layer.cycles for frame in (cycle.first, cycle.last)]
+    jumps += [cycle.until for cycle in layer.cycles if cycle.until is not None]
+    jumps += [frame for joint in layer.joints for frame in (joint.frame, joint.kept_from)]
+    for track in layer.tracks:
         times = [track.delay + key.frame for key in track.keys]
         moves += times
         jumps += (times[0], times[-1])
@@ -189,7 +189,7 @@ def _keyed(document: Document, figure: Figure, settling: int) -> Iterator[int]:
         # What is late goes on from the beginning.
         first, length = document.frames.first, document.frames.last - document.frames.first
         moves += [first + (frame - first) % max(length, 1) for frame in moves]
-    for cycle in figure.cycles:
+    for cycle in layer.cycles:
         until = document.frames.last if cycle.until is None else cycle.until
         own = [frame for frame in moves if cycle.has(frame)]
         rounds = range(cycle.period, until - cycle.first + 1, cycle.period)
@@ -207,8 +207,8 @@ def _period(document: Document, first: int, last: int) -> int:
     period = lcm(
         *(
             cycle.period
-            for figure in document.figures
-            for cycle in figure.cycles
+            for layer in document.layers
+            for cycle in layer.cycles
             if cycle.last <= first and last <= (end if cycle.until is None else cycle.until)
         )
     )

@@ -15,11 +15,11 @@ class Animation:
     Parameters
     ----------
     variant : str, optional
-        The figure's own by default.
+        The layer's own by default.
     points : complex128, shape (m,), optional
         By default the vertices of the domain's mesh.
     sampler : PoseSampler, optional
-        An earlier animation's; it is used again if its domain and anchor are the figure's: poses
+        An earlier animation's; it is used again if its domain and anchor are the layer's: poses
         that it has sampled are not sampled again.
 
     Attributes
@@ -27,7 +27,7 @@ class Animation:
     base : BaseMotion
         The motion from key to key, with handles that stay, and without tracks and springs.
     carried : callable, optional
-        Where the figure hangs, at a frame, for what is planted in the scene; by itself without.
+        Where the layer hangs, at a frame, for what is planted in the scene; by itself without.
     """
 
     def __init__(
@@ -40,14 +40,14 @@ class Animation:
         carried: Carried | None = None,
     ) -> None:
         self.clip = clip
-        self.variant: Variant = clip.figure.variant if variant is None else Variant(variant)
+        self.variant: Variant = clip.layer.variant if variant is None else Variant(variant)
         if (
             sampler is None
-            or sampler.domain is not clip.figure.domain
-            or sampler.anchor != clip.figure.anchor
+            or sampler.domain is not clip.layer.domain
+            or sampler.anchor != clip.layer.anchor
             or (points is not None and points is not sampler.sites.points)
         ):
-            sampler = PoseSampler(clip.figure.domain, anchor=clip.figure.anchor, points=points)
+            sampler = PoseSampler(clip.layer.domain, anchor=clip.layer.anchor, points=points)
         self.sampler = sampler
         self.base = BaseMotion(clip, self.variant, sampler)
         self.carried = carried

@@ -43,7 +43,7 @@ class AutoPins:
     clip : Clip
     variant : Variant
     sampler : PoseSampler
-        Of the figure's domain, at any points; what it knows of the outline is used, and kept there.
+        Of the layer's domain, at any points; what it knows of the outline is used, and kept there.
     """
 
     def __init__(self, clip: Clip, variant: Variant, sampler: PoseSampler) -> None:
@@ -60,7 +60,7 @@ class AutoPins:
 
     def frame(self, number: int, sampler: PoseSampler, time: float) -> Frame:
         """Return one of these; of a variant that makes single frames."""
-        transit, bounds = transits(self.clip)[number], self.clip.figure.bounds
+        transit, bounds = transits(self.clip)[number], self.clip.layer.bounds
         return sampler.frame_of(transit, bounds, self._variant, time, self.series(number))
 
     def series(self, number: int) -> CorrectionSeries | None:
@@ -72,12 +72,12 @@ class AutoPins:
         return self._known.known.pins_of(key, segment.poses, partial(self._solved, number, segment))
 
     def _base(self, number: int, sampler: PoseSampler) -> Inbetweens:
-        bounds = self.clip.figure.bounds
+        bounds = self.clip.layer.bounds
         return sampler.inbetweens_of(transits(self.clip)[number], bounds, self._variant)
 
     def _solved(self, number: int, segment: PinnedSegment) -> CorrectionSeries:
         corrector, sampler = self.prepare()
-        pins, bounds = self._pins(number, segment, sampler), self.clip.figure.bounds
+        pins, bounds = self._pins(number, segment, sampler), self.clip.layer.bounds
         return solve_pins(self._own_base(number), corrector, pins, bounds)
 
     def _own_base(self, number: int) -> Inbetweens:
@@ -91,23 +91,23 @@ class AutoPins:
     def prepare(self) -> tuple[PointCorrector, PoseSampler]:
         """Return what corrects the handles, and a sampler of these with the values it takes."""
         if self._prepared is None:
-            self._prepared = prepare_corrector(self.clip.figure, self._known)
+            self._prepared = prepare_corrector(self.clip.layer, self._known)
         return self._prepared
 
     def _pins(self, number: int, segment: PinnedSegment, sampler: PoseSampler) -> SegmentPins:
         """Return where the handles are wanted during a segment."""
-        clip, figure = self.clip, self.clip.figure
+        clip, layer = self.clip, self.clip.layer
         own = spans(clip)[number]
         keys = [clip.keys[index] for index in (own.first, own.last)]
         ends = [sampler.samples(key.pose).positions for key in keys]
-        slopes = np.zeros((2, len(figure.handles)), dtype=np.complex128)
+        slopes = np.zeros((2, len(layer.handles)), dtype=np.complex128)
         for side, other in enumerate(segment.beyond):
             pace = self._pace(number, side)
             if other is not None and SLOWEST < pace < np.inf:
                 # Pixels a frame there, against the velocity of the motion that has to stay.
                 away = self._velocity(other, 1 - side)
                 slopes[side] = -self._pace(other, 1 - side) * away / pace
-        anchor = figure.anchor if figure.hangs else None
+        anchor = layer.anchor if layer.hangs else None
         return SegmentPins(
             is_pinned=segment.is_pinned,
             ends=np.array(ends),
@@ -138,14 +138,14 @@ class AutoPins:
         The anchor stays more than pinned handles, these more than fading ones, and the others give
         way to all: two points of one place that are wanted apart would tear the drawing.
         """
-        figure = self.clip.figure
-        places = np.array([each.position for each in figure.handles], dtype=np.complex128)
+        layer = self.clip.layer
+        places = np.array([each.position for each in layer.handles], dtype=np.complex128)
         rank = 2 * segment.is_pinned + segment.fading.any(axis=0)
         apart = np.abs(places[:, None] - places)
         near = np.where(rank > rank[:, None], apart, np.inf).min(axis=1)
         if anchor is not None:
             near = np.minimum(near, np.abs(places - anchor))
-        return firmness_at(near / box_diagonal(figure.domain.outline))
+        return firmness_at(near / box_diagonal(layer.domain.outline))
 
 
 def firmness_at(distances: Floats) -> Floats:

@@ -18,7 +18,7 @@ class BaseMotion:
     clip : Clip
     variant : Variant
     sampler : PoseSampler
-        Of the figure's domain and anchor.
+        Of the layer's domain and anchor.
     pins : AutoPins, optional
         Of the same clip and variant.
 
@@ -48,7 +48,7 @@ class BaseMotion:
         if resting is None:
             return self.inbetweens(moment.interval).frame(moment.weight)
         positions = self.sampler.samples(resting).positions
-        fz, fzbar = self.clip.figure.map_of(resting).derivatives(self.sampler.sites.points)
+        fz, fzbar = self.clip.layer.map_of(resting).derivatives(self.sampler.sites.points)
         return Frame(positions=positions, fz=fz, fzbar=fzbar, rho=None)
 
     def at(self, frame: float) -> tuple[Inbetweens, float]:

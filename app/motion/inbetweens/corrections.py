@@ -1,7 +1,7 @@
 """The corrections of a clip's frames: springs and tracks over the motion from key to key.
 
 Each frame is worked out by itself, and known by all that it follows from, so that undo, a copied
-key and another window onto the same figure find what was made before.
+key and another window onto the same layer find what was made before.
 """
 
 import threading
@@ -44,14 +44,14 @@ class Ground(NamedTuple):
 
 
 def have_one_ground(clip: Clip, other: Clip) -> bool:
-    """Tell whether two clips of a figure differ in its tracks alone, if at all."""
+    """Tell whether two clips of a layer differ in its tracks alone, if at all."""
 
     def source(of: Clip) -> tuple[object, ...]:
-        figure = of.figure
+        layer = of.layer
         return (
-            *(figure.id, figure.domain, figure.handles, figure.keys, figure.cycles, figure.anchor),
-            *(figure.joints, figure.stillness, figure.springs, figure.variant, figure.bounds),
-            *(id(figure.stiffness), figure.bones),
+            *(layer.id, layer.domain, layer.handles, layer.keys, layer.cycles, layer.anchor),
+            *(layer.joints, layer.stillness, layer.springs, layer.variant, layer.bounds),
+            *(id(layer.stiffness), layer.bones),
             *(of.frames, of.loop, of.fps, of.baseline, of.carriers),
         )
 
@@ -60,8 +60,8 @@ def have_one_ground(clip: Clip, other: Clip) -> bool:
 
 def is_corrected(clip: Clip) -> bool:
     """Tell whether tracks or springs may change frames of a clip."""
-    figure = clip.figure
-    own = [each.enabled for each in figure.tracks] + [each.enabled for each in figure.springs]
+    layer = clip.layer
+    own = [each.enabled for each in layer.tracks] + [each.enabled for each in layer.springs]
     return clip.baseline is None and any(own)
 
 
@@ -73,9 +73,9 @@ class Corrections:
     clip : Clip
     variant : Variant
     sampler : PoseSampler
-        Of the figure's domain, at any points; what it knows of the outline is used, and kept there.
+        Of the layer's domain, at any points; what it knows of the outline is used, and kept there.
     carried : callable, optional
-        Where the figure hangs, at a frame; by itself without.
+        Where the layer hangs, at a frame; by itself without.
 
     Attributes
     ----------
@@ -85,22 +85,22 @@ class Corrections:
     def __init__(
         self, clip: Clip, variant: Variant, sampler: PoseSampler, carried: Carried | None = None
     ) -> None:
-        figure = clip.figure
+        layer = clip.layer
         self.clip, self._variant = clip, variant
         self._known, self._guard = sampler.known.corrections, sampler.known.guard
         self._lock = threading.RLock()
-        self._is_anchored = figure.hangs and figure.anchor is not None
-        self._points = np.array([each.position for each in figure.handles], dtype=np.complex128)
+        self._is_anchored = layer.hangs and layer.anchor is not None
+        self._points = np.array([each.position for each in layer.handles], dtype=np.complex128)
         pins = AutoPins(clip, variant, sampler)
-        gives = any(track.enabled and track.reach < 1.0 for track in figure.tracks)
+        gives = any(track.enabled and track.reach < 1.0 for track in layer.tracks)
         if gives:
-            outline = figure.domain.outline
+            outline = layer.domain.outline
             held = outline[np.linspace(0, len(outline), HELD, endpoint=False).astype(np.intp)]
-            self._corrector, own = prepare_corrector(figure, sampler, held)
+            self._corrector, own = prepare_corrector(layer, sampler, held)
         else:
             self._corrector, own = pins.prepare()
         stiffness = self._corrector.boundary.stiffness
-        self._of_what = self._corrector.points.tobytes(), stiffness.tobytes(), figure.bounds
+        self._of_what = self._corrector.points.tobytes(), stiffness.tobytes(), layer.bounds
         self._motion = BaseMotion(clip, variant, own, pins)
         self._own = OwnClocks(clip, carried)
 
@@ -149,12 +149,12 @@ class Corrections:
 
     def _gone(self, frame: float, base: BaseAt, wanted: Wanted) -> SolvedTracks:
         """Return the correction by which handles go their own ways."""
-        targets, bounds = self._targets(base, wanted), self.clip.figure.bounds
+        targets, bounds = self._targets(base, wanted), self.clip.layer.bounds
 
         def solve() -> SolvedTracks:
             inbetweens, time = self._motion.at(frame)
             found = correct_frame(inbetweens, self._corrector, base, time, targets, bounds)
-            handles = self.clip.figure.handles
+            handles = self.clip.layer.handles
             tracked = [i for i, handle in enumerate(handles) if handle.id in wanted.tracked]
             reached = Extremes(*found.reached)
             return SolvedTracks(
@@ -177,7 +177,7 @@ class Corrections:
         size = self._corrector.boundary.size
         weights = np.where(wanted.is_own, 1.0, self._away_from(self._points[wanted.is_own]))
         if self._is_anchored:
-            weights = weights * self._away_from(np.array([self.clip.figure.anchor]))
+            weights = weights * self._away_from(np.array([self.clip.layer.anchor]))
         # The rest of the outline is held the more, the less far a track reaches.
         held = HELD_BY * (1.0 - wanted.reach) ** 2
         give = more * size**2 / max(held, LEAST_HELD)

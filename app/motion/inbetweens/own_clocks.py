@@ -1,4 +1,4 @@
-"""Where springs and tracks want their handles at a frame, over the motion of the figure."""
+"""Where springs and tracks want their handles at a frame, over the motion of the layer."""
 
 from typing import NamedTuple
 
@@ -42,19 +42,19 @@ class OwnClocks:
     ----------
     clip : Clip
     carried : callable, optional
-        Where the figure hangs, at a frame; by itself without.
+        Where the layer hangs, at a frame; by itself without.
     """
 
     def __init__(self, clip: Clip, carried: Carried | None = None) -> None:
-        figure = clip.figure
+        layer = clip.layer
         self._clip, self._carried = clip, carried
         self._swings = Swings(clip, carried)
-        self._index = {handle.id: number for number, handle in enumerate(figure.handles)}
-        self._tracks = [track for track in figure.tracks if track.enabled]
+        self._index = {handle.id: number for number, handle in enumerate(layer.handles)}
+        self._tracks = [track for track in layer.tracks if track.enabled]
         # Tracks and springs hold their handles also before they move them: no jump as they begin.
         own = [identity for track in self._tracks for identity in track.handles]
         own += [spring.handle for spring in self._swings.springs]
-        self._is_own = np.zeros(len(figure.handles), np.bool_)
+        self._is_own = np.zeros(len(layer.handles), np.bool_)
         self._is_own[[self._index[identity] for identity in own]] = True
 
     def with_tracks(self, clip: Clip) -> "OwnClocks":

@@ -9,17 +9,17 @@ Pair = tuple[object, ...]
 
 def pair_of(clip: Clip, interval: int, variant: Variant | None = None) -> Pair:
     """Return the key by which the in-betweens of one of a clip's intervals are known."""
-    transit, figure = transits(clip)[interval], clip.figure
+    transit, layer = transits(clip)[interval], clip.layer
     # As numbers, which are hashed far sooner than the dataclass.
-    bounds = (figure.bounds.k, figure.bounds.sigma_a, figure.bounds.sigma_b)
+    bounds = (layer.bounds.k, layer.bounds.sigma_a, layer.bounds.sigma_b)
     maps = [identity for key in transit.keys for identity in (id(key.pose.phi), id(key.pose.psi))]
     joined = (transit.start, transit.end, transit.apart, bounds) if transit.is_joined else ()
     if clip.baseline is None:
         pinned = pinned_segments(clip)[interval]
         pins = () if pinned is None else (pinned.content,)
-        return *maps, *transit.turns, *joined, figure.anchor, variant or figure.variant, *pins
-    rest = (bounds, tuple(handle.position for handle in figure.handles), clip.frames)
-    return *maps, *transit.turns, *joined, figure.anchor, clip.baseline, *rest
+        return *maps, *transit.turns, *joined, layer.anchor, variant or layer.variant, *pins
+    rest = (bounds, tuple(handle.position for handle in layer.handles), clip.frames)
+    return *maps, *transit.turns, *joined, layer.anchor, clip.baseline, *rest
 
 
 def poses_of(clip: Clip, interval: int) -> tuple[Pose, ...]:

@@ -7,7 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
-from app.document import Figure, Pose, Transit, Variant, stiffened
+from app.document import Layer, Pose, Transit, Variant, stiffened
 from app.errors import tell
 from app.motion.inbetweens.content_cache import ContentCache, digest
 from app.motion.inbetweens.correction import SolvedTracks
@@ -65,26 +65,26 @@ def corrector_for(boundary: Boundary, anchor: complex, points: Complexes) -> Poi
 
 
 def prepare_corrector(
-    figure: Figure, sibling: "PoseSampler", more: Complexes | None = None
+    layer: Layer, sibling: "PoseSampler", more: Complexes | None = None
 ) -> tuple[PointCorrector, "PoseSampler"]:
-    """Return what corrects a figure's handles, and a sampler of these with the values it takes.
+    """Return what corrects a layer's handles, and a sampler of these with the values it takes.
 
     Parameters
     ----------
-    figure : Figure
+    layer : Layer
     sibling : PoseSampler
         Of its outline, cage and anchor.
     more : complex128, shape (p,), optional
         Further points that are corrected, after the handles.
     """
     sites = sibling.sites
-    points = np.array([each.position for each in figure.handles], dtype=np.complex128)
+    points = np.array([each.position for each in layer.handles], dtype=np.complex128)
     if more is not None:
         points = np.append(points, more)
-    corrector = corrector_for(stiffened(figure, sites.boundary), sites.anchor, points)
+    corrector = corrector_for(stiffened(layer, sites.boundary), sites.anchor, points)
     sampler = PoseSampler(
-        figure.domain,
-        anchor=figure.anchor,
+        layer.domain,
+        anchor=layer.anchor,
         points=points,
         values_at=value_points_for_corrections(corrector),
         sibling=sibling,
@@ -239,7 +239,7 @@ class PoseSampler:
             return self._extension
 
     def forget_extension(self) -> None:
-        """Let go of the transform at the nodes, most of what a figure takes that is not edited."""
+        """Let go of the transform at the nodes, most of what a layer takes that is not edited."""
         with self._extension_lock:
             self._extension, self.extension_bytes = None, 0
         _SAMPLED.forget(("extension", *self._content))

@@ -11,15 +11,15 @@ from engine.arrays import Complexes
 from engine.geometry import HERE, RigidMotion, box_diagonal
 from engine.geometry.kinematics import FADE, Swing, frames_to_settle, swing, turn_arm
 
-FARTHEST_SWING: Final = 0.3  # of the figure's diagonal
+FARTHEST_SWING: Final = 0.3  # of the layer's diagonal
 PIECE: Final = 64  # frames of a swing, at least
 KEPT_PIECES: Final = 1_024
 KEPT_PLACES: Final = 2**14
 Key = TypeVar("Key")
 Value = TypeVar("Value")
-# Where a figure is that hangs on others, at a frame.
+# Where a layer is that hangs on others, at a frame.
 Carried = Callable[[float], RigidMotion]
-# Where the handles (h,) of a figure are, at a frame.
+# Where the handles (h,) of a layer are, at a frame.
 PlacesAt = Callable[[float], Complexes]
 
 
@@ -53,9 +53,9 @@ class Swings:
 
     def __init__(self, clip: Clip, carried: Carried | None) -> None:
         self._clip, self._carried = clip, carried
-        self.springs = tuple(spring for spring in clip.figure.springs if spring.enabled)
-        self._index = {handle.id: number for number, handle in enumerate(clip.figure.handles)}
-        roots = {spring.handle: root_of(clip.figure, spring) for spring in self.springs}
+        self.springs = tuple(spring for spring in clip.layer.springs if spring.enabled)
+        self._index = {handle.id: number for number, handle in enumerate(clip.layer.handles)}
+        roots = {spring.handle: root_of(clip.layer, spring) for spring in self.springs}
         self.roots = {i: self._index[root] for i, root in roots.items() if root is not None}
         self._count = clip.frames.last - clip.frames.first + 1
         self._settling = {
@@ -69,7 +69,7 @@ class Swings:
         self._places: dict[object, Complexes] = {}
 
     def offset(self, spring: Spring, frame: float, places: Complexes, at: PlacesAt) -> complex:
-        """Return by how much a spring moves its handle at a frame, on the figure by itself.
+        """Return by how much a spring moves its handle at a frame, on the layer by itself.
 
         Parameters
         ----------
@@ -130,7 +130,7 @@ class Swings:
             frequency=spring.frequency,
             damping=spring.damping,
             strength=spring.strength,
-            limit=FARTHEST_SWING * box_diagonal(clip.figure.domain.outline),
+            limit=FARTHEST_SWING * box_diagonal(clip.layer.domain.outline),
             loop=loop,
         )
         return swung(), None if root is None else swung(roots=places[root])

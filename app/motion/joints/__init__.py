@@ -1,7 +1,7 @@
-"""Where figures that hang on others are, at any time.
+"""Where layers that hang on others are, at any time.
 
-In: documents, and what is known of their figures' motion.
-Out: rigid motions, after which a figure is in the scene; joints by which nothing moves.
+In: documents, and what is known of their layers' motion.
+Out: rigid motions, after which a layer is in the scene; joints by which nothing moves.
 Imports: `app.document`, `app.motion.inbetweens`, `app.motion.tracing`.
 """
 

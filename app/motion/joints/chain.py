@@ -1,38 +1,38 @@
-"""From the figures that carry to the one that hangs on them, by joints."""
+"""From the layers that carry to the one that hangs on them, by joints."""
 
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from app.document import Attachment, Document, Figure, movement_at
+from app.document import Attachment, Document, Layer, movement_at
 from engine.geometry import HERE, RigidMotion
 
 
 class Hinge(NamedTuple):
-    """Where a point of a figure by itself is, and by what the figure turns there."""
+    """Where a point of a layer by itself is, and by what the layer turns there."""
 
     place: complex
     turn: complex  # of modulus 1
 
 
 class Hanging(NamedTuple):
-    """A figure, and the joint by which it hangs at a time; None where it never hung before."""
+    """A layer, and the joint by which it hangs at a time; None where it never hung before."""
 
-    figure: Figure
+    layer: Layer
     joint: Attachment | None
     # By which it moves by itself: not while it hangs, and from where it was when it was let go.
     movement: RigidMotion
 
 
 def chain_of(
-    document: Document, figure: int, frame: float, *, before: bool = False
+    document: Document, layer: int, frame: float, *, before: bool = False
 ) -> tuple[Hanging, ...]:
-    """Return the links from a figure, by its id, to the one that all hangs on at a frame.
+    """Return the links from a layer, by its id, to the one that all hangs on at a frame.
 
     As they are from the frame on, or just before it.
     """
-    chain = document.carriers(figure, frame, before=before)
+    chain = document.carriers(layer, frame, before=before)
     at = document.in_time(frame)
     links = []
     for each in chain:
@@ -47,19 +47,19 @@ def chain_of(
 
 def along(
     chain: Sequence[Hanging],
-    hinge: Callable[[Figure, complex], Hinge],
-    kept: Callable[[Figure, Attachment], RigidMotion],
+    hinge: Callable[[Layer, complex], Hinge],
+    kept: Callable[[Layer, Attachment], RigidMotion],
 ) -> RigidMotion:
-    """Return where a figure is that hangs on a chain of others.
+    """Return where a layer is that hangs on a chain of others.
 
     Parameters
     ----------
     chain : sequence of Hanging
-        The figure, the one that it hangs on, and so on.
+        The layer, the one that it hangs on, and so on.
     hinge : callable
-        Returns how a point of a figure is moved and turned, the figure by itself.
+        Returns how a point of a layer is moved and turned, the layer by itself.
     kept : callable
-        Returns how a figure is held by a joint that keeps its place: turned and moved beside the
+        Returns how a layer is held by a joint that keeps its place: turned and moved beside the
         point of the parent, or where it was let go.
     """
     last, released, placement = chain[-1]
@@ -78,29 +78,29 @@ def along(
 
 
 def _held(joint: Attachment) -> RigidMotion:
-    """Return how a figure is held by a joint: turned and moved beside the point of the parent."""
+    """Return how a layer is held by a joint: turned and moved beside the point of the parent."""
     return RigidMotion(complex(np.exp(-1j * joint.rest)) if joint.turns else 1.0, joint.offset)
 
 
 def between(
-    figure: Figure, joint: Attachment, first: RigidMotion, last: RigidMotion, share: float
+    layer: Layer, joint: Attachment, first: RigidMotion, last: RigidMotion, share: float
 ) -> RigidMotion:
-    """Return how a joint holds a figure on the way from one way of holding it to another."""
+    """Return how a joint holds a layer on the way from one way of holding it to another."""
     factor = first.factor * np.exp(1j * share * np.angle(last.factor / first.factor))
     # What is let go is held by its anchor, too, as what hangs on something is.
-    anchor = require_anchor(figure) if joint.to is None else 0j
+    anchor = require_anchor(layer) if joint.to is None else 0j
     place, end = (held.factor * anchor + held.shift for held in (first, last))
     place += share * (end - place)
     return RigidMotion(complex(factor), complex(place - factor * anchor))
 
 
 def hinge_at(position: complex, fz: complex) -> Hinge:
-    """Return where a point is and how the figure is turned there, by f and f_z."""
+    """Return where a point is and how the layer is turned there, by f and f_z."""
     return Hinge(complex(position), complex(fz / abs(fz)))
 
 
-def require_anchor(figure: Figure) -> complex:
-    """Return the anchor of a figure that is attached."""
-    if figure.anchor is None:
-        raise ValueError("a figure that is attached has an anchor")
-    return figure.anchor
+def require_anchor(layer: Layer) -> complex:
+    """Return the anchor of a layer that is attached."""
+    if layer.anchor is None:
+        raise ValueError("a layer that is attached has an anchor")
+    return layer.anchor

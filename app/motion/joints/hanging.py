@@ -1,8 +1,8 @@
-"""The joint by which a figure comes to hang on another one so that nothing moves."""
+"""The joint by which a layer comes to hang on another one so that nothing moves."""
 
 import numpy as np
 
-from app.document import Attachment, Figure
+from app.document import Attachment, Layer
 from app.errors import LissomError
 from app.motion.joints.chain import Hinge, hinge_at
 from app.motion.joints.joints import Joints
@@ -13,7 +13,7 @@ from engine.interpolation import Frame
 
 # Newton steps towards the point of a parent that is at a place; each squares the error.
 MOST_STEPS = 20
-CLOSE = 1e-12  # of the figure's size
+CLOSE = 1e-12  # of the layer's size
 MOST_STARTS = 2_000  # triangles among which the nearest one is where the search begins
 
 
@@ -26,14 +26,14 @@ def hang(
     place: complex | None = None,
     turns: bool,
 ) -> tuple[complex, Attachment]:
-    """Return the anchor and the joint by which a figure hangs so that nothing moves now.
+    """Return the anchor and the joint by which a layer hangs so that nothing moves now.
 
     Parameters
     ----------
     joints : Joints
         As they were before.
     child, parent : int
-        Ids of figures.
+        Ids of layers.
     frame : float
         Where nothing moves. The joint holds as long as the one that holds there now, or always.
     place : complex, optional
@@ -54,7 +54,7 @@ def hang(
     LissomError
         If the child is not at that place.
     """
-    own, other = joints.document.figure(child), joints.document.figure(parent)
+    own, other = joints.document.layer(child), joints.document.layer(parent)
     held = own.keyed_joint(int(frame))
     here, there = joints.placement(child, frame), joints.placement(parent, frame)
     if place is None:
@@ -77,41 +77,41 @@ def hang(
 
 
 def hand_over(joints: Joints, child: int, parent: int, frame: int, *, turns: bool) -> Attachment:
-    """Return the joint by which a figure goes on with another one from where it is at a frame.
+    """Return the joint by which a layer goes on with another one from where it is at a frame.
 
-    It is at the point of that one which is nearest to the figure's anchor then.
+    It is at the point of that one which is nearest to the layer's anchor then.
     """
-    own, other = joints.document.figure(child), joints.document.figure(parent)
+    own, other = joints.document.layer(child), joints.document.layer(parent)
     here, there = joints.placement(child, frame, before=True), joints.placement(parent, frame)
     place = here.on(np.array([_hinge(joints, own, anchor_of(own), frame).place]))[0]
     at, _ = _point_near(joints, other, there.back(complex(place)), frame)
     return Attachment(to=parent, at=at, turns=turns, frame=frame, keeps=True)
 
 
-def anchor_of(figure: Figure) -> complex:
-    """Return the anchor of a figure, or where it would be."""
-    if figure.anchor is not None:
-        return figure.anchor
-    return deepest_point(figure.domain.outline, figure.domain.loops[1:])
+def anchor_of(layer: Layer) -> complex:
+    """Return the anchor of a layer, or where it would be."""
+    if layer.anchor is not None:
+        return layer.anchor
+    return deepest_point(layer.domain.outline, layer.domain.loops[1:])
 
 
-def _moved(joints: Joints, figure: Figure, points: Complexes, frame: float) -> Frame:
-    return joints.animation(figure.id, points).frame(frame)
+def _moved(joints: Joints, layer: Layer, points: Complexes, frame: float) -> Frame:
+    return joints.animation(layer.id, points).frame(frame)
 
 
-def _hinge(joints: Joints, figure: Figure, place: complex, frame: float) -> Hinge:
-    moved = _moved(joints, figure, np.array([place]), frame)
+def _hinge(joints: Joints, layer: Layer, place: complex, frame: float) -> Hinge:
+    moved = _moved(joints, layer, np.array([place]), frame)
     return hinge_at(moved.positions[0], moved.fz[0])
 
 
-def _middles(figure: Figure) -> Complexes:
-    """Return points all over a figure at rest."""
-    mesh = figure.domain.mesh
+def _middles(layer: Layer) -> Complexes:
+    """Return points all over a layer at rest."""
+    mesh = layer.domain.mesh
     middles: Complexes = mesh.vertices[mesh.triangles].mean(axis=1)
     return middles[:: max(1, len(middles) // MOST_STARTS)]
 
 
-def _common_point(joints: Joints, child: Figure, parent: Figure, frame: float) -> complex:
+def _common_point(joints: Joints, child: Layer, parent: Layer, frame: float) -> complex:
     """Return the child's anchor if it is in the parent, else a point of it that is in both."""
     anchor = anchor_of(child)
     points = np.array([anchor, *_middles(child)])
@@ -127,31 +127,31 @@ def _common_point(joints: Joints, child: Figure, parent: Figure, frame: float) -
 
 
 def _point_near(
-    joints: Joints, figure: Figure, place: complex, frame: float
+    joints: Joints, layer: Layer, place: complex, frame: float
 ) -> tuple[complex, complex]:
-    """Return the point of a figure at rest that is at a place, or is nearest to it.
+    """Return the point of a layer at rest that is at a place, or is nearest to it.
 
-    Also how far the place is from there; 0 where it is on the figure. All in the figure's own
+    Also how far the place is from there; 0 where it is on the layer. All in the layer's own
     terms.
     """
     try:
-        return _source(joints, figure, place, frame), 0j
+        return _source(joints, layer, place, frame), 0j
     except LissomError:
-        points = _middles(figure)
-        moved = _moved(joints, figure, points, frame).positions
+        points = _middles(layer)
+        moved = _moved(joints, layer, points, frame).positions
         nearest = np.argmin(np.abs(moved - place))
         return complex(points[nearest]), complex(place - moved[nearest])
 
 
-def _source(joints: Joints, figure: Figure, place: complex, frame: float) -> complex:
-    """Return the point of a figure at rest that is at a place, in the figure's own terms."""
-    middles = _middles(figure)
-    moved = _moved(joints, figure, middles, frame)
+def _source(joints: Joints, layer: Layer, place: complex, frame: float) -> complex:
+    """Return the point of a layer at rest that is at a place, in the layer's own terms."""
+    middles = _middles(layer)
+    moved = _moved(joints, layer, middles, frame)
     source = complex(middles[np.argmin(np.abs(moved.positions - place))])
-    size = box_diagonal(figure.domain.outline)
+    size = box_diagonal(layer.domain.outline)
     for _ in range(MOST_STEPS):
         try:
-            at = _moved(joints, figure, np.array([source]), frame)
+            at = _moved(joints, layer, np.array([source]), frame)
         except EngineError:
             break  # outside
         away = place - complex(at.positions[0])
@@ -161,6 +161,6 @@ def _source(joints: Joints, figure: Figure, place: complex, frame: float) -> com
         area = abs(fz) ** 2 - abs(fzbar) ** 2
         source += (fz.conjugate() * away - fzbar * away.conjugate()) / area
     raise LissomError(
-        f"There is nothing of {figure.name!r} at ({place.real:.0f}, {place.imag:.0f}); put its "
+        f"There is nothing of {layer.name!r} at ({place.real:.0f}, {place.imag:.0f}); put its "
         "anchor on it."
     )

@@ -1,11 +1,11 @@
-"""Where figures that hang on others are, at any time (Section 7, "a user curve for the anchor")."""
+"""Where layers that hang on others are, at any time (Section 7, "a user curve for the anchor")."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from functools import partial
 
 import numpy as np
 
-from app.document import Attachment, Document, Figure, Pose, clip_of
+from app.document import Attachment, Document, Layer, Pose, clip_of
 from app.motion.inbetweens import Animation, Carried, PoseSampler
 from app.motion.joints.chain import (
     Hinge,
@@ -19,7 +19,7 @@ from app.motion.tracing import TrackedPoints
 from engine.arrays import Complexes
 from engine.geometry import RigidMotion
 
-# Frames of figures that the worker works out before it looks for more urgent work, about a
+# Frames of layers that the worker works out before it looks for more urgent work, about a
 # millisecond each, and those that it looks at.
 BATCH, MOST_LOOKED_AT = 60, 5_000
 
@@ -27,13 +27,13 @@ BATCH, MOST_LOOKED_AT = 60, 5_000
 class Joints:
     """The joints of a document, at any time.
 
-    A figure hangs by its anchor: it is turned around it and moved, and nothing else, so that it is
+    A layer hangs by its anchor: it is turned around it and moved, and nothing else, so that it is
     exactly as distorted as by itself and the joint never opens.
 
     Parameters
     ----------
     siblings : mapping of int to PoseSampler
-        By the ids of figures; what they know of outlines is used again.
+        By the ids of layers; what they know of outlines is used again.
     earlier : Joints, optional
         Of an earlier document; what is still true of it is used again.
 
@@ -41,7 +41,7 @@ class Joints:
     ----------
     document : Document
     points : dict of int to list of complex
-        Of each figure, those by which it hangs, or others hang on it.
+        Of each layer, those by which it hangs, or others hang on it.
     tracked : dict of int to TrackedPoints
         The same over time.
     is_whole : bool
@@ -50,7 +50,7 @@ class Joints:
     Raises
     ------
     EngineError
-        If a joint or an anchor lies outside its figure.
+        If a joint or an anchor lies outside its layer.
     """
 
     def __init__(
@@ -65,14 +65,14 @@ class Joints:
         known = {} if earlier is None else earlier.tracked
         siblings = siblings or {}
         self.tracked: dict[int, TrackedPoints] = {
-            figure: TrackedPoints(
-                clip_of(document, figure),
+            layer: TrackedPoints(
+                clip_of(document, layer),
                 np.array(points),
-                siblings.get(figure),
-                known.get(figure),
-                partial(self.carried, figure),
+                siblings.get(layer),
+                known.get(layer),
+                partial(self.carried, layer),
             )
-            for figure, points in self.points.items()
+            for layer, points in self.points.items()
             if points
         }
         self._siblings = siblings
@@ -82,128 +82,128 @@ class Joints:
 
     @property
     def worked_out(self) -> int:
-        """How many frames of figures had to be worked out, because nothing was known of them."""
+        """How many frames of layers had to be worked out, because nothing was known of them."""
         return sum(each.worked_out for each in self.tracked.values())
 
     def placement(
         self,
-        figure: int,
+        layer: int,
         frame: float,
         poses: Mapping[int, Pose] | None = None,
         *,
         before: bool = False,
     ) -> RigidMotion:
-        """Return where a figure, by its id, is at a frame.
+        """Return where a layer, by its id, is at a frame.
 
         Parameters
         ----------
-        figure : int
+        layer : int
         frame : float
         poses : mapping of int to Pose, optional
-            Shown instead of what the figures with these ids have at the frame.
+            Shown instead of what the layers with these ids have at the frame.
         before : bool
             Whether joints that begin to hold at the frame do not count yet.
         """
         if poses:
-            return self._work_out(figure, frame, poses, before=before)
-        known = figure, frame, before
+            return self._work_out(layer, frame, poses, before=before)
+        known = layer, frame, before
         if known not in self._placements:
-            self._placements[known] = self._work_out(figure, frame, {}, before=before)
+            self._placements[known] = self._work_out(layer, frame, {}, before=before)
         return self._placements[known]
 
     def _work_out(
-        self, figure: int, frame: float, poses: Mapping[int, Pose], *, before: bool
+        self, layer: int, frame: float, poses: Mapping[int, Pose], *, before: bool
     ) -> RigidMotion:
-        chain = chain_of(self.document, figure, frame, before=before)
+        chain = chain_of(self.document, layer, frame, before=before)
         kept = partial(self.kept, frame=frame)
         return along(chain, partial(self._joint, frame=frame, poses=poses), kept)
 
-    def kept(self, figure: Figure, joint: Attachment, frame: float) -> RigidMotion:
-        """Return how a figure is held at a frame by a joint of the document that keeps its place.
+    def kept(self, layer: Layer, joint: Attachment, frame: float) -> RigidMotion:
+        """Return how a layer is held at a frame by a joint of the document that keeps its place.
 
         One that leads goes over to what the next joint wants, from rest and to rest.
         """
-        begun = self._keep(figure, joint, joint.kept_from, before=True)
+        begun = self._keep(layer, joint, joint.kept_from, before=True)
         at = self.document.in_time(frame)
-        until = self._leads_until(figure, joint) if joint.leads and at > joint.frame else None
+        until = self._leads_until(layer, joint) if joint.leads and at > joint.frame else None
         if until is None:
             return begun
         share = min((at - joint.frame) / (until - joint.frame), 1.0)
-        wanted = self._keep(figure, joint, self._in_scene(figure, until), before=False)
-        return between(figure, joint, begun, wanted, share * share * (3 - 2 * share))
+        wanted = self._keep(layer, joint, self._in_scene(layer, until), before=False)
+        return between(layer, joint, begun, wanted, share * share * (3 - 2 * share))
 
-    def _leads_until(self, figure: Figure, joint: Attachment) -> int | None:
+    def _leads_until(self, layer: Layer, joint: Attachment) -> int | None:
         """Return the frame at which the next joint begins; None where that follows from this one.
 
-        So it is where it keeps what is there then, or hangs on what hangs on the figure at times.
+        So it is where it keeps what is there then, or hangs on what hangs on the layer at times.
         """
-        joints = self.document.joints_of(figure)
+        joints = self.document.joints_of(layer)
         after = next((each for each in joints if each.frame > joint.frame), None)
         if after is None or (after.keeps and after.kept_from > joint.kept_from):
             return None
         if after.to is not None:
-            parent = self.document.figure(after.to)
-            if figure in (parent, *self.document.all_carriers(parent.id)):
+            parent = self.document.layer(after.to)
+            if layer in (parent, *self.document.all_carriers(parent.id)):
                 return None
         return after.frame
 
-    def _in_scene(self, figure: Figure, until: int) -> int:
+    def _in_scene(self, layer: Layer, until: int) -> int:
         """Return the frame at which a repeat begins, or another such where the scene ends before.
 
         There all is as it would be then.
         """
-        cycle, last = figure.cycle_at(until), self.document.frames.last
+        cycle, last = layer.cycle_at(until), self.document.frames.last
         if cycle is None or until <= last:
             return until
         return until - cycle.period * -(-(until - last) // cycle.period)
 
-    def _keep(self, figure: Figure, joint: Attachment, frame: int, *, before: bool) -> RigidMotion:
-        """Return how a joint holds a figure that is where it is just before a frame, or at it."""
-        known = figure.id, joint, frame
+    def _keep(self, layer: Layer, joint: Attachment, frame: int, *, before: bool) -> RigidMotion:
+        """Return how a joint holds a layer that is where it is just before a frame, or at it."""
+        known = layer.id, joint, frame
         if known not in self._kept:
-            self._kept[known] = self._found(figure, joint, frame, before=before)
+            self._kept[known] = self._found(layer, joint, frame, before=before)
         return self._kept[known]
 
-    def _found(self, figure: Figure, joint: Attachment, frame: int, *, before: bool) -> RigidMotion:
-        hinge = partial(self._seen_from, figure.id, frame=frame)
+    def _found(self, layer: Layer, joint: Attachment, frame: int, *, before: bool) -> RigidMotion:
+        hinge = partial(self._seen_from, layer.id, frame=frame)
         kept = partial(self.kept, frame=frame)
-        here = along(chain_of(self.document, figure.id, frame, before=before), hinge, kept)
+        here = along(chain_of(self.document, layer.id, frame, before=before), hinge, kept)
         if joint.to is None:
-            by = chain_of(self.document, figure.id, frame, before=True)[-1].movement
+            by = chain_of(self.document, layer.id, frame, before=True)[-1].movement
             return here if before else by.inverse.after(here)
         there = along(chain_of(self.document, joint.to, frame, before=not before), hinge, kept)
-        at = hinge(self.document.figure(joint.to), joint.at)
-        own = hinge(figure, require_anchor(figure))
+        at = hinge(self.document.layer(joint.to), joint.at)
+        own = hinge(layer, require_anchor(layer))
         turn = there.factor * at.turn if joint.turns else 1.0
         away = here.factor * own.place + here.shift - (there.factor * at.place + there.shift)
         return RigidMotion(complex(here.factor / turn), complex(away / turn))
 
-    def carried(self, figure: int, frame: float) -> RigidMotion:
-        """Return where a figure hangs, but for what is corrected of itself.
+    def carried(self, layer: int, frame: float) -> RigidMotion:
+        """Return where a layer hangs, but for what is corrected of itself.
 
         That leaves its anchor in place and does not turn it.
         """
-        hinge = partial(self._seen_from, figure, frame=frame)
+        hinge = partial(self._seen_from, layer, frame=frame)
         kept = partial(self.kept, frame=frame)
-        return along(chain_of(self.document, figure, frame), hinge, kept)
+        return along(chain_of(self.document, layer, frame), hinge, kept)
 
-    def _seen_from(self, figure: int, each: Figure, place: complex, frame: float) -> Hinge:
-        """Return where a point of a figure is for another one that follows from it.
+    def _seen_from(self, layer: int, each: Layer, place: complex, frame: float) -> Hinge:
+        """Return where a point of a layer is for another one that follows from it.
 
         What is corrected does not count where it may follow from the other one in turn: of that one
         itself, and of what hangs on it at other times.
         """
         others = (each, *self.document.all_carriers(each.id))
-        if all(other.id != figure for other in others):
+        if all(other.id != layer for other in others):
             return self._joint(each, place, frame, {})
         index = self.points[each.id].index(place)
         found = self.tracked[each.id].base_at(frame)
         return hinge_at(found.positions[index], found.fz[index])
 
-    def animation(self, figure: int, points: Complexes) -> Animation:
-        """Return the motion of some points (m,) of a figure, by its id, by itself."""
-        carried = partial(self.carried, figure)
-        return animation_at(self.document, figure, points, self._siblings, carried)
+    def animation(self, layer: int, points: Complexes) -> Animation:
+        """Return the motion of some points (m,) of a layer, by its id, by itself."""
+        carried = partial(self.carried, layer)
+        return animation_at(self.document, layer, points, self._siblings, carried)
 
     def advance(self) -> "Joints":
         """Go through some frames, so that asking for them takes no time."""
@@ -216,7 +216,7 @@ class Joints:
         return self
 
     def _through(self) -> Iterator[tuple[int, TrackedPoints]]:
-        """Yield all frames of one figure after the other: they are found with much."""
+        """Yield all frames of one layer after the other: they are found with much."""
         frames = self.document.frames
         for tracked in self.tracked.values():
             for frame in range(frames.first, frames.last + 1):
@@ -224,23 +224,23 @@ class Joints:
             tracked.rest()
 
     def _joint(
-        self, figure: Figure, place: complex, frame: float, poses: Mapping[int, Pose]
+        self, layer: Layer, place: complex, frame: float, poses: Mapping[int, Pose]
     ) -> Hinge:
-        if figure.id in poses:
-            return _hinge_of(figure, poses[figure.id], place)
-        index = self.points[figure.id].index(place)
-        moved = self.tracked[figure.id].at(frame)
+        if layer.id in poses:
+            return _hinge_of(layer, poses[layer.id], place)
+        index = self.points[layer.id].index(place)
+        moved = self.tracked[layer.id].at(frame)
         return hinge_at(moved.positions[index], moved.fz[index])
 
 
 def carried_in(
-    document: Document, figure: int, siblings: Mapping[int, PoseSampler] | None = None
+    document: Document, layer: int, siblings: Mapping[int, PoseSampler] | None = None
 ) -> Carried | None:
-    """Return what tells where a figure of a document is moved; None where it is at no time."""
-    own = document.figure(figure)
+    """Return what tells where a layer of a document is moved; None where it is at no time."""
+    own = document.layer(layer)
     if not (own.hangs or own.movement):
         return None
-    return partial(Joints(document, siblings).carried, figure)
+    return partial(Joints(document, siblings).carried, layer)
 
 
 def animation_at(
@@ -250,25 +250,25 @@ def animation_at(
     siblings: Mapping[int, PoseSampler],
     carried: Carried | None,
 ) -> Animation:
-    """Return the motion of some points (m,) of a figure of a document, which may be carried."""
-    figure = document.figure(identity)
+    """Return the motion of some points (m,) of a layer of a document, which may be carried."""
+    layer = document.layer(identity)
     sampler = PoseSampler(
-        figure.domain, anchor=figure.anchor, points=points, sibling=siblings.get(identity)
+        layer.domain, anchor=layer.anchor, points=points, sibling=siblings.get(identity)
     )
     return Animation(clip_of(document, identity), sampler=sampler, carried=carried)
 
 
 class HungAnimation:
-    """The motion of a figure by itself, brought to where the joints of its scene have it."""
+    """The motion of a layer by itself, brought to where the joints of its scene have it."""
 
     def __init__(self, animation: Animation, joints: Joints) -> None:
         self._animation = animation
-        animation.carried = partial(joints.carried, animation.clip.figure.id)
+        animation.carried = partial(joints.carried, animation.clip.layer.id)
         self._joints = joints
 
     def positions(self, frame: float) -> Complexes:
         """Return where the points (m,) are at a frame, which may lie between two numbers."""
-        placement = self._joints.placement(self._animation.clip.figure.id, frame)
+        placement = self._joints.placement(self._animation.clip.layer.id, frame)
         return placement.on(self._animation.positions(frame))
 
 
@@ -276,7 +276,7 @@ def joints_source(document: Document) -> tuple[object, ...]:
     """Return all of a document that its joints depend on; empty where nothing hangs."""
     involved = [
         each
-        for child in document.figures
+        for child in document.layers
         if child.joints
         for each in (child, *document.all_carriers(child.id))
     ]
@@ -286,24 +286,24 @@ def joints_source(document: Document) -> tuple[object, ...]:
 def hung_animations(
     animations: Iterable[Animation], document: Document
 ) -> dict[int, HungAnimation]:
-    """Return the animations of a document's figures where its scene has them, by their ids."""
-    own = {animation.clip.figure.id: animation for animation in animations}
+    """Return the animations of a document's layers where its scene has them, by their ids."""
+    own = {animation.clip.layer.id: animation for animation in animations}
     joints = Joints(document, {identity: each.sampler for identity, each in own.items()})
     return {identity: HungAnimation(each, joints) for identity, each in own.items()}
 
 
 def _points(document: Document) -> dict[int, list[complex]]:
-    """Return the points of each figure by which it hangs, or others hang on it."""
-    points: dict[int, list[complex]] = {figure.id: [] for figure in document.figures}
-    for figure in document.figures:
-        if figure.joints:
-            points[figure.id].append(require_anchor(figure))
-        for joint in figure.joints:
+    """Return the points of each layer by which it hangs, or others hang on it."""
+    points: dict[int, list[complex]] = {layer.id: [] for layer in document.layers}
+    for layer in document.layers:
+        if layer.joints:
+            points[layer.id].append(require_anchor(layer))
+        for joint in layer.joints:
             if joint.to is not None:
                 points[joint.to].append(joint.at)
     return points
 
 
-def _hinge_of(figure: Figure, pose: Pose, place: complex) -> Hinge:
-    f, at = figure.map_of(pose), np.array([place])
+def _hinge_of(layer: Layer, pose: Pose, place: complex) -> Hinge:
+    f, at = layer.map_of(pose), np.array([place])
     return hinge_at(f(at)[0], f.derivatives(at)[0][0])

@@ -1,4 +1,4 @@
-"""A few points of a figure over time, and the paths of its handles.
+"""A few points of a layer over time, and the paths of its handles.
 
 In: a clip and points.
 Out: where they are in every frame, each worked out once.

@@ -1,4 +1,4 @@
-"""The paths along which the handles of a figure move over time."""
+"""The paths along which the handles of a layer move over time."""
 
 from dataclasses import dataclass
 
@@ -14,11 +14,11 @@ MOST = 1000  # frames that are traced; of longer animations every second, third 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class MotionPaths:
-    """Where the handles of a figure are in the frames of its clip."""
+    """Where the handles of a layer are in the frames of its clip."""
 
     clip: Clip
     frames: Indices  # intp (f,)
-    places: Complexes  # complex128 (f, h): Of each handle, on the figure by itself
+    places: Complexes  # complex128 (f, h): Of each handle, on the layer by itself
     tracked: TrackedPoints | None  # of the worker alone; None where there are no handles
 
 
@@ -37,11 +37,11 @@ def trace_paths(
     sibling : PoseSampler, optional
         With the same outline and cage; what depends on them alone is shared.
     carried : callable, optional
-        Where the figure hangs, at a frame.
+        Where the layer hangs, at a frame.
     """
     first, last = clip.frames.first, clip.frames.last
     frames = np.arange(first, last + 1, 1 + (last - first) // MOST)
-    points = np.array([handle.position for handle in clip.figure.handles], dtype=np.complex128)
+    points = np.array([handle.position for handle in clip.layer.handles], dtype=np.complex128)
     tracked, places = None, np.empty((len(frames), 0), dtype=np.complex128)
     if len(points):
         known = earlier.tracked if earlier else None

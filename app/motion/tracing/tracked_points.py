@@ -1,4 +1,4 @@
-"""A few points of a figure over time; each moment is worked out once, as long as its keys stay."""
+"""A few points of a layer over time; each moment is worked out once, as long as its keys stay."""
 
 from typing import NamedTuple
 
@@ -20,18 +20,18 @@ class TrackedFrame(NamedTuple):
 
 
 class TrackedPoints:
-    """Some points of a figure at any frame of a clip, as it is shown.
+    """Some points of a layer at any frame of a clip, as it is shown.
 
     Parameters
     ----------
     points : complex128, shape (p,)
-        Of the figure at rest; at least one.
+        Of the layer at rest; at least one.
     sibling : PoseSampler, optional
         With the same outline and cage; what it knows of them is used again.
     earlier : TrackedPoints, optional
         If it is of the same points, what it knows is used again.
     carried : callable, optional
-        Where the figure hangs, at a frame.
+        Where the layer hangs, at a frame.
 
     Attributes
     ----------
@@ -63,8 +63,8 @@ class TrackedPoints:
         self._animation: Animation | None = None
         if earlier is None:
             return
-        figure, own = earlier.clip.figure, clip.figure
-        is_same = figure.domain is own.domain and figure.anchor == own.anchor
+        layer, own = earlier.clip.layer, clip.layer
+        is_same = layer.domain is own.domain and layer.anchor == own.anchor
         if is_same and np.array_equal(points, earlier.points):
             most = REMEMBERED * (1 + clip.frames.last - clip.frames.first)
             self.sampler = earlier.sampler
@@ -103,9 +103,9 @@ class TrackedPoints:
 
     def _animate(self) -> Animation:
         if self._animation is None:
-            figure = self.clip.figure
+            layer = self.clip.layer
             sampler = self.sampler or PoseSampler(
-                figure.domain, anchor=figure.anchor, points=self.points, sibling=self._sibling
+                layer.domain, anchor=layer.anchor, points=self.points, sibling=self._sibling
             )
             self._animation = Animation(self.clip, sampler=sampler, carried=self._carried)
             self.sampler = sampler

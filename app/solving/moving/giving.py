@@ -1,4 +1,4 @@
-"""A motion on its way to a figure, key after key, as the window would solve each."""
+"""A motion on its way to a layer, key after key, as the window would solve each."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 from app.document import (
     Command,
     Document,
-    Figure,
     GivenMotion,
     Keyframe,
+    Layer,
     Pose,
     clip_of,
     find_shortfall,
@@ -33,13 +33,13 @@ SMALLEST = 0.05  # size that parameters may have
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Giving:
-    """A motion on its way to a figure.
+    """A motion on its way to a layer.
 
     Parameters
     ----------
     document : Document
         With handles at the joints, and bones.
-    before : Figure
+    before : Layer
         As it was without.
     order : MotionOrder
     body : Body
@@ -56,7 +56,7 @@ class Giving:
     """
 
     document: Document
-    before: Figure
+    before: Layer
     order: MotionOrder
     body: Body
     given: GivenMotion
@@ -114,8 +114,8 @@ class Giving:
         return (f"Some joints fall short of the motion: {told}{instead}",)
 
     @property
-    def moved(self) -> Figure:
-        """The figure with the motion, once every key is solved."""
+    def moved(self) -> Layer:
+        """The layer with the motion, once every key is solved."""
         keys = [
             Keyframe(frame=moment.frame, pose=pose)
             for moment, pose in zip(self.wanted, self.poses, strict=True)
@@ -144,28 +144,28 @@ class Giving:
 
 
 def begin_giving(document: Document, identity: int, order: MotionOrder) -> Giving:
-    """Return a motion that is on its way to a figure; nothing of it is solved yet.
+    """Return a motion that is on its way to a layer; nothing of it is solved yet.
 
     Parameters
     ----------
     document : Document
     identity : int
-        The id of the figure.
+        The id of the layer.
     order : MotionOrder
 
     Raises
     ------
     LissomError, EngineError
-        If the figure cannot be posed, a joint is not on it, or one that the motion needs is not
+        If the layer cannot be posed, a joint is not on it, or one that the motion needs is not
         there.
     """
-    before = document.figure(identity)
+    before = document.layer(identity)
     if before.still:
         raise LissomError(f"{before.name!r} stands still: there is no shape on it to be moved.")
     body = body_of(before, order)
     document, joints = with_handles_at_joints(document, identity, body, order)
     document = with_limits(document, identity, order.limits)
-    into = document.figure(identity)
+    into = document.layer(identity)
     lead_frames = lead_before(before, order.first, document.fps)
     start = order.first + lead_frames
     period = order.ready.frames(order.parameters, document.fps)
@@ -203,8 +203,8 @@ def give_on(giving: Giving) -> Giving:
     if giving.is_solved:
         return _smaller(giving)
     moment = giving.wanted[len(giving.poses)]
-    figure = giving.rig.figure
-    begin = giving.poses[-1] if giving.poses else pose_as_drawn(figure.domain, figure.handles)
+    layer = giving.rig.layer
+    begin = giving.poses[-1] if giving.poses else pose_as_drawn(layer.domain, layer.handles)
     pose = solved(giving.rig, begin, moment)
     names = {identity: name for name, identity in giving.given.joints.items()}
     short = dict(giving.short)
@@ -222,7 +222,7 @@ def solved(rig: Rig, begin: Pose, moment: JointMoment) -> Pose:
 
 def shortfalls(rig: Rig, pose: Pose) -> Mapping[int, float]:
     """Return by how many pixels handles by which a pose is held fall short, if they do."""
-    return find_shortfall(rig.figure, pose).lags
+    return find_shortfall(rig.layer, pose).lags
 
 
 def _smaller(giving: Giving) -> Giving:

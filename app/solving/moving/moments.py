@@ -3,14 +3,14 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from app.document import Figure, GivenMotion, Spring, Target
+from app.document import GivenMotion, Layer, Spring, Target
 from app.solving.moving.order import MotionOrder
 from engine.geometry.motions import Body
 from engine.maps import Bounds
 
 # How firmly feet are held, so that they do not slide: the solver misses less than 1 % of a step.
 FIRM = 1000.0
-# Poses spend so much of the figure's limits: what is between them may need a little more.
+# Poses spend so much of the layer's limits: what is between them may need a little more.
 SPENT = 0.97
 
 
@@ -53,21 +53,21 @@ def moments_of(
     ), standing
 
 
-def held_by(figure: Figure, joints: frozenset[int], feet: frozenset[int]) -> Figure:
-    """Return a figure that poses hold by its joints alone, most firmly by its feet.
+def held_by(layer: Layer, joints: frozenset[int], feet: frozenset[int]) -> Layer:
+    """Return a layer that poses hold by its joints alone, most firmly by its feet.
 
     What else has a handle goes where the body carries it, as if it followed by a spring.
     """
     handles = tuple(
-        replace(each, weight=FIRM) if each.id in feet else each for each in figure.handles
+        replace(each, weight=FIRM) if each.id in feet else each for each in layer.handles
     )
-    others = [each.id for each in figure.handles if each.id not in joints]
-    loose = [each for each in others if figure.spring_of(each) is None]
-    springs = (replace(each, enabled=True) for each in figure.springs)
+    others = [each.id for each in layer.handles if each.id not in joints]
+    loose = [each for each in others if layer.spring_of(each) is None]
+    springs = (replace(each, enabled=True) for each in layer.springs)
     carried = (Spring(handle=each, frequency=1.0, damping=1.0) for each in loose)
     inside = Bounds(
-        k=SPENT * figure.bounds.k,
-        sigma_a=figure.bounds.sigma_a**SPENT,
-        sigma_b=figure.bounds.sigma_b**SPENT,
+        k=SPENT * layer.bounds.k,
+        sigma_a=layer.bounds.sigma_a**SPENT,
+        sigma_b=layer.bounds.sigma_b**SPENT,
     )
-    return replace(figure, handles=handles, bounds=inside, tracks=(), springs=(*springs, *carried))
+    return replace(layer, handles=handles, bounds=inside, tracks=(), springs=(*springs, *carried))

@@ -1,4 +1,4 @@
-"""What a figure is asked to do, and the joints by which it does it."""
+"""What a layer is asked to do, and the joints by which it does it."""
 
 from collections.abc import Mapping
 from contextlib import suppress
@@ -9,11 +9,11 @@ import numpy as np
 from app.document import (
     RUBBERY,
     Document,
-    Figure,
-    figure_commands,
+    Layer,
     handle_commands,
     material_commands,
     numbered,
+    shape_commands,
 )
 from app.errors import LissomError
 from app.solving.moving.wholes import points_of_whole
@@ -33,7 +33,7 @@ HEAD = 1.5  # times as far as the nearest outline around its joint
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MotionOrder:
-    """A motion for a figure.
+    """A motion for a layer.
 
     Raises
     ------
@@ -52,7 +52,7 @@ class MotionOrder:
     handles: Mapping[str, int] = field(default_factory=dict)
     stiff: bool = True  # whether the trunk becomes stiff, so that limbs move and not all
     bones: bool = False  # whether limbs get bones, too
-    # Limits that the figure has at least; None leaves them as they are.
+    # Limits that the layer has at least; None leaves them as they are.
     limits: Bounds | None = RUBBERY.bounds
 
     def __post_init__(self) -> None:
@@ -65,53 +65,53 @@ class MotionOrder:
         return motion_named(self.motion)
 
 
-def facing_in(figure: Figure, order: MotionOrder) -> int:
-    """Return which way a figure looks: 1 to the right, -1 to the left."""
+def facing_in(layer: Layer, order: MotionOrder) -> int:
+    """Return which way a layer looks: 1 to the right, -1 to the left."""
     if order.facing is not None:
         return order.facing
-    return facing_of(kind_named(order.kind), order.joints, figure.domain.outline)
+    return facing_of(kind_named(order.kind), order.joints, layer.domain.outline)
 
 
-def body_of(figure: Figure, order: MotionOrder) -> Body:
-    """Return the body of a figure at rest.
+def body_of(layer: Layer, order: MotionOrder) -> Body:
+    """Return the body of a layer at rest.
 
     Raises
     ------
     LissomError, EngineError
         If a joint is not on the drawing, or the kind has no such joint.
     """
-    outline, kind = figure.domain.outline, kind_named(order.kind)
+    outline, kind = layer.domain.outline, kind_named(order.kind)
     x, y = outline.real, outline.imag
-    joints = dict(order.joints) if kind.parents else points_of_whole(figure.domain)
+    joints = dict(order.joints) if kind.parents else points_of_whole(layer.domain)
     if kind.parents:
         kind.require_joints(joints)
-        joints = _on_drawing(figure, joints)
+        joints = _on_drawing(layer, joints)
     return Body(
         kind=kind,
         joints=joints,
         box=(complex(x.min(), y.min()), complex(x.max(), y.max())),
-        facing=facing_in(figure, order),
+        facing=facing_in(layer, order),
     )
 
 
-def _on_drawing(figure: Figure, joints: Mapping[str, complex]) -> dict[str, complex]:
-    """Return joints on a figure; those that are hardly beside it come to its outline."""
-    tolerance = BESIDE * box_diagonal(figure.domain.outline)
+def _on_drawing(layer: Layer, joints: Mapping[str, complex]) -> dict[str, complex]:
+    """Return joints on a layer; those that are hardly beside it come to its outline."""
+    tolerance = BESIDE * box_diagonal(layer.domain.outline)
     points: Complexes = np.array(list(joints.values()), dtype=np.complex128)
-    covered = figure.covers(points, tolerance=tolerance)
+    covered = layer.covers(points, tolerance=tolerance)
     for (name, place), is_on_it in zip(joints.items(), covered, strict=True):
         if not is_on_it:
             raise LissomError(
                 f"the joint {name!r} at ({place.real:g}, {place.imag:g}) is not on the drawing"
             )
-    nearest = figure.domain.nearest(points).tolist()
+    nearest = layer.domain.nearest(points).tolist()
     return dict(zip(joints, nearest, strict=True))
 
 
 def with_handles_at_joints(
     document: Document, identity: int, body: Body, order: MotionOrder
 ) -> tuple[Document, dict[str, int]]:
-    """Return a document whose figure has a handle at each joint, and bones; and which those are."""
+    """Return a document whose layer has a handle at each joint, and bones; and which those are."""
     joints = dict[str, int]()
     for name, place in body.joints.items():
         document, joints[name] = _with_handle(document, identity, name, place, order, joints)
@@ -123,7 +123,7 @@ def with_handles_at_joints(
         if not before or not (order.stiff if name in TRUNK else order.bones):
             continue
         ends = joints[before], joints[name]
-        if any(bone.is_between(ends) for bone in document.figure(identity).bones):
+        if any(bone.is_between(ends) for bone in document.layer(identity).bones):
             continue
         # Where the way between two joints leaves the drawing, the limb bends as it likes.
         with suppress(EngineError):
@@ -141,32 +141,32 @@ def _with_handle(
     order: MotionOrder,
     others: Mapping[str, int],
 ) -> tuple[Document, int]:
-    """Return a document whose figure has a handle at a joint, and which that is."""
-    figure = document.figure(identity)
+    """Return a document whose layer has a handle at a joint, and which that is."""
+    layer = document.layer(identity)
     known = order.handles.get(name)
-    if known is not None and any(each.id == known for each in figure.handles):
+    if known is not None and any(each.id == known for each in layer.handles):
         return handle_commands.move_handle(identity, known, place)(document), known
-    near = SAME_JOINT * box_diagonal(figure.domain.outline)
-    free = [each for each in figure.handles if each.id not in others.values()]
+    near = SAME_JOINT * box_diagonal(layer.domain.outline)
+    free = [each for each in layer.handles if each.id not in others.values()]
     beside = min(free, key=lambda each: abs(each.position - place), default=None)
     if beside is not None and abs(beside.position - place) <= near:
         return document, beside.id
-    taken = {handle.name for handle in figure.handles}
+    taken = {handle.name for handle in layer.handles}
     new = name if name not in taken else numbered(name, taken, 2)
     added = handle_commands.add_handle(identity, place, name=new)(document)
-    return added, figure.next_handle
+    return added, layer.next_handle
 
 
 def _with_stiff_head(document: Document, identity: int, head: complex) -> Document:
-    """Return a document whose figure's head keeps its shape."""
-    outline = document.figure(identity).domain.outline
+    """Return a document whose layer's head keeps its shape."""
+    outline = document.layer(identity).domain.outline
     radius = HEAD * float(np.abs(outline - head).min())
     return material_commands.paint(identity, [head], radius=radius, amount=STIFF_HEAD)(document)
 
 
 def with_limits(document: Document, identity: int, limits: Bounds | None) -> Document:
-    """Return a document whose figure may be distorted as far as some limits, or its own, allow."""
-    own = document.figure(identity).bounds
+    """Return a document whose layer may be distorted as far as some limits, or its own, allow."""
+    own = document.layer(identity).bounds
     if limits is None:
         return document
     wider = Bounds(
@@ -174,4 +174,4 @@ def with_limits(document: Document, identity: int, limits: Bounds | None) -> Doc
         sigma_a=max(own.sigma_a, limits.sigma_a),
         sigma_b=min(own.sigma_b, limits.sigma_b),
     )
-    return figure_commands.set_bounds(identity, wider)(document)
+    return shape_commands.set_bounds(identity, wider)(document)

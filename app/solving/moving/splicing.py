@@ -1,4 +1,4 @@
-"""How the keys of a motion come among those that a figure has."""
+"""How the keys of a motion come among those that a layer has."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -6,9 +6,9 @@ from dataclasses import replace
 from app.document import (
     Cycle,
     Document,
-    Figure,
     GivenMotion,
     Keyframe,
+    Layer,
     cycle_commands,
     digest_of_keys,
 )
@@ -16,26 +16,26 @@ from app.document import (
 BLEND = 0.25  # seconds over which a motion blends in from what is before it
 
 
-def lead_before(figure: Figure, first: int, fps: float) -> int:
+def lead_before(layer: Layer, first: int, fps: float) -> int:
     """Return over how many frames a motion blends in that is given at a frame.
 
-    It does where the figure is keyed before; else its first key takes the place of what is there.
+    It does where the layer is keyed before; else its first key takes the place of what is there.
     """
-    if any(key.frame < first for key in figure.keys):
+    if any(key.frame < first for key in layer.keys):
         return max(2, round(BLEND * fps))
     return 0
 
 
 def spliced(
     document: Document, identity: int, keys: Sequence[Keyframe], given: GivenMotion, until: int
-) -> Figure:
-    """Return a figure with the keys of a motion in place of those that it has meanwhile.
+) -> Layer:
+    """Return a layer with the keys of a motion in place of those that it has meanwhile.
 
     Parameters
     ----------
     document : Document
     identity : int
-        The id of the figure.
+        The id of the layer.
     keys : sequence of Keyframe
         Of one cycle, and of how the motion blends in.
     given : GivenMotion
@@ -45,25 +45,25 @@ def spliced(
         The last frame whose key goes, where the motion takes the place of a longer one.
     """
     first, last = given.first, max(given.last, until)
-    for cycle in document.figure(identity).cycles:
+    for cycle in document.layer(identity).cycles:
         if cycle.first < last and cycle.covers(first + 1):
             make_keys = cycle_commands.make_keys(identity, cycle.first, document.frames.last)
             document = make_keys(document)
-    figure = document.figure(identity)
-    cycles = [each for each in figure.cycles if not _is_during(each, first, last)]
+    layer = document.layer(identity)
+    cycles = [each for each in layer.cycles if not _is_during(each, first, last)]
     if given.rounds > 1 and not given.parameters.travel:
         period = (given.last - given.start) // given.rounds
         cycles.append(Cycle(first=given.start, last=given.start + period, until=given.last))
-    kept = [key for key in figure.keys if not first <= key.frame <= last]
-    motions = [each for each in figure.motions if not each.overlaps(first, last)]
-    figure = replace(
-        figure,
+    kept = [key for key in layer.keys if not first <= key.frame <= last]
+    motions = [each for each in layer.motions if not each.overlaps(first, last)]
+    layer = replace(
+        layer,
         keys=tuple(sorted([*kept, *keys], key=lambda key: key.frame)),
         cycles=tuple(sorted(cycles, key=lambda cycle: cycle.first)),
     )
-    given = replace(given, digest=digest_of_keys(figure, first, given.last))
+    given = replace(given, digest=digest_of_keys(layer, first, given.last))
     motions.append(given)
-    return replace(figure, motions=tuple(sorted(motions, key=lambda each: each.first)))
+    return replace(layer, motions=tuple(sorted(motions, key=lambda each: each.first)))
 
 
 def _is_during(cycle: Cycle, first: int, last: int) -> bool:

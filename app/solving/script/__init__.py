@@ -1,13 +1,13 @@
 """Pose scripts: animations written as small JSON texts.
 
 In: the file.
-Out: what it says of each figure, checked.
+Out: what it says of each layer, checked.
 Imports: `app.document`, `app.storage`.
 """
 
 from app.solving.script.layers import ScriptJoint as ScriptJoint
 from app.solving.script.pose_script import (
-    FigureScript as FigureScript,
+    LayerScript as LayerScript,
     PoseKey as PoseKey,
     PoseScript as PoseScript,
     ScriptHandle as ScriptHandle,

@@ -1,4 +1,4 @@
-"""Clocks of a pose script: tracks and springs of single handles, and cycles of all of a figure."""
+"""Clocks of a pose script: tracks and springs of single handles, and cycles of all of a layer."""
 
 from collections.abc import Mapping, Sequence
 from math import radians
@@ -42,7 +42,7 @@ NO_BASIS = "{where}.with must be pose or picture, not {content}"
 
 
 def parse_tracks(content: object, where: str, handles: Sequence[str]) -> tuple[Track, ...]:
-    """Return the tracks of a figure; their handles are told by their places among the names."""
+    """Return the tracks of a layer; their handles are told by their places among the names."""
     numbers = {name: number for number, name in enumerate(handles)}
     tracks = tuple(
         _track(each, f"{where}[{index}]", numbers)
@@ -53,7 +53,7 @@ def parse_tracks(content: object, where: str, handles: Sequence[str]) -> tuple[T
 
 
 def parse_springs(content: object, where: str, handles: Sequence[str]) -> tuple[Spring, ...]:
-    """Return the springs of a figure, likewise."""
+    """Return the springs of a layer, likewise."""
     numbers = {name: number for number, name in enumerate(handles)}
     springs = tuple(
         _spring(each, f"{where}[{index}]", numbers)
@@ -64,7 +64,7 @@ def parse_springs(content: object, where: str, handles: Sequence[str]) -> tuple[
 
 
 def parse_cycles(content: object, where: str, keys: Sequence[int]) -> tuple[Cycle, ...]:
-    """Return the cycles of a figure with keys at some frames, in the order of their own frames."""
+    """Return the cycles of a layer with keys at some frames, in the order of their own frames."""
     cycles = [
         _cycle(each, f"{where}[{index}]") for index, each in enumerate(as_list(content, where))
     ]

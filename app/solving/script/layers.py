@@ -39,7 +39,7 @@ NO_KEYS = "{where}.keys must be a list of at least one key"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ScriptJoint:
-    """The layer that a figure hangs on from a frame on, and where the joint is as it was drawn."""
+    """The layer that a layer hangs on from a frame on, and where the joint is as it was drawn."""
 
     to: str | None  # None lets it go
     at: complex | None  # None takes the nearest point at that frame
@@ -58,7 +58,7 @@ class ScriptChoice:
 
 
 def parse_joints(content: object, where: str) -> tuple[ScriptJoint, ...]:
-    """Return the joints of a figure: one, or several from one frame to the next."""
+    """Return the joints of a layer: one, or several from one frame to the next."""
     if not isinstance(content, list):
         return (_joint(content, where),)
     joints = tuple(_joint(each, f"{where}[{index}]") for index, each in enumerate(content))
@@ -85,7 +85,7 @@ def _joint(content: object, where: str) -> ScriptJoint:
 
 
 def parse_visible(content: object, where: str) -> tuple[tuple[int, bool], ...]:
-    """Return from which frames on a figure is seen, or is not."""
+    """Return from which frames on a layer is seen, or is not."""
     switches = [
         (frame, as_flag(visible, at))
         for at, frame, visible in _from_frames(content, where, "true or false")
@@ -172,7 +172,7 @@ def parse_camera(content: object) -> tuple[CameraKey, ...]:
 
 
 def parse_movement(content: object, where: str) -> tuple[MoveKey, ...]:
-    """Return the keys by which a figure is moved as a whole."""
+    """Return the keys by which a layer is moved as a whole."""
 
     def key(read: JsonObject, where: str, **way: Any) -> MoveKey:
         return made_of(
@@ -203,7 +203,7 @@ def _moving_keys(
 
 
 def parse_opacity(content: object, where: str) -> float | tuple[OpacityKey, ...]:
-    """Return how opaque a figure is: a number, or keys."""
+    """Return how opaque a layer is: a number, or keys."""
     if not isinstance(content, list):
         return made_of(OpacityKey, where, frame=0, opacity=as_number(content, where)).opacity
     if not content:
@@ -217,7 +217,7 @@ def parse_opacity(content: object, where: str) -> float | tuple[OpacityKey, ...]
 
 
 def parse_order(content: object, where: str) -> tuple[ScriptPlacing, ...]:
-    """Return beside which layers a figure lies."""
+    """Return beside which layers a layer lies."""
     placings = []
     for at, frame, place in _from_frames(content, where, "where the layer lies, or null"):
         if place is None:

@@ -63,8 +63,8 @@ LARGEST = 32 * 1024 * 1024  # bytes
 SCENE_FIELDS = ("schema", "fps", "loop", "variant", "bounds", "still", "camera", "canvas")
 MOVING_FIELDS = ("keys", "tracks", "springs", "cycles", "movement", "opacity")
 OWN_FIELDS = ("anchor", "handles", *MOVING_FIELDS, "stiff")
-STAGE_FIELDS = ("figures", "choices")
-FIGURE_FIELDS = ("layer", "variant", "bounds", "still", *OWN_FIELDS, "attach", "visible", "order")
+STAGE_FIELDS = ("layers", "choices")
+LAYER_FIELDS = ("layer", "variant", "bounds", "still", *OWN_FIELDS, "attach", "visible", "order")
 HANDLE_FIELDS = ("at", "front", "extent", "still")
 KEY_FIELDS = ("frame", "targets", "turn", "pull", "ease", "passing", "front")
 BOUND_FIELDS = ("k", "sigma_a", "sigma_b")
@@ -97,10 +97,10 @@ class ScriptHandle:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class FigureScript:
-    """The animation of one figure, in pixels of the canvas with y up.
+class LayerScript:
+    """The animation of one layer, in pixels of the canvas with y up.
 
-    The defaults are those of the file format. `layer` is None where the script has but one figure.
+    The defaults are those of the file format. `layer` is None where the script has but one layer.
     Tracks, springs and bones tell handles by their places among `handles`.
     """
 
@@ -138,7 +138,7 @@ class FigureScript:
 class PoseScript:
     """A whole animation."""
 
-    figures: tuple[FigureScript, ...]
+    layers: tuple[LayerScript, ...]
     fps: float
     loop: bool
     choices: tuple[ScriptChoice, ...] = ()
@@ -148,7 +148,7 @@ class PoseScript:
     @property
     def last(self) -> int:
         """The last frame of the animation."""
-        frames = [figure.last for figure in self.figures]
+        frames = [layer.last for layer in self.layers]
         return max(frames + [key.frame for key in self.camera])
 
 
@@ -173,42 +173,46 @@ def parse_pose_script(content: object) -> PoseScript:
         frames are out of order.
     """
     read = as_object(content, "the script")
-    own = STAGE_FIELDS if "figures" in read else OWN_FIELDS
+    if "figures" in read and "layers" not in read:
+        # Its name in earlier scripts.
+        content = {("layers" if name == "figures" else name): read[name] for name in read}
+        read = as_object(content, "the script")
+    own = STAGE_FIELDS if "layers" in read else OWN_FIELDS
     lacking = [name for name in ("choices", "attach", "visible", "order") if name in read]
-    if lacking and "figures" not in read:
-        raise LissomError(f'{lacking[0]} needs "figures", which say what each layer does')
+    if lacking and "layers" not in read:
+        raise LissomError(f'{lacking[0]} needs "layers", which say what each layer does')
     script = fields_in(content, "the script", (*SCENE_FIELDS, *own))
     schema = script.get("schema")
     if schema != SCHEMA or isinstance(schema, bool):
         raise LissomError(WRONG_SCHEMA.format(own=SCHEMA, content=shown(schema)))
     usual = _options(script, "")
-    figures = [] if "figures" in script else [_figure(script, "", usual)]
-    for index, entry in enumerate(as_list(script.get("figures", []), "figures")):
-        where = f"figures[{index}]."
-        fields = fields_in(entry, where[:-1], FIGURE_FIELDS)
-        figures.append(_figure(fields, where, usual))
-    names = [figure.layer for figure in figures]
+    layers = [] if "layers" in script else [_layer(script, "", usual)]
+    for index, entry in enumerate(as_list(script.get("layers", []), "layers")):
+        where = f"layers[{index}]."
+        fields = fields_in(entry, where[:-1], LAYER_FIELDS)
+        layers.append(_layer(fields, where, usual))
+    names = [layer.layer for layer in layers]
     for name in names:
         if names.count(name) > 1:
-            raise LissomError(f"two figures are of the layer {name!r}")
-    if not figures:
-        raise LissomError("figures must be a list of at least one figure")
+            raise LissomError(f"two layers are of the layer {name!r}")
+    if not layers:
+        raise LissomError("layers must be a list of at least one layer")
     parsed = PoseScript(
-        figures=tuple(figures),
+        layers=tuple(layers),
         fps=as_number(script.get("fps", 24.0), "fps"),
         loop=as_flag(script.get("loop", False), "loop"),
-        choices=parse_choices(script, [f.layer for f in figures if f.layer and f.visible]),
+        choices=parse_choices(script, [f.layer for f in layers if f.layer and f.visible]),
         camera=parse_camera(script["camera"]) if script.get("camera") is not None else (),
         canvas=parse_canvas(script["canvas"]) if script.get("canvas") is not None else None,
     )
-    for index, figure in enumerate(figures if parsed.loop else ()):
-        where = "" if figure.layer is None else f"figures[{index}]."
-        require_rounds(figure.tracks, figure.springs, parsed.last, where)
+    for index, layer in enumerate(layers if parsed.loop else ()):
+        where = "" if layer.layer is None else f"layers[{index}]."
+        require_rounds(layer.tracks, layer.springs, parsed.last, where)
     return parsed
 
 
-def _figure(script: JsonObject, where: str, usual: Mapping[str, Any]) -> FigureScript:
-    """Return what a script says of one figure; `where` begins the names of its fields."""
+def _layer(script: JsonObject, where: str, usual: Mapping[str, Any]) -> LayerScript:
+    """Return what a script says of one layer; `where` begins the names of its fields."""
     own: dict[str, Any] = {**usual, **_options(script, where)}
     if where:
         own["layer"] = as_text(script["layer"], f"{where}layer")
@@ -240,7 +244,7 @@ def _figure(script: JsonObject, where: str, usual: Mapping[str, Any]) -> FigureS
     own["parts"], own["bones"] = parse_material(
         script.get("stiff", []), f"{where}stiff", tuple(handles)
     )
-    return FigureScript(handles=handles, keys=parsed, **own)
+    return LayerScript(handles=handles, keys=parsed, **own)
 
 
 def _handle(content: object, where: str) -> ScriptHandle:

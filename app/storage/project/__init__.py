@@ -1,4 +1,4 @@
-"""What a project file holds: a document in JSON, and the pictures and arrays of its figures.
+"""What a project file holds: a document in JSON, and the pictures and arrays of its layers.
 
 In: documents; the members of a zip file.
 Out: the members, and the document that they are of, checked and proven anew.
@@ -16,4 +16,4 @@ from app.storage.project.content import (
     read_document as read_document,
     write_document as write_document,
 )
-from app.storage.project.members import figure_members as figure_members
+from app.storage.project.members import layer_members as layer_members

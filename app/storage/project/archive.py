@@ -86,7 +86,10 @@ class Archive:
             )
         if not members or members[0].filename != "mimetype":
             raise LissomError(f"it {NO_PROJECT}")
-        self._members = {member.filename: member for member in members}
+        # Layers were figures in schemas 1 and 2.
+        self._members = {
+            re.sub("^figures/", "layers/", member.filename): member for member in members
+        }
         if len(self._members) < len(members):
             raise LissomError("it has two members of one name")
         if sum(member.compress_size for member in members) > size:

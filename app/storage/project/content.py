@@ -1,4 +1,4 @@
-"""The document as `project.json`, except for its figures' pictures and arrays."""
+"""The document as `project.json`, except for its layers' pictures and arrays."""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import astuple
@@ -19,7 +19,6 @@ from app.document import (
     Document,
     Easing,
     ExportSettings,
-    Figure,
     FormatPictures,
     FrameRange,
     GivenMotion,
@@ -27,6 +26,7 @@ from app.document import (
     Handle,
     KeptPose,
     Keyframe,
+    Layer,
     Marker,
     Meshing,
     MoveKey,
@@ -68,13 +68,13 @@ from app.storage.json_values import (
 )
 from app.storage.pictures import require_memory
 from app.storage.project.archive import Archive
-from app.storage.project.members import FigureMembers
+from app.storage.project.members import LayerMembers
 from engine.domain import CutOut, Domain, Slit, Stroke
 from engine.geometry.motions import Parameters
 from engine.maps import Boundary, Bounds, Certificate, HarmonicMap, certify
 
-SCHEMA = 2
-NOTHING: Mapping[int, Figure] = MappingProxyType({})
+SCHEMA = 3
+NOTHING: Mapping[int, Layer] = MappingProxyType({})
 SIZE = pair(WHOLE, WHOLE, "two whole numbers")
 RANGE = pair(WHOLE, WHOLE, "two whole numbers", make=FrameRange, of=astuple)
 MARKER = record(Marker, Field("frame", WHOLE), Field("name", TEXT))
@@ -232,16 +232,16 @@ MOTION = record(
 )
 
 
-def _write_motions(figure: Figure) -> list[Any]:
-    """Return a figure's motions, with those that were not read in their places."""
-    written = [MOTION.write(motion) for motion in figure.motions]
-    for unread in figure.unread_motions:
+def _write_motions(layer: Layer) -> list[Any]:
+    """Return a layer's motions, with those that were not read in their places."""
+    written = [MOTION.write(motion) for motion in layer.motions]
+    for unread in layer.unread_motions:
         written.insert(unread.index, unread.content)
     return written
 
 
 def _read_motions(content: object, handles: Collection[int]) -> dict[str, Any]:
-    """Return a figure's motions, and those that are not known here, or do not fit."""
+    """Return a layer's motions, and those that are not known here, or do not fit."""
     motions: list[GivenMotion] = []
     unread = []
     for index, each in enumerate(as_list(content, "motions")):
@@ -267,7 +267,7 @@ STROKE = part(
     Field("radius", NUMBER),
     Field("keeps", FLAG),
 )
-# How a figure's domain was made, from the figure.
+# How a layer's domain was made, from the layer.
 DOMAIN = part(
     dict,
     Field("detail", TEXT, attrgetter("meshing.detail")),
@@ -275,12 +275,12 @@ DOMAIN = part(
     Field("tolerance", WHOLE, attrgetter("cut_out.tolerance")),
     Field("background", BACKGROUND, attrgetter("cut_out.background"), earlier="auto"),
     Field("enclosed", TEXT, attrgetter("cut_out.enclosed"), earlier="keep"),
-    Field("mask", FLAG, lambda figure: figure.cut_out.mask is not None, earlier=False),
+    Field("mask", FLAG, lambda layer: layer.cut_out.mask is not None, earlier=False),
     Field("strokes", several(STROKE), attrgetter("cut_out.strokes"), earlier=()),
     Field("holes", TEXT, attrgetter("cut_out.holes"), earlier="fill"),
     Field("swapped", several(POINT), attrgetter("cut_out.swapped"), earlier=()),
-    Field("slits", several(WHOLE), lambda figure: _counts(figure.cut_out.slits), usual=()),
-    Field("parted", FLAG, lambda figure: figure.domain.closed is not None, usual=False),
+    Field("slits", several(WHOLE), lambda layer: _counts(layer.cut_out.slits), usual=()),
+    Field("parted", FLAG, lambda layer: layer.domain.closed is not None, usual=False),
     Field("stale", FLAG, attrgetter("is_stale"), earlier=False),
 )
 SWITCH = pair(WHOLE, FLAG, "a frame and true or false", make=Switch, of=astuple)
@@ -318,7 +318,7 @@ GROUP = record(
     Field("blend", TEXT, usual="pass-through"),
     Field("clipped", FLAG, usual=False),
 )
-FIGURE = record(
+LAYER = record(
     dict,
     Field("id", WHOLE),
     Field("picture", part(dict, Field("suffix", TEXT), Field("sha256", TEXT), Field("size", SIZE))),
@@ -334,13 +334,13 @@ FIGURE = record(
     Field("cycles", several(CYCLE), usual=()),
     Field("bones", several(BONE), usual=()),
     Field("motions", ANYTHING, _write_motions, usual=[]),
-    Field("stiffness", FLAG, lambda figure: figure.stiffness is not None, usual=False),
+    Field("stiffness", FLAG, lambda layer: layer.stiffness is not None, usual=False),
     Field("variant", TEXT),
     Field("bounds", part(Bounds, *(Field(name, NUMBER) for name in ("k", "sigma_a", "sigma_b")))),
     Field("library", several(KEPT_POSE)),
     Field("mirror", optional(NUMBER)),
-    # What it is as a layer: a scene of one figure says none of it.
-    Field("name", TEXT, usual="figure"),
+    # What it is as a layer: a scene of one layer says none of it.
+    Field("name", TEXT, usual="layer"),
     Field("corner", POINT, usual=0j),
     Field("still", FLAG, usual=False),
     Field("reference", FLAG, usual=False),
@@ -362,14 +362,14 @@ TOLD = part(ImportSummary, Field("losses", several(TEXT)), Field("matters", seve
 CHOICE = record(
     Choice,
     Field("name", TEXT),
-    Field("figures", several(WHOLE)),
-    Field("turns", several(pair(WHOLE, WHOLE, "a frame and a figure", make=Turn, of=tuple))),
+    Field("layers", several(WHOLE), was="figures"),
+    Field("turns", several(pair(WHOLE, WHOLE, "a frame and a layer", make=Turn, of=tuple))),
 )
 DOCUMENT = record(
     dict,
     Field("schema", WHOLE, lambda _: SCHEMA),
     Field("app_version", ANYTHING, lambda _: version("lissom"), earlier=None),
-    Field("figures", several(FIGURE)),
+    Field("layers", several(LAYER), was="figures"),
     Field("frames", RANGE),
     Field("preview", optional(RANGE)),
     Field("markers", several(MARKER)),
@@ -392,11 +392,11 @@ def write_document(document: Document) -> dict[str, Any]:
 
 
 def read_document(
-    content: JsonObject, archive: Archive, known: Mapping[int, Figure] = NOTHING
+    content: JsonObject, archive: Archive, known: Mapping[int, Layer] = NOTHING
 ) -> Document:
     """Return the document with these fields, and with the pictures and arrays of an archive.
 
-    Of an archive that was just written, figures that are `known` by their ids are not read again;
+    Of an archive that was just written, layers that are `known` by their ids are not read again;
     they come first.
 
     Raises
@@ -404,22 +404,22 @@ def read_document(
     LissomError, EngineError
         If a field is missing or of another kind, or the document would not be valid.
     """
-    if as_whole(content["schema"], "schema") < SCHEMA:
+    if as_whole(content["schema"], "schema") == 1:
         _bring_up_to_schema_2(content)
     if known:
-        others = [each for each in content["figures"] if each["id"] not in known]
-        content = JsonObject({**content, "figures": others}, content.where)
+        others = [each for each in content["layers"] if each["id"] not in known]
+        content = JsonObject({**content, "layers": others}, content.where)
     fields = DOCUMENT.read(content, "")
     del fields["schema"], fields["app_version"]
-    figures = fields.pop("figures")
-    if len({figure["id"] for figure in figures}) < len(figures):
+    layers = fields.pop("layers")
+    if len({layer["id"] for layer in layers}) < len(layers):
         # Told before their members are read, once for each.
-        raise LissomError("two of its figures have the same id")
+        raise LissomError("two of its layers have the same id")
     shared: dict[str, PictureFile] = {}
-    read = tuple(_read_figure(figure, archive, shared) for figure in figures)
+    read = tuple(_read_layer(layer, archive, shared) for layer in layers)
     if not archive.is_written:
-        require_memory(picture.size for picture in {figure.picture for figure in read})
-    return Document(figures=(*known.values(), *read), **fields)
+        require_memory(picture.size for picture in {layer.picture for layer in read})
+    return Document(layers=(*known.values(), *read), **fields)
 
 
 def _bring_up_to_schema_2(content: JsonObject) -> None:
@@ -433,19 +433,17 @@ def _bring_up_to_schema_2(content: JsonObject) -> None:
     if export["frames"] is None:
         content["export"] = {**export, "frames": work}
     content["figures"] = [
-        {**as_object(figure, f"figures[{i}]"), "library": [], "mirror": None}
-        for i, figure in enumerate(as_list(content["figures"], "figures"))
+        {**as_object(layer, f"figures[{i}]"), "library": [], "mirror": None}
+        for i, layer in enumerate(as_list(content["figures"], "figures"))
     ]
 
 
-def _read_figure(
-    fields: dict[str, Any], archive: Archive, shared: dict[str, PictureFile]
-) -> Figure:
-    """Return the figure with these fields; what holds of its maps is proven anew.
+def _read_layer(fields: dict[str, Any], archive: Archive, shared: dict[str, PictureFile]) -> Layer:
+    """Return the layer with these fields; what holds of its maps is proven anew.
 
     Its picture is one of those that are `shared`, by their checksums, or becomes one.
     """
-    members, made = FigureMembers(archive, fields["id"]), fields.pop("domain")
+    members, made = LayerMembers(archive, fields["id"]), fields.pop("domain")
     picture = members.picture(**fields["picture"])
     same = shared.setdefault(picture.sha256, picture)
     if (same.suffix, same.size) == (picture.suffix, picture.size):
@@ -466,7 +464,7 @@ def _read_figure(
         key["fronts"] = dict(key["fronts"])
     for index, kept in enumerate(fields["library"]):
         kept["pose"] = pose("poses", index, kept.pop("targets"))
-    return Figure(
+    return Layer(
         **fields
         | motions
         | {
@@ -494,7 +492,7 @@ def _unproven(_: HarmonicMap) -> Certificate:
     return Certificate(k=inf, sigma_a=inf, sigma_b=-inf, winding=None, certified=False)
 
 
-def _cut_out(fields: dict[str, Any], members: FigureMembers, size: tuple[int, int]) -> CutOut:
+def _cut_out(fields: dict[str, Any], members: LayerMembers, size: tuple[int, int]) -> CutOut:
     strokes = fields.pop("strokes")
     ways = members.lines("strokes", [stroke.pop("points") for stroke in strokes])
     return CutOut(

@@ -1,6 +1,6 @@
-"""The members of a project file that hold a figure's picture and arrays.
+"""The members of a project file that hold a layer's picture and arrays.
 
-They are in a folder of the figure: the picture byte for byte as `source.*`, the arrays of the
+They are in a folder of the layer: the picture byte for byte as `source.*`, the arrays of the
 domain, what was cut out by hand, and phi and psi of each key under `keys/` and of the library's
 poses under `poses/`. Where the domain has holes, their outlines and cages are under `holes/`, their
 centres beside it, and the coefficients of a map's logarithms beside its phi and psi. Where it was
@@ -14,7 +14,7 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from app.document import Figure, PictureFile
+from app.document import Layer, PictureFile
 from app.errors import LissomError
 from app.storage.pictures import stored_size
 from app.storage.project.archive import Archive, array_member
@@ -30,12 +30,12 @@ STIFFNESS = "stiffness.npy"
 OTHER_CHECKSUM = "its picture is not the one that was saved: the checksums differ"
 
 
-def figure_members(figure: Figure) -> dict[str, bytes]:
-    """Return the members of a figure by their names."""
-    mesh, cut_out, holes = figure.domain.mesh, figure.cut_out, figure.domain.holes
+def layer_members(layer: Layer) -> dict[str, bytes]:
+    """Return the members of a layer by their names."""
+    mesh, cut_out, holes = layer.domain.mesh, layer.cut_out, layer.domain.holes
     arrays: dict[str, npt.NDArray[Any]] = {
-        "outline.npy": figure.domain.outline,
-        "cage.npy": figure.domain.cage,
+        "outline.npy": layer.domain.outline,
+        "cage.npy": layer.domain.cage,
         "vertices.npy": mesh.vertices,
         "triangles.npy": mesh.triangles,
     }
@@ -45,33 +45,33 @@ def figure_members(figure: Figure) -> dict[str, bytes]:
         arrays["strokes.npy"] = np.concatenate([stroke.points for stroke in cut_out.strokes])
     if cut_out.slits:
         arrays["slits.npy"] = np.concatenate([slit.points for slit in cut_out.slits])
-    if figure.domain.closed is not None:
-        arrays[CLOSED] = figure.domain.closed
-    if figure.stiffness is not None:
-        arrays[STIFFNESS] = figure.stiffness
+    if layer.domain.closed is not None:
+        arrays[CLOSED] = layer.domain.closed
+    if layer.stiffness is not None:
+        arrays[STIFFNESS] = layer.stiffness
     if holes:
         arrays[CENTRES] = np.array([hole.centre for hole in holes], dtype=np.complex128)
     for index, hole in enumerate(holes):
         outline, cage = _of_hole(index)
         arrays |= {outline: hole.outline, cage: hole.cage}
-    keys = [key.pose for key in figure.keys]
-    for kind, poses in (("keys", keys), ("poses", [kept.pose for kept in figure.library])):
+    keys = [key.pose for key in layer.keys]
+    for kind, poses in (("keys", keys), ("poses", [kept.pose for kept in layer.library])):
         for index, pose in enumerate(poses):
             phi, psi, logs = _of_map(kind, index)
             arrays |= {phi: pose.phi, psi: pose.psi}
             if holes:
                 arrays[logs] = pose.logs
-    folder = _folder(figure.id)
-    picture = {f"{folder}/source{figure.picture.suffix}": figure.picture.data}
+    folder = _folder(layer.id)
+    picture = {f"{folder}/source{layer.picture.suffix}": layer.picture.data}
     return picture | {f"{folder}/{name}": array_member(array) for name, array in arrays.items()}
 
 
-class FigureMembers:
-    """The members of a figure, as they are read."""
+class LayerMembers:
+    """The members of a layer, as they are read."""
 
-    def __init__(self, archive: Archive, figure: int) -> None:
+    def __init__(self, archive: Archive, layer: int) -> None:
         self._archive = archive
-        self._folder = _folder(figure)
+        self._folder = _folder(layer)
 
     def picture(self, *, suffix: str, sha256: str, size: tuple[int, int]) -> PictureFile:
         """Return the picture, which must be the one that was saved."""
@@ -156,8 +156,8 @@ class FigureMembers:
         return self._archive.points(f"{self._folder}/{name}", most=most)
 
 
-def _folder(figure: int) -> str:
-    return f"figures/{figure}"
+def _folder(layer: int) -> str:
+    return f"layers/{layer}"
 
 
 def _of_hole(index: int) -> tuple[str, str]:

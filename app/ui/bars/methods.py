@@ -1,8 +1,8 @@
-"""How in-betweens of a figure are made, as entries of a menu."""
+"""How in-betweens of a layer are made, as entries of a menu."""
 
 from imgui_bundle import imgui
 
-from app.document import figure_commands
+from app.document import shape_commands
 from app.editor import Action, Project, do
 from app.editor.actions import editing, keys
 from app.ui.methods import VARIANTS
@@ -13,13 +13,13 @@ def draw_methods(project: Project) -> list[Action]:
     """Draw the entries, within a menu or a list that is open."""
     actions: list[Action] = []
     for variant, text in VARIANTS.items():
-        if imgui.menu_item(text.title, "", variant == project.figure.variant)[0]:
+        if imgui.menu_item(text.title, "", variant == project.layer.variant)[0]:
             actions.append(do(keys.set_variant, variant))
         tip(text.what)
     imgui.separator()
-    stays = project.figure.stillness
+    stays = project.layer.stillness
     if imgui.menu_item("Handles stay between keys", "", stays)[0]:
-        command = figure_commands.set_stillness(project.active, stillness=not stays)
+        command = shape_commands.set_stillness(project.active, stillness=not stays)
         actions.append(do(editing.edit, command))
     tip("Handles stay in between where two keys have them at one place")
     return actions

@@ -94,17 +94,17 @@ def limit_of_pose(session: Session) -> str:
     shown = project.puppet.shown if project else None
     if project is None or shown is None or project.playhead.since is not None:
         return ""
-    figure, correction, lags = shown.clip.figure, shown.correction, dict[int, float]()
+    layer, correction, lags = shown.clip.layer, shown.correction, dict[int, float]()
     if shown.pose is not None:
-        shortfall = find_shortfall(figure, shown.pose)
+        shortfall = find_shortfall(layer, shown.pose)
         lags |= shortfall.lags if shortfall.at_limits else {}
     if correction is not None and correction.is_held_back:
         own = correction.misses.items()
-        lags |= {handle: miss for handle, miss in own if falls_short(figure, miss)}
+        lags |= {handle: miss for handle, miss in own if falls_short(layer, miss)}
     if not lags:
         return ""
     farthest = max(lags, key=lags.__getitem__)
-    text = f"{figure.handle(farthest).name} is {lags[farthest]:.0f} px short"
+    text = f"{layer.handle(farthest).name} is {lags[farthest]:.0f} px short"
     others = len(lags) - 1
     return f"Stretch limit reached – {text}" + (f", {others} more too" if others else "")
 
@@ -159,7 +159,7 @@ def _warn(session: Session, look: Look, text: str, remedy: Remedy) -> list[Actio
     """Tell what the limits prevent, and offer the remedy."""
     imgui.text_colored(look.palette.warning, text)
     project = session.project
-    if project is None or loosened(project.figure.bounds) is None:
+    if project is None or loosened(project.layer.bounds) is None:
         return []
     imgui.same_line(0, 0.8 * look.em)
     is_pressed = imgui.small_button("Loosen")
@@ -174,7 +174,7 @@ def facts(session: Session) -> list[Fact]:
     if project is not None:
         distortion = _distortion(project)
         facts += [distortion] if distortion else []
-        count = len(project.figure.handles)
+        count = len(project.layer.handles)
         facts.append(Fact(f"{count} handle{'' if count == 1 else 's'}", "Handles of this drawing"))
     if session.solver_seconds:
         milliseconds = 1e3 * session.solver_seconds
@@ -195,7 +195,7 @@ def _distortion(project: Project) -> Fact | None:
         extremes = curves.extremes_at(shown.frame)
     else:
         return None
-    uses = extremes.uses(project.figure.bounds)
+    uses = extremes.uses(project.layer.bounds)
     most = max(uses, key=lambda use: use.share)
     return Fact(
         f"{most.word.capitalize()} {most.value:.2f}, limit {most.bound:.2f}",

@@ -92,7 +92,7 @@ def draw(session: Session, look: Look, project: Project) -> list[Action]:
 def _wanted_bounds(project: Project) -> Bounds:
     if project.drafted_bounds is not None:
         return project.drafted_bounds
-    return project.figure.bounds if project.renewal is None else project.renewal.bounds
+    return project.layer.bounds if project.renewal is None else project.renewal.bounds
 
 
 def _reached(project: Project) -> tuple[tuple[Certificate, ...], str]:
@@ -174,8 +174,8 @@ def _solver(session: Session, look: Look, project: Project) -> None:
         _status(look, icons.ICON_FA_FILM, palette.dim, "An in-between")
         small(look, "It stays within the distortion of its two keys.")
         return
-    shortfall = find_shortfall(shown.clip.figure, pose)
-    is_proven = shown.clip.figure.is_proven(pose)
+    shortfall = find_shortfall(shown.clip.layer, pose)
+    is_proven = shown.clip.layer.is_proven(pose)
     if not is_proven:
         _status(look, icons.ICON_FA_TRIANGLE_EXCLAMATION, palette.danger, "Beyond the limits")
     elif shortfall.lags:
@@ -204,7 +204,7 @@ def _status(look: Look, icon: str, colour: imgui.ImVec4, text: str) -> None:
 def _keys(session: Session, look: Look, project: Project) -> list[Action]:
     """List what every key reaches; a click goes there."""
     actions: list[Action] = []
-    figure, palette = project.figure, look.palette
+    layer, palette = project.layer, look.palette
     flags = imgui.TableFlags_.sizing_stretch_prop | imgui.TableFlags_.pad_outer_x
     if not imgui.begin_table("keys", 1 + len(LIMITS), flags):
         return actions
@@ -214,7 +214,7 @@ def _keys(session: Session, look: Look, project: Project) -> list[Action]:
             imgui.table_next_column()
             imgui.text_colored(palette.dim, title)
         now = playback.current_frame(session, project)
-        for key in figure.keys:
+        for key in layer.keys:
             certificate = key.pose.certificate
             imgui.table_next_row()
             imgui.table_next_column()
@@ -229,7 +229,7 @@ def _keys(session: Session, look: Look, project: Project) -> list[Action]:
                 imgui.table_next_column()
                 value = float(getattr(certificate, limit.field))
                 beyond = limit.scale.share(value) > limit.scale.share(
-                    getattr(figure.bounds, limit.field)
+                    getattr(layer.bounds, limit.field)
                 )
                 imgui.text_colored(palette.danger if beyond else palette.text, f"{value:.2f}")
     imgui.end_table()
@@ -240,7 +240,7 @@ def _solving(project: Project) -> list[Action]:
     renewal = project.renewal
     if renewal is not None and renewal.into is None:
         return [do(rebuilding.cancel)] if progress(renewal.progress, renewal.now) else []
-    is_possible = renewal is None and bool(project.figure.handles)
+    is_possible = renewal is None and bool(project.layer.handles)
     hint = "Pull the handles of every key to their targets again, within the limits"
     is_pressed = text_button("Pose all keys again", FILL, hint, enabled=is_possible)
     return [do(rebuilding.solve_again)] if is_pressed else []

@@ -2,7 +2,7 @@
 
 from imgui_bundle import imgui
 
-from app.document import USUAL_EXTENT, Figure, Handle, Keyframe, layer_commands
+from app.document import USUAL_EXTENT, Handle, Keyframe, Layer, layer_commands
 from app.editor import Action, Project, Session, do
 from app.editor.actions import editing, playback, viewing
 from app.ui.style import Look, Scale, heading, label, slider, small, tip
@@ -14,11 +14,11 @@ DEPTHS = Scale(left=-1.0, right=1.0)
 def draw(session: Session, look: Look, project: Project, handle: Handle) -> list[Action]:
     """Draw the depth of a handle, its extent, and from which key on it holds."""
     heading(look, "In front")
-    figure, frame = project.figure, playback.posed_frame(session, project)
-    key = figure.key(frame) if frame in figure.key_frames else None
+    layer, frame = project.layer, playback.posed_frame(session, project)
+    key = layer.key(frame) if frame in layer.key_frames else None
     imgui.begin_group()
-    actions = _depth(session, look, project, handle) + _extent(look, figure, handle)
-    if len(figure.keys) > 1:
+    actions = _depth(session, look, project, handle) + _extent(look, layer, handle)
+    if len(layer.keys) > 1:
         actions += _from_key(look, handle, key)
     imgui.end_group()
     # The drawing is tinted as long as the pointer is at these settings.
@@ -41,9 +41,9 @@ def _depth(session: Session, look: Look, project: Project, handle: Handle) -> li
     return [do(editing.set_depth, handle.id, value)]
 
 
-def _extent(look: Look, figure: Figure, handle: Handle) -> list[Action]:
+def _extent(look: Look, layer: Layer, handle: Handle) -> list[Action]:
     label(look, "Extent")
-    usual = USUAL_EXTENT * box_diagonal(figure.domain.outline)
+    usual = USUAL_EXTENT * box_diagonal(layer.domain.outline)
     extents = Scale(left=0.1 * usual, right=8 * usual, logarithmic=True)
     hint = "How far around the handle that holds, in pixels along the drawing"
     entered = slider(look, "extent", handle.extent or usual, extents, text="%.0f", hint=hint)
@@ -66,8 +66,8 @@ def _from_key(look: Look, handle: Handle, key: Keyframe | None) -> list[Action]:
 
 
 def _set_in_key(key: Keyframe, handle: Handle, front: float | None) -> Action:
-    return do(editing.edit_figure, layer_commands.key_front, key.frame, handle.id, front)
+    return do(editing.edit_layer, layer_commands.key_front, key.frame, handle.id, front)
 
 
 def _set(handle: Handle, front: float, extent: float | None) -> Action:
-    return do(editing.edit_figure, layer_commands.set_front, handle.id, front, extent)
+    return do(editing.edit_layer, layer_commands.set_front, handle.id, front, extent)

@@ -55,7 +55,7 @@ def draw(session: Session, look: Look, project: Project) -> list[Action]:
     heading(look, "Compare")
     actions += _compare(session, look)
     heading(look, "Over time")
-    if len(project.figure.keys) < 2:
+    if len(project.layer.keys) < 2:
         small(look, "Make a second key to see how the in-betweens distort.")
         return actions
     return [*actions, *_over_time(session, look, project)]
@@ -187,7 +187,7 @@ def _over_time(session: Session, look: Look, project: Project) -> list[Action]:
         small(look, "Measuring…")
         return actions
     height = _plot_height(look)
-    bounds = project.figure.bounds
+    bounds = project.layer.bounds
     upper, lower = _plots(session.curves, curves, bounds)
     other_upper, other_lower = None, None
     twin, twin_curves = project.puppet.twin, project.twin_curves
@@ -262,12 +262,12 @@ def _lines(curves: Curves, values: Floats) -> tuple[Floats, Floats]:
 
 def _tell_both(look: Look, twin: Twin, own: Curves, other: Curves) -> None:
     """Tell which curves are whose, and how far each goes."""
-    if (other.clip.figure, other.clip.baseline or twin.method) != (twin.figure, twin.method):
+    if (other.clip.layer, other.clip.baseline or twin.method) != (twin.layer, twin.method):
         small(look, "Measuring the other method…")
         return
     palette = look.palette
     for curves, colour in ((own, palette.accent), (other, palette.warning)):
-        name = METHODS[curves.clip.baseline or curves.clip.figure.variant].name
+        name = METHODS[curves.clip.baseline or curves.clip.layer.variant].name
         (k, sigma_a, _), (*_, sigma_b) = curves.extremes.max(0), curves.extremes.min(0)
         limits = f"shear {k:.2f}, stretch {sigma_a:.2f}, squeeze {sigma_b:.2f}"
         imgui.text_colored(colour, f"{name}: {limits}")
@@ -296,7 +296,7 @@ def _plot(
     first, last = float(curves.frames[0]), float(curves.frames[-1])
     top = plot.top if other is None else min(max(plot.top, other.top), MOST * plot.top)
     implot.setup_axes_limits(first, last, plot.least, top, implot.Cond_.always)
-    _rule("keys", [key.frame for key in project.figure.keys], palette.line)
+    _rule("keys", [key.frame for key in project.layer.keys], palette.line)
     alpha = 0.10 if curves.clip != project.clip else 0.30
     if other is not None:
         _trace("others", other, faint(palette.warning, alpha))

@@ -210,9 +210,9 @@ def _canvas(look: Look, project: Project) -> list[Action]:
     entered = size_fields("canvas ", document.canvas, 1.15 * imgui.get_frame_height() + gap)
     imgui.same_line(0, gap)
     hint = "Back to the size of the picture behind all others"
-    is_own = document.canvas != document.figures[0].picture.size
+    is_own = document.canvas != document.layers[0].picture.size
     if icon_button(look, icons.ICON_FA_ARROW_ROTATE_LEFT, "canvas size", hint, enabled=is_own):
-        return [do(editing.edit, scene_commands.set_canvas(document.figures[0].picture.size))]
+        return [do(editing.edit, scene_commands.set_canvas(document.layers[0].picture.size))]
     if entered is None or entered.size == document.canvas:
         return []
     return [do(editing.edit, scene_commands.set_canvas(entered.size))]

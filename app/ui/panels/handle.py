@@ -11,9 +11,9 @@ from app.document import (
     Handle,
     Shortfall,
     Target,
-    figure_commands,
     find_shortfall,
     handle_commands,
+    shape_commands,
 )
 from app.editor import Action, Project, Session, do
 from app.editor.actions import editing, posing, viewing
@@ -48,8 +48,8 @@ def draw(session: Session, look: Look, project: Project) -> list[Action]:
     """Draw the list of handles and the one that is selected."""
     if project.puppet.shown is None:
         return []
-    figure = project.figure
-    if not figure.handles:
+    layer = project.layer
+    if not layer.handles:
         heading(look, "Handles")
         small(look, "There are none yet. Click on the drawing to add one, then drag it, or:")
         suggest = BINDINGS["suggest handles"]
@@ -58,16 +58,16 @@ def draw(session: Session, look: Look, project: Project) -> list[Action]:
         return [suggest.action] if is_pressed else []
     actions = _heading_with_delete(session, look, project)
     actions += _list(look, project)
-    chosen = [handle for handle in figure.handles if handle.id in project.selected]
+    chosen = [handle for handle in layer.handles if handle.id in project.selected]
     if len(chosen) == 1:
         actions += _details(session, look, project, chosen[0])
     elif chosen:
         heading(look, f"{len(chosen)} handles")
         small(look, "Dragging one of them moves them all; arrows nudge them.")
         actions += _firmness(session, look, chosen)
-        track = figure.track_of(chosen[0].id)
+        track = layer.track_of(chosen[0].id)
         if track is not None and set(track.handles) >= {handle.id for handle in chosen}:
-            actions += draw_track(session, look, project, figure.handle(track.handles[0]))
+            actions += draw_track(session, look, project, layer.handle(track.handles[0]))
     else:
         small(look, "Select a handle to see its settings.")
     if len(chosen) != 1 and session.tint == "depth":
@@ -95,16 +95,16 @@ def _heading_with_delete(session: Session, look: Look, project: Project) -> list
 
 def _list(look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
-    figure = project.figure
+    layer = project.layer
     lags = _shortfall(project).lags
     style = imgui.get_style()
-    rows = min(len(figure.handles), MOST_ROWS) * imgui.get_text_line_height_with_spacing()
+    rows = min(len(layer.handles), MOST_ROWS) * imgui.get_text_line_height_with_spacing()
     height = rows - style.item_spacing.y + 2 * style.window_padding.y
     imgui.begin_child("handles", ImVec2(0, height), imgui.ChildFlags_.borders)
     clipper = imgui.ListClipper()
-    clipper.begin(len(figure.handles), imgui.get_text_line_height_with_spacing())
+    clipper.begin(len(layer.handles), imgui.get_text_line_height_with_spacing())
     while clipper.step():
-        for handle in figure.handles[clipper.display_start : clipper.display_end]:
+        for handle in layer.handles[clipper.display_start : clipper.display_end]:
             actions += _row(look, project, handle, lags.get(handle.id))
     imgui.end_child()
     return actions
@@ -114,7 +114,7 @@ def _row(look: Look, project: Project, handle: Handle, lag: float | None) -> lis
     """Draw a row of the list: the handle's name, and by how many pixels it falls short."""
     actions: list[Action] = []
     palette = look.palette
-    is_anchor = handle.position == project.figure.anchor
+    is_anchor = handle.position == project.layer.anchor
     clicked, _ = imgui.selectable(
         f"###handle {handle.id}",
         handle.id in project.selected,
@@ -144,7 +144,7 @@ def _shortfall(project: Project) -> Shortfall:
     shown = project.puppet.shown
     if shown is None or shown.pose is None:
         return Shortfall(lags={}, at_limits=False)
-    return find_shortfall(shown.clip.figure, shown.pose)
+    return find_shortfall(shown.clip.layer, shown.pose)
 
 
 def _details(session: Session, look: Look, project: Project, handle: Handle) -> list[Action]:
@@ -154,13 +154,13 @@ def _details(session: Session, look: Look, project: Project, handle: Handle) -> 
     _, name = imgui.input_text("##name", handle.name)
     if imgui.is_item_deactivated_after_edit() and name.strip() and name != handle.name:
         actions.append(
-            do(editing.edit_figure, handle_commands.rename_handle, handle.id, name.strip())
+            do(editing.edit_layer, handle_commands.rename_handle, handle.id, name.strip())
         )
     actions += _firmness(session, look, [handle])
     hint = "Where it sits on the drawing at rest, in pixels from the upper left corner"
     placed = _point(look, project, "At rest", handle.position, hint)
     if placed is not None:
-        actions.append(do(editing.edit_figure, handle_commands.move_handle, handle.id, placed))
+        actions.append(do(editing.edit_layer, handle_commands.move_handle, handle.id, placed))
     actions += _wish(look, project, handle)
     actions += draw_stillness(look, project, handle)
     actions += draw_track(session, look, project, handle)
@@ -180,13 +180,13 @@ def _firmness(session: Session, look: Look, chosen: Sequence[Handle]) -> list[Ac
     tip("How firmly it holds against the others where not all can have their way")
     if taken is not None:
         weigh = handle_commands.weigh_handles
-        actions.append(do(editing.edit_figure, weigh, identities, HOLDS[taken]))
+        actions.append(do(editing.edit_layer, weigh, identities, HOLDS[taken]))
     label(look, "")
     hint = "How strongly it pulls, relative to the others: 1 is normal"
     weighed = slider(look, "weight", chosen[0].weight, WEIGHTS, hint=hint)
     if weighed is not None:
         weigh, value = handle_commands.weigh_handles, float(f"{weighed.value:.3g}")
-        actions.append(do(editing.edit_figure, weigh, identities, value))
+        actions.append(do(editing.edit_layer, weigh, identities, value))
     names = ["pin here", "lock", "group" if len(chosen) > 1 else "mirror", "mirrored"]
     if any(handle.group for handle in chosen):
         names[2] = "ungroup"
@@ -200,7 +200,7 @@ def _wish(look: Look, project: Project, handle: Handle) -> list[Action]:
     """Draw where the pose wants a handle; as many lines between keys, where it wants nothing."""
     actions: list[Action] = []
     shown = project.puppet.shown
-    identities = [each.id for each in shown.clip.figure.handles] if shown else []
+    identities = [each.id for each in shown.clip.layer.handles] if shown else []
     if shown is None or handle.id not in identities:
         return actions
     target = shown.pose.targets.get(handle.id) if shown.pose else None
@@ -233,7 +233,7 @@ def _turn(look: Look, project: Project, handle: Handle, target: Target) -> list[
     if changed and not turns:
         return [do(posing.free_turn, handle.id)]
     if changed and project.puppet.shown is not None:
-        index = [other.id for other in project.figure.handles].index(handle.id)
+        index = [other.id for other in project.layer.handles].index(handle.id)
         now = project.puppet.shown.handle_turns[index]
         return [do(posing.wish, {handle.id: replace(target, rotation=now)})]
     imgui.same_line()
@@ -266,24 +266,24 @@ def _point(look: Look, project: Project, text: str, place: complex, hint: str) -
 
 def _anchor(look: Look, project: Project, chosen: list[Handle]) -> list[Action]:
     """Tell what the in-betweens' place and turn follow, and let that be chosen."""
-    figure = project.figure
-    holder = next((h.name for h in figure.handles if h.position == figure.anchor), None)
-    if figure.anchor is None:
+    layer = project.layer
+    holder = next((h.name for h in layer.handles if h.position == layer.anchor), None)
+    if layer.anchor is None:
         small(look, "Automatic: the middle of the shape stays calm between keys.")
     elif holder is not None:
         name = shortened(holder, 12 * look.em)
         small(look, f"“{name}” stays calm between keys: it goes the straightest way.")
     else:
-        anchor = figure.anchor
+        anchor = layer.anchor
         y = project.document.canvas[1] - anchor.imag
         small(look, f"The point {anchor.real:.0f}, {y:.0f} stays calm between keys.")
-    is_chosen = len(chosen) == 1 and chosen[0].position != figure.anchor
+    is_chosen = len(chosen) == 1 and chosen[0].position != layer.anchor
     halves, actions = beside(2), list[Action]()
     text = f"{icons.ICON_FA_ANCHOR}  Follow this handle###anchor here"
     hint, keys = "Let this point stay calm between keys", with_key(CTRL, "click")
     if text_button(text, next(halves), hint, keys, enabled=is_chosen):
         actions.append(do(posing.anchor_at, chosen[0].id))
-    has_own = figure.anchor is not None
+    has_own = layer.anchor is not None
     if text_button("Automatic anchor###clear anchor", next(halves), enabled=has_own):
-        actions.append(do(editing.edit_figure, figure_commands.set_anchor, None))
+        actions.append(do(editing.edit_layer, shape_commands.set_anchor, None))
     return actions

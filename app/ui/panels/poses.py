@@ -60,12 +60,12 @@ def draw(session: Session, look: Look, project: Project, pictures: Pictures) -> 
 def _libraries(
     look: Look, project: Project, offers: Sequence[library.PoseOffer], pictures: Pictures
 ) -> list[Action]:
-    """Draw the figure's own poses, then those of each other layer below its name."""
+    """Draw the layer's own poses, then those of each other layer below its name."""
     actions: list[Action] = []
     numbered = enumerate(offers)
     for owner, group in groupby(numbered, key=lambda each: each[1].owner.id):
         if owner != project.active:
-            name = project.document.figure(owner).name
+            name = project.document.layer(owner).name
             title = f"Of {shortened(name, imgui.get_content_region_avail().x - 4 * look.em)}"
             if not imgui.tree_node_ex(f"{title}###of {owner}", imgui.TreeNodeFlags_.default_open):
                 continue
@@ -183,7 +183,7 @@ def _menu(kept: KeptPose, owner: int, *, is_own: bool) -> list[Action]:
 
 
 def _flip(session: Session, look: Look, project: Project) -> list[Action]:
-    figure, actions = project.figure, list[Action]()
+    layer, actions = project.layer, list[Action]()
     widths = beside(2)
     for name in ("paste flipped", "paste swapped"):
         actions += bound_text_button(session, name, next(widths))
@@ -195,13 +195,13 @@ def _flip(session: Session, look: Look, project: Project) -> list[Action]:
     button = 6 * look.em
     gap = imgui.get_style().item_inner_spacing.x
     imgui.set_next_item_width(imgui.get_content_region_avail().x - button - gap)
-    placed = number("axis x", figure.axis, "%.1f")
+    placed = number("axis x", layer.axis, "%.1f")
     tip("In pixels from the left edge")
     if placed is not None:
         actions.append(do(flipping.place_axis, placed))
     imgui.same_line(0, gap)
     hint = "Put the axis in the middle of the pairs of handles, or of the shape"
-    if text_button("Middle", button, hint, enabled=figure.mirror is not None):
+    if text_button("Middle", button, hint, enabled=layer.mirror is not None):
         actions.append(do(flipping.place_axis, None))
     label(look, "Pairs")
     _, text = imgui.input_text("##pairs", written_pairs(project.document.pairs))

@@ -65,10 +65,10 @@ def _stretch(_: Session, project: Project) -> str:
 
 def _onto(session: Session, project: Project, way: receiving.PasteWay) -> str:
     """Tell onto which layers is pasted, where that is not the one that is posed alone."""
-    onto = [each.figure for each in receiving.landings(session, project, way)]
+    onto = [each.layer for each in receiving.landings(session, project, way)]
     if len(onto) > 1:
         return f"onto {len(onto)} layers"
-    return "".join(f"onto {figure.name}" for figure in onto if figure.id != project.active)
+    return "".join(f"onto {layer.name}" for layer in onto if layer.id != project.active)
 
 
 def _all(session: Session, _: Project) -> str:
@@ -124,13 +124,13 @@ def _can_pose(session: Session, _: Project) -> bool:
 
 
 def _grouped(_: Session, project: Project) -> bool:
-    return any(h.group for h in project.figure.handles if h.id in project.selected)
+    return any(h.group for h in project.layer.handles if h.id in project.selected)
 
 
 def _all_locked(session: Session) -> bool:
     project = session.project
     selected = project.selected if project else frozenset[int]()
-    return bool(project and selected and all(map(project.figure.is_locked, selected)))
+    return bool(project and selected and all(map(project.layer.is_locked, selected)))
 
 
 def _has_summary(_: Session, project: Project) -> bool:
@@ -212,7 +212,7 @@ MENUS: dict[str, dict[str, Binding]] = {
             "Copy poses of all layers",
             do(copying.copy_all),
             "Ctrl+Alt+C",
-            possible=lambda _, project: len(project.document.figures) > 1,
+            possible=lambda _, project: len(project.document.layers) > 1,
         ),
         "paste": Binding(
             "Paste",
@@ -264,11 +264,11 @@ MENUS: dict[str, dict[str, Binding]] = {
         ),
         "deselect": Binding("Deselect", do(editing.deselect), "Escape", possible=_can_deselect),
         "move": Binding(
-            "Move the whole figure",
+            "Move the whole layer",
             do(moving.take_up),
             "V",
             icon=icons.ICON_FA_UP_DOWN_LEFT_RIGHT,
-            hint="Drags and arrows move all of the figure, as it is, in this frame",
+            hint="Drags and arrows move all of the layer, as it is, in this frame",
             active=lambda session: session.moves,
             parted=True,
         ),

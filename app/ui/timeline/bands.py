@@ -8,7 +8,7 @@ from typing import Protocol, TypeVar
 
 from imgui_bundle import ImVec2, imgui
 
-from app.document import LAST_FRAME, Figure, Track, TreeRow, remembered
+from app.document import LAST_FRAME, Layer, Track, TreeRow, remembered
 from app.editor import KeyRow, Project, Session, Strip, row_of, seen_at
 from app.ui.style import Look, tag_size, write_tag
 
@@ -17,10 +17,10 @@ MARKS, SMALL_MARKS = 1.25, 0.7  # em: height of the band of markers, with their 
 BAR, BAR_SHARE = 3.6, 0.62  # em: height of intervals at most, and as a part of the track's
 CRAMPED, CRAMPED_SHARE = 5.5, 0.85  # em: below this height bars take more, and the overview goes
 ROUNDING = 0.4  # em
-NAMES, NAMES_SHARE = 11.0, 0.25  # em: width of the figures' names at most, and as a part of all
-THIN, TALL = 1.25, 2.8  # em: height of tracks' rows, and of the row of a figure that is alone
+NAMES, NAMES_SHARE = 11.0, 0.25  # em: width of the layers' names at most, and as a part of all
+THIN, TALL = 1.25, 2.8  # em: height of tracks' rows, and of the row of a layer that is alone
 CLOSEST = 0.4  # em between two marks of a row: what is closer is drawn once
-EVEN, ROOMY = 2.0, 3.4  # em: heights of the rows of figures, at least and at most
+EVEN, ROOMY = 2.0, 3.4  # em: heights of the rows of layers, at least and at most
 
 
 class HasFrame(Protocol):
@@ -35,10 +35,10 @@ Mark = TypeVar("Mark", bound=HasFrame)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class FigureRow:
-    """Where a figure's keys are: between two heights, in pixels of the window."""
+class LayerRow:
+    """Where a layer's keys are: between two heights, in pixels of the window."""
 
-    figure: Figure
+    layer: Layer
     top: float
     bottom: float
     is_active: bool
@@ -52,9 +52,9 @@ class FigureRow:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class TrackLane:
-    """Where the keys of a figure's track are: between two heights, in pixels of the window."""
+    """Where the keys of a layer's track are: between two heights, in pixels of the window."""
 
-    figure: Figure
+    layer: Layer
     track: Track
     top: float
     bottom: float
@@ -89,8 +89,8 @@ class Bands:
         self.project = project
         self.corner = imgui.get_cursor_screen_pos()
         room = imgui.get_content_region_avail()
-        figures = project.document.figures
-        self.has_names = len(figures) > 1 or any(figure.tracks for figure in figures)
+        layers = project.document.layers
+        self.has_names = len(layers) > 1 or any(layer.tracks for layer in layers)
         self.has_names |= bool(project.document.camera)
         names = min(NAMES * look.em, NAMES_SHARE * room.x) if self.has_names else 0.0
         self.size = ImVec2(room.x - names, room.y)
@@ -104,7 +104,7 @@ class Bands:
         self.track_top = self.camera_top + bool(project.document.camera) * THIN * look.em
         is_whole = self.is_cramped or project.timing.strip is None
         self.track_bottom = self.bottom - (0 if is_whole else OVERVIEW * look.em)
-        self.rows: list[FigureRow] = []
+        self.rows: list[LayerRow] = []
         self.track_rows: list[TrackLane] = []
         self.stage_rows: list[StageLane] = []
         self.overflow = self._lay_rows(project.tree)
@@ -118,13 +118,13 @@ class Bands:
         self.strip = timing.gesture_strip or timing.strip or fitting
 
     def _lay_rows(self, tree: Sequence[TreeRow]) -> float:
-        """Lay a row for each group, choice and figure, and below a figure's those of its tracks.
+        """Lay a row for each group, choice and layer, and below a layer's those of its tracks.
 
         Which of them is active changes nothing: no row moves under the pointer that chooses it.
         Returns for how much there is no room.
         """
         em, room = self.look.em, self.track_bottom - self.track_top
-        thin, shown = THIN * em, [self._shown_tracks(row.figure) for row in tree if row.figure]
+        thin, shown = THIN * em, [self._shown_tracks(row.layer) for row in tree if row.layer]
         others = (len(tree) - len(shown) + sum(map(len, shown))) * thin
         least, most = (EVEN * em, ROOMY * em) if len(tree) > 1 else (min(TALL * em, room), room)
         tall = min(max((room - others) / len(shown), least), most)
@@ -132,15 +132,15 @@ class Bands:
         top = self.track_top - min(self.project.timing.scrolled * em, overflow)
         chosen = self.project.row
         for row in tree:
-            figure = row.figure
-            if figure is None:
+            layer = row.layer
+            if layer is None:
                 self.stage_rows.append(StageLane(row=row, top=top, bottom=top + thin))
                 top += thin
                 continue
-            is_active = figure.id == self.project.active
+            is_active = layer.id == self.project.active
             self.rows.append(
-                FigureRow(
-                    figure=figure,
+                LayerRow(
+                    layer=layer,
                     top=top,
                     bottom=top + tall,
                     is_active=is_active,
@@ -148,24 +148,24 @@ class Bands:
                 )
             )
             top += tall
-            for track in self._shown_tracks(figure):
-                is_chosen = row_of(figure, track) == chosen
+            for track in self._shown_tracks(layer):
+                is_chosen = row_of(layer, track) == chosen
                 lane = TrackLane(
-                    figure=figure, track=track, top=top, bottom=top + thin, is_chosen=is_chosen
+                    layer=layer, track=track, top=top, bottom=top + thin, is_chosen=is_chosen
                 )
                 self.track_rows.append(lane)
                 top += thin
         return overflow
 
-    def _shown_tracks(self, figure: Figure) -> tuple[Track, ...]:
-        """Return the tracks of a figure that have rows."""
-        return figure.tracks if figure.id in self.project.timing.unfolded else ()
+    def _shown_tracks(self, layer: Layer) -> tuple[Track, ...]:
+        """Return the tracks of a layer that have rows."""
+        return layer.tracks if layer.id in self.project.timing.unfolded else ()
 
     @property
-    def pointed_row(self) -> FigureRow | TrackLane:
+    def pointed_row(self) -> LayerRow | TrackLane:
         """The row under the pointer, or the nearest one that is seen."""
         y = min(max(imgui.get_mouse_pos().y, self.track_top), self.track_bottom - 1)
-        both: list[FigureRow | TrackLane] = [*self.rows, *self.track_rows]
+        both: list[LayerRow | TrackLane] = [*self.rows, *self.track_rows]
         rows = sorted(both, key=lambda row: row.bottom)
         return next((row for row in rows if y < row.bottom), rows[-1])
 
@@ -173,7 +173,7 @@ class Bands:
     def pointed_keys(self) -> KeyRow:
         """What tells the row under the pointer."""
         row = self.pointed_row
-        return row_of(row.figure, row.track if isinstance(row, TrackLane) else None)
+        return row_of(row.layer, row.track if isinstance(row, TrackLane) else None)
 
     def push_clip(self) -> None:
         """Let nothing be drawn and pointed at beyond the track, until the clip is popped."""
@@ -216,7 +216,7 @@ class Bands:
         """Tell whether a stretch of pixels is on the screen."""
         return high > self.left and low < self.right
 
-    def shows_row(self, row: FigureRow | TrackLane | StageLane) -> bool:
+    def shows_row(self, row: LayerRow | TrackLane | StageLane) -> bool:
         """Tell whether a row is on the screen, and not scrolled away."""
         return row.bottom > self.track_top and row.top < self.track_bottom
 
@@ -264,10 +264,10 @@ def _frame(mark: HasFrame) -> int:
 
 
 @remembered
-def least_gap(figure: Figure, handle: int | None) -> int:
+def least_gap(layer: Layer, handle: int | None) -> int:
     """Return how many frames there are between the two closest keys of poses, or of a track."""
-    track = None if handle is None else figure.track_of(handle)
-    row: Sequence[HasFrame] = figure.keys if track is None else track.keys
+    track = None if handle is None else layer.track_of(handle)
+    row: Sequence[HasFrame] = layer.keys if track is None else track.keys
     return min((later.frame - key.frame for key, later in pairwise(row)), default=LAST_FRAME)
 
 

@@ -228,7 +228,7 @@ def _onion_skin(session: Session, look: Look) -> list[Action]:
 
 def _variant(project: Project) -> list[Action]:
     actions: list[Action] = []
-    if imgui.begin_combo("##variant", VARIANTS[project.figure.variant].name):
+    if imgui.begin_combo("##variant", VARIANTS[project.layer.variant].name):
         actions += draw_methods(project)
         imgui.end_combo()
     tip("How in-betweens are made")

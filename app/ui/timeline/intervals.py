@@ -13,9 +13,9 @@ from app.document import (
     HOLD,
     LINEAR,
     Cycle,
-    Figure,
     Keyframe,
     KeySpan,
+    Layer,
     Transit,
     closing_span,
     spans,
@@ -24,7 +24,7 @@ from app.document import (
 from app.editor import Action, CycleDrag, do
 from app.editor.actions import timeline_pointing, tracks
 from app.ui.style import SMALL, begin_tip, in_hand, ink, is_pressed, sized, tip
-from app.ui.timeline.bands import CLOSEST, ROUNDING, Bands, FigureRow, tag
+from app.ui.timeline.bands import CLOSEST, ROUNDING, Bands, LayerRow, tag
 from app.ui.timeline.easing_curve import draw_curve, easing_popup, fill_curve
 from app.ui.timeline.keys import begin_box, is_plain_click
 
@@ -189,11 +189,11 @@ def _label(bands: Bands, name: str, turns: int, low: ImVec2, high: ImVec2) -> No
 
 
 def draw_cycles(bands: Bands) -> list[Action]:
-    """Draw the repeats of all figures, and take what the pointer does to their ends."""
+    """Draw the repeats of all layers, and take what the pointer does to their ends."""
     actions: list[Action] = []
     bands.push_clip()
     for row in filter(bands.shows_row, bands.rows):
-        for cycle in row.figure.cycles:
+        for cycle in row.layer.cycles:
             end = bands.project.document.frames.last if cycle.until is None else cycle.until
             _hatch(bands, row, cycle, end)
             if row.is_active:
@@ -202,7 +202,7 @@ def draw_cycles(bands: Bands) -> list[Action]:
     return actions
 
 
-def _hatch(bands: Bands, row: FigureRow, cycle: Cycle, end: int) -> None:
+def _hatch(bands: Bands, row: LayerRow, cycle: Cycle, end: int) -> None:
     """Draw where a stretch repeats, with its seams and where its keys are again."""
     draw_list, em, accent = imgui.get_window_draw_list(), bands.look.em, bands.look.palette.accent
     left, right = max(bands.x(cycle.last), bands.left), min(bands.x(end), bands.right)
@@ -222,7 +222,7 @@ def _hatch(bands: Bands, row: FigureRow, cycle: Cycle, end: int) -> None:
     step = cycle.period * max(round(SEAM / (cycle.period * bands.strip.scale)), 1)
     before = max(int(bands.frame(bands.left) - cycle.last) // step, 0) * step
     until = min(end, int(bands.frame(bands.right)) + 1)
-    own = _closest_keys(row.figure, cycle, CLOSEST / bands.strip.scale)
+    own = _closest_keys(row.layer, cycle, CLOSEST / bands.strip.scale)
     for start in range(cycle.last + before, until + 1, step):
         x = bands.x(start)
         draw_list.add_line(ImVec2(x, low.y), ImVec2(x, high.y), ink(accent, 0.6))
@@ -234,12 +234,12 @@ def _hatch(bands: Bands, row: FigureRow, cycle: Cycle, end: int) -> None:
     imgui.pop_clip_rect()
 
 
-def _closest_keys(figure: Figure, cycle: Cycle, apart: float) -> list[int]:
+def _closest_keys(layer: Layer, cycle: Cycle, apart: float) -> list[int]:
     """Return the frames of a cycle's keys, of which several that are closer are told once."""
-    frames, at = list[int](), bisect_left(figure.keys, cycle.first, key=_frame)
-    while at < len(figure.keys) and figure.keys[at].frame < cycle.last:
-        frames.append(figure.keys[at].frame)
-        at = bisect_left(figure.keys, frames[-1] + apart, at + 1, key=_frame)
+    frames, at = list[int](), bisect_left(layer.keys, cycle.first, key=_frame)
+    while at < len(layer.keys) and layer.keys[at].frame < cycle.last:
+        frames.append(layer.keys[at].frame)
+        at = bisect_left(layer.keys, frames[-1] + apart, at + 1, key=_frame)
     return frames
 
 
@@ -247,7 +247,7 @@ def _frame(key: Keyframe) -> int:
     return key.frame
 
 
-def _ends_of_cycle(bands: Bands, row: FigureRow, cycle: Cycle, end: int) -> list[Action]:
+def _ends_of_cycle(bands: Bands, row: LayerRow, cycle: Cycle, end: int) -> list[Action]:
     """Draw the ends of a stretch and of its repeats, and take what the pointer does to them."""
     repeats = "to the end of the scene" if cycle.until is None else f"until frame {end}"
     told = f"{cycle.told.capitalize()} repeat {repeats}"
@@ -258,7 +258,7 @@ def _ends_of_cycle(bands: Bands, row: FigureRow, cycle: Cycle, end: int) -> list
 
 
 def _end_of_cycle(
-    bands: Bands, row: FigureRow, cycle: Cycle, end: int, told: str, *, is_stretch: bool
+    bands: Bands, row: LayerRow, cycle: Cycle, end: int, told: str, *, is_stretch: bool
 ) -> list[Action]:
     x, half = bands.x(end), GRIP * bands.look.em
     if not bands.shows(x - half, x + half):
@@ -289,7 +289,7 @@ def _end_of_cycle(
     if not is_pressed():
         return []
     drag = CycleDrag(
-        figure=row.figure.id,
+        layer=row.layer.id,
         first=cycle.first,
         is_stretch=is_stretch,
         start=bands.pointed,

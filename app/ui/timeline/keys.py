@@ -1,4 +1,4 @@
-"""Keys of all figures, marked by how they are passed, and the box that chooses them."""
+"""Keys of all layers, marked by how they are passed, and the box that chooses them."""
 
 from imgui_bundle import ImVec2, ImVec4, icons_fontawesome_6 as icons, imgui
 
@@ -13,7 +13,7 @@ from app.editor import (
     TimeGesture,
     TrackRow,
     do,
-    figure_of,
+    layer_of,
     layering,
 )
 from app.editor.actions import editing, keys, timeline_pointing, tracks
@@ -22,7 +22,7 @@ from app.ui.style import begin_tip, in_hand, ink, is_pressed, tip
 from app.ui.timeline.bands import (
     ROUNDING,
     Bands,
-    FigureRow,
+    LayerRow,
     TrackLane,
     in_seconds,
     least_gap,
@@ -33,7 +33,7 @@ from app.ui.timeline.menus import PASSINGS, key_menu, track_menu
 from app.ui.timeline.misses import told
 
 REACH, SMALLEST = 0.55, 0.26  # em: half a key's diagonal, with room and among many
-SMALLER = 0.7  # keys of figures that are not the active one, as a part of what theirs would be
+SMALLER = 0.7  # keys of layers that are not the active one, as a part of what theirs would be
 GRIP = 1.45  # half the side of the box in which the pointer takes a key, as a part of that
 
 
@@ -63,7 +63,7 @@ def _press_ground(bands: Bands, low: ImVec2, high: ImVec2) -> list[Action]:
     twice = imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton_.left)
     row, lane = bands.pointed_keys, bands.pointed_row
     if isinstance(lane, TrackLane) and bands.project.timing.gesture is None:
-        miss = told(bands.project, lane.figure, lane.track, round(bands.pointed))
+        miss = told(bands.project, lane.layer, lane.track, round(bands.pointed))
         if miss:
             tip(miss)
     if twice and round(bands.pointed) in bands.project.document.frames:
@@ -76,9 +76,9 @@ def _press_ground(bands: Bands, low: ImVec2, high: ImVec2) -> list[Action]:
 
 
 def choose_row(row: KeyRow, chosen_of: KeysOf) -> list[Action]:
-    """Let the figure of a row be the active one, choose the row, and choose keys."""
+    """Let the layer of a row be the active one, choose the row, and choose keys."""
     return [
-        do(layering.choose, figure_of(row)),
+        do(layering.choose, layer_of(row)),
         do(tracks.choose, row.handle if isinstance(row, TrackRow) else None),
         do(editing.choose_keys_of, chosen_of),
     ]
@@ -114,26 +114,26 @@ def draw_box(bands: Bands) -> None:
 
 
 def draw_keys(bands: Bands) -> list[Action]:
-    """Draw the keys of all figures, and take what the pointer does to them."""
+    """Draw the keys of all layers, and take what the pointer does to them."""
     actions: list[Action] = []
     bands.push_clip()
     for row in bands.rows:
-        if bands.shows_row(row) and (not row.figure.still or row.is_active):
-            # The same buttons when another figure becomes the active one.
-            imgui.push_id(f"row {row.figure.id}")
+        if bands.shows_row(row) and (not row.layer.still or row.is_active):
+            # The same buttons when another layer becomes the active one.
+            imgui.push_id(f"row {row.layer.id}")
             actions += _draw_row(bands, row)
             imgui.pop_id()
     imgui.pop_clip_rect()
     return actions
 
 
-def _draw_row(bands: Bands, row: FigureRow) -> list[Action]:
+def _draw_row(bands: Bands, row: LayerRow) -> list[Action]:
     actions: list[Action] = []
     radius = _radius(bands, row)
     grip = GRIP * radius
-    gesture, identity = bands.project.timing.gesture, row.figure.id
-    for index in bands.in_view(row.figure.keys):
-        key = row.figure.keys[index]
+    gesture, identity = bands.project.timing.gesture, row.layer.id
+    for index in bands.in_view(row.layer.keys):
+        key = row.layer.keys[index]
         x = bands.x(key.frame)
         box = ImVec2(x - grip, row.middle - grip), ImVec2(x + grip, row.middle + grip)
         origin = origin_of(gesture, identity, key.frame)
@@ -147,9 +147,9 @@ def _draw_row(bands: Bands, row: FigureRow) -> list[Action]:
     return actions
 
 
-def _radius(bands: Bands, row: FigureRow) -> float:
+def _radius(bands: Bands, row: LayerRow) -> float:
     """Return how large keys are, in pixels: smaller where they would cover each other."""
-    gap = least_gap(row.figure, None)
+    gap = least_gap(row.layer, None)
     part = 1.0 if row.is_active else SMALLER
     return part * min(max(0.48 * gap * bands.strip.scale, SMALLEST), REACH) * bands.look.em
 
@@ -203,10 +203,10 @@ def _press(bands: Bands, row: KeyRow, frame: int) -> list[Action]:
     return [*choose_row(row, chosen_of), do(timeline_pointing.begin, drag, bands.strip)]
 
 
-def _draw_key(bands: Bands, row: FigureRow, key: Keyframe, radius: float) -> None:
+def _draw_key(bands: Bands, row: LayerRow, key: Keyframe, radius: float) -> None:
     palette, draw_list, em = bands.look.palette, imgui.get_window_draw_list(), bands.look.em
     x, y = bands.x(key.frame), row.middle
-    chosen = key.frame in bands.project.chosen_of.get(row.figure.id, ())
+    chosen = key.frame in bands.project.chosen_of.get(row.layer.id, ())
     warns = _warning(bands, row, key)
     fill = palette.accent if chosen else warns or (palette.text if row.is_active else palette.dim)
     passing, centre = key.shown_passing, ImVec2(x, y)
@@ -214,14 +214,14 @@ def _draw_key(bands: Bands, row: FigureRow, key: Keyframe, radius: float) -> Non
         draw_mark(passing, centre, radius + 0.24 * em, ink(palette.accent, 0.35))
     draw_mark(passing, centre, radius + 0.12 * em, ink(palette.desk))
     draw_mark(passing, centre, radius, ink(fill))
-    tag_dragged(bands, row.figure.id, key.frame, x)
+    tag_dragged(bands, row.layer.id, key.frame, x)
     if warns and chosen:
         draw_mark(passing, centre, 0.45 * radius, ink(warns))
     if warns and row.is_active:
         draw_list.add_circle_filled(ImVec2(x, bands.bar_top - 0.1 * em), 0.2 * em, ink(warns))
 
 
-def _warning(bands: Bands, row: FigureRow, key: Keyframe) -> ImVec4 | None:
+def _warning(bands: Bands, row: LayerRow, key: Keyframe) -> ImVec4 | None:
     """Return the colour of a key's warning if there is one."""
     palette = bands.look.palette
     if not key.pose.certificate.certified:
@@ -269,9 +269,9 @@ def draw_mark(passing: Passing, centre: ImVec2, radius: float, colour: int) -> N
 
 
 def lags(project: Project, key: Keyframe) -> list[str]:
-    """Return which handles fall short of their targets in a key of the active figure, in words."""
+    """Return which handles fall short of their targets in a key of the active layer, in words."""
     short = project.timing.shortfalls.value.get(key.pose, {})
-    names = {handle.id: handle.name for handle in project.figure.handles}
+    names = {handle.id: handle.name for handle in project.layer.handles}
     return [
         f"{names[identity]} is {lag:.0f} px short of its target"
         for identity, lag in short.items()
@@ -279,7 +279,7 @@ def lags(project: Project, key: Keyframe) -> list[str]:
     ]
 
 
-def _tell(bands: Bands, row: FigureRow, key: Keyframe) -> None:
+def _tell(bands: Bands, row: LayerRow, key: Keyframe) -> None:
     """Explain a key in a tooltip."""
     if not begin_tip():
         return

@@ -93,7 +93,7 @@ def track_menu(bands: Bands) -> list[Action]:
     if track is not None:
         imgui.separator()
         if imgui.menu_item_simple("Delete track"):
-            actions.append(do(editing.edit_figure, track_commands.remove_tracks, track.handles[:1]))
+            actions.append(do(editing.edit_layer, track_commands.remove_tracks, track.handles[:1]))
     imgui.end_popup()
     return actions
 
@@ -128,10 +128,8 @@ def _time_items(session: Session, look: Look, project: Project) -> list[Action]:
     count, chosen = len(frames_in(project.document, project.row)), project.count_chosen
     several = f"{chosen} keys" if chosen > 1 else "all keys"
     # The time of a scene is scaled as a whole, but not reversed.
-    is_scene = chosen < 2 and len(project.document.figures) > 1
-    whose = (
-        f"{several} of {shortened(project.figure.name, NAME * look.em)}" if is_scene else several
-    )
+    is_scene = chosen < 2 and len(project.document.layers) > 1
+    whose = f"{several} of {shortened(project.layer.name, NAME * look.em)}" if is_scene else several
     if imgui.menu_item_simple(f"Reverse {whose}###Reverse", enabled=max(count, chosen) > 1):
         actions.append(do(keys.reverse))
     if imgui.begin_menu(f"Scale time of {several}###Scale time"):
@@ -151,7 +149,7 @@ def _time_items(session: Session, look: Look, project: Project) -> list[Action]:
             actions.append(do(keys.scale, percent / 100))
             imgui.close_current_popup()
         imgui.end_menu()
-    if imgui.menu_item_simple("Copy first pose to last key", enabled=len(project.figure.keys) > 1):
+    if imgui.menu_item_simple("Copy first pose to last key", enabled=len(project.layer.keys) > 1):
         actions.append(do(keys.match_ends))
     imgui.separator()
     for name in ("preview start", "preview end", "preview none"):

@@ -2,28 +2,28 @@
 
 from collections.abc import Mapping
 
-from app.document import Figure, Track, falls_short
+from app.document import Layer, Track, falls_short
 from app.editor import Project
 
 
-def misses_of(project: Project, figure: Figure, track: Track) -> Mapping[int, float]:
+def misses_of(project: Project, layer: Layer, track: Track) -> Mapping[int, float]:
     """Return by how many pixels a track is missed, by the frames in which it is out of reach."""
-    corrected = project.puppets[figure.id].corrected
+    corrected = project.puppets[layer.id].corrected
     if corrected is None or not track.enabled:
         return {}
     lacks = {
         frame: max((missed.get(handle, 0.0) for handle in track.handles), default=0.0)
         for frame, missed in corrected.misses.items()
     }
-    return {frame: lack for frame, lack in lacks.items() if falls_short(figure, lack)}
+    return {frame: lack for frame, lack in lacks.items() if falls_short(layer, lack)}
 
 
-def told(project: Project, figure: Figure, track: Track, frame: int) -> str:
+def told(project: Project, layer: Layer, track: Track, frame: int) -> str:
     """Return in words that a track is out of reach at a frame; empty where it is not."""
-    miss = misses_of(project, figure, track).get(frame)
+    miss = misses_of(project, layer, track).get(frame)
     if miss is None:
         return ""
-    corrected = project.puppets[figure.id].corrected
+    corrected = project.puppets[layer.id].corrected
     correction = corrected.at(corrected.clip, frame) if corrected else None
     limits = correction.limits if correction else ()
     if len(limits) > 1:

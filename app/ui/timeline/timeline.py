@@ -136,8 +136,8 @@ def _click(bands: Bands, gesture: TimeGesture) -> list[Action]:
             return [do(editing.choose_keys_of, chosen), do(playback.scrub, seen)]
         case MarkerDrag(marker=frame) | CameraDrag(key=frame) | TurnDrag(turn=frame):
             return [do(playback.scrub, frame)]
-        case SwitchDrag(figure=figure, switch=frame):
-            return [do(layering.choose, figure), do(playback.scrub, frame)]
+        case SwitchDrag(layer=layer, switch=frame):
+            return [do(layering.choose, layer), do(playback.scrub, frame)]
         case _:
             return []
 
@@ -173,7 +173,7 @@ def _follow_active(bands: Bands) -> list[Action]:
     timing, row, em = bands.project.timing, bands.row, bands.look.em
     if timing.seen_rows == (bands.project.row, timing.unfolded):
         return []
-    own = [lane for lane in bands.track_rows if lane.figure is row.figure]
+    own = [lane for lane in bands.track_rows if lane.layer is row.layer]
     chosen = next((lane for lane in own if lane.is_chosen), None)
     top = row.top if chosen is None else chosen.top
     bottom = max((lane.bottom for lane in own), default=row.bottom)

@@ -5,12 +5,12 @@ from itertools import pairwise
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
-from app.document import Figure, Track, TrackKey, track_commands
+from app.document import Layer, Track, TrackKey, track_commands
 from app.editor import Action, KeyDrag, TrackRow, do, row_of
 from app.editor.actions import editing, timeline_pointing
 from app.ui.shortcuts import CTRL, with_key
 from app.ui.style import CHOSEN, SMALL, begin_tip, in_hand, ink, shortened, sized, tip
-from app.ui.timeline.bands import THIN, Bands, FigureRow, TrackLane, in_seconds, least_gap
+from app.ui.timeline.bands import THIN, Bands, LayerRow, TrackLane, in_seconds, least_gap
 from app.ui.timeline.keys import (
     choose_row,
     draw_mark,
@@ -27,35 +27,35 @@ WAY, LATE = 0.22, 0.1  # em: heights of the line where a track acts, and of that
 FOLD = 1.1  # em: width of the triangle that folds tracks away
 
 
-def name_of(figure: Figure, track: Track) -> str:
+def name_of(layer: Layer, track: Track) -> str:
     """Return what a track is called: by its handles."""
-    return ", ".join(figure.handle(identity).name for identity in track.handles)
+    return ", ".join(layer.handle(identity).name for identity in track.handles)
 
 
-def draw_fold(bands: Bands, row: FigureRow, left: float) -> list[Action]:
-    """Draw the triangle by which the tracks of a figure are folded away, if it has any."""
-    figure, em = row.figure, bands.look.em
-    if not figure.tracks:
+def draw_fold(bands: Bands, row: LayerRow, left: float) -> list[Action]:
+    """Draw the triangle by which the tracks of a layer are folded away, if it has any."""
+    layer, em = row.layer, bands.look.em
+    if not layer.tracks:
         return []
     half = THIN / 2 * em
     low, high = ImVec2(left, row.middle - half), ImVec2(left + FOLD * em, row.middle + half)
-    clicked = bands.button(f"fold {figure.id}", low, high)
-    is_open = figure.id in bands.project.timing.unfolded
-    many = f"{len(figure.tracks)} tracks" if len(figure.tracks) > 1 else "its track"
+    clicked = bands.button(f"fold {layer.id}", low, high)
+    is_open = layer.id in bands.project.timing.unfolded
+    many = f"{len(layer.tracks)} tracks" if len(layer.tracks) > 1 else "its track"
     tip(f"Fold {many} away" if is_open else f"Show {many}")
     palette = bands.look.palette
     icon = icons.ICON_FA_CARET_DOWN if is_open else icons.ICON_FA_CARET_RIGHT
     top = row.middle - imgui.get_text_line_height() / 2
     colour = ink(palette.text if in_hand() else palette.dim)
     imgui.get_window_draw_list().add_text(ImVec2(left + 0.3 * em, top), colour, icon)
-    return [do(timeline_pointing.unfold, figure.id)] if clicked else []
+    return [do(timeline_pointing.unfold, layer.id)] if clicked else []
 
 
 def draw_names(bands: Bands) -> list[Action]:
     """Draw the names of tracks beside their rows, and what switches them on and off."""
     actions: list[Action] = []
     for lane in filter(bands.shows_row, bands.track_rows):
-        imgui.push_id(f"track {lane.figure.id} {lane.track.handles[0]}")
+        imgui.push_id(f"track {lane.layer.id} {lane.track.handles[0]}")
         actions += _draw_name(bands, lane)
         imgui.pop_id()
     return actions
@@ -63,7 +63,7 @@ def draw_names(bands: Bands) -> list[Action]:
 
 def _draw_name(bands: Bands, lane: TrackLane) -> list[Action]:
     palette, draw_list, em = bands.look.palette, imgui.get_window_draw_list(), bands.look.em
-    figure, track, row = lane.figure, lane.track, row_of(lane.figure, lane.track)
+    layer, track, row = lane.layer, lane.track, row_of(lane.layer, lane.track)
     low = ImVec2(bands.corner.x, lane.top)
     high = ImVec2(bands.left - 0.3 * em, lane.bottom)
     actions: list[Action] = []
@@ -78,7 +78,7 @@ def _draw_name(bands: Bands, lane: TrackLane) -> list[Action]:
     with sized(SMALL):
         top = lane.middle - imgui.get_text_line_height() / 2
         icon = icons.ICON_FA_THUMBTACK if track.planted else icons.ICON_FA_ROUTE
-        text = shortened(name_of(figure, track), switch - low.x - 3.4 * em)
+        text = shortened(name_of(layer, track), switch - low.x - 3.4 * em)
         colour = ink(palette.text if track.enabled else palette.dim)
         draw_list.add_text(ImVec2(low.x + 1.4 * em, top), ink(palette.dim), icon)
         draw_list.add_text(ImVec2(low.x + 2.9 * em, top), colour, text)
@@ -89,9 +89,7 @@ def _draw_name(bands: Bands, lane: TrackLane) -> list[Action]:
     with sized(SMALL):
         draw_list.add_text(ImVec2(switch + 0.3 * em, top), colour, icon)
     if clicked:
-        command = track_commands.enable_track(
-            figure.id, track.handles[0], enabled=not track.enabled
-        )
+        command = track_commands.enable_track(layer.id, track.handles[0], enabled=not track.enabled)
         actions.append(do(editing.edit, command))
     return actions
 
@@ -115,7 +113,7 @@ def draw_ways(bands: Bands) -> None:
                 half,
             )
         _draw_delay(bands, lane)
-        for first, last in _runs(misses_of(bands.project, lane.figure, lane.track)):
+        for first, last in _runs(misses_of(bands.project, lane.layer, lane.track)):
             draw_list.add_rect_filled(
                 ImVec2(bands.x(first - 0.5), lane.top + 1),
                 ImVec2(bands.x(last + 0.5), lane.bottom - 1),
@@ -163,7 +161,7 @@ def draw_track_keys(bands: Bands) -> list[Action]:
     actions: list[Action] = []
     bands.push_clip()
     for lane in filter(bands.shows_row, bands.track_rows):
-        imgui.push_id(f"track {lane.figure.id} {lane.track.handles[0]}")
+        imgui.push_id(f"track {lane.layer.id} {lane.track.handles[0]}")
         for index in _in_view(bands, lane.track):
             actions += _key(bands, lane, lane.track.keys[index])
         imgui.pop_id()
@@ -181,8 +179,8 @@ def _in_view(bands: Bands, track: Track) -> list[int]:
 
 def _key(bands: Bands, lane: TrackLane, key: TrackKey) -> list[Action]:
     em, gesture = bands.look.em, bands.project.timing.gesture
-    row = TrackRow(lane.figure.id, lane.track.handles[0])
-    gap = least_gap(lane.figure, lane.track.handles[0])
+    row = TrackRow(lane.layer.id, lane.track.handles[0])
+    gap = least_gap(lane.layer, lane.track.handles[0])
     room = max(0.48 * gap * bands.strip.scale, 0.24)
     x, grip, radius = bands.x_of(lane.track, key.frame), GRIP * em, min(room, RADIUS) * em
     if not bands.shows(x - grip, x + grip):
@@ -201,7 +199,7 @@ def _key(bands: Bands, lane: TrackLane, key: TrackKey) -> list[Action]:
 
 def _draw_key(bands: Bands, lane: TrackLane, key: TrackKey, centre: ImVec2, radius: float) -> None:
     palette, em, passing = bands.look.palette, bands.look.em, key.shown_passing
-    row = TrackRow(lane.figure.id, lane.track.handles[0])
+    row = TrackRow(lane.layer.id, lane.track.handles[0])
     is_chosen = key.frame in bands.project.chosen_of.get(row, ())
     colour = palette.text if lane.track.enabled else palette.dim
     if is_chosen:
@@ -215,7 +213,7 @@ def _tell(bands: Bands, lane: TrackLane, key: TrackKey) -> None:
     if not begin_tip():
         return
     document, track = bands.project.document, lane.track
-    imgui.text_unformatted(f"Key of {name_of(lane.figure, track)} at frame {key.frame}")
+    imgui.text_unformatted(f"Key of {name_of(lane.layer, track)} at frame {key.frame}")
     if track.delay:
         imgui.same_line()
         imgui.text_disabled(f"{track.delay} frames late, {in_seconds(track.delay, document.fps)}")

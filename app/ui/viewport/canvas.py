@@ -7,7 +7,7 @@ from itertools import takewhile
 
 import numpy as np
 
-from app.document import Composite, Figure, composed, is_visible, seen_alone, time_of
+from app.document import Composite, Layer, composed, is_visible, seen_alone, time_of
 from app.editor import HeatMap, Project, Puppet, Session
 from app.motion import PosableMesh, Shown
 from app.render import Ghost, Heat, Painted, Renderer, Scene, Wireframe
@@ -127,9 +127,9 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
         session.hovered,
         session.cutting,
         project.draft is None,
-        project.figure.cut_out if session.cutting else None,
+        project.layer.cut_out if session.cutting else None,
         session.tint,
-        project.document.figures,
+        project.document.layers,
         project.document.groups,
         project.document.choices,
         project.solo,
@@ -142,7 +142,7 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
 
 def heat_limits(project: Project, heat_map: HeatMap) -> tuple[float, float]:
     """Return the values at the two ends of the colours: from none to all that the bounds allow."""
-    bounds = project.figure.bounds
+    bounds = project.layer.bounds
     match heat_map:
         case "sigma_a":
             return 1.0, bounds.sigma_a
@@ -165,7 +165,7 @@ def _scene(session: Session, project: Project, shown: Shown, drawing: Drawing) -
             meshes=drawing.cut_view().meshes(),
             discs=mark_holes(project, palette, scale) if session.cutting == "holes" else (),
         )
-    shows = {figure: puppet.shown for figure, puppet in project.puppets.items()}
+    shows = {layer: puppet.shown for layer, puppet in project.puppets.items()}
     heat = None
     if session.tint is not None:
         heat = Heat(low=-1.0, high=1.0, contours=0, strength=0.6, two_sided=True)
@@ -191,7 +191,7 @@ def _scene(session: Session, project: Project, shown: Shown, drawing: Drawing) -
 
 def _twin_scene(session: Session, project: Project, scene: Scene, drawing: Drawing) -> Scene:
     """Return the same scene by the method that is compared, without the poses around."""
-    shows = {figure: puppet.twin.shown for figure, puppet in project.puppets.items() if puppet.twin}
+    shows = {layer: puppet.twin.shown for layer, puppet in project.puppets.items() if puppet.twin}
     meshes = _posed(session, project, shows, drawing, number=TWIN)
     twin = replace(scene, meshes=meshes, ghosts=())
     # Handles are where the drawing's own method has them: beside it they would mark nothing.
@@ -207,22 +207,22 @@ def _posed(
     *,
     number: int = 0,
 ) -> tuple[Painted, ...]:
-    """Return what is seen of the figures, in the order of the document: the last is in front."""
+    """Return what is seen of the layers, in the order of the document: the last is in front."""
     heat_map = session.overlays.heat_map
     poses = {}
     document = project.document
-    for figure in document.figures:
-        shown = shows[figure.id]
-        if shown is None or not is_visible(document, figure, shown.frame):
+    for layer in document.layers:
+        shown = shows[layer.id]
+        if shown is None or not is_visible(document, layer, shown.frame):
             continue
-        if project.solo and figure.id not in project.solo:
+        if project.solo and layer.id not in project.solo:
             continue
-        pose = drawing.drawn_mesh(figure.id, shown.mesh, number).pose(
+        pose = drawing.drawn_mesh(layer.id, shown.mesh, number).pose(
             shown.vertices, placement=shown.placement
         )
-        poses[figure.id] = pose
+        poses[layer.id] = pose
         if session.tint is not None:
-            drawing.tint(pose, _tinted(session, project, drawing, figure, shown))
+            drawing.tint(pose, _tinted(session, project, drawing, layer, shown))
         elif heat_map != "none":
             drawing.heat(pose, shown, heat_map)
     frame = max((shown.frame for shown in shows.values() if shown), default=0)
@@ -231,18 +231,18 @@ def _posed(
 
 
 def _tinted(
-    session: Session, project: Project, drawing: Drawing, figure: Figure, shown: Shown
+    session: Session, project: Project, drawing: Drawing, layer: Layer, shown: Shown
 ) -> Floats:
-    """Return by what the vertices of a figure are coloured, (v,), −1 to 1."""
-    if figure.id != project.active:
+    """Return by what the vertices of a layer are coloured, (v,), −1 to 1."""
+    if layer.id != project.active:
         return np.zeros(len(shown.positions))
     if session.tint == "stiffness":
-        return drawing.stiffness(figure, shown.mesh)
+        return drawing.stiffness(layer, shown.mesh)
     return shown.mesh.order.depths(shown.clip, shown.frame)
 
 
 def _meshes(puppet: Puppet) -> set[PosableMesh]:
-    """Return the meshes on which a figure is shown, or may be soon."""
+    """Return the meshes on which a layer is shown, or may be soon."""
     meshes = {store.mesh for store in (puppet.store, puppet.fine) if store is not None}
     twin = puppet.twin
     shows = (puppet.shown, None if twin is None else twin.shown)
@@ -262,10 +262,10 @@ def _ghosts(session: Session, project: Project, drawing: Drawing) -> tuple[Ghost
             number += 1
             at = now + direction * step * choice.ghost_step
             poses = {
-                figure.id: _ghost(project, drawing, figure, now, at, number)
-                for figure in project.document.figures
+                layer.id: _ghost(project, drawing, layer, now, at, number)
+                for layer in project.document.layers
             }
-            seen = {figure: pose for figure, pose in poses.items() if pose is not None}
+            seen = {layer: pose for layer, pose in poses.items() if pose is not None}
             if seen:
                 meshes = composed(project.document, seen, project.document.in_time(at))
                 ghosts.append(Ghost(meshes=meshes, tint=tint, opacity=GHOST_OPACITY / step**0.5))
@@ -273,31 +273,31 @@ def _ghosts(session: Session, project: Project, drawing: Drawing) -> tuple[Ghost
 
 
 def _ghost(
-    project: Project, drawing: Drawing, figure: Figure, now: int, at: int, number: int
+    project: Project, drawing: Drawing, layer: Layer, now: int, at: int, number: int
 ) -> PosedMesh | None:
-    """Return a figure as it is at another frame; None where it looks no otherwise, or is not seen.
+    """Return a layer as it is at another frame; None where it looks no otherwise, or is not seen.
 
     Where it hangs on what has moved just now, it is left out until it is known where it is.
     """
-    document, puppet = project.document, project.puppets[figure.id]
+    document, puppet = project.document, project.puppets[layer.id]
     # While the hand moves, in-betweens come a moment later: until then the last ones stay.
     known = puppet.store.whole
     if known is None or (at not in known.frames and not known.loop):
         return None
-    placed = project.placed_at(figure.id, [now, at])
-    if project.solo and figure.id not in project.solo:
+    placed = project.placed_at(layer.id, [now, at])
+    if project.solo and layer.id not in project.solo:
         return None
-    was_seen, is_seen = (is_visible(document, figure, document.in_time(f)) for f in (now, at))
+    was_seen, is_seen = (is_visible(document, layer, document.in_time(f)) for f in (now, at))
     stays = time_of(known, at) == time_of(known, now) and placed and placed[0] == placed[1]
     if placed is None or not is_seen or (was_seen and stays):
         return None
     correction = puppet.corrected.at(known, at) if puppet.corrected else None
     find = partial(puppet.store.vertices, known, at, correction=correction)
     of = puppet.store.mesh, known, at, correction
-    vertices = drawing.ghost(figure.id, number, of, find)
+    vertices = drawing.ghost(layer.id, number, of, find)
     if vertices is None:
         return None
-    drawn = drawing.drawn_mesh(figure.id, puppet.store.mesh, number)
+    drawn = drawing.drawn_mesh(layer.id, puppet.store.mesh, number)
     return drawn.pose(vertices, placement=placed[1])
 
 
@@ -309,7 +309,7 @@ def _behind_ghosts(session: Session, project: Project, meshes: int) -> int:
     frame = max((each.shown.frame for each in shows.values() if each.shown), default=0)
     still = {
         each.id: each.still and not each.movement
-        for each in document.figures
+        for each in document.layers
         if (shown := shows[each.id].shown) is not None
         and is_visible(document, each, shown.frame)
         and (not project.solo or each.id in project.solo)

@@ -45,24 +45,24 @@ class _Sheet:
 
 
 class CutView:
-    """Owner of what is drawn of a figure while it is cut out.
+    """Owner of what is drawn of a layer while it is cut out.
 
     Parameters
     ----------
-    figure : int
+    layer : int
         Its id.
 
     Attributes
     ----------
     puppet : Puppet
-        The figure as the window had it then.
+        The layer as the window had it then.
     """
 
-    def __init__(self, renderer: Renderer, project: Project, figure: int) -> None:
-        self.puppet = project.puppets[figure]
+    def __init__(self, renderer: Renderer, project: Project, layer: int) -> None:
+        self.puppet = project.puppets[layer]
         self._cut = self.puppet.cut.value
         picture = self.puppet.picture
-        corners = project.document.figure(figure).corner + _corners(*picture.size)
+        corners = project.document.layer(layer).corner + _corners(*picture.size)
         self._sheet = _Sheet(renderer, picture.rgba, corners)
         self._veil = _Sheet(renderer, _veil(self._cut), corners)
 
@@ -82,17 +82,17 @@ class CutView:
 
 def mark_holes(project: Project, palette: Palette, scale: float) -> tuple[Disc, ...]:
     """Return a mark for each hole: a ring in one that stays open, a disc in one that is filled."""
-    figure, holes = project.figure, project.puppet.cut.value.holes
+    layer, holes = project.layer, project.puppet.cut.value.holes
     if holes is None:
         return ()
-    swapped = {holes.number_at(point) for point in figure.cut_out.swapped}
+    swapped = {holes.number_at(point) for point in layer.cut_out.swapped}
     return tuple(
         Disc(
-            centre=middle + figure.corner,
+            centre=middle + layer.corner,
             radius=HOLE * scale,
             fill=plain(
                 palette.accent
-                if (figure.cut_out.holes == "fill" or number in holes.shut) != (number in swapped)
+                if (layer.cut_out.holes == "fill" or number in holes.shut) != (number in swapped)
                 else palette.panel
             ),
             rim=plain(palette.text),

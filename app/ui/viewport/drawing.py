@@ -1,10 +1,10 @@
-"""What a project needs on the graphics card: the pictures and meshes of its figures."""
+"""What a project needs on the graphics card: the pictures and meshes of its layers."""
 
 from collections.abc import Callable, Collection
 
 import numpy as np
 
-from app.document import Figure, are_as_stiff
+from app.document import Layer, are_as_stiff
 from app.editor import HeatMap, Project
 from app.motion import PosableMesh, Shown, Vertices
 from app.render import DrawnMesh, Renderer, shader_is_faster
@@ -31,13 +31,13 @@ def measure(shown: Shown, heat_map: HeatMap) -> Floats:
 
 
 class Drawing:
-    """Owner of the pictures and meshes of a project's figures on the graphics card."""
+    """Owner of the pictures and meshes of a project's layers on the graphics card."""
 
     def __init__(self, renderer: Renderer, project: Project) -> None:
         self.project = project
         self._renderer = renderer
-        # By figures' ids and their pictures: a layer's may be replaced, or a new one get the id of
-        # one that is gone. Figures of which nothing is cut share them, by None.
+        # By layers' ids and their pictures: a layer's may be replaced, or a new one get the id of
+        # one that is gone. Layers of which nothing is cut share them, by None.
         self._pictures: dict[tuple[int | None, Picture], GpuPicture] = {}
         self._meshes: dict[PosableMesh, GpuMesh] = {}
         self._drawn_meshes: dict[tuple[PosableMesh, int], DrawnMesh] = {}
@@ -45,41 +45,41 @@ class Drawing:
         self._heated: dict[PosedMesh, tuple[Vertices, HeatMap]] = {}
         self._cut_view: CutView | None = None
         self._measured: tuple[Bytes, Floats] | None = None
-        self._stiff: tuple[Figure, PosableMesh, Floats] | None = None
+        self._stiff: tuple[Layer, PosableMesh, Floats] | None = None
 
     @property
     def brightness(self) -> Floats:
         """That of the picture behind all others, as it is cut out: the backdrop must differ."""
-        (first, *_) = self.project.document.figures
+        (first, *_) = self.project.document.layers
         texture = self.project.puppets[first.id].cut.value.texture
         if self._measured is None or self._measured[0] is not texture:
             self._measured = texture, measure_brightness(texture)
         return self._measured[1]
 
-    def drawn_mesh(self, figure: int, mesh: PosableMesh, number: int = 0) -> DrawnMesh:
-        """Return the copy of a figure's mesh with this number, which is posed by itself."""
-        if mesh in self._meshes and self._meshes[mesh].picture is not self.picture(figure):
+    def drawn_mesh(self, layer: int, mesh: PosableMesh, number: int = 0) -> DrawnMesh:
+        """Return the copy of a layer's mesh with this number, which is posed by itself."""
+        if mesh in self._meshes and self._meshes[mesh].picture is not self.picture(layer):
             # What is cut out of the picture is its own now, or is not any more.
             self.release_but(self._meshes.keys() - {mesh})
         if (mesh, number) not in self._drawn_meshes:
             by_shader = shader_is_faster(self._renderer.programs.context)
-            drawn = DrawnMesh(self._mesh(figure, mesh), by_shader=by_shader)
+            drawn = DrawnMesh(self._mesh(layer, mesh), by_shader=by_shader)
             self._drawn_meshes[mesh, number] = drawn
         return self._drawn_meshes[mesh, number]
 
     def ghost(
-        self, figure: int, number: int, of: object, find: Callable[[], Vertices | None]
+        self, layer: int, number: int, of: object, find: Callable[[], Vertices | None]
     ) -> Vertices | None:
-        """Return where a figure's vertices are in a copy that shows another frame, if known.
+        """Return where a layer's vertices are in a copy that shows another frame, if known.
 
         They are found anew only where they are of something else: the picture changes every frame.
         """
-        known = self._ghosts.get((figure, number))
+        known = self._ghosts.get((layer, number))
         if known is None or known[0] != of:
             vertices = find()
             if vertices is None:
                 return None
-            known = self._ghosts[figure, number] = of, vertices
+            known = self._ghosts[layer, number] = of, vertices
         return known[1]
 
     def heat(self, pose: PosedMesh, shown: Shown, heat_map: HeatMap) -> None:
@@ -91,7 +91,7 @@ class Drawing:
 
     def refresh(self) -> None:
         """Bring the pictures up to what is cut out of them now."""
-        used = {self._key(figure): figure for figure in self.project.puppets}
+        used = {self._key(layer): layer for layer in self.project.puppets}
         for key in list(self._pictures):
             if key in used:
                 self._pictures[key].write(self.project.puppets[used[key]].cut.value.texture)
@@ -104,8 +104,8 @@ class Drawing:
         pose.write_heat(values.astype(np.float32))
         self._heated.pop(pose, None)
 
-    def stiffness(self, figure: Figure, mesh: PosableMesh) -> Floats:
-        """Return by what the vertices of a figure's mesh are coloured, (v,), where it is stiff.
+    def stiffness(self, layer: Layer, mesh: PosableMesh) -> Floats:
+        """Return by what the vertices of a layer's mesh are coloured, (v,), where it is stiff.
 
         It is worked out anew only where that has changed: the picture changes in every frame.
         """
@@ -113,10 +113,10 @@ class Drawing:
         if (
             known is None
             or known[1] is not mesh
-            or known[0].domain is not figure.domain
-            or not are_as_stiff(known[0], figure)
+            or known[0].domain is not layer.domain
+            or not are_as_stiff(known[0], layer)
         ):
-            known = self._stiff = figure, mesh, tint_of(figure, mesh)
+            known = self._stiff = layer, mesh, tint_of(layer, mesh)
         return known[2]
 
     def release_but(self, meshes: Collection[PosableMesh]) -> None:
@@ -129,7 +129,7 @@ class Drawing:
             self._meshes.pop(mesh).release()
 
     def cut_view(self) -> CutView:
-        """Return what is drawn of the active figure while it is cut out."""
+        """Return what is drawn of the active layer while it is cut out."""
         if self._cut_view is None or self._cut_view.puppet is not self.project.puppet:
             self._forget_cut_view()
             self._cut_view = CutView(self._renderer, self.project, self.project.active)
@@ -147,13 +147,13 @@ class Drawing:
         for picture in self._pictures.values():
             picture.release()
 
-    def _mesh(self, figure: int, mesh: PosableMesh) -> GpuMesh:
+    def _mesh(self, layer: int, mesh: PosableMesh) -> GpuMesh:
         if mesh not in self._meshes:
             drawn = mesh.domain.mesh
             self._meshes[mesh] = GpuMesh(
                 self._renderer.programs,
-                self.picture(figure),
-                rest=drawn.vertices - self.project.document.figure(figure).corner,
+                self.picture(layer),
+                rest=drawn.vertices - self.project.document.layer(layer).corner,
                 triangles=drawn.triangles,
                 seam=find_seam(mesh.domain),
             )
@@ -164,17 +164,17 @@ class Drawing:
         """How many pictures of layers are on the graphics card."""
         return len(self._pictures)
 
-    def picture(self, figure: int) -> GpuPicture:
+    def picture(self, layer: int) -> GpuPicture:
         """Return a layer's picture on the graphics card; uncut layers of one file share it."""
-        key = self._key(figure)
+        key = self._key(layer)
         if key not in self._pictures:
-            texture = self.project.puppets[figure].cut.value.texture
+            texture = self.project.puppets[layer].cut.value.texture
             context = self._renderer.programs.context
             self._pictures[key] = GpuPicture(context, texture, is_for_screen=True)
             let_go(texture)
         return self._pictures[key]
 
-    def _key(self, figure: int) -> tuple[int | None, Picture]:
-        puppet = self.project.puppets[figure]
+    def _key(self, layer: int) -> tuple[int | None, Picture]:
+        puppet = self.project.puppets[layer]
         is_whole = puppet.cut.value.texture is puppet.picture.rgba
-        return None if is_whole else figure, puppet.picture
+        return None if is_whole else layer, puppet.picture

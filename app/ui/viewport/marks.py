@@ -63,17 +63,17 @@ def mark_all(
 
 
 def _handles(session: Session, project: Project, shown: Shown) -> list[HandleMark]:
-    figure, wishes = shown.clip.figure, unreached(project, shown)
+    layer, wishes = shown.clip.layer, unreached(project, shown)
     return [
         HandleMark(
             place=_on(shown, place),
             wish=_on(shown, wishes[handle.id]) if handle.id in wishes else None,
-            anchor=handle.position == figure.anchor,
+            anchor=handle.position == layer.anchor,
             selected=handle.id in project.selected,
             hovered=handle.id == session.hovered,
             locked=handle.locked,
         )
-        for handle, place in zip(figure.handles, shown.handle_places.tolist(), strict=True)
+        for handle, place in zip(layer.handles, shown.handle_places.tolist(), strict=True)
     ]
 
 
@@ -82,45 +82,45 @@ def unreached(project: Project, shown: Shown) -> dict[int, complex]:
 
     Those that go their own ways, by tracks or springs, are not where the pose wants them for that.
     """
-    figure, targets = shown.clip.figure, shown.pose.targets if shown.pose else {}
-    own = {handle for track in _acting(shown) for handle in track.handles} | figure.followers
+    layer, targets = shown.clip.layer, shown.pose.targets if shown.pose else {}
+    own = {handle for track in _acting(shown) for handle in track.handles} | layer.followers
     if project.pull and project.pull.asked is not None:
         targets = project.pull.asked
-    places = zip(figure.handles, shown.handle_places.tolist(), strict=True)
+    places = zip(layer.handles, shown.handle_places.tolist(), strict=True)
     wanted = ((handle.id, targets.get(handle.id), place) for handle, place in places)
     short = {
         identity: target.position
         for identity, target, place in wanted
         if target is not None and identity not in own
-        if falls_short(figure, abs(target.position - place))
+        if falls_short(layer, abs(target.position - place))
     }
     return {**short, **_missed(shown)}
 
 
 def _missed(shown: Shown) -> dict[int, complex]:
     """Return where handles are wanted by their tracks, by their ids, that cannot go there."""
-    figure, found = shown.clip.figure, shown.correction
+    layer, found = shown.clip.layer, shown.correction
     if found is None or shown.stand_in is not None:
         return {}
-    return {i: found.wishes[i] for i, miss in found.misses.items() if falls_short(figure, miss)}
+    return {i: found.wishes[i] for i, miss in found.misses.items() if falls_short(layer, miss)}
 
 
 def _acting(shown: Shown) -> list[Track]:
     """Return the tracks that want something in the frame that is shown."""
     clip = shown.clip
-    return [track for track in clip.figure.tracks if track_at(track, clip, shown.frame) is not None]
+    return [track for track in clip.layer.tracks if track_at(track, clip, shown.frame) is not None]
 
 
 def find_anchor(project: Project, shown: Shown) -> complex | None:
     """Return where the anchor is in what is shown; None where a handle marks it, or none is yet."""
-    figure, sampler = shown.clip.figure, project.puppet.store.sampler
-    rest = figure.anchor
+    layer, sampler = shown.clip.layer, project.puppet.store.sampler
+    rest = layer.anchor
     if rest is None and sampler is not None and sampler.anchor is None:
         rest = sampler.sites.anchor
-    if rest is None and len(project.document.figures) > 1:
+    if rest is None and len(project.document.layers) > 1:
         # Before anything moves, it is there to hang the layer by.
-        rest = _deepest_point(figure.domain)
-    if rest is None or any(handle.position == rest for handle in figure.handles):
+        rest = _deepest_point(layer.domain)
+    if rest is None or any(handle.position == rest for handle in layer.handles):
         return None
     return complex(_located(shown.mesh, rest).on(shown.positions)[0])
 
@@ -157,7 +157,7 @@ def staying(shown: Shown) -> frozenset[int]:
     if interval >= len(still):
         return frozenset()
     moved = {identity for track in _acting(shown) for identity in track.handles}
-    pairs = zip(clip.figure.handles, still[interval].tolist(), strict=True)
+    pairs = zip(clip.layer.handles, still[interval].tolist(), strict=True)
     return frozenset(handle.id for handle, stays in pairs if stays and handle.id not in moved)
 
 
@@ -165,7 +165,7 @@ def _grounds(session: Session, project: Project, shown: Shown, scale: float) -> 
     """Return a short line below each handle that stays, as if it stood on the ground there."""
     per_pixel = scale / project.view(session.screen).scale
     stays, lines = staying(shown), list[Line]()
-    for handle, place in zip(shown.clip.figure.handles, shown.handle_places.tolist(), strict=True):
+    for handle, place in zip(shown.clip.layer.handles, shown.handle_places.tolist(), strict=True):
         if handle.id not in stays:
             continue
         middle = _on(shown, place) - GROUND_BELOW * per_pixel * 1j
@@ -178,17 +178,17 @@ def _grounds(session: Session, project: Project, shown: Shown, scale: float) -> 
 
 
 def _others(project: Project, scale: float) -> tuple[Disc, ...]:
-    """Return faint marks of the handles of the figures that are not posed."""
+    """Return faint marks of the handles of the layers that are not posed."""
     return tuple(
         Disc(centre=complex(place), radius=FAINT * scale, fill=(1.0, 1.0, 1.0, 0.35))
-        for figure, puppet in project.puppets.items()
-        if figure != project.active and puppet.shown is not None
+        for layer, puppet in project.puppets.items()
+        if layer != project.active and puppet.shown is not None
         for place in puppet.shown.placement.on(puppet.shown.handle_places)
     )
 
 
 def _on(shown: Shown, place: complex) -> complex:
-    """Return where a place of the figure by itself is in the scene."""
+    """Return where a place of the layer by itself is in the scene."""
     return complex(shown.placement.on(np.array([place]))[0])
 
 
@@ -214,7 +214,7 @@ def _paths(
     Of what hangs on something that has moved just now there are none until they are known.
     """
     paths = project.paths.value
-    if paths is None or len(paths.frames) < 2 or paths.clip.figure.id != project.active:
+    if paths is None or len(paths.frames) < 2 or paths.clip.layer.id != project.active:
         return [], ()
     frames = _frames_of_paths(session, project, paths)
     placements = project.placed_at(project.active, paths.frames[frames].tolist())
@@ -222,9 +222,9 @@ def _paths(
         return [], ()
     rows = zip(placements, paths.places[frames], strict=True)
     places = np.array([placement.on(row) for placement, row in rows])
-    keys = np.isin(paths.frames[frames], [key.frame for key in project.figure.keys])
+    keys = np.isin(paths.frames[frames], [key.frame for key in project.layer.keys])
     lines, discs = [], []
-    for handle, path in zip(paths.clip.figure.handles, places.T, strict=True):
+    for handle, path in zip(paths.clip.layer.handles, places.T, strict=True):
         # What does not move would only be a blot on its handle.
         if handle.id not in project.selected or np.abs(path - path[0]).max() <= STILL:
             continue

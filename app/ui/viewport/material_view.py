@@ -1,4 +1,4 @@
-"""What of a figure is stiff or soft, over its picture: colours, bones, and the brush."""
+"""What of a layer is stiff or soft, over its picture: colours, bones, and the brush."""
 
 from math import log
 
@@ -6,7 +6,7 @@ import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui
 from scipy.spatial import cKDTree
 
-from app.document import Figure, stiff_outline
+from app.document import Layer, stiff_outline
 from app.editor.actions import material
 from app.motion import PosableMesh
 from app.ui.style import Look, ink, outlined
@@ -19,9 +19,9 @@ AROUND, TINY = 128, 1e-6  # points of the outline that colour a place inside
 MOST = 0.7  # em: how wide a bone is at most, to either side
 
 
-def tint_of(figure: Figure, mesh: PosableMesh) -> Floats:
+def tint_of(layer: Layer, mesh: PosableMesh) -> Floats:
     """Return how stiff the vertices of a mesh are, (v,): −1 to 1, as the outline around them."""
-    along, stiffness = stiff_outline(figure)
+    along, stiffness = stiff_outline(layer)
     values, vertices = np.log(stiffness) / EXTENT, mesh.domain.mesh.vertices
     tree = cKDTree(np.column_stack([along.real, along.imag]))
     away, nearest = tree.query(
@@ -35,9 +35,9 @@ def tint_of(figure: Figure, mesh: PosableMesh) -> Floats:
 def draw_bones(look: Look, screen: Screen) -> None:
     """Draw the bones that are shown, as thin diamonds from handle to handle."""
     shown = screen.shown
-    handles = [handle.id for handle in shown.clip.figure.handles]
+    handles = [handle.id for handle in shown.clip.layer.handles]
     places = dict(zip(handles, shown.handle_places.tolist(), strict=True))
-    for bone in screen.project.figure.bones:
+    for bone in screen.project.layer.bones:
         if bone.is_shown and places.keys() >= set(bone.ends):
             start, end = (screen.point(places[identity]) for identity in bone.ends)
             draw_bone(look, start, end, look.palette.text)

@@ -57,7 +57,7 @@ def mark_path(
 
 def _chosen(project: Project) -> Track | None:
     handle = project.chosen_track
-    return None if handle is None else project.figure.track_of(handle)
+    return None if handle is None else project.layer.track_of(handle)
 
 
 def _places(project: Project, track: Track, frames: list[int]) -> list[tuple[int, Complexes]]:
@@ -68,7 +68,7 @@ def _places(project: Project, track: Track, frames: list[int]) -> list[tuple[int
     if not track.planted and project.placed_at(project.active, frames) is None:
         return []
     wished = [tracking.wished(project, track, frame) for frame in frames]
-    # Where a planted one is in the scene, it is wherever its figure is.
+    # Where a planted one is in the scene, it is wherever its layer is.
     placements = project.placements(frames, shown.placement)
     return [
         (frame, placement.on(np.array([place])))

@@ -1,4 +1,4 @@
-"""Small pictures of the poses in figures' libraries."""
+"""Small pictures of the poses in layers' libraries."""
 
 from collections.abc import Callable
 
@@ -14,21 +14,21 @@ MARGIN = 0.06  # of the side, left free around the shape
 
 
 class PosePictures:
-    """Owner of one small texture for each pose of a figure, by its id, that was asked for."""
+    """Owner of one small texture for each pose of a layer, by its id, that was asked for."""
 
     def __init__(self, renderer: Renderer) -> None:
         self._renderer = renderer
         self._targets: dict[tuple[int, Pose], RenderTarget] = {}
         self._wanted: set[tuple[int, Pose]] = set()
-        # Of all that is drawn: the figures' meshes, how large, and in which theme.
+        # Of all that is drawn: the layers' meshes, how large, and in which theme.
         self._kind: tuple[object, ...] = ()
         self._side = 1
 
-    def get(self, figure: int, pose: Pose, side: int) -> int | None:
+    def get(self, layer: int, pose: Pose, side: int) -> int | None:
         """Return the texture of a pose, so many pixels wide and high; None before it is drawn."""
-        self._wanted.add((figure, pose))
+        self._wanted.add((layer, pose))
         self._side = side
-        target = self._targets.get((figure, pose))
+        target = self._targets.get((layer, pose))
         return None if target is None else target.texture.glo
 
     def draw(
@@ -36,12 +36,12 @@ class PosePictures:
     ) -> None:
         """Draw what was asked for in this frame, and let all else go.
 
-        From `posable` comes a figure's mesh on the graphics card that can be posed.
+        From `posable` comes a layer's mesh on the graphics card that can be posed.
         """
         meshes = {
-            figure: project.puppets[figure].store.mesh
-            for figure, _ in self._wanted
-            if figure in project.puppets
+            layer: project.puppets[layer].store.mesh
+            for layer, _ in self._wanted
+            if layer in project.puppets
         }
         kind = (meshes, self._side, session.preferences.theme)
         if kind != self._kind:
@@ -50,18 +50,18 @@ class PosePictures:
         for each in self._targets.keys() - self._wanted:
             self._targets.pop(each).release()
         desk = Backdrop(colour=plain(PALETTES[session.preferences.theme].desk))
-        for figure, pose in self._wanted - self._targets.keys():
-            if figure not in meshes or pose not in project.document.figure(figure).poses:
+        for layer, pose in self._wanted - self._targets.keys():
+            if layer not in meshes or pose not in project.document.layer(layer).poses:
                 continue
-            mesh = meshes[figure]
+            mesh = meshes[layer]
             positions = mesh.posed(pose)
             vertices = Placed(positions=positions, triangles=mesh.domain.mesh.triangles)
             size = (self._side, self._side)
             view = fit_view(*box_around(positions), size, margin=MARGIN * self._side)
             target = RenderTarget(self._renderer.programs, size)
-            scene = Scene(background=desk, meshes=(posable(figure, mesh).pose(vertices),))
+            scene = Scene(background=desk, meshes=(posable(layer, mesh).pose(vertices),))
             self._renderer.draw(target, view, scene)
-            self._targets[figure, pose] = target
+            self._targets[layer, pose] = target
         self._wanted.clear()
 
     def release(self) -> None:

@@ -15,9 +15,9 @@ GRIP = 0.75  # em: radius within which a handle is grabbed
 
 
 class Screen:
-    """The viewport's picture of the figure that is posed, on the screen from a corner on.
+    """The viewport's picture of the layer that is posed, on the screen from a corner on.
 
-    Places are those of the figure by itself, unless they are said to be of the scene.
+    Places are those of the layer by itself, unless they are said to be of the scene.
     """
 
     def __init__(self, session: Session, project: Project, shown: Shown, corner: ImVec2) -> None:
@@ -71,26 +71,26 @@ class Screen:
             on_anchor=self._is_anchor(handle, place, GRIP * look.em / self.scale),
             on_ring=on_ring,
             on_shape=bool(contains(outline, np.array([place]), holes=holes)[0]),
-            figure=self._figure(through=io.key_alt),
+            layer=self._layer(through=io.key_alt),
             ctrl=io.key_ctrl,
             shift=io.key_shift,
             alt=io.key_alt,
         )
 
-    def _figure(self, *, through: bool) -> int | None:
-        """Return the figure under the pointer, or `through` the one that is posed, the next one."""
-        if len(self.project.document.figures) == 1:
+    def _layer(self, *, through: bool) -> int | None:
+        """Return the layer under the pointer, or `through` the one that is posed, the next one."""
+        if len(self.project.document.layers) == 1:
             return None
         below = self.project.active if through else None
-        return layering.figure_at(self.project, self._in_scene, below=below)
+        return layering.layer_at(self.project, self._in_scene, below=below)
 
     def _is_anchor(self, handle: int | None, place: complex, reach: float) -> bool:
         """Tell whether the anchor is at a place, or a handle there is it, in a scene of several."""
         project, shown = self.project, self.shown
-        if len(project.document.figures) == 1 or project.playhead.since is not None:
+        if len(project.document.layers) == 1 or project.playhead.since is not None:
             return False
         if handle is not None:
-            figure = shown.clip.figure
-            return figure.anchor == figure.handle(handle).position
+            layer = shown.clip.layer
+            return layer.anchor == layer.handle(handle).position
         anchor = find_anchor(project, shown)
         return anchor is not None and abs(anchor - place) <= reach

@@ -106,7 +106,7 @@ def draw_divider(session: Session, look: Look, parts: Parts, room: float) -> lis
 def _names(look: Look, project: Project, method: Variant | Baseline, x: float, top: float) -> None:
     """Write which method is left and which is right of the divider."""
     pad = 0.5 * look.em
-    own = METHODS[project.figure.variant].name
+    own = METHODS[project.layer.variant].name
     other = METHODS[method].name
     draw_list = imgui.get_window_draw_list()
     for text, left in ((own, x - imgui.calc_text_size(own).x - 3 * pad), (other, x + 3 * pad)):

@@ -172,7 +172,7 @@ def _lay_handles(session: Session, look: Look, screen: Screen) -> _Handles:
     if not _shows_handles(session, screen.project):
         return _Handles(hovered, at_target, pressed, actions)
     radius, shown = ImVec2(GRIP * look.em, GRIP * look.em), screen.shown
-    identities = [handle.id for handle in shown.clip.figure.handles]
+    identities = [handle.id for handle in shown.clip.layer.handles]
     targets = unreached(screen.project, shown)
     grips = [("target", identity) for identity in targets]
     grips += [("handle", identity) for identity in identities]
@@ -189,8 +189,8 @@ def _lay_handles(session: Session, look: Look, screen: Screen) -> _Handles:
             imgui.open_popup(f"menu of handle {identity}")
             if identity not in screen.project.selected:
                 actions.append(do(editing.select, frozenset({identity})))
-    # What is shown may still be of a figure from before the last edit.
-    for handle in screen.project.figure.handles:
+    # What is shown may still be of a layer from before the last edit.
+    for handle in screen.project.layer.handles:
         actions += _handle_menu(session, screen, handle)
     return _Handles(hovered, at_target, pressed, actions)
 
@@ -215,7 +215,7 @@ def _canvas_menu(session: Session, *, is_pointed: bool) -> list[Action]:
 def _handle_menu(session: Session, screen: Screen, handle: Handle) -> list[Action]:
     """Draw the menu of a handle, if it is open: what it does is done with all that are selected."""
     actions: list[Action] = []
-    figure, identity = screen.project.figure, handle.id
+    layer, identity = screen.project.layer, handle.id
     if not imgui.begin_popup(f"menu of handle {identity}"):
         return actions
     chosen = screen.project.selected | {identity}
@@ -227,7 +227,7 @@ def _handle_menu(session: Session, screen: Screen, handle: Handle) -> list[Actio
     actions += bound_item(session, "key handle")
     actions += _hold(handle, chosen) + _depth(session, screen, handle)
     imgui.separator()
-    label = "Automatic anchor" if handle.position == figure.anchor else "Make it the anchor"
+    label = "Automatic anchor" if handle.position == layer.anchor else "Make it the anchor"
     if item(label, icons.ICON_FA_ANCHOR, with_key(CTRL, "click")):
         actions.append(do(posing.anchor_at, identity))
     is_turned = target is not None and target.rotation is not None
@@ -243,7 +243,7 @@ def _hold(handle: Handle, chosen: frozenset[int]) -> list[Action]:
         return []
     weigh = handle_commands.weigh_handles
     actions = [
-        do(editing.edit_figure, weigh, chosen, weight)
+        do(editing.edit_layer, weigh, chosen, weight)
         for word, weight in HOLDS.items()
         if imgui.menu_item(word, "", handle.weight == weight)[0]
     ]

@@ -260,8 +260,8 @@ class Window:
         canvas = self.canvas
         return SplitTextures(canvas.texture, canvas.twin_texture) if canvas else SplitTextures()
 
-    def _pose_picture(self, figure: int, pose: Pose, side: int) -> int | None:
-        return self.canvas.pose_pictures.get(figure, pose, side) if self.canvas else None
+    def _pose_picture(self, layer: int, pose: Pose, side: int) -> int | None:
+        return self.canvas.pose_pictures.get(layer, pose, side) if self.canvas else None
 
     def _layer_picture(self, identity: int, small: Bytes) -> Thumbnail | None:
         return self._layer_pictures.get(identity, small) if self._layer_pictures else None

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from still_poses import posed, with_figure
+from still_poses import posed, with_layer
 
 from app.cli.main import main
 from app.document import (
@@ -21,7 +21,7 @@ from app.document import (
     Track,
     TrackKey,
     UnreadMotion,
-    new_figure,
+    new_layer,
 )
 from app.reports import (
     CorrectedReport,
@@ -42,10 +42,10 @@ def giraffe(tmp_path_factory):
     """A project of the sample's first three keys, between which no handle stays."""
     path = tmp_path_factory.mktemp("giraffe") / "giraffe.lissom"
     document = load_project(SAMPLE)
-    (figure,) = document.figures
-    frames = FrameRange(0, figure.keys[2].frame)
-    figures = (replace(figure, keys=figure.keys[:3], stillness=False),)
-    save_project(path, replace(document, figures=figures, frames=frames, preview=None, loop=False))
+    (layer,) = document.layers
+    frames = FrameRange(0, layer.keys[2].frame)
+    layers = (replace(layer, keys=layer.keys[:3], stillness=False),)
+    save_project(path, replace(document, layers=layers, frames=frames, preview=None, loop=False))
     return path
 
 
@@ -55,8 +55,8 @@ def still(tmp_path_factory):
     path = tmp_path_factory.mktemp("still") / "still.lissom"
     document = posed(2)
     # Which are stopped at, so that the motion has no more room than its keys take.
-    keys = tuple(replace(key, passing=Passing.STOP) for key in document.figures[0].keys)
-    save_project(path, with_figure(document, keys=keys))
+    keys = tuple(replace(key, passing=Passing.STOP) for key in document.layers[0].keys)
+    save_project(path, with_layer(document, keys=keys))
     return path
 
 
@@ -71,7 +71,7 @@ def test_in_betweens_are_proven_between_frames_too(still, capsys):
     content = json.loads(said)
     assert content["verdict"] == "proven"
     assert content["corrected"] is None
-    limits = load_project(still).figures[0].bounds
+    limits = load_project(still).layers[0].bounds
     for interval in content["intervals"]:
         assert interval["verdict"] == "proven"
         proven = interval["proven"]
@@ -83,7 +83,7 @@ def test_in_betweens_are_proven_between_frames_too(still, capsys):
         ):
             slack = 0.002 * (1 if name == "k" else interval[name])
             assert 0 <= sign * (proven[name] - interval[name]) <= slack
-            # Where handles stay, the limits are the figure's.
+            # Where handles stay, the limits are the layer's.
             assert by == pytest.approx(max(sign * (proven[name] - getattr(limits, name)), 0))
 
 
@@ -104,24 +104,24 @@ def test_frames_that_fold_are_named(giraffe, capsys):
 
 
 def test_where_every_layer_stands_still_there_is_nothing_to_certify(tmp_path, capsys):
-    (drawn,) = load_project(SAMPLE).figures
-    still = replace(new_figure(drawn.picture, drawn.domain, Meshing()), still=True)
+    (drawn,) = load_project(SAMPLE).layers
+    still = replace(new_layer(drawn.picture, drawn.domain, Meshing()), still=True)
     path = tmp_path / "still.lissom"
-    save_project(path, Document(figures=(still,)))
+    save_project(path, Document(layers=(still,)))
     assert main(["certify", str(path), "--json"]) == 0
     assert json.loads(capsys.readouterr().out) == {
         "verdict": "proven",
         "certified": True,
-        "figures": {},
+        "layers": {},
     }
 
 
 def test_a_motion_that_is_not_known_here_is_told(tmp_path, capsys):
-    (drawn,) = load_project(SAMPLE).figures
-    still = replace(new_figure(drawn.picture, drawn.domain, Meshing()), still=True)
+    (drawn,) = load_project(SAMPLE).layers
+    still = replace(new_layer(drawn.picture, drawn.domain, Meshing()), still=True)
     unread = UnreadMotion(index=0, content={"motion": "nosuch"}, reason="it is not known")
     path = tmp_path / "later.lissom"
-    save_project(path, Document(figures=(replace(still, unread_motions=(unread,)),)))
+    save_project(path, Document(layers=(replace(still, unread_motions=(unread,)),)))
     assert main(["certify", str(path)]) == 0
     assert "a motion that this version cannot show" in capsys.readouterr().err
 
@@ -129,10 +129,10 @@ def test_a_motion_that_is_not_known_here_is_told(tmp_path, capsys):
 def test_of_a_key_that_is_held_only_that_key_is_seen(giraffe, tmp_path, capsys):
     """The linear blend folds on the way, but nothing goes that way."""
     document = load_project(giraffe)
-    (figure,) = document.figures
+    (layer,) = document.layers
     path = tmp_path / "held.lissom"
-    held = tuple(replace(key, easing=HOLD) for key in figure.keys)
-    save_project(path, replace(document, figures=(replace(figure, keys=held),)))
+    held = tuple(replace(key, easing=HOLD) for key in layer.keys)
+    save_project(path, replace(document, layers=(replace(layer, keys=held),)))
     assert main(["certify", str(path), "--variant", "linear", "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
     assert told["verdict"] == "proven"
@@ -233,9 +233,9 @@ def test_certify_says_how_many_frames_it_looked_at(tmp_path, monkeypatch, capsys
     monkeypatch.setattr(corrected_frames, "SPREAD", 3)
     document = posed(1)
     keys = tuple(TrackKey(frame=frame, place=place) for frame, place in ((1, 0j), (4, 8j), (7, 0j)))
-    track = Track(handles=(document.figures[0].handles[0].id,), keys=keys)
+    track = Track(handles=(document.layers[0].handles[0].id,), keys=keys)
     project = tmp_path / "still.lissom"
-    save_project(project, with_figure(replace(document, frames=FrameRange(0, 9)), tracks=(track,)))
+    save_project(project, with_layer(replace(document, frames=FrameRange(0, 9)), tracks=(track,)))
     status, text = certified(capsys, project=project)
     assert status == 3
     assert "act in 7 frames, repeats told once. 3 of them were looked at" in text

@@ -126,8 +126,8 @@ def test_opening_takes_little_beyond_what_is_decoded(tmp_path, kind):
     if kind == "scene.ora":
         script = tmp_path / "script.json"
         keys = [{"frame": 0}]
-        figure = {"layer": "0", "handles": {}, "keys": keys}
-        script.write_text(json.dumps({"schema": 1, "figures": [figure]}))
+        layer = {"layer": "0", "handles": {}, "keys": keys}
+        script.write_text(json.dumps({"schema": 1, "layers": [layer]}))
         words[:2] = ["pose", path, script]
     told = subprocess.run(
         [sys.executable, "-c", RUN, *map(str, words)], capture_output=True, text=True, check=True
@@ -141,12 +141,12 @@ def test_opening_takes_little_beyond_what_is_decoded(tmp_path, kind):
 def wild_project(path, factor):
     """Write a project of which one key takes a vertex of the cage far away."""
     document = moving_document()
-    (figure,) = document.figures
-    key = figure.keys[1]
+    (layer,) = document.layers
+    key = layer.keys[1]
     phi = key.pose.phi.copy()
     phi[2] = factor * 120
-    keys = (figure.keys[0], replace(key, pose=replace(key.pose, phi=phi)))
-    save_project(path, replace(document, figures=(replace(figure, keys=keys),)))
+    keys = (layer.keys[0], replace(key, pose=replace(key.pose, phi=phi)))
+    save_project(path, replace(document, layers=(replace(layer, keys=keys),)))
     return path
 
 

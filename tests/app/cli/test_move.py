@@ -45,9 +45,9 @@ def test_each_kind_of_body_moves_in_a_loop(kind, folder, capsys):
     document = load_project(out)
     assert document.loop
     assert document.frames.last - document.frames.first >= 12
-    (figure,) = document.figures
-    assert figure.motions[0].kind == kind
-    assert all(figure.is_proven(key.pose) for key in figure.keys)
+    (layer,) = document.layers
+    assert layer.motions[0].kind == kind
+    assert all(layer.is_proven(key.pose) for key in layer.keys)
     # What is in between takes long where there are many limbs.
     if kind == "anything":
         assert main(["certify", str(out)]) in (0, 3)
@@ -69,9 +69,9 @@ def test_travel_ends_a_stride_farther_without_a_loop(folder):
     assert main(["move", str(folder / "biped-side.png"), "--motion", "walk", *words]) == 0
     document = load_project(out)
     assert (document.loop, document.frames) == (False, FrameRange(0, 12))
-    figure = document.figures[0]
-    foot = figure.motions[0].joints["foot.R"]
-    ways = [key.pose.targets[foot].position for key in figure.keys]
+    layer = document.layers[0]
+    foot = layer.motions[0].joints["foot.R"]
+    ways = [key.pose.targets[foot].position for key in layer.keys]
     assert (ways[-1] - ways[0]).real > 20
 
 
@@ -86,7 +86,7 @@ def test_layers_are_merged(folder, capsys):
     words = ["--motion", "breathe", "--out", str(out), *FEW]
     assert main(["move", str(folder / "layers.ora"), *words]) == 0
     assert "the 2 layers of layers.ora are merged" in capsys.readouterr().err
-    assert len(load_project(out).figures) == 1
+    assert len(load_project(out).layers) == 1
 
 
 def test_motions_are_listed_with_their_kinds(capsys):

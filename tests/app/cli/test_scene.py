@@ -36,7 +36,7 @@ STACK = "".join(
 SCRIPT = {
     "schema": 1,
     "variant": "nu",
-    "figures": [
+    "layers": [
         {
             "layer": "body",
             "handles": {"foot": [80, 40], "head": {"at": [80, 160], "front": 0.5, "extent": 30}},
@@ -105,8 +105,8 @@ def refused(drawing, script):
 
 def test_a_script_poses_the_layers_that_it_names(project):
     document = load_project(project)
-    wall, body, arm, patch = document.figures
-    assert [figure.name for figure in document.figures] == ["wall", "body", "arm", "patch"]
+    wall, body, arm, patch = document.layers
+    assert [layer.name for layer in document.layers] == ["wall", "body", "arm", "patch"]
     assert (wall.still, body.still) == (True, False)
     assert document.canvas == (WIDTH, HEIGHT)
     assert (arm.joints[0].to, arm.joints[0].at, arm.anchor) == (body.id, 95 + 120j, 95 + 120j)
@@ -122,22 +122,22 @@ def test_a_script_poses_the_layers_that_it_names(project):
     assert abs(own.on(patch.map_of(patch.keys[0].pose)(at))[0] - arm_place[0]) < 1e-9 * WIDTH
 
 
-def test_certify_tells_of_each_figure(project, capsys):
+def test_certify_tells_of_each_layer(project, capsys):
     assert main(["certify", str(project), "--json"]) == 0
-    figures = json.loads(capsys.readouterr().out)["figures"]
-    assert set(figures) == {"body", "arm", "patch"}
-    assert all(block["certified"] for block in figures.values())
+    layers = json.loads(capsys.readouterr().out)["layers"]
+    assert set(layers) == {"body", "arm", "patch"}
+    assert all(block["certified"] for block in layers.values())
     assert main(["certify", str(project), "--details"]) == 0
     overview, *details = capsys.readouterr().out.split("\n\n")
     first, header, *lines, _ = overview.splitlines()
     assert first == (
-        "All in all: proven: all 3 figures are proven to keep their bounds at every moment."
+        "All in all: proven: all 3 layers are proven to keep their bounds at every moment."
     )
     assert header.split() == ["k", "sigma_a", "sigma_b"]
     assert [line.split()[0] for line in lines] == ["body", "arm", "patch"]
     for line in lines:
         name, *values, verdict = line.split()
-        block, worst = figures[name], (max, max, min)
+        block, worst = layers[name], (max, max, min)
         parts = [*block["keys"], *block["intervals"], *filter(None, [block["corrected"]])]
         for column, value, extreme in zip(("k", "sigma_a", "sigma_b"), values, worst, strict=True):
             assert float(value) == pytest.approx(extreme(p[column] for p in parts), abs=1e-4)
@@ -147,12 +147,12 @@ def test_certify_tells_of_each_figure(project, capsys):
 
 def test_certify_names_what_is_over_first(project, capsys, tmp_path):
     document = load_project(project)
-    arm = next(figure for figure in document.figures if figure.name == "arm")
+    arm = next(layer for layer in document.layers if layer.name == "arm")
     narrow = replace(arm, bounds=Bounds(k=0.01, sigma_a=1.01, sigma_b=0.99))
-    save_project(tmp_path / "over.lissom", document.with_figure(narrow))
+    save_project(tmp_path / "over.lissom", document.with_layer(narrow))
     assert main(["certify", str(tmp_path / "over.lissom")]) == 1
     first, _, _, line, _, more = capsys.readouterr().out.splitlines()
-    assert first == "All in all: OVER: 1 of 3 figures are beyond their bounds, or may fold."
+    assert first == "All in all: OVER: 1 of 3 layers are beyond their bounds, or may fold."
     assert line.split()[0] == "arm"
     assert "OVER at key 8" in line
     assert "--details" in more
@@ -165,14 +165,14 @@ def exported(project, name, *options):
     return [np.asarray(Image.open(path)).astype(int) for path in sorted(out.glob("*.png"))]
 
 
-def test_export_draws_the_scene_or_one_figure_of_it(project):
+def test_export_draws_the_scene_or_one_layer_of_it(project):
     (whole,) = exported(project, "whole", "--frames", "2:2")
     assert whole.shape == (HEIGHT, WIDTH, 4)
     assert (whole[..., 3] == 255).all()
     assert abs(whole[5, 5, :3] - (220, 230, 220)).max() <= 2
     # Yellow in front of red in front of blue.
     assert abs(whole[..., :3] - (250, 250, 0)).max(axis=2).min() <= 2
-    alone, *_, gone = exported(project, "alone", "--frames", "2:5", "--figure", "patch")
+    alone, *_, gone = exported(project, "alone", "--frames", "2:5", "--layer", "patch")
     seen = alone[..., 3] > 128
     assert 200 < seen.sum() < 600
     assert abs(alone[seen][:, :3] - (250, 250, 0)).max() <= 40
@@ -191,8 +191,8 @@ def test_export_draws_the_scene_or_one_figure_of_it(project):
             {"attach": {"to": "body", "at": [70, 40]}},
             r"layer 'arm': it is attached at \(70, 40\), which is on 'body' but not on itself",
         ),
-        ({"attach": {"to": "body"}}, says(LACKS_FIELD, where="figures[0].attach", name="at")),
-        ({"attach": {"at": [1, 2]}}, says(LACKS_FIELD, where="figures[0].attach", name="to")),
+        ({"attach": {"to": "body"}}, says(LACKS_FIELD, where="layers[0].attach", name="at")),
+        ({"attach": {"at": [1, 2]}}, says(LACKS_FIELD, where="layers[0].attach", name="to")),
         ({"attach": {"to": "wall", "at": [5, 5], "anchor": 1}}, "unknown field 'anchor'"),
         ({"anchor": [5, 5]}, r"layer 'arm': The anchor at \(5, 5\) lies outside"),
         ({"handles": {"hand": [5, 5]}}, "layer 'arm': "),
@@ -206,41 +206,41 @@ def test_export_draws_the_scene_or_one_figure_of_it(project):
         ),
         (
             {"handles": {"hand": {"front": 1}}},
-            says(LACKS_FIELD, where="figures[0].handle 'hand'", name="at"),
+            says(LACKS_FIELD, where="layers[0].handle 'hand'", name="at"),
         ),
         (
             {"keys": [{"frame": 0, "front": {"foot": 1}}]},
-            r"figures\[0\]\.keys\[0\] names the handle 'foot', but the handles are hand",
+            r"layers\[0\]\.keys\[0\] names the handle 'foot', but the handles are hand",
         ),
         (
             {"keys": [{"frame": 0, "front": {"hand": "high"}}]},
-            r"figures\[0\]\.keys\[0\]\.front\.hand",
+            r"layers\[0\]\.keys\[0\]\.front\.hand",
         ),
         (
             {"visible": [[4, True], [2, False]]},
-            says(OUT_OF_ORDER, what="figures[0].visible is", after=2, before=4),
+            says(OUT_OF_ORDER, what="layers[0].visible is", after=2, before=4),
         ),
-        ({"visible": [[4, 1]]}, r"figures\[0\]\.visible\[0\]"),
-        ({"visible": True}, r"figures\[0\]\.visible"),
+        ({"visible": [[4, 1]]}, r"layers\[0\]\.visible\[0\]"),
+        ({"visible": True}, r"layers\[0\]\.visible"),
         (
             {"tracks": [{"handle": "thumb", "keys": [{"frame": 0, "offset": [1, 2]}]}]},
-            r"figures\[0\]\.tracks\[0\]\.handle names the handle 'thumb', but the handles are hand",
+            r"layers\[0\]\.tracks\[0\]\.handle names the handle 'thumb', but the handles are hand",
         ),
         (
             {"springs": [{"handle": "thumb", "preset": "ear"}]},
-            r"figures\[0\]\.springs\[0\]\.handle names the handle 'thumb'",
+            r"layers\[0\]\.springs\[0\]\.handle names the handle 'thumb'",
         ),
-        ({"still": "no"}, says(NOT_TRUE_OR_FALSE, where="figures[0].still")),
+        ({"still": "no"}, says(NOT_TRUE_OR_FALSE, where="layers[0].still")),
         (
             {"attach": [{"to": "body", "at": [95, 120]}, {"to": "body", "keep": True}]},
-            says(OUT_OF_ORDER, what="figures[0].attach is", after=0, before=0),
+            says(OUT_OF_ORDER, what="layers[0].attach is", after=0, before=0),
         ),
         (
             {"attach": [{"frame": -1, "to": None}]},
-            r"figures\[0\]\.attach\[0\]\.frame must be a whole",
+            r"layers\[0\]\.attach\[0\]\.frame must be a whole",
         ),
         ({"attach": [{"to": None, "at": [1, 2]}]}, "lets go, so that it has no at"),
-        ({"attach": [{"to": "body"}]}, says(LACKS_FIELD, where="figures[0].attach[0]", name="at")),
+        ({"attach": [{"to": "body"}]}, says(LACKS_FIELD, where="layers[0].attach[0]", name="at")),
         ({"attach": [{"frame": 4, "to": "leg", "keep": True}]}, "there is no layer 'leg'"),
         (
             {"attach": [{"to": "body", "at": [95, 120]}, {"frame": 4, "to": "arm", "keep": True}]},
@@ -249,12 +249,12 @@ def test_export_draws_the_scene_or_one_figure_of_it(project):
     ],
 )
 def test_script_is_refused_when_drawing_lacks_what_it_names(drawing, change, words):
-    script = {**SCRIPT, "figures": [{**SCRIPT["figures"][1], **change}]}
+    script = {**SCRIPT, "layers": [{**SCRIPT["layers"][1], **change}]}
     assert re.search(words, refused(drawing, script))
 
 
 def test_pose_writes_nothing_when_the_script_is_refused(folder, capsys):
-    script = {**SCRIPT, "figures": [{**SCRIPT["figures"][1], "layer": "leg"}]}
+    script = {**SCRIPT, "layers": [{**SCRIPT["layers"][1], "layer": "leg"}]}
     path, out = folder / "bad.json", folder / "bad.lissom"
     path.write_text(json.dumps(script))
     with pytest.raises(SystemExit) as leaving:
@@ -266,27 +266,27 @@ def test_pose_writes_nothing_when_the_script_is_refused(folder, capsys):
     assert not out.exists()
 
 
-def test_script_of_one_figure_is_told_which_layer_it_took(drawing):
+def test_script_of_one_layer_is_told_which_layer_it_took(drawing):
     script = {"schema": 1, "handles": {"foot": [80, 40]}, "keys": [{"frame": 0}]}
     told = refused(drawing, script)
     assert "The handle 'foot' at (80, 40) lies outside" in told
     assert "on 'patch', the one in front" in told
     assert "also 'wall', 'body', 'arm'" in told
-    assert '"figures": [{"layer": "patch", ...}]' in told
+    assert '"layers": [{"layer": "patch", ...}]' in told
     # What is wrong with it on any layer says nothing of others.
     on_it = {**script, "handles": {"spot": {"at": [180, 120], "front": 3}}}
-    assert "figures" not in refused(drawing, on_it)
+    assert "layers" not in refused(drawing, on_it)
 
 
 def test_layer_attached_by_another_anchor_comes_to_its_parent(drawing):
     """Its targets are told as if it hung on nothing."""
-    body, arm, _ = SCRIPT["figures"]
+    body, arm, _ = SCRIPT["layers"]
     elsewhere = {**arm, "anchor": [190, 120], "handles": {"hand": [100, 120]}}
     keys = [{"frame": 0}, {"frame": 8, "targets": {"hand": [104, 132]}}]
-    script = {**SCRIPT, "figures": [body, {**elsewhere, "keys": keys}]}
+    script = {**SCRIPT, "layers": [body, {**elsewhere, "keys": keys}]}
     document, _ = pose_document(drawing, parse_pose_script(script), str)
-    figures = {figure.name: figure for figure in document.figures}
-    arm, body, joints = figures["arm"], figures["body"], Joints(document)
+    layers = {layer.name: layer for layer in document.layers}
+    arm, body, joints = layers["arm"], layers["body"], Joints(document)
     assert arm.keys[1].pose.targets[0].position == 104 + 132j
     for frame, index in ((0, 0), (8, 1)):
         f, g = (each.map_of(each.keys[index].pose) for each in (arm, body))
@@ -299,13 +299,13 @@ def test_layer_attached_by_another_anchor_comes_to_its_parent(drawing):
 
 
 def test_a_short_colour_is_one(project):
-    options = ("--frames", "5:5", "--background", "#fA0", "--figure", "patch")
+    options = ("--frames", "5:5", "--background", "#fA0", "--layer", "patch")
     (short,) = exported(project, "short", *options)
     assert (short.reshape(-1, short.shape[-1])[:, :3] == (255, 170, 0)).all()
 
 
-def test_a_figure_that_is_not_there_is_told(project, folder, capsys):
-    arguments = ["export", str(project), "--out", str(folder / "no"), "--figure", "leg"]
+def test_a_layer_that_is_not_there_is_told(project, folder, capsys):
+    arguments = ["export", str(project), "--out", str(folder / "no"), "--layer", "leg"]
     with pytest.raises(SystemExit):
         main(arguments)
     assert "the layers are wall, body, arm, patch" in capsys.readouterr().err
@@ -313,7 +313,7 @@ def test_a_figure_that_is_not_there_is_told(project, folder, capsys):
 
 def test_what_changes_hands_does_not_jump(folder, capsys):
     patch = {
-        **SCRIPT["figures"][2],
+        **SCRIPT["layers"][2],
         "visible": [],
         "attach": [
             {"to": "arm", "at": [180, 120]},
@@ -322,7 +322,7 @@ def test_what_changes_hands_does_not_jump(folder, capsys):
             {"frame": 30, "to": "arm", "at": [180, 120], "keep": True},
         ],
     }
-    script = {**SCRIPT, "figures": [*SCRIPT["figures"][:2], patch]}
+    script = {**SCRIPT, "layers": [*SCRIPT["layers"][:2], patch]}
     (folder / "hands.json").write_text(json.dumps(script))
     out = folder / "hands.lissom"
     arguments = [str(folder / "man.ora"), str(folder / "hands.json"), "--out", str(out)]
@@ -330,7 +330,7 @@ def test_what_changes_hands_does_not_jump(folder, capsys):
     told = " ".join(capsys.readouterr().err.split())
     assert "what patch hangs on from frame 30 on is never seen, as the animation ends" in told
     document = load_project(out)
-    patch, body = (next(f for f in document.figures if f.name == n) for n in ("patch", "body"))
+    patch, body = (next(f for f in document.layers if f.name == n) for n in ("patch", "body"))
     assert [joint.frame for joint in patch.joints] == [0, 3, 6, 30]
     assert patch.joints[1].to == body.id
     joints = Joints(document)
@@ -347,7 +347,7 @@ def test_what_changes_hands_does_not_jump(folder, capsys):
 
 def test_layer_changes_its_parent_in_every_repeat_of_a_cycle(drawing):
     cycles = [{"from": 0, "to": 12}]
-    body, arm, patch = SCRIPT["figures"]
+    body, arm, patch = SCRIPT["layers"]
     joints = [
         {"to": "arm", "at": [180, 120]},
         {"frame": 3, "to": "body", "keep": True},
@@ -355,20 +355,20 @@ def test_layer_changes_its_parent_in_every_repeat_of_a_cycle(drawing):
     ]
     common = {"cycles": cycles, "still": False}
     patch = {**patch, **common, "visible": [], "attach": joints}
-    figures = [{**body, **common}, {**arm, **common}, patch]
+    layers = [{**body, **common}, {**arm, **common}, patch]
     frames = {
         "fps": 24,
         "camera": {"keys": [{"frame": frame, "centre": [120, 100]} for frame in (0, 40)]},
     }
 
     def posed(patch):
-        script = {**SCRIPT, "figures": [*figures[:2], patch], **frames}
+        script = {**SCRIPT, "layers": [*layers[:2], patch], **frames}
         document, notices = pose_document(drawing, parse_pose_script(script), str)
         return document, " ".join(notices)
 
     document, told = posed(patch)
     assert "repeat" not in told
-    identity = next(each.id for each in document.figures if each.name == "patch")
+    identity = next(each.id for each in document.layers if each.name == "patch")
     names = [
         [each.name for each in document.carriers(identity, frame)[1:2]] for frame in (1, 4, 16, 22)
     ]
@@ -416,7 +416,7 @@ def opened(face):
 
 def face_script(**stage):
     head = {"layer": "head", "handles": {}, "keys": [{"frame": 0}, {"frame": 12}]}
-    return {"schema": 1, "variant": "nu", "figures": [head], **stage}
+    return {"schema": 1, "variant": "nu", "layers": [head], **stage}
 
 
 def posed_face(opened, **stage):
@@ -450,7 +450,7 @@ def test_choice_shows_one_layer_when_the_drawing_hides_it(face, tmp_path, capsys
     assert "never seen" not in capsys.readouterr().err
     document = load_project(out)
     for number, name in ((0, "closed"), (3, "closed"), (4, "ah"), (8, "oh"), (12, "closed")):
-        assert [f.name for f in document.figures if is_visible(document, f, number)] == [
+        assert [f.name for f in document.layers if is_visible(document, f, number)] == [
             "head",
             name,
         ]
@@ -458,7 +458,7 @@ def test_choice_shows_one_layer_when_the_drawing_hides_it(face, tmp_path, capsys
     frames = exported(out, "frames", "--frames", "2:8")
     assert mouths(frames) == [closed, closed, ah, ah, ah, ah, oh]
     # One layer of it alone is seen when it is chosen.
-    alone = exported(out, "ah", "--figure", "ah", "--frames", "5:9")
+    alone = exported(out, "ah", "--layer", "ah", "--frames", "5:9")
     assert [bool(frame[..., 3].any()) for frame in alone] == [True, True, True, False, False]
 
 
@@ -466,20 +466,20 @@ def test_choice_repeats_with_a_cycle_of_all_its_layers(opened):
     cycles, still = [{"from": 0, "to": 12}], {"handles": {}, "keys": [{"frame": 0}]}
     head = {"layer": "head", "handles": {}, "keys": [{"frame": 0}, {"frame": 30}]}
     mouths = [{"layer": name, **still, "cycles": cycles} for name in CHOICE["layers"]]
-    document, told = posed_face(opened, figures=[head, *mouths], choices=[CHOICE])
+    document, told = posed_face(opened, layers=[head, *mouths], choices=[CHOICE])
     assert "repeat" not in told
     names = [
-        next(each.name for each in document.figures[1:] if is_visible(document, each, frame))
+        next(each.name for each in document.layers[1:] if is_visible(document, each, frame))
         for frame in (1, 5, 9, 11, 13, 17, 21, 23, 25, 29)
     ]
     assert names == [*["closed", "ah", "oh", "closed"] * 2, "closed", "ah"]
-    _, told = posed_face(opened, figures=[head, *mouths[1:]], choices=[CHOICE])
+    _, told = posed_face(opened, layers=[head, *mouths[1:]], choices=[CHOICE])
     assert "its keys do not repeat, as frames 0 to 12 do not of closed; give all its layers" in told
 
 
 def test_script_shows_what_the_drawing_hides(face, tmp_path, capsys):
     oh = {"layer": "oh", "handles": {}, "keys": [{"frame": 0}, {"frame": 12}]}
-    out = saved_face(face, tmp_path, figures=[{**oh, "visible": [[0, False], [6, True]]}])
+    out = saved_face(face, tmp_path, layers=[{**oh, "visible": [[0, False], [6, True]]}])
     assert "never seen" not in capsys.readouterr().err
     frames = exported(out, "frames", "--frames", "5:6")
     assert mouths(frames) == [[250, 0, 0], [250, 250, 0]]
@@ -498,13 +498,13 @@ def test_script_shows_what_the_drawing_hides(face, tmp_path, capsys):
 )
 def test_layer_is_told_of_when_it_is_never_seen(opened, visible, words):
     oh = {"layer": "oh", "handles": {}, "keys": [{"frame": 0}, {"frame": 12}], **visible}
-    assert words in posed_face(opened, figures=[oh])[1]
+    assert words in posed_face(opened, layers=[oh])[1]
 
 
 def test_layer_is_told_of_when_its_choice_never_shows_it(opened):
     oh = {"layer": "oh", "handles": {}, "keys": [{"frame": 0}, {"frame": 12}]}
     never = {**CHOICE, "keys": [[0, "closed"], [4, "ah"]]}
-    _, told = posed_face(opened, figures=[oh], choices=[never])
+    _, told = posed_face(opened, layers=[oh], choices=[never])
     assert "oh is never seen: the choice 'mouth' never shows it" in told
 
 
@@ -522,16 +522,16 @@ def test_script_shows_layers_of_hidden_groups_and_no_others(tmp_path):
     drawing = open_layered(tmp_path / "a.ora", Meshing(triangles=1000, detail="coarse")).document
 
     def seen(**stage):
-        script = {"schema": 1, "figures": [{"layer": "body", **still}], **stage}
+        script = {"schema": 1, "layers": [{"layer": "body", **still}], **stage}
         document, notices = pose_document(drawing, parse_pose_script(script), str)
         assert "never seen" not in " ".join(notices)
         return [
-            {f.name for f in document.figures if is_visible(document, f, number)}
+            {f.name for f in document.layers if is_visible(document, f, number)}
             for number in (3, 9)
         ]
 
     star = {"layer": "star", **still, "visible": [[0, False], [6, True]]}
-    assert seen(figures=[star]) == [{"body"}, {"body", "star"}]
+    assert seen(layers=[star]) == [{"body"}, {"body", "star"}]
     turns = {"name": "sky", "layers": ["star", "moon"], "keys": [[0, "star"], [6, "moon"]]}
     assert seen(choices=[turns]) == [{"body", "star"}, {"body", "moon"}]
 
@@ -580,7 +580,7 @@ def test_choice_is_refused_when_it_cannot_be(opened, stage, words):
 
 def test_layer_of_a_choice_is_refused_when_it_has_visible(opened):
     oh = {"layer": "oh", "handles": {}, "keys": [{"frame": 0}], "visible": [[0, True]]}
-    told = refused(opened, face_script(figures=[oh], choices=[CHOICE]))
+    told = refused(opened, face_script(layers=[oh], choices=[CHOICE]))
     assert "the layer 'oh' is in a choice, which alone decides" in told
 
 
@@ -589,7 +589,7 @@ STAGED = {
     "variant": "nu",
     "canvas": [120, 100],
     "camera": {"keys": [{"frame": 0, "centre": [120, 100]}, {"frame": 8, "centre": [85, 100]}]},
-    "figures": [
+    "layers": [
         {
             "layer": "body",
             "handles": {},
@@ -630,31 +630,31 @@ def test_a_camera_a_fade_an_order_and_a_still_layer_that_moves_are_exported(fold
 
 def test_movement_is_told_to_be_unseen_when_a_parent_carries(drawing):
     moved = {"keys": [{"frame": 0}, {"frame": 8, "shift": [5, 0]}]}
-    body, arm, _ = SCRIPT["figures"]
-    for figures, is_told in (
+    body, arm, _ = SCRIPT["layers"]
+    for layers, is_told in (
         ([{**body, "movement": moved}, arm], False),
         ([body, {**arm, "movement": moved}], True),
     ):
-        _, notices = pose_document(drawing, parse_pose_script({**SCRIPT, "figures": figures}), str)
+        _, notices = pose_document(drawing, parse_pose_script({**SCRIPT, "layers": layers}), str)
         told = " ".join(notices)
         assert ("arm hangs on body and goes with it: its own movement is not" in told) == is_told
 
 
 def test_what_fades_in_is_seen_in_a_model(folder):
     script, out, model = (folder / f"fading{suffix}" for suffix in (".json", ".lissom", ".glb"))
-    arm = {**STAGED["figures"][1], "opacity": [[0, 0], [8, 0.75]]}
-    script.write_text(json.dumps({**STAGED, "figures": [arm]}))
+    arm = {**STAGED["layers"][1], "opacity": [[0, 0], [8, 0.75]]}
+    script.write_text(json.dumps({**STAGED, "layers": [arm]}))
     assert main(["pose", str(folder / "man.ora"), str(script), "--out", str(out), *FEW]) == 0
     assert main(["export", str(out), "--out", str(model)]) == 0
     assert b'"baseColorFactor":[1.0,1.0,1.0,0.75]' in model.read_bytes()
 
 
 def test_still_layer_is_refused_when_it_has_handles(drawing):
-    wall = {**STAGED["figures"][2], "handles": {"h": [20, 20]}}
-    assert "no shape on it to be posed" in refused(drawing, {**STAGED, "figures": [wall]})
+    wall = {**STAGED["layers"][2], "handles": {"h": [20, 20]}}
+    assert "no shape on it to be posed" in refused(drawing, {**STAGED, "layers": [wall]})
 
 
 def test_order_is_refused_beside_a_layer_that_is_not_there(drawing):
-    body = {**STAGED["figures"][0], "order": [[4, {"behind": "hat"}]]}
-    told = refused(drawing, {**STAGED, "figures": [body]})
+    body = {**STAGED["layers"][0], "order": [[4, {"behind": "hat"}]]}
+    told = refused(drawing, {**STAGED, "layers": [body]})
     assert "layer 'body': order: there is no layer 'hat'" in told

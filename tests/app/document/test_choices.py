@@ -15,7 +15,7 @@ from app.document.commands import (
     scene_commands,
 )
 from app.document.layering import Choice, Switch, Turn
-from app.document.model import NO_FIGURE
+from app.document.model import NO_LAYER
 from app.document.queries import alternates, is_visible, whole_groups
 from app.document.settings import FrameRange
 from app.document.timing import Cycle
@@ -29,27 +29,27 @@ def mouths():
     """Three layers, of which the second is hidden."""
     document = disc_document()
     for name in ("ah", "oh"):
-        figure = replace(
-            document.figures[0],
+        layer = replace(
+            document.layers[0],
             id=layer_commands.free_identity(document),
             name=name,
             domain=disc_domain(),
         )
-        document = layer_commands.add_figure(figure)(document)
+        document = layer_commands.add_layer(layer)(document)
     return layer_commands.set_hidden(1, hidden=True)(document)
 
 
 def seen(document, frames=FRAMES):
-    """The ids of the figures that are seen, at each frame."""
+    """The ids of the layers that are seen, at each frame."""
     return [
-        [each.id for each in document.figures if is_visible(document, each, frame)]
+        [each.id for each in document.layers if is_visible(document, each, frame)]
         for frame in frames
     ]
 
 
 def test_exactly_one_is_seen_whatever_is_hidden(mouths):
     document = choices.form_choice("mouth", (0, 1, 2))(mouths)
-    assert [figure.hidden for figure in document.figures] == [False] * 3
+    assert [layer.hidden for layer in document.layers] == [False] * 3
     # The one in front of those that were seen.
     assert seen(document) == [[2]] * 49
     document = choices.choose_at(1, 8)(document)
@@ -58,7 +58,7 @@ def test_exactly_one_is_seen_whatever_is_hidden(mouths):
     assert seen(document, (8, 12)) == [[1], [0]]
     hidden = layer_commands.set_hidden(0, hidden=True)(document)
     assert seen(hidden) == seen(document)
-    assert [figure.id for figure in hidden.exported] == [0, 1, 2]
+    assert [layer.id for layer in hidden.exported] == [0, 1, 2]
     assert choices.choose_at(0, 20)(document) is document
     back = choices.unchoose_at("mouth", 8)(document)
     assert seen(back, (8, 11, 12)) == [[2], [2], [0]]
@@ -72,7 +72,7 @@ def test_what_took_turns_by_switches_still_does(mouths):
     document = layer_commands.set_hidden(1, hidden=False)(mouths)
     for identity, frames in ((0, (0, 10)), (1, (10, 20)), (2, (20, 48))):
         switches = tuple(Switch(frame, frames[0] <= frame < frames[1]) for frame in (0, 10, 20))
-        document = document.with_figure(replace(document.figure(identity), switches=switches))
+        document = document.with_layer(replace(document.layer(identity), switches=switches))
     formed = choices.form_choice("mouth", (0, 1, 2))(document)
     assert seen(formed) == seen(document)
     assert formed.choices[0].turns == (Turn(0, 0), Turn(10, 1), Turn(20, 2))
@@ -85,21 +85,21 @@ def test_a_layer_that_leaves_is_seen_when_it_was(mouths):
     document = choices.form_choice("mouth", (0, 1, 2))(mouths)
     document = choices.choose_at(1, 8)(document)
     left = choices.leave_choice(1)(document)
-    assert left.choices[0].figures == (0, 2)
+    assert left.choices[0].layers == (0, 2)
     assert seen(left, (0, 8)) == [[2], [1, 2]]
     # A choice of one is none, and what remains is seen as before.
     alone = choices.leave_choice(0)(left)
     assert alone.choices == ()
     assert seen(alone) == seen(left)
-    gone = layer_commands.remove_figure(2)(left)
+    gone = layer_commands.remove_layer(2)(left)
     assert gone.choices == ()
-    assert seen(gone) == [[figure for figure in now if figure != 2] for now in seen(left)]
+    assert seen(gone) == [[layer for layer in now if layer != 2] for now in seen(left)]
 
 
 def test_copies_take_turns_with_what_they_were_copied_from(mouths):
     document = choices.form_choice("mouth", (0, 1))(mouths)
-    document = layer_commands.duplicate_figure(1)(document)
-    assert document.choices[0].figures == (0, 1, 3)
+    document = layer_commands.duplicate_layer(1)(document)
+    assert document.choices[0].layers == (0, 1, 3)
     assert all(len(now) == 2 for now in seen(document))  # with the layer that is in no choice
 
 
@@ -114,7 +114,7 @@ def test_time_that_is_scaled_takes_turns_along(mouths):
     ("make", "words"),
     [
         (choices.form_choice("eyes", (1, 2)), "'ah' is in two choices, 'mouth' and 'eyes'"),
-        (choices.form_choice("mouth", (2, 3)), says(NO_FIGURE, identity=3)),
+        (choices.form_choice("mouth", (2, 3)), says(NO_LAYER, identity=3)),
         (choices.form_choice("mouth", (2, 2)), "has the layer 2 twice"),
         (choices.form_choice(" ", (2, 1)), "needs a name"),
         (choices.form_choice("eyes", (2,)), "two layers or more"),
@@ -132,9 +132,9 @@ def test_what_cannot_be_chosen_is_refused(mouths, make, words):
 
 def test_turns_are_in_order_and_of_the_choice():
     with pytest.raises(LissomError, match="at frame 4 after frame 8"):
-        Choice(name="mouth", figures=(0, 1), turns=(Turn(8, 0), Turn(4, 1)))
+        Choice(name="mouth", layers=(0, 1), turns=(Turn(8, 0), Turn(4, 1)))
     with pytest.raises(LissomError, match="a layer at frame 8 that it has not"):
-        Choice(name="mouth", figures=(0, 1), turns=(Turn(8, 2),))
+        Choice(name="mouth", layers=(0, 1), turns=(Turn(8, 2),))
 
 
 def test_one_layer_of_a_switch_is_visible_after_any_commands():
@@ -148,7 +148,7 @@ def test_one_layer_of_a_switch_is_visible_after_any_commands():
         formed += bool(document.choices)
         for choice in document.choices:
             for frame in (0, 10, 25.5, 48):
-                now = [i for i in choice.figures if is_visible(document, document.figure(i), frame)]
+                now = [i for i in choice.layers if is_visible(document, document.layer(i), frame)]
                 assert now == [choice.at(frame)]
     assert formed > 50
 
@@ -188,7 +188,7 @@ def test_groups_that_are_named_like_mouths_are_offered_as_choices(mouths, group,
     for identity in hidden:
         document = layer_commands.set_hidden(identity, hidden=True)(document)
     document = groups.put_in_group((1, 2), group)(document)
-    assert [figures for _, figures in alternates(document)] == [(1, 2)] * offered
+    assert [layers for _, layers in alternates(document)] == [(1, 2)] * offered
     chosen = choices.form_choice("mouth", (1, 2))(document)
     assert alternates(chosen) == ()
 
@@ -212,7 +212,7 @@ def test_groups_that_are_named_like_mouths_are_offered_as_choices(mouths, group,
 def test_layers_named_as_in_a_group_are_offered_as_a_choice(mouths, names, hidden, group, offered):
     document = layer_commands.set_hidden(1, hidden=False)(mouths)
     for identity, name in zip((1, 2), names, strict=True):
-        document = layer_commands.rename_figure(identity, name)(document)
+        document = layer_commands.rename_layer(identity, name)(document)
     for identity in hidden:
         document = layer_commands.set_hidden(identity, hidden=True)(document)
     document = groups.put_in_group((1, 2), group)(document)
@@ -236,7 +236,7 @@ def turning(document, *, cycle, turns, of=(0, 1, 2)):
     """Three layers that take turns, of which some have a cycle."""
     document = choices.form_choice("mouth", (0, 1, 2))(document)
     for identity in of:
-        document = document.with_figure(replace(document.figure(identity), cycles=(cycle,)))
+        document = document.with_layer(replace(document.layer(identity), cycles=(cycle,)))
     choice = replace(document.choices[0], turns=tuple(Turn(*turn) for turn in turns))
     return replace(document, choices=(choice,), frames=FrameRange(0, 100))
 
@@ -245,8 +245,8 @@ TURNS = ((0, 0), (4, 1), (9, 2))
 
 
 def one_of(document, frame):
-    """The figure of three that is seen at a frame."""
-    (found,) = (each.id for each in document.figures if is_visible(document, each, frame))
+    """The layer of three that is seen at a frame."""
+    (found,) = (each.id for each in document.layers if is_visible(document, each, frame))
     return found
 
 

@@ -17,16 +17,16 @@ from messages import says
 from numpy.testing import assert_allclose
 
 from app.document import (
-    figure_commands as figures,
     handle_commands as handles,
     key_commands as keys,
     pose_commands as poses,
     scene_commands as settings,
+    shape_commands as layers,
 )
 from app.document.commands.keys_in_time import TIME_SCALE, TWO_KEYS
 from app.document.commands.scene_commands import KEY_OUTSIDE
-from app.document.figure import NO_HANDLE, NO_KEY, POSE_COUNT, PictureFile
 from app.document.keyframe import MOST_TURNS, Handle, Keyframe, Target
+from app.document.layer import NO_HANDLE, NO_KEY, POSE_COUNT, PictureFile
 from app.document.model import Document
 from app.document.settings import NATURAL, VARIANTS, ExportSettings, FrameRange, Marker, Meshing
 from app.document.timing import HOLD, LINEAR, PRESETS
@@ -48,14 +48,14 @@ def animated(*frames: int, count: int = 2, seed: int = 3) -> Document:
 
 
 def frames_of(document):
-    return [key.frame for key in document.figures[0].keys]
+    return [key.frame for key in document.layers[0].keys]
 
 
 def test_a_new_document_shows_the_picture_as_it_is():
     document = disc_document()
     points = np.array([CENTRE, CENTRE + 40j])
-    (key,) = document.figures[0].keys
-    assert_allclose(document.figures[0].map_of(key.pose)(points), points, rtol=0, atol=1e-12)
+    (key,) = document.layers[0].keys
+    assert_allclose(document.layers[0].map_of(key.pose)(points), points, rtol=0, atol=1e-12)
     assert key.pose.certificate.certified
     assert document.played == document.frames
 
@@ -64,38 +64,38 @@ def test_adding_a_handle_changes_no_map_and_takes_the_place_where_it_is_now():
     document = animated(0, 10, 30)
     place = CENTRE + 20 - 35j
     grown = handles.add_handle(0, place, name="tail", weight=2.0)(document)
-    handle = grown.figures[0].handle(document.figures[0].next_handle)
+    handle = grown.layers[0].handle(document.layers[0].next_handle)
     assert (handle.name, handle.position, handle.weight) == ("tail", place, 2.0)
-    for old, new in zip(document.figures[0].keys, grown.figures[0].keys, strict=True):
+    for old, new in zip(document.layers[0].keys, grown.layers[0].keys, strict=True):
         assert new.pose.phi is old.pose.phi
         assert new.pose.psi is old.pose.psi
-        expected = document.figures[0].map_of(old.pose)(np.array([place]))[0]
+        expected = document.layers[0].map_of(old.pose)(np.array([place]))[0]
         assert_allclose(new.pose.targets[handle.id].position, expected, rtol=0, atol=1e-12)
         assert new.pose.targets[handle.id].rotation is None
         assert {i: new.pose.targets[i] for i in old.pose.targets} == dict(old.pose.targets)
-        assert_allclose(grown.figures[0].lags(new.pose)[handle.id], 0.0, rtol=0, atol=1e-10)
+        assert_allclose(grown.layers[0].lags(new.pose)[handle.id], 0.0, rtol=0, atol=1e-10)
 
 
 def test_handles_may_sit_on_the_outline_itself():
     document = disc_document()
-    outline = document.figures[0].domain.outline
+    outline = document.layers[0].domain.outline
     for fraction in (0.0, 0.3, 0.7):
         for place in outline + fraction * (np.roll(outline, -1) - outline):
-            assert handles.add_handle(0, complex(place))(document).figures[0].handles
+            assert handles.add_handle(0, complex(place))(document).layers[0].handles
 
 
 def test_a_variant_may_be_given_by_its_name_in_files():
     document = disc_document()
     for variant in VARIANTS:
-        (figure,) = figures.set_variant(0, variant.value)(document).figures
-        assert figure.variant is variant
+        (layer,) = layers.set_variant(0, variant.value)(document).layers
+        assert layer.variant is variant
     with pytest.raises(LissomError, match=r"variant is one of metric, nu, .*not 'wobbly'"):
-        figures.set_variant(0, "wobbly")(document)
+        layers.set_variant(0, "wobbly")(document)
 
 
 def test_a_pose_is_proven_for_bounds_that_its_certificate_keeps():
-    (figure,) = disc_document().figures
-    pose = figure.keys[0].pose
+    (layer,) = disc_document().layers
+    pose = layer.keys[0].pose
     stretched = Certificate(k=0.3, sigma_a=2.0, sigma_b=0.5, winding=0, certified=True)
     for bounds, is_proven in (
         (Bounds(), True),
@@ -104,7 +104,7 @@ def test_a_pose_is_proven_for_bounds_that_its_certificate_keeps():
         (Bounds(sigma_a=1.9), False),
         (Bounds(sigma_b=0.51), False),
     ):
-        bounded = replace(figure, bounds=bounds)
+        bounded = replace(layer, bounds=bounds)
         assert bounded.is_proven(replace(pose, certificate=stretched)) == is_proven
         folded = replace(stretched, certified=False)
         assert not bounded.is_proven(replace(pose, certificate=folded))
@@ -112,27 +112,27 @@ def test_a_pose_is_proven_for_bounds_that_its_certificate_keeps():
 
 def test_lags_are_the_distances_from_the_targets():
     document = handles.add_handle(0, CENTRE)(disc_document())
-    pose = document.figures[0].keys[0].pose
+    pose = document.layers[0].keys[0].pose
     pulled = replace(pose, targets={0: Target(position=CENTRE + 3 + 4j)})
-    assert_allclose(document.figures[0].lags(pulled)[0], 5.0, rtol=0, atol=1e-10)
-    assert disc_document().figures[0].lags(disc_document().figures[0].keys[0].pose) == {}
+    assert_allclose(document.layers[0].lags(pulled)[0], 5.0, rtol=0, atol=1e-10)
+    assert disc_document().layers[0].lags(disc_document().layers[0].keys[0].pose) == {}
 
 
 def test_names_and_ids_are_never_given_twice():
     document = animated(0)
-    assert [handle.name for handle in document.figures[0].handles] == ["handle 1", "handle 2"]
+    assert [handle.name for handle in document.layers[0].handles] == ["handle 1", "handle 2"]
     document = handles.remove_handles(0, {1})(document)
     document = handles.rename_handle(0, 0, "handle 3")(document)
     document = handles.add_handle(0, CENTRE)(document)
-    assert [handle.id for handle in document.figures[0].handles] == [0, 2]
-    assert document.figures[0].handle(2).name == "handle 4"
+    assert [handle.id for handle in document.layers[0].handles] == [0, 2]
+    assert document.layers[0].handle(2).name == "handle 4"
 
 
 def test_removing_a_handle_keeps_the_poses():
     document = animated(0, 10)
     fewer = handles.remove_handles(0, {0})(document)
-    assert [handle.id for handle in fewer.figures[0].handles] == [1]
-    for old, new in zip(document.figures[0].keys, fewer.figures[0].keys, strict=True):
+    assert [handle.id for handle in fewer.layers[0].handles] == [1]
+    for old, new in zip(document.layers[0].keys, fewer.layers[0].keys, strict=True):
         assert new.pose.phi is old.pose.phi
         assert dict(new.pose.targets) == {1: old.pose.targets[1]}
 
@@ -140,39 +140,37 @@ def test_removing_a_handle_keeps_the_poses():
 def test_moving_a_handle_moves_its_targets_along_the_maps():
     document = animated(0, 10)
     turned = Target(position=CENTRE, rotation=0.5)
-    targets = {**document.figures[0].keys[1].pose.targets, 0: turned}
-    document = keys.pose_key(0, 10, replace(document.figures[0].keys[1].pose, targets=targets))(
+    targets = {**document.layers[0].keys[1].pose.targets, 0: turned}
+    document = keys.pose_key(0, 10, replace(document.layers[0].keys[1].pose, targets=targets))(
         document
     )
     moved = handles.move_handle(0, 0, CENTRE + 5)(document)
-    assert moved.figures[0].handle(0).position == CENTRE + 5
-    expected = document.figures[0].map_of(document.figures[0].keys[1].pose)(np.array([CENTRE + 5]))[
-        0
-    ]
-    assert_allclose(moved.figures[0].keys[1].pose.targets[0].position, expected, rtol=0, atol=1e-12)
-    assert moved.figures[0].keys[1].pose.targets[0].rotation == 0.5
-    assert moved.figures[0].keys[1].pose.targets[1] is document.figures[0].keys[1].pose.targets[1]
+    assert moved.layers[0].handle(0).position == CENTRE + 5
+    expected = document.layers[0].map_of(document.layers[0].keys[1].pose)(np.array([CENTRE + 5]))[0]
+    assert_allclose(moved.layers[0].keys[1].pose.targets[0].position, expected, rtol=0, atol=1e-12)
+    assert moved.layers[0].keys[1].pose.targets[0].rotation == 0.5
+    assert moved.layers[0].keys[1].pose.targets[1] is document.layers[0].keys[1].pose.targets[1]
 
 
 def test_naming_and_weighing_handles():
     document = animated(0)
-    assert handles.rename_handle(0, 1, "Fuß")(document).figures[0].handle(1).name == "Fuß"
-    assert handles.weigh_handles(0, {1}, 3.0)(document).figures[0].handle(1).weight == 3.0
+    assert handles.rename_handle(0, 1, "Fuß")(document).layers[0].handle(1).name == "Fuß"
+    assert handles.weigh_handles(0, {1}, 3.0)(document).layers[0].handle(1).weight == 3.0
 
 
 def test_posing_and_inserting_keys():
     document = animated(0, 10)
     pose = random_pose(np.random.default_rng(1), document)
-    assert keys.pose_key(0, 10, pose)(document).figures[0].key(10).pose is pose
+    assert keys.pose_key(0, 10, pose)(document).layers[0].key(10).pose is pose
     document = keys.set_easing(0, {0}, HOLD)(document)
     grown = keys.insert_key(0, 5, pose)(document)
     assert frames_of(grown) == [0, 5, 10]
-    assert grown.figures[0].key(5).easing == HOLD
-    assert keys.insert_key(0, 15, pose)(document).figures[0].key(15).easing == LINEAR
-    eased = keys.insert_key(0, 15, pose, easing=HOLD)(document).figures[0]
+    assert grown.layers[0].key(5).easing == HOLD
+    assert keys.insert_key(0, 15, pose)(document).layers[0].key(15).easing == LINEAR
+    eased = keys.insert_key(0, 15, pose, easing=HOLD)(document).layers[0]
     assert [key.easing for key in eased.keys] == [HOLD, HOLD, HOLD]
     chosen = keys.set_easing(0, {10}, PRESETS["in"])(document)
-    eased = keys.insert_key(0, 15, pose, easing=HOLD)(chosen).figures[0]
+    eased = keys.insert_key(0, 15, pose, easing=HOLD)(chosen).layers[0]
     assert [key.easing for key in eased.keys] == [HOLD, PRESETS["in"], HOLD]
     assert keys.insert_key(0, 70, pose)(document).frames == FrameRange(0, 70)
 
@@ -184,7 +182,7 @@ def test_moving_and_copying_keys():
     assert keys.move_keys(0, {10}, 40)(document).frames == FrameRange(0, 50)
     copied = keys.copy_keys(0, {0, 10}, 25)(document)
     assert frames_of(copied) == [0, 10, 20, 25, 35]
-    assert copied.figures[0].key(35).pose is document.figures[0].key(10).pose
+    assert copied.layers[0].key(35).pose is document.layers[0].key(10).pose
     # Into each other's places, as they move together.
     assert frames_of(keys.move_keys(0, {0, 10, 20}, 10)(document)) == [10, 20, 30]
 
@@ -201,19 +199,19 @@ def test_reversing_keys_turns_the_motion_round():
     document = keys.set_easing(0, {30}, PRESETS["out"])(document)
     document = keys.set_turns(0, {10, 30}, 1)(document)
     turned = keys.reverse_keys(0, {0, 10, 30})(document)
-    assert [key.turns for key in turned.figures[0].keys] == [-1, 0, 1]
+    assert [key.turns for key in turned.layers[0].keys] == [-1, 0, 1]
     assert frames_of(turned) == [0, 20, 30]
-    assert [key.pose for key in turned.figures[0].keys] == [
-        key.pose for key in reversed(document.figures[0].keys)
+    assert [key.pose for key in turned.layers[0].keys] == [
+        key.pose for key in reversed(document.layers[0].keys)
     ]
-    assert [key.easing for key in turned.figures[0].keys] == [
+    assert [key.easing for key in turned.layers[0].keys] == [
         HOLD,
         PRESETS["in"].reversed(),
         PRESETS["out"],
     ]
     twice = keys.reverse_keys(0, {0, 20, 30})(turned)
-    assert [(key.frame, key.pose) for key in twice.figures[0].keys] == [
-        (key.frame, key.pose) for key in document.figures[0].keys
+    assert [(key.frame, key.pose) for key in twice.layers[0].keys] == [
+        (key.frame, key.pose) for key in document.layers[0].keys
     ]
 
 
@@ -228,7 +226,7 @@ def test_scaling_time():
 def test_the_last_key_becomes_the_first():
     document = animated(0, 10, 20)
     closed = keys.match_ends(0)(document)
-    assert closed.figures[0].key(20).pose is document.figures[0].key(0).pose
+    assert closed.layers[0].key(20).pose is document.layers[0].key(0).pose
     assert keys.match_ends(0)(closed) is closed
 
 
@@ -236,15 +234,14 @@ def test_settings():
     document = animated(0, 10)
     assert settings.set_fps(12)(document).fps == 12.0
     assert settings.set_loop(loop=True)(document).loop
-    assert figures.set_variant(0, "nu")(document).figures[0].variant == "nu"
-    assert figures.set_anchor(0, CENTRE)(document).figures[0].anchor == CENTRE
+    assert layers.set_variant(0, "nu")(document).layers[0].variant == "nu"
+    assert layers.set_anchor(0, CENTRE)(document).layers[0].anchor == CENTRE
     assert (
-        figures.set_anchor(0, None)(figures.set_anchor(0, CENTRE)(document)).figures[0].anchor
-        is None
+        layers.set_anchor(0, None)(layers.set_anchor(0, CENTRE)(document)).layers[0].anchor is None
     )
     export = ExportSettings(format="gif", size=(64, 32), background="#ffFF00")
     assert settings.set_export(export)(document).export == export
-    assert figures.set_bounds(0, Bounds(k=0.5))(document).figures[0].bounds.k == 0.5
+    assert layers.set_bounds(0, Bounds(k=0.5))(document).layers[0].bounds.k == 0.5
 
 
 def test_a_shorter_animation_cuts_its_preview_range():
@@ -258,25 +255,23 @@ def test_bounds_and_a_new_domain_come_with_solved_poses():
     document = animated(0, 10)
     rng = np.random.default_rng(4)
     poses = [random_pose(rng, document) for _ in range(2)]
-    assert [
-        k.pose for k in figures.set_bounds(0, Bounds(), poses)(document).figures[0].keys
-    ] == poses
+    assert [k.pose for k in layers.set_bounds(0, Bounds(), poses)(document).layers[0].keys] == poses
     domain = disc_domain(15)
     again = [random_pose(rng, document, domain) for _ in range(2)]
-    figure = replace(document.figures[0], unknown={"domain": {"brush": 1}, "kept": 2})
-    document = document.with_figure(figure)
-    rebuilt = figures.replace_domain(0, domain, Meshing(detail="fine"), again)(document)
-    assert rebuilt.figures[0].domain is domain
-    assert rebuilt.figures[0].meshing.detail == "fine"
-    assert rebuilt.figures[0].handles == document.figures[0].handles
-    assert [key.pose for key in rebuilt.figures[0].keys] == again
-    assert rebuilt.figures[0].unknown == {"kept": 2}
+    layer = replace(document.layers[0], unknown={"domain": {"brush": 1}, "kept": 2})
+    document = document.with_layer(layer)
+    rebuilt = layers.replace_domain(0, domain, Meshing(detail="fine"), again)(document)
+    assert rebuilt.layers[0].domain is domain
+    assert rebuilt.layers[0].meshing.detail == "fine"
+    assert rebuilt.layers[0].handles == document.layers[0].handles
+    assert [key.pose for key in rebuilt.layers[0].keys] == again
+    assert rebuilt.layers[0].unknown == {"kept": 2}
 
 
 @pytest.mark.parametrize(
     "command",
     [
-        handles.move_handle(0, 0, animated(0).figures[0].handle(0).position),
+        handles.move_handle(0, 0, animated(0).layers[0].handle(0).position),
         handles.remove_handles(0, ()),
         handles.rename_handle(0, 0, "handle 1"),
         handles.weigh_handles(0, {0}, 1.0),
@@ -294,10 +289,10 @@ def test_bounds_and_a_new_domain_come_with_solved_poses():
         settings.set_frames(FrameRange(0, 48)),
         settings.set_preview(None),
         settings.set_loop(loop=False),
-        figures.set_variant(0, "metric"),
-        figures.set_anchor(0, None),
+        layers.set_variant(0, "metric"),
+        layers.set_anchor(0, None),
         settings.set_export(ExportSettings()),
-        figures.set_bounds(0, NATURAL.bounds),
+        layers.set_bounds(0, NATURAL.bounds),
     ],
 )
 def test_what_changes_nothing_gives_the_same_document(command):
@@ -307,7 +302,7 @@ def test_what_changes_nothing_gives_the_same_document(command):
 
 
 DOCUMENT = animated(0, 10, 20)
-POSE = DOCUMENT.figures[0].keys[0].pose
+POSE = DOCUMENT.layers[0].keys[0].pose
 OTHER_CAGE = random_pose(np.random.default_rng(0), DOCUMENT, disc_domain(13))
 
 
@@ -320,7 +315,7 @@ OTHER_CAGE = random_pose(np.random.default_rng(0), DOCUMENT, disc_domain(13))
         (handles.add_handle(0, CENTRE, name="  "), "needs a name"),
         (handles.add_handle(0, CENTRE, weight=0.0), "weight"),
         (
-            handles.add_handle(0, DOCUMENT.figures[0].handles[0].position),
+            handles.add_handle(0, DOCUMENT.layers[0].handles[0].position),
             "Two handles have the place",
         ),
         (handles.move_handle(0, 0, CENTRE - 2 * RADIUS), "outside the shape"),
@@ -356,18 +351,18 @@ OTHER_CAGE = random_pose(np.random.default_rng(0), DOCUMENT, disc_domain(13))
         (settings.set_fps(float("nan")), "frames per second"),
         (settings.set_frames(FrameRange(0, 15)), says(KEY_OUTSIDE, frame=20)),
         (settings.set_preview(FrameRange(3, 49)), "preview range"),
-        (figures.set_variant(0, "arap"), "variant"),
-        (figures.set_anchor(0, CENTRE + 2 * RADIUS), "The anchor"),
-        (figures.set_anchor(0, complex("inf")), "anchor must be within"),
+        (layers.set_variant(0, "arap"), "variant"),
+        (layers.set_anchor(0, CENTRE + 2 * RADIUS), "The anchor"),
+        (layers.set_anchor(0, complex("inf")), "anchor must be within"),
         (settings.add_marker(-1), "marker is at a frame from 0"),
         (settings.delete_marker(3), "no marker at frame 3"),
         (poses.delete_pose(0, "bow"), "no pose 'bow'"),
         (poses.keep_pose(0, POSE, "  "), "needs a name"),
         (poses.keep_pose(0, OTHER_CAGE, "bow"), "cage of 13"),
-        (figures.set_bounds(0, Bounds(), [POSE]), says(POSE_COUNT, count=3, given=1)),
-        (figures.replace_domain(0, disc_domain(13), Meshing(), [POSE] * 3), "cage of 12"),
+        (layers.set_bounds(0, Bounds(), [POSE]), says(POSE_COUNT, count=3, given=1)),
+        (layers.replace_domain(0, disc_domain(13), Meshing(), [POSE] * 3), "cage of 12"),
         (
-            figures.replace_domain(0, disc_domain(13), Meshing(), [OTHER_CAGE]),
+            layers.replace_domain(0, disc_domain(13), Meshing(), [OTHER_CAGE]),
             says(POSE_COUNT, count=3, given=1),
         ),
     ],
@@ -385,7 +380,7 @@ def test_a_domain_that_loses_a_handle_is_refused_by_the_handle_s_name():
     small = disc_domain()
     half = replace(small, outline=CENTRE + (small.outline - CENTRE) / 2)
     with pytest.raises(LissomError, match="handle 'ear'"):
-        figures.replace_domain(0, half, Meshing(), [document.figures[0].keys[0].pose])(document)
+        layers.replace_domain(0, half, Meshing(), [document.layers[0].keys[0].pose])(document)
 
 
 @pytest.mark.parametrize(
@@ -414,19 +409,19 @@ def test_a_domain_that_loses_a_handle_is_refused_by_the_handle_s_name():
         (lambda: Target(position=complex(1e300, 0)), "within 10,000,000 pixels"),
         (lambda: Target(position=complex(float("nan"), 0)), "within 10,000,000 pixels"),
         (lambda: Target(position=complex(0, float("nan"))), "within 10,000,000 pixels"),
-        (lambda: replace(DOCUMENT.figures[0].keys[0], turns=MOST_TURNS + 1), "whole turns"),
-        (lambda: replace(DOCUMENT.figures[0].keys[0], turns=-(10**30)), "whole turns"),
+        (lambda: replace(DOCUMENT.layers[0].keys[0], turns=MOST_TURNS + 1), "whole turns"),
+        (lambda: replace(DOCUMENT.layers[0].keys[0], turns=-(10**30)), "whole turns"),
         (lambda: Target(position=0j, rotation=float("nan")), "rotation"),
         (lambda: altered(DOCUMENT, keys=()), "at least one key"),
-        (lambda: altered(DOCUMENT, keys=DOCUMENT.figures[0].keys[::-1]), "mixed up"),
+        (lambda: altered(DOCUMENT, keys=DOCUMENT.layers[0].keys[::-1]), "mixed up"),
         (
-            lambda: altered(DOCUMENT, keys=DOCUMENT.figures[0].keys[:1] * 2),
+            lambda: altered(DOCUMENT, keys=DOCUMENT.layers[0].keys[:1] * 2),
             "Two keys are at frame 0",
         ),
         (lambda: altered(DOCUMENT, next_handle=1), "is taken"),
         (lambda: altered(DOCUMENT, frames=FrameRange(0, 19)), "outside the animation"),
         (
-            lambda: altered(DOCUMENT, handles=DOCUMENT.figures[0].handles * 2),
+            lambda: altered(DOCUMENT, handles=DOCUMENT.layers[0].handles * 2),
             "Two handles have the id",
         ),
     ],
@@ -444,8 +439,8 @@ def test_coefficients_must_be_finite():
 
 
 def test_nothing_in_a_document_can_be_written_to():
-    pose = DOCUMENT.figures[0].keys[0].pose
-    for array in (pose.phi, pose.psi, DOCUMENT.figures[0].domain.mesh.triangles):
+    pose = DOCUMENT.layers[0].keys[0].pose
+    for array in (pose.phi, pose.psi, DOCUMENT.layers[0].domain.mesh.triangles):
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 0
     with pytest.raises(TypeError):
@@ -481,9 +476,9 @@ def test_markers_stay_in_order_and_apart():
 
 def test_poses_of_the_library_follow_handles_as_keys_do():
     document = animated(0, 10)
-    pose = document.figures[0].keys[1].pose
+    pose = document.layers[0].keys[1].pose
     document = poses.keep_pose(0, pose, "bow")(poses.keep_pose(0, pose)(document))
-    assert [kept.name for kept in document.figures[0].library] == ["Pose 1", "bow"]
+    assert [kept.name for kept in document.layers[0].library] == ["Pose 1", "bow"]
     place = CENTRE + 20 - 35j
     for command in (
         handles.add_handle(0, place),
@@ -491,20 +486,20 @@ def test_poses_of_the_library_follow_handles_as_keys_do():
         handles.remove_handles(0, {1}),
     ):
         document = command(document)
-        (figure,) = document.figures
-        assert figure.kept_pose("bow").pose.targets == figure.keys[1].pose.targets
+        (layer,) = document.layers
+        assert layer.kept_pose("bow").pose.targets == layer.keys[1].pose.targets
     renamed = poses.rename_pose(0, "bow", "low bow")(document)
     with pytest.raises(LissomError, match="Two poses have the name 'Pose 1'"):
         poses.rename_pose(0, "low bow", "Pose 1")(renamed)
-    assert [k.name for k in poses.delete_pose(0, "Pose 1")(renamed).figures[0].library] == [
+    assert [k.name for k in poses.delete_pose(0, "Pose 1")(renamed).layers[0].library] == [
         "low bow"
     ]
 
 
 def test_the_axis_of_mirroring_is_in_the_middle_until_it_is_moved():
     document = disc_document()
-    assert document.figures[0].axis == pytest.approx(CENTRE.real)
+    assert document.layers[0].axis == pytest.approx(CENTRE.real)
     for name, place in (("paw.L", CENTRE - 40), ("paw.R", CENTRE + 60), ("tail", CENTRE + 80)):
         document = handles.add_handle(0, place, name=name)(document)
-    assert document.figures[0].axis == CENTRE.real + 10
-    assert poses.set_mirror(0, 7.0)(document).figures[0].axis == 7.0
+    assert document.layers[0].axis == CENTRE.real + 10
+    assert poses.set_mirror(0, 7.0)(document).layers[0].axis == 7.0

@@ -26,37 +26,37 @@ from app.motion.inbetweens import Animation
 def with_keys(*frames, last=100, **changes):
     """Return a document with keys at some frames; the one at 44 is like that at 20."""
     document = row(6)
-    poses = [key.pose for key in document.figures[0].keys]
+    poses = [key.pose for key in document.layers[0].keys]
     poses = dict(zip(sorted({*frames} - {44}), poses, strict=False))
     keys = tuple(
-        replace(document.figures[0].keys[0], frame=frame, pose=poses[20 if frame == 44 else frame])
+        replace(document.layers[0].keys[0], frame=frame, pose=poses[20 if frame == 44 else frame])
         for frame in frames
     )
     return altered(document, keys=keys, frames=FrameRange(0, last), **changes)
 
 
 def moved(document, frames):
-    animation = Animation(clip_of(document, 0), points=document.figures[0].domain.outline)
+    animation = Animation(clip_of(document, 0), points=document.layers[0].domain.outline)
     return np.array([animation.positions(frame) for frame in frames])
 
 
 def frames_of(document):
-    return [key.frame for key in document.figures[0].keys]
+    return [key.frame for key in document.layers[0].keys]
 
 
 def test_a_stretch_repeats_and_its_last_key_is_its_first():
     document = with_keys(4, 20, 28, 36, 44, 110, last=120)
-    figure = document.figures[0]
-    assert cycle_commands.end_of_repeats(figure, 20, 44) == 92
+    layer = document.layers[0]
+    assert cycle_commands.end_of_repeats(layer, 20, 44) == 92
     cycling = cycle_commands.repeat(0, 20, 44, 92)(document)
-    assert cycling.figures[0].cycles == (Cycle(first=20, last=44, until=92),)
+    assert cycling.layers[0].cycles == (Cycle(first=20, last=44, until=92),)
     assert frames_of(cycling) == [4, 20, 28, 36, 110]
     again = cycle_commands.repeat(0, 20, 44, 68)(cycling)
-    assert again.figures[0].cycles == (Cycle(first=20, last=44, until=68),)
+    assert again.layers[0].cycles == (Cycle(first=20, last=44, until=68),)
     with pytest.raises(LissomError, match=says(TWO_POSES_SHOWN, first=4, last=28)):
         cycle_commands.repeat(0, 4, 28)(document)
     with pytest.raises(LissomError, match="no room for frames 4 to 15 to repeat before frame 20"):
-        cycle_commands.end_of_repeats(figure, 4, 15)
+        cycle_commands.end_of_repeats(layer, 4, 15)
     with pytest.raises(LissomError, match="key at frame 110 is where frames 20 to 44 repeat"):
         cycle_commands.repeat(0, 20, 44)(document)
 
@@ -65,11 +65,11 @@ def test_what_stops_repeating_is_there_once_as_it_was():
     document = with_keys(4, 20, 28, 36, 44)
     cycling = cycle_commands.repeat(0, 20, 44)(document)
     stopped = cycle_commands.stop(0, 20)(cycling)
-    assert not stopped.figures[0].cycles
+    assert not stopped.layers[0].cycles
     assert frames_of(stopped) == frames_of(document)
-    figure = stopped.figures[0]
-    assert figure.key(44).pose is figure.key(20).pose
-    with pytest.raises(LissomError, match="Nothing of 'figure' repeats from frame 20 on"):
+    layer = stopped.layers[0]
+    assert layer.key(44).pose is layer.key(20).pose
+    with pytest.raises(LissomError, match="Nothing of 'layer' repeats from frame 20 on"):
         cycle_commands.stop(0, 20)(stopped)
 
 
@@ -78,7 +78,7 @@ def test_repeats_made_into_keys_move_as_before(loop):
     document = cycle_commands.repeat(0, 20, 44, 92)(with_keys(4, 20, 28, 36, 44, 110, last=120))
     document = altered(document, loop=loop)
     keyed = cycle_commands.make_keys(0, 20, 120)(document)
-    assert not keyed.figures[0].cycles
+    assert not keyed.layers[0].cycles
     assert frames_of(keyed) == [4, 20, 28, 36, 44, 52, 60, 68, 76, 84, 92, 110]
     # Only beside 20 and 92 the motion is another one.
     inside = [28, 31, 36, 43, 44, 50, 60, 66, 68, 75, 84]
@@ -90,7 +90,7 @@ def test_less_than_a_whole_repeat_still_repeats():
     document = cycle_commands.repeat(0, 20, 44)(with_keys(20, 28, 36, 44, last=100))
     keyed = cycle_commands.make_keys(0, 20, 100)(document)
     assert frames_of(keyed) == [20, 28, 36, 44, 52, 60, 68, 76, 84]
-    assert keyed.figures[0].cycles == (Cycle(first=68, last=92),)
+    assert keyed.layers[0].cycles == (Cycle(first=68, last=92),)
     inside = range(28, 101, 3)
     assert_allclose(moved(keyed, inside), moved(document, inside), rtol=0, atol=1e-9)
 
@@ -102,7 +102,7 @@ def with_handle(document, front):
         pose = replace(key.pose, targets={0: Target(position=60 + 45j)})
         return replace(key, pose=pose, fronts={0: 1.0} if key.frame == front else {})
 
-    keys = tuple(map(keyed, document.figures[0].keys))
+    keys = tuple(map(keyed, document.layers[0].keys))
     return altered(document, handles=(handle,), next_handle=1, keys=keys)
 
 
@@ -123,11 +123,11 @@ def test_tracks_what_is_in_front_and_visibility_are_made_into_keys():
     before, after = clip_of(document, 0), clip_of(keyed, 0)
     for frame in range(20, 93):
         places = [
-            track_at(clip.figure.tracks[0], clip, frame) or (0j, 0.0) for clip in (before, after)
+            track_at(clip.layer.tracks[0], clip, frame) or (0j, 0.0) for clip in (before, after)
         ]
         assert abs(places[0][0] - places[1][0]) < 1e-12
         assert fronts_at(before, frame) == fronts_at(after, frame)
-        shown = [is_visible(each, each.figures[0], frame) for each in (document, keyed)]
+        shown = [is_visible(each, each.layers[0], frame) for each in (document, keyed)]
         assert shown[0] == shown[1]
     key = track_commands.put_track_key(0, 0, 24, 1 + 0j)
     with pytest.raises(LissomError, match="track of 'tail' acts in a part of frames 20 to 44 only"):
@@ -138,38 +138,38 @@ def test_tracks_what_is_in_front_and_visibility_are_made_into_keys():
     keyed = cycle_commands.make_keys(0, 20, 92)(document)
     before, after = clip_of(document, 0), clip_of(keyed, 0)
     for frame in range(30, 79):
-        one, other = (track_at(clip.figure.tracks[0], clip, frame) for clip in (before, after))
+        one, other = (track_at(clip.layer.tracks[0], clip, frame) for clip in (before, after))
         assert abs(one.place - other.place) < 1e-12
 
 
 def test_cycles_go_with_all_of_their_keys_in_time():
     document = cycle_commands.repeat(0, 20, 44, 68)(with_keys(20, 28, 36, 44, 90))
-    later = key_commands.move_keys(0, {20, 28, 36}, 8)(document).figures[0]
+    later = key_commands.move_keys(0, {20, 28, 36}, 8)(document).layers[0]
     assert later.cycles == (Cycle(first=28, last=52, until=76),)
     # Moved alone, a key is another part of every repeat.
-    alone = key_commands.move_keys(0, {28}, 3)(document).figures[0]
-    assert alone.cycles == document.figures[0].cycles
+    alone = key_commands.move_keys(0, {28}, 3)(document).layers[0]
+    assert alone.cycles == document.layers[0].cycles
     with pytest.raises(LissomError, match="key at frame 46 is where frames 20 to 44 repeat"):
         key_commands.move_keys(0, {36}, 10)(document)
-    slower = key_commands.scale_keys(0, {20, 28, 36}, 1.25)(document).figures[0]
+    slower = key_commands.scale_keys(0, {20, 28, 36}, 1.25)(document).layers[0]
     assert slower.cycles == (Cycle(first=20, last=50, until=80),)
-    twice = scene_commands.scale_time(2.0)(document).figures[0]
+    twice = scene_commands.scale_time(2.0)(document).layers[0]
     assert twice.cycles == (Cycle(first=40, last=88, until=136),)
-    assert not key_commands.delete_keys(0, {20, 28, 36})(document).figures[0].cycles
-    assert key_commands.delete_keys(0, {28, 90})(document).figures[0].cycles
+    assert not key_commands.delete_keys(0, {20, 28, 36})(document).layers[0].cycles
+    assert key_commands.delete_keys(0, {28, 90})(document).layers[0].cycles
     with pytest.raises(LissomError, match="frame 68"):
         scene_commands.set_frames(FrameRange(0, 60))(key_commands.delete_keys(0, {90})(document))
 
 
 def test_what_a_frame_shows_is_keyed_where_it_repeats():
-    figure = cycle_commands.repeat(0, 20, 44, 68)(with_keys(20, 28, 36, 44, 68)).figures[0]
-    assert [figure.source_of(frame) for frame in (4, 20, 43, 44, 50, 67, 68, 80)] == [
+    layer = cycle_commands.repeat(0, 20, 44, 68)(with_keys(20, 28, 36, 44, 68)).layers[0]
+    assert [layer.source_of(frame) for frame in (4, 20, 43, 44, 50, 67, 68, 80)] == [
         *(4, 20, 43, 20, 26, 43, 68, 80)
     ]
 
 
 def test_cycle_is_refused_in_words_over_another_cycle():
     document = with_keys(0, 10, 15, last=60)
-    figure = cycle_commands.repeat(0, 10, 20, 40)(document).figures[0]
+    layer = cycle_commands.repeat(0, 10, 20, 40)(document).layers[0]
     with pytest.raises(LissomError, match="frames 10 to 20 in them repeat already"):
-        cycle_commands.end_of_repeats(figure, 0, 15)
+        cycle_commands.end_of_repeats(layer, 0, 15)

@@ -19,7 +19,7 @@ from app.document import (
     movement_at,
     opacity_at,
 )
-from app.document.figure import NO_KEY
+from app.document.layer import NO_KEY
 from app.errors import LissomError
 
 EMPTY = replace(disc_document(), frames=FrameRange(0, 48))
@@ -50,49 +50,49 @@ def test_a_camera_key_is_moved_and_deleted():
 
 def test_opacity_is_keyed_and_the_last_key_leaves_what_it_said():
     faded = filming.key_opacity(0, 10, 0.5)(filming.key_opacity(0, 0, 1.0)(EMPTY))
-    assert opacity_at(faded, faded.figures[0], 5) == pytest.approx(0.75)
+    assert opacity_at(faded, faded.layers[0], 5) == pytest.approx(0.75)
     assert filming.key_opacity(0, 10, 0.5)(faded) is faded
     left = filming.delete_opacity_key(0, 0)(faded)
     none = filming.delete_opacity_key(0, 10)(left)
-    assert (none.figures[0].opacities, none.figures[0].opacity) == ((), 0.5)
+    assert (none.layers[0].opacities, none.layers[0].opacity) == ((), 0.5)
     with pytest.raises(LissomError, match=says(NO_KEY, frame=3)):
         filming.delete_opacity_key(0, 3)(altered(faded))
 
 
-def test_a_figure_is_moved_from_key_to_key():
+def test_a_layer_is_moved_from_key_to_key():
     document = filming.key_movement(0, 24, 30 + 10j, 0.5)(
         filming.key_movement(0, 0, 0j, 0.0)(EMPTY)
     )
-    figure = document.figure(0)
-    at = movement_at(document, figure, 24)
-    assert abs(at.on(np.array([figure.pivot]))[0] - figure.pivot - 30 - 10j) < 1e-12
+    layer = document.layer(0)
+    at = movement_at(document, layer, 24)
+    assert abs(at.on(np.array([layer.pivot]))[0] - layer.pivot - 30 - 10j) < 1e-12
     assert abs(at.factor - np.exp(0.5j)) < 1e-12
     # Midway between two keys at rest.
-    half = movement_at(document, figure, 12).on(np.array([figure.pivot]))[0]
-    assert abs(half - figure.pivot - 15 - 5j) < 1e-9
+    half = movement_at(document, layer, 12).on(np.array([layer.pivot]))[0]
+    assert abs(half - layer.pivot - 15 - 5j) < 1e-9
     changed = filming.key_movement(0, 24, 8j, 0.5)(document)
-    assert [key.shift for key in changed.figure(0).movement] == [0, 8j]
+    assert [key.shift for key in changed.layer(0).movement] == [0, 8j]
     assert filming.key_movement(0, 24, 8j, 0.5)(changed) is changed
     gone = filming.delete_movement_key(0, 24)(filming.delete_movement_key(0, 0)(changed))
-    assert gone.figure(0).movement == ()
+    assert gone.layer(0).movement == ()
 
 
 def test_a_layer_is_painted_beside_another_one_from_a_frame_on():
-    document = layer_commands.duplicate_figure(0)(layer_commands.duplicate_figure(0)(EMPTY))
+    document = layer_commands.duplicate_layer(0)(layer_commands.duplicate_layer(0)(EMPTY))
     assert [each.id for each in in_order(document, 0)] == [0, 2, 1]
     placed = filming.place_at(0, Placing(12, 1, in_front=True))(document)
     assert [each.id for each in in_order(placed, 11)] == [0, 2, 1]
     assert [each.id for each in in_order(placed, 12)] == [2, 1, 0]
     behind = filming.place_at(0, Placing(12, 1, in_front=False))(placed)
     assert [each.id for each in in_order(behind, 12)] == [2, 0, 1]
-    assert filming.unplace_at(0, 12)(behind).figure(0).placings == ()
+    assert filming.unplace_at(0, 12)(behind).layer(0).placings == ()
     with pytest.raises(LissomError):
         filming.place_at(0, Placing(12, 0))(document)
 
 
 def test_layer_placed_beside_what_it_clips_stays_there():
-    document = layer_commands.duplicate_figure(0)(EMPTY)
-    base, cut = (each.id for each in document.figures)
+    document = layer_commands.duplicate_layer(0)(EMPTY)
+    base, cut = (each.id for each in document.layers)
     clipped = layer_commands.set_clipped(cut, clipped=True)(document)
     placed = filming.place_at(base, Placing(12, cut, in_front=True))(clipped)
-    assert in_order(placed, 12) == placed.figures
+    assert in_order(placed, 12) == placed.layers

@@ -11,26 +11,26 @@ from app.errors import LissomError
 
 
 def scene(*names):
-    """A document with a figure for each name, from back to front, with the ids 0, 1, 2 …"""
+    """A document with a layer for each name, from back to front, with the ids 0, 1, 2 …"""
     document = disc_document()
-    figures = tuple(
-        replace(document.figures[0], id=identity, name=name) for identity, name in enumerate(names)
+    layers = tuple(
+        replace(document.layers[0], id=identity, name=name) for identity, name in enumerate(names)
     )
-    return replace(document, figures=figures)
+    return replace(document, layers=layers)
 
 
 def grouped(names, *found):
-    """A scene of figures that are named as "sky limbs/arm", each in the group before its slash."""
+    """A scene of layers that are named as "sky limbs/arm", each in the group before its slash."""
     made = scene(*names.split())
-    figures = tuple(
-        replace(figure, name=figure.name.rpartition("/")[2], group=figure.name.rpartition("/")[0])
-        for figure in made.figures
+    layers = tuple(
+        replace(layer, name=layer.name.rpartition("/")[2], group=layer.name.rpartition("/")[0])
+        for layer in made.layers
     )
-    return replace(made, figures=figures, groups=tuple(Group(name=name) for name in found))
+    return replace(made, layers=layers, groups=tuple(Group(name=name) for name in found))
 
 
 def paths(document):
-    return [f"{figure.group}/{figure.name}".removeprefix("/") for figure in document.figures]
+    return [f"{layer.group}/{layer.name}".removeprefix("/") for layer in document.layers]
 
 
 def names_of(document):
@@ -43,13 +43,13 @@ def test_a_group_has_a_path_of_names(name):
         Group(name=name)
 
 
-def test_every_group_around_a_figure_is_there_once_and_after_its_own():
+def test_every_group_around_a_layer_is_there_once_and_after_its_own():
     document = scene("sky", "arm")
     for found in (("b",), ("a/b", "a"), ("a/b",), ("a", "a")):
         with pytest.raises(LissomError, match="group"):
             replace(
                 document,
-                figures=(document.figures[0], replace(document.figures[1], group="a/b")),
+                layers=(document.layers[0], replace(document.layers[1], group="a/b")),
                 groups=tuple(Group(name=name) for name in found),
             )
     with pytest.raises(LissomError, match="Opacity"):
@@ -57,10 +57,10 @@ def test_every_group_around_a_figure_is_there_once_and_after_its_own():
     with pytest.raises(LissomError, match="blend is one of"):
         Group(name="a", blend="overlay")
     with pytest.raises(LissomError, match="blend of 'sky' is one of normal, multiply, screen"):
-        replace(document.figures[0], blend="pass-through")
+        replace(document.layers[0], blend="pass-through")
 
 
-def test_figures_are_gathered_in_a_group_in_their_order():
+def test_layers_are_gathered_in_a_group_in_their_order():
     document = scene("sky", "leg", "body", "arm", "hat")
     limbs = groups.put_in_group([3, 1], "limbs")(document)
     assert paths(limbs) == ["sky", "body", "limbs/leg", "limbs/arm", "hat"]
@@ -95,13 +95,13 @@ def test_what_leaves_a_group_does_not_part_it():
         (3, 4, "sky a/one a/two tail b/c/hat"),
     ],
 )
-def test_a_figure_that_is_moved_joins_and_leaves_groups_so_that_they_stay_whole(
+def test_a_layer_that_is_moved_joins_and_leaves_groups_so_that_they_stay_whole(
     identity, index, wanted
 ):
     document = grouped("sky a/one a/two b/c/hat tail", "a", "b", "b/c")
-    after = layers.move_figure(identity, index)(document)
+    after = layers.move_layer(identity, index)(document)
     assert paths(after) == wanted.split()
-    filled = {figure.group for figure in after.figures}
+    filled = {layer.group for layer in after.layers}
     assert all(any(path.startswith(name) for path in filled) for name in names_of(after))
 
 
@@ -130,13 +130,13 @@ def test_a_group_is_moved_as_a_whole():
     assert paths(twice) == ["a/b/one", "a/b 2/two"]
 
 
-def test_a_new_figure_amid_a_group_is_in_it_and_a_copy_is_beside_its_original():
+def test_a_new_layer_amid_a_group_is_in_it_and_a_copy_is_beside_its_original():
     document = grouped("sky a/one a/two", "a")
-    new = replace(document.figures[0], id=9, name="new")
-    assert paths(layers.add_figure(new, 2)(document)) == ["sky", "a/one", "a/new", "a/two"]
-    assert paths(layers.add_figure(new, 1)(document)) == ["sky", "new", "a/one", "a/two"]
-    assert paths(layers.duplicate_figure(1)(document))[2] == "a/one copy"
-    alone = layers.remove_figure(2)(layers.remove_figure(1)(document))
+    new = replace(document.layers[0], id=9, name="new")
+    assert paths(layers.add_layer(new, 2)(document)) == ["sky", "a/one", "a/new", "a/two"]
+    assert paths(layers.add_layer(new, 1)(document)) == ["sky", "new", "a/one", "a/two"]
+    assert paths(layers.duplicate_layer(1)(document))[2] == "a/one copy"
+    alone = layers.remove_layer(2)(layers.remove_layer(1)(document))
     assert (paths(alone), alone.groups) == (["sky"], ())
 
 
@@ -163,9 +163,9 @@ def test_ungrouping_hands_on_what_the_group_did():
     free = groups.ungroup("a")(document)
     assert paths(free) == ["one", "a/two", "b 2/three", "b/four"]
     assert [group.opacity for group in free.groups] == [0.5, 0.5, 1.0]
-    for figure in free.figures[:3]:
-        assert not is_visible(free, figure, 0)
-    assert (free.figures[0].opacity, free.figures[1].opacity) == (0.5, 1.0)
+    for layer in free.layers[:3]:
+        assert not is_visible(free, layer, 0)
+    assert (free.layers[0].opacity, free.layers[1].opacity) == (0.5, 1.0)
     nested = groups.ungroup("a/b")(document)
     assert paths(nested)[2] == "a/three"
 
@@ -173,18 +173,18 @@ def test_ungrouping_hands_on_what_the_group_did():
 def test_a_hidden_group_hides_all_that_is_in_it():
     document = grouped("sky a/one a/b/two", "a", "a/b")
     hidden = groups.set_group_hidden("a", hidden=True)(document)
-    assert [is_visible(hidden, figure, 3) for figure in hidden.figures] == [True, False, False]
-    assert [figure.name for figure in hidden.exported] == ["sky"]
+    assert [is_visible(hidden, layer, 3) for layer in hidden.layers] == [True, False, False]
+    assert [layer.name for layer in hidden.exported] == ["sky"]
     assert groups.set_group_hidden("a", hidden=True)(hidden) is hidden
     inner = groups.set_group_hidden("a/b", hidden=True)(document)
-    assert [is_visible(inner, figure, 3) for figure in inner.figures] == [True, True, False]
+    assert [is_visible(inner, layer, 3) for layer in inner.layers] == [True, True, False]
 
 
 def test_each_run_of_a_group_is_composited_by_itself():
     document = grouped("a/one sky a/two a/b/three", "a", "a/b")
 
     def drawn(changed):
-        return composed(changed, {figure.id: figure.name for figure in changed.figures}, 0)
+        return composed(changed, {layer.id: layer.name for layer in changed.layers}, 0)
 
     assert drawn(document) == ("one", "sky", "two", "three")
     faded = groups.set_group_opacity("a", 0.5)(document)
@@ -207,16 +207,16 @@ def test_each_run_of_a_group_is_composited_by_itself():
 
 
 def clipped(document, *names):
-    figures = (
-        replace(figure, clipped=figure.name in names, opacity=0.5 if figure.name == "arm" else 1.0)
-        for figure in document.figures
+    layers = (
+        replace(layer, clipped=layer.name in names, opacity=0.5 if layer.name == "arm" else 1.0)
+        for layer in document.layers
     )
-    return replace(document, figures=tuple(figures))
+    return replace(document, layers=tuple(layers))
 
 
 def test_what_is_clipped_is_painted_on_what_lies_below_it_in_its_group():
     document = clipped(grouped("sky arm shade light a/two a/three", "a"), "shade", "light", "two")
-    names = {figure.id: figure.name for figure in document.figures}
+    names = {layer.id: layer.name for layer in document.layers}
     cut = [Composite((name,), clipped=True) for name in ("shade", "light")]
     # At the bottom of its group there is nothing that cuts.
     whole = ("sky", Composite(("arm", *cut), 0.5), "two", "three")
@@ -234,7 +234,7 @@ def test_what_is_clipped_is_painted_on_what_lies_below_it_in_its_group():
 def test_a_group_is_clipped_and_cuts():
     document = clipped(grouped("arm a/one a/two hat", "a"), "hat")
     document = replace(document, groups=(Group(name="a", clipped=True),))
-    names = {figure.id: figure.name for figure in document.figures}
+    names = {layer.id: layer.name for layer in document.layers}
     parts = composed(document, names, 0)
     cut = Composite(("one", "two"), clipped=True), Composite(("hat",), clipped=True)
     assert parts == (Composite(("arm", *cut), 0.5),)

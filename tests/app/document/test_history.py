@@ -7,16 +7,16 @@ from hypothesis import given, settings, strategies as st
 
 from app.document.commands import (
     Command,
-    figure_commands,
     handle_commands,
     key_commands,
     layer_commands,
     pose_commands,
     scene_commands,
+    shape_commands,
 )
 from app.document.history import History, UnkeyedPose, _bytes_only_in
 from app.errors import LissomError
-from app.storage.layers import still_figure
+from app.storage.layers import still_layer
 
 seeds = st.lists(st.integers(0, 2**32 - 1), max_size=25)
 
@@ -72,9 +72,9 @@ def test_commands_leave_the_document_before_them_as_it_was(seeds):
     history = History(disc_document(), saved=True)
     for seed in seeds:
         before = history.document
-        copies = [key.pose.phi.tobytes() for key in before.figures[0].keys]
+        copies = [key.pose.phi.tobytes() for key in before.layers[0].keys]
         do_at_random(history, seed)
-        assert [key.pose.phi.tobytes() for key in before.figures[0].keys] == copies
+        assert [key.pose.phi.tobytes() for key in before.layers[0].keys] == copies
     while history.undo_label:
         history.undo()
     assert not differences(history.document, disc_document())
@@ -158,9 +158,9 @@ def test_a_gesture_that_is_taken_back_leaves_no_trace():
 
 def test_a_pose_that_no_key_holds_is_undone_and_redone_like_all_else():
     first = disc_document()
-    pose = first.figures[0].keys[0].pose
+    pose = first.layers[0].keys[0].pose
     history = History(first, saved=True)
-    poses = [UnkeyedPose(figure=0, frame=5, pose=pose) for _ in range(3)]
+    poses = [UnkeyedPose(layer=0, frame=5, pose=pose) for _ in range(3)]
     history.pose(poses[0])
     history.do(set_fps(10))
     drag = object()
@@ -260,7 +260,7 @@ def test_one_step_is_kept_however_large():
 
 def test_arrays_that_are_shared_are_counted_once():
     history = History(full_document(), saved=False, memory=4_000_000)
-    domain = history.document.figures[0].domain
+    domain = history.document.layers[0].domain
     large = type(domain)(
         outline=domain.outline,
         cage=domain.cage,
@@ -268,17 +268,17 @@ def test_arrays_that_are_shared_are_counted_once():
             vertices=np.resize(domain.mesh.vertices, 100_000), triangles=domain.mesh.triangles
         ),
     )
-    poses = history.document.figures[0].poses
-    meshing = history.document.figures[0].meshing
-    history.do(figure_commands.replace_domain(0, large, meshing, poses))
+    poses = history.document.layers[0].poses
+    meshing = history.document.layers[0].meshing
+    history.do(shape_commands.replace_domain(0, large, meshing, poses))
     for fps in range(30, 430):
         history.do(set_fps(fps))
-    history.do(figure_commands.replace_domain(0, domain, meshing, poses))
+    history.do(shape_commands.replace_domain(0, domain, meshing, poses))
     # 1.6 MB of one mesh, and 400 times next to nothing.
     for _ in range(402):
         history.undo()
     assert history.undo_label is None
-    assert history.document.figures[0].domain is domain
+    assert history.document.layers[0].domain is domain
 
 
 def test_thousands_of_steps_can_be_undone():
@@ -294,7 +294,7 @@ def test_thousands_of_steps_can_be_undone():
 def test_what_completes_a_step_is_undone_with_it():
     history = History(disc_document(), saved=True)
     first = history.document
-    pose = UnkeyedPose(figure=0, frame=3, pose=first.figures[0].keys[0].pose)
+    pose = UnkeyedPose(layer=0, frame=3, pose=first.layers[0].keys[0].pose)
     history.do(set_fps(10))
     history.do(set_fps(20))
     later = history.document
@@ -333,17 +333,17 @@ def held(history):
 def test_what_a_gesture_led_to_goes_on_in_its_step_and_in_all_later_ones():
     first = full_document()
     history, gesture = History(first, saved=True), object()
-    figure = first.figures[0]
-    frame = figure.keys[0].frame
-    pose = moved(figure.keys[0].pose, 1)
-    history.do(key_commands.pose_key(figure.id, frame, pose), gesture=gesture)
-    history.do(pose_commands.keep_pose(figure.id, pose, "copy"))
+    layer = first.layers[0]
+    frame = layer.keys[0].frame
+    pose = moved(layer.keys[0].pose, 1)
+    history.do(key_commands.pose_key(layer.id, frame, pose), gesture=gesture)
+    history.do(pose_commands.keep_pose(layer.id, pose, "copy"))
     history.do(set_fps(31))
     history.undo()
     rest = moved(pose, 2)
     assert history.amend(gesture, pose, lambda _, earlier: replace(rest, targets=earlier.targets))
     for documents in range(3):
-        now = history.document.figures[0]
+        now = history.document.layers[0]
         assert now.key(frame).pose.phi is rest.phi, documents
         assert all(kept.pose.phi is rest.phi for kept in now.library if kept.name == "copy")
         history.redo() if documents == 0 else history.undo()
@@ -357,35 +357,35 @@ def test_what_a_gesture_led_to_goes_on_in_its_step_and_in_all_later_ones():
     assert not history.amend(gesture, rest, lambda _, earlier: earlier)
 
 
-def test_steps_still_share_a_figure_when_its_pose_goes_on():
+def test_steps_still_share_a_layer_when_its_pose_goes_on():
     first = full_document()
     history, gesture = History(first, saved=True), object()
-    figure = first.figures[0]
-    frame = figure.keys[0].frame
-    pose, made = moved(figure.keys[0].pose, 1), []
-    history.do(key_commands.pose_key(figure.id, frame, pose), gesture=gesture)
+    layer = first.layers[0]
+    frame = layer.keys[0].frame
+    pose, made = moved(layer.keys[0].pose, 1), []
+    history.do(key_commands.pose_key(layer.id, frame, pose), gesture=gesture)
     history.do(set_fps(31))
     history.do(set_fps(32))
     assert history.amend(gesture, pose, lambda *_: made.append(moved(pose, 2)) or made[-1])
     assert len(made) == 1, "the work does not grow with the steps"
-    figures = [step.document.figures[0] for step in history._steps[1:]]
-    assert len(figures) == 3
-    assert all(each is figures[0] for each in figures)
+    layers = [step.document.layers[0] for step in history._steps[1:]]
+    assert len(layers) == 3
+    assert all(each is layers[0] for each in layers)
 
 
 def test_an_unkeyed_pose_goes_on_too_and_other_poses_stay():
     first = full_document()
     history, gesture = History(first, saved=True), object()
-    figure = first.figures[0]
-    pose = moved(figure.keys[0].pose, 1)
-    history.pose(UnkeyedPose(figure=figure.id, frame=5, pose=pose), gesture=gesture)
+    layer = first.layers[0]
+    pose = moved(layer.keys[0].pose, 1)
+    history.pose(UnkeyedPose(layer=layer.id, frame=5, pose=pose), gesture=gesture)
     rest = moved(pose, 2)
     assert history.amend(gesture, pose, lambda *_: rest)
     assert history.unkeyed.pose is rest
     assert history.document is first
     # Also where the layer that it is of is gone later on.
-    history.do(layer_commands.add_figure(replace(figure, id=figure.id + 100)))
-    history.do(layer_commands.remove_figure(figure.id))
+    history.do(layer_commands.add_layer(replace(layer, id=layer.id + 100)))
+    history.do(layer_commands.remove_layer(layer.id))
     assert history.amend(gesture, rest, lambda *_: replace(rest))
     history.undo()
     history.undo()
@@ -393,17 +393,17 @@ def test_an_unkeyed_pose_goes_on_too_and_other_poses_stay():
     assert history.unkeyed is None
 
 
-@pytest.mark.parametrize("change", ["another domain", "no figure"])
+@pytest.mark.parametrize("change", ["another domain", "no layer"])
 def test_pose_outside_keys_is_let_go_with_its_domain(change):
     history = History(full_document(), saved=True)
-    history.do(layer_commands.duplicate_figure(0))
-    figure = history.document.figures[0]
-    history.pose(UnkeyedPose(figure=figure.id, frame=1, pose=figure.keys[0].pose))
+    history.do(layer_commands.duplicate_layer(0))
+    layer = history.document.layers[0]
+    history.pose(UnkeyedPose(layer=layer.id, frame=1, pose=layer.keys[0].pose))
     if change == "another domain":
-        other = replace(still_figure(figure), id=figure.id)
-        history.do(layer_commands.replace_figure(figure.id, other))
+        other = replace(still_layer(layer), id=layer.id)
+        history.do(layer_commands.replace_layer(layer.id, other))
     else:
-        history.do(layer_commands.remove_figure(figure.id))
+        history.do(layer_commands.remove_layer(layer.id))
     assert history.unkeyed is None
     history.undo()
     assert history.unkeyed is not None
@@ -411,16 +411,16 @@ def test_pose_outside_keys_is_let_go_with_its_domain(change):
 
 def test_pose_outside_keys_has_a_target_for_each_handle():
     first = full_document()
-    history, figure = History(first, saved=True), first.figures[0]
-    pose = moved(figure.keys[0].pose, 1)
-    history.pose(UnkeyedPose(figure=figure.id, frame=5, pose=pose))
-    kept, gone = figure.handles[:2]
-    history.do(handle_commands.remove_handles(figure.id, {gone.id}))
+    history, layer = History(first, saved=True), first.layers[0]
+    pose = moved(layer.keys[0].pose, 1)
+    history.pose(UnkeyedPose(layer=layer.id, frame=5, pose=pose))
+    kept, gone = layer.handles[:2]
+    history.do(handle_commands.remove_handles(layer.id, {gone.id}))
     assert history.unkeyed.pose.targets.keys() == pose.targets.keys() - {gone.id}
     assert history.unkeyed.pose.targets[kept.id] == pose.targets[kept.id]
-    place = complex(figure.domain.mesh.vertices[0])
-    history.do(handle_commands.move_handle(figure.id, kept.id, place))
-    (here,) = figure.map_of(pose)(np.array([place]))
+    place = complex(layer.domain.mesh.vertices[0])
+    history.do(handle_commands.move_handle(layer.id, kept.id, place))
+    (here,) = layer.map_of(pose)(np.array([place]))
     assert history.unkeyed.pose.targets[kept.id].position == here
     history.undo()
     history.undo()

@@ -13,7 +13,7 @@ from app.document import (
 )
 from app.document.commands.staging.layer_commands import LAST_LAYER
 from app.document.layering import Attachment, Switch
-from app.document.model import HANGS_ON_ITSELF, NO_FIGURE
+from app.document.model import HANGS_ON_ITSELF, NO_LAYER
 from app.document.queries.clips import clip_of
 from app.document.queries.stage.fronts import fronts_at
 from app.document.queries.stage.sight import is_visible
@@ -21,50 +21,48 @@ from app.errors import LissomError
 
 
 def scene(*names):
-    """A document with a figure for each name, from back to front, with the ids 0, 1, 2 …"""
+    """A document with a layer for each name, from back to front, with the ids 0, 1, 2 …"""
     document = disc_document()
-    document = layers.rename_figure(0, names[0])(document)
+    document = layers.rename_layer(0, names[0])(document)
     for name in names[1:]:
-        figure = replace(
-            document.figures[0], id=layers.free_identity(document), name=name, joints=()
-        )
-        document = layers.add_figure(figure)(document)
+        layer = replace(document.layers[0], id=layers.free_identity(document), name=name, joints=())
+        document = layers.add_layer(layer)(document)
     return document
 
 
 def order(document):
-    return [figure.name for figure in document.figures]
+    return [layer.name for layer in document.layers]
 
 
 def test_layers_are_added_moved_duplicated_and_deleted():
     document = scene("body", "arm", "head")
     assert order(document) == ["body", "arm", "head"]
-    assert order(layers.move_figure(2, 0)(document)) == ["head", "body", "arm"]
-    assert layers.move_figure(1, 1)(document) is document
-    copied = layers.duplicate_figure(1)(document)
+    assert order(layers.move_layer(2, 0)(document)) == ["head", "body", "arm"]
+    assert layers.move_layer(1, 1)(document) is document
+    copied = layers.duplicate_layer(1)(document)
     assert order(copied) == ["body", "arm", "arm copy", "head"]
-    assert copied.figures[2].id == 3
-    assert order(layers.duplicate_figure(1)(copied))[2] == "arm copy 2"
-    assert order(layers.remove_figure(1)(document)) == ["body", "head"]
+    assert copied.layers[2].id == 3
+    assert order(layers.duplicate_layer(1)(copied))[2] == "arm copy 2"
+    assert order(layers.remove_layer(1)(document)) == ["body", "head"]
     with pytest.raises(LissomError, match=says(LAST_LAYER)):
-        layers.remove_figure(0)(disc_document())
+        layers.remove_layer(0)(disc_document())
     with pytest.raises(LissomError, match="none can be number 4"):
-        layers.move_figure(1, 3)(document)
+        layers.move_layer(1, 3)(document)
 
 
 def test_the_canvas_stays_whatever_lies_behind():
     document = scene("body", "arm")
-    assert layers.move_figure(1, 0)(document).canvas == (200, 200)
-    assert layers.remove_figure(0)(document).canvas == (200, 200)
-    wide = replace(document.figures[0], id=7, name="wide", corner=-50j)
-    assert layers.add_figure(wide, 0)(document).size == (200, 200)
+    assert layers.move_layer(1, 0)(document).canvas == (200, 200)
+    assert layers.remove_layer(0)(document).canvas == (200, 200)
+    wide = replace(document.layers[0], id=7, name="wide", corner=-50j)
+    assert layers.add_layer(wide, 0)(document).size == (200, 200)
 
 
 def test_two_layers_have_two_names():
     document = scene("body", "arm")
-    with pytest.raises(LissomError, match="Two figures are called 'body'"):
-        layers.rename_figure(1, "body ")(document)
-    assert layers.rename_figure(1, "arm")(document) is document
+    with pytest.raises(LissomError, match="Two layers are called 'body'"):
+        layers.rename_layer(1, "body ")(document)
+    assert layers.rename_layer(1, "arm")(document) is document
 
 
 def test_nothing_hangs_on_itself_and_what_it_hung_on_may_go():
@@ -72,13 +70,13 @@ def test_nothing_hangs_on_itself_and_what_it_hung_on_may_go():
     joint = Attachment(to=0, at=CENTRE)
     document = layers.attach(1, CENTRE, joint)(document)
     document = layers.attach(2, CENTRE, Attachment(to=1, at=CENTRE))(document)
-    assert [figure.name for figure in document.carriers(2, 0)] == ["hand", "arm", "body"]
+    assert [layer.name for layer in document.carriers(2, 0)] == ["hand", "arm", "body"]
     for child, parent in ((0, 2), (0, 1), (1, 1)):
         with pytest.raises(LissomError, match=says(HANGS_ON_ITSELF)):
             layers.attach(child, CENTRE, Attachment(to=parent, at=CENTRE))(document)
-    loose = layers.remove_figure(1)(document)
-    assert loose.figure(2).joints == ()
-    with pytest.raises(LissomError, match=says(NO_FIGURE, identity=9)):
+    loose = layers.remove_layer(1)(document)
+    assert loose.layer(2).joints == ()
+    with pytest.raises(LissomError, match=says(NO_LAYER, identity=9)):
         layers.attach(1, CENTRE, Attachment(to=9, at=CENTRE))(document)
 
 
@@ -87,11 +85,11 @@ def test_detached_poses_are_turned_and_moved_and_as_distorted_as_before():
     document = handles.add_handle(1, CENTRE + 20)(document)
     document = layers.attach(1, CENTRE, Attachment(to=0, at=CENTRE))(document)
     factor, shift = np.exp(0.4j), 3 - 2j
-    loose = layers.detach(1, factor, shift)(document).figure(1)
-    before = document.figure(1)
+    loose = layers.detach(1, factor, shift)(document).layer(1)
+    before = document.layer(1)
     assert loose.joints == ()
     points = np.array([CENTRE, CENTRE + 30j])
-    old, new = (figure.map_of(figure.keys[0].pose) for figure in (before, loose))
+    old, new = (layer.map_of(layer.keys[0].pose) for layer in (before, loose))
     assert_allclose(new(points), factor * old(points) + shift, rtol=0, atol=1e-11)
     assert_allclose(np.abs(new.derivatives(points)), np.abs(old.derivatives(points)), atol=1e-12)
     (target,) = loose.keys[0].pose.targets.values()
@@ -101,18 +99,18 @@ def test_detached_poses_are_turned_and_moved_and_as_distorted_as_before():
 
 def test_a_layer_is_seen_as_its_switches_say():
     document = layers.switch_at(0, 12, visible=False)(disc_document())
-    assert document.figures[0].switches == (Switch(0, visible=True), Switch(12, visible=False))
+    assert document.layers[0].switches == (Switch(0, visible=True), Switch(12, visible=False))
     document = layers.switch_at(0, 20, visible=True)(document)
-    seen = [is_visible(document, document.figures[0], frame) for frame in (0, 11.9, 12, 19, 20, 50)]
+    seen = [is_visible(document, document.layers[0], frame) for frame in (0, 11.9, 12, 19, 20, 50)]
     assert seen == [True, True, False, False, True, True]
     hidden = layers.set_hidden(0, hidden=True)(document)
-    assert not is_visible(hidden, hidden.figures[0], 0)
-    assert layers.switch_at(0, 12, visible=None)(document).figures[0].switches == (
+    assert not is_visible(hidden, hidden.layers[0], 0)
+    assert layers.switch_at(0, 12, visible=None)(document).layers[0].switches == (
         Switch(0, visible=True),
         Switch(20, visible=True),
     )
     fresh = disc_document()
-    assert is_visible(fresh, fresh.figures[0], 5)
+    assert is_visible(fresh, fresh.layers[0], 5)
 
 
 def test_what_is_seen_when_moves_and_is_stretched_with_all_time():
@@ -120,19 +118,19 @@ def test_what_is_seen_when_moves_and_is_stretched_with_all_time():
     document = layers.switch_at(0, 20, visible=True)(document)
 
     def frames(document):
-        return [switch.frame for switch in document.figures[0].switches]
+        return [switch.frame for switch in document.layers[0].switches]
 
     assert frames(layers.move_switch(0, 12, 15)(document)) == [0, 15, 20]
     passed = layers.move_switch(0, 12, 30)(document)
     assert frames(passed) == [0, 20, 30]
-    assert [switch.visible for switch in passed.figures[0].switches] == [True, True, False]
+    assert [switch.visible for switch in passed.layers[0].switches] == [True, True, False]
     assert layers.move_switch(0, 12, 12)(document) is document
     with pytest.raises(LissomError, match="neither shown nor hidden at frame 13"):
         layers.move_switch(0, 13, 14)(document)
     with pytest.raises(LissomError, match="at frame 20 after frame 20"):
         layers.move_switch(0, 12, 20)(document)
     assert frames(scenes.scale_time(2.0)(document)) == [0, 24, 40]
-    short = scenes.scale_time(0.02)(document).figures[0]
+    short = scenes.scale_time(0.02)(document).layers[0]
     assert short.switches == (Switch(0, visible=True),)
 
 
@@ -140,10 +138,10 @@ def test_depth_holds_from_a_key_on():
     rng = np.random.default_rng(1)
     document = handles.add_handle(0, inside(rng), name="nose")(disc_document())
     document = handles.add_handle(0, inside(rng), name="tail")(document)
-    figure = document.figures[0]
-    pose = figure.keys[0].pose
-    keys = tuple(replace(figure.keys[0], frame=frame, pose=pose) for frame in (0, 10, 20))
-    document = document.with_figure(replace(figure, keys=keys))
+    layer = document.layers[0]
+    pose = layer.keys[0].pose
+    keys = tuple(replace(layer.keys[0], frame=frame, pose=pose) for frame in (0, 10, 20))
+    document = document.with_layer(replace(layer, keys=keys))
     document = layers.set_front(0, 0, -0.5, 30.0)(document)
     document = layers.key_front(0, 10, 0, 1.0)(document)
     document = layers.key_front(0, 20, 1, 0.25)(document)
@@ -152,7 +150,7 @@ def test_depth_holds_from_a_key_on():
         clip = replace(clip_of(document, 0), loop=loop)
         return [(front.place, front.depth) for front in fronts_at(clip, frame)]
 
-    nose, tail = (handle.position for handle in document.figures[0].handles)
+    nose, tail = (handle.position for handle in document.layers[0].handles)
     assert depths(0) == depths(9.5) == [(nose, -0.5)]
     assert depths(10) == [(nose, 1.0)]
     assert depths(30) == [(nose, 1.0), (tail, 0.25)]
@@ -161,7 +159,7 @@ def test_depth_holds_from_a_key_on():
     assert fronts[1].extent == pytest.approx(0.15 * 180 * 2**0.5)
     assert depths(48 + 9, loop=True) == depths(9)
     gone = handles.remove_handles(0, {0})(document)
-    assert [dict(key.fronts) for key in gone.figures[0].keys] == [{}, {}, {1: 0.25}]
-    assert layers.key_front(0, 10, 0, None)(document).figures[0].keys[1].fronts == {}
+    assert [dict(key.fronts) for key in gone.layers[0].keys] == [{}, {}, {1: 0.25}]
+    assert layers.key_front(0, 10, 0, None)(document).layers[0].keys[1].fronts == {}
     with pytest.raises(LissomError, match="between −1, behind, and 1"):
         layers.set_front(0, 0, 1.5, None)(document)

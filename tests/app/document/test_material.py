@@ -12,14 +12,14 @@ from app.document import (
     Bone,
     Meshing,
     brushed_stiffness,
-    figure_commands,
     handle_commands,
     layer_commands,
     material_commands,
+    shape_commands,
     stiff_outline,
     stiffened,
 )
-from app.document.figure import NO_HANDLE
+from app.document.layer import NO_HANDLE
 from app.errors import LissomError
 from engine.domain.material.limb import BONE_STAYS
 from engine.errors import EngineError
@@ -37,52 +37,52 @@ def boned():
     return material_commands.add_bone(0, (0, 1), 20.0)(document)
 
 
-def boundary_of(figure):
-    domain = figure.domain
-    return stiffened(figure, Boundary.sample(domain.outline, domain.cage, domain.holes))
+def boundary_of(layer):
+    domain = layer.domain
+    return stiffened(layer, Boundary.sample(domain.outline, domain.cage, domain.holes))
 
 
 def test_a_stroke_is_painted_on_the_outline_it_reaches_and_cleared():
     document = disc_document()
-    (figure,) = document.figures
-    painted, reached = brushed_stiffness(figure, [CENTRE], radius=40, amount=9.0)
+    (layer,) = document.layers
+    painted, reached = brushed_stiffness(layer, [CENTRE], radius=40, amount=9.0)
     assert (painted, reached) == (None, False)
     assert material_commands.paint(0, [CENTRE], radius=40, amount=9.0)(document) is document
     stiff = material_commands.paint(0, [RIGHT], radius=50, amount=9.0)(document)
-    (figure,) = stiff.figures
-    assert figure.keys is document.figures[0].keys
-    assert not figure.stiffness.flags.writeable
-    assert figure.stiffness[0] > 5
-    assert figure.stiffness[len(figure.stiffness) // 2] == 1
-    boundary = boundary_of(figure)
-    assert boundary.stiffness[0] == pytest.approx(figure.stiffness[0])
+    (layer,) = stiff.layers
+    assert layer.keys is document.layers[0].keys
+    assert not layer.stiffness.flags.writeable
+    assert layer.stiffness[0] > 5
+    assert layer.stiffness[len(layer.stiffness) // 2] == 1
+    boundary = boundary_of(layer)
+    assert boundary.stiffness[0] == pytest.approx(layer.stiffness[0])
     # Painted over as much with the usual one, nothing is left.
     soft = material_commands.paint(0, [RIGHT], radius=50, amount=1.0, softness=0.0)(stiff)
     again = material_commands.paint(0, [RIGHT], radius=90, amount=1.0, softness=0.0)(soft)
-    assert again.figures[0].stiffness is None
-    assert material_commands.clear(0)(stiff).figures[0].stiffness is None
+    assert again.layers[0].stiffness is None
+    assert material_commands.clear(0)(stiff).layers[0].stiffness is None
     assert material_commands.clear(0)(document) is document
 
 
 def test_bones_come_and_go_with_their_handles_and_their_names_do_not_matter():
     document = boned()
-    assert document.figures[0].bones == (Bone(ends=(0, 1), amount=20.0),)
+    assert document.layers[0].bones == (Bone(ends=(0, 1), amount=20.0),)
     changed = material_commands.set_bone_amount(0, (1, 0), 50.0)(document)
-    assert changed.figures[0].bones[0].amount == 50
+    assert changed.layers[0].bones[0].amount == 50
     assert material_commands.set_bone_amount(0, (1, 0), 50.0)(changed) is changed
     hidden = material_commands.show_bones(0, shown=False)(document)
-    assert not hidden.figures[0].bones[0].is_shown
+    assert not hidden.layers[0].bones[0].is_shown
     assert_array_equal(
-        boundary_of(hidden.figures[0]).stiffness, boundary_of(document.figures[0]).stiffness
+        boundary_of(hidden.layers[0]).stiffness, boundary_of(document.layers[0]).stiffness
     )
     assert material_commands.show_bones(0, shown=True)(document) is document
     renamed = handle_commands.rename_handle(0, 0, "paw")(document)
-    assert renamed.figures[0].bones == document.figures[0].bones
-    assert handle_commands.remove_handles(0, {1})(document).figures[0].bones == ()
-    assert handle_commands.remove_handles(0, {2})(document).figures[0].bones
-    assert material_commands.remove_bone(0, (1, 0))(document).figures[0].bones == ()
-    copied = layer_commands.duplicate_figure(0)(document)
-    assert copied.figures[1].bones == document.figures[0].bones
+    assert renamed.layers[0].bones == document.layers[0].bones
+    assert handle_commands.remove_handles(0, {1})(document).layers[0].bones == ()
+    assert handle_commands.remove_handles(0, {2})(document).layers[0].bones
+    assert material_commands.remove_bone(0, (1, 0))(document).layers[0].bones == ()
+    copied = layer_commands.duplicate_layer(0)(document)
+    assert copied.layers[1].bones == document.layers[0].bones
 
 
 @pytest.mark.parametrize(
@@ -113,9 +113,9 @@ def test_a_bone_that_would_leave_the_drawing_is_refused_and_one_that_came_to_doe
     points = CENTRE + RADIUS * np.exp(2j * np.pi * np.arange(24) / 24)
     points[5:8] = CENTRE + 5 * np.exp(2j * np.pi * np.arange(5, 8) / 24)
     domain = replace(disc_domain(24), outline=points)
-    (figure,) = document.figures
-    rest = figure.keys[0].pose.with_map(_identity(domain))
-    notched = figure_commands.replace_domain(0, domain, Meshing(), [rest])(document)
+    (layer,) = document.layers
+    rest = layer.keys[0].pose.with_map(_identity(domain))
+    notched = shape_commands.replace_domain(0, domain, Meshing(), [rest])(document)
     for place in (CENTRE + 60 * np.exp(1.05j), CENTRE + 60 * np.exp(2.1j)):
         notched = handle_commands.add_handle(0, complex(place))(notched)
     with pytest.raises(EngineError, match=says(BONE_STAYS)):
@@ -123,10 +123,10 @@ def test_a_bone_that_would_leave_the_drawing_is_refused_and_one_that_came_to_doe
     whole = handle_commands.add_handle(0, CENTRE + 60 * np.exp(1.05j))(document)
     whole = handle_commands.add_handle(0, CENTRE + 60 * np.exp(2.1j))(whole)
     whole = material_commands.add_bone(0, (0, 1))(whole)
-    assert boundary_of(whole.figures[0]).stiffness.max() > 9
-    rest = whole.figures[0].keys[0].pose.with_map(_identity(domain))
-    cut = figure_commands.replace_domain(0, domain, Meshing(), [rest])(whole)
-    assert (boundary_of(cut.figures[0]).stiffness == 1).all()
+    assert boundary_of(whole.layers[0]).stiffness.max() > 9
+    rest = whole.layers[0].keys[0].pose.with_map(_identity(domain))
+    cut = shape_commands.replace_domain(0, domain, Meshing(), [rest])(whole)
+    assert (boundary_of(cut.layers[0]).stiffness == 1).all()
 
 
 def _identity(domain):
@@ -135,51 +135,51 @@ def _identity(domain):
 
 def test_the_larger_of_what_is_painted_and_of_bones_counts():
     document = boned()
-    (figure,) = document.figures
-    bone = boundary_of(figure).stiffness
+    (layer,) = document.layers
+    bone = boundary_of(layer).stiffness
     for amount, wanted in ((5.0, np.maximum(5.0, bone)), (0.2, np.where(bone > 1, bone, 0.2))):
-        painted = replace(figure, stiffness=np.full(12, amount))
+        painted = replace(layer, stiffness=np.full(12, amount))
         assert_allclose(boundary_of(painted).stiffness, wanted)
-    soft = replace(figure.bones[0], amount=0.1)
-    assert_allclose(boundary_of(replace(figure, bones=(soft,))).stiffness.min(), 0.1)
-    points, stiffness = stiff_outline(figure)
-    assert points[0] == figure.domain.outline[0]
+    soft = replace(layer.bones[0], amount=0.1)
+    assert_allclose(boundary_of(replace(layer, bones=(soft,))).stiffness.min(), 0.1)
+    points, stiffness = stiff_outline(layer)
+    assert points[0] == layer.domain.outline[0]
     assert stiffness.max() == pytest.approx(20)
 
 
 def test_material_stays_in_its_place_on_another_domain():
     document = material_commands.paint(0, [RIGHT], radius=60, amount=30.0)(boned())
-    (before,) = document.figures
+    (before,) = document.layers
     domain = disc_domain(40)
     rest = before.keys[0].pose.with_map(_identity(domain))
-    (after,) = figure_commands.replace_domain(0, domain, Meshing(), [rest])(document).figures
+    (after,) = shape_commands.replace_domain(0, domain, Meshing(), [rest])(document).layers
     assert len(after.stiffness) == 40
     old, new = boundary_of(before), boundary_of(after)
     assert after.bones == before.bones
     assert new.stiffness[0] == pytest.approx(old.stiffness[0], rel=0.05)
     assert new.stiffness[np.argmin(new.points.real)] == pytest.approx(1, abs=0.2)
-    assert_array_equal(material_commands.clear(0)(document).figures[0].bones, before.bones)
+    assert_array_equal(material_commands.clear(0)(document).layers[0].bones, before.bones)
 
 
 def test_material_is_mirrored_as_handles_are():
     document = material_commands.paint(0, [RIGHT], radius=60, amount=30.0)(boned())
     document = material_commands.add_bone(0, (0, 2), 40.0)(document)
     mirrored = material_commands.mirror(0)(document)
-    (figure,) = mirrored.figures
-    assert [bone.ends for bone in figure.bones] == [(0, 1), (0, 2), (1, 2)]
-    assert figure.bones[2].amount == 40
-    outline, stiffness = figure.domain.outline, figure.stiffness
-    opposite = np.abs(outline[:, None] - (2 * figure.axis - outline.conj())).argmin(axis=0)
+    (layer,) = mirrored.layers
+    assert [bone.ends for bone in layer.bones] == [(0, 1), (0, 2), (1, 2)]
+    assert layer.bones[2].amount == 40
+    outline, stiffness = layer.domain.outline, layer.stiffness
+    opposite = np.abs(outline[:, None] - (2 * layer.axis - outline.conj())).argmin(axis=0)
     assert_allclose(stiffness, stiffness[opposite], rtol=1e-9)
-    assert stiffness.max() == document.figures[0].stiffness.max()
+    assert stiffness.max() == document.layers[0].stiffness.max()
     assert material_commands.mirror(0)(mirrored) is mirrored
 
 
-def test_a_figure_refuses_material_that_does_not_fit():
-    (figure,) = boned().figures
+def test_a_layer_refuses_material_that_does_not_fit():
+    (layer,) = boned().layers
     with pytest.raises(EngineError, match=says(STIFFNESS_SHAPE, count=12)):
-        replace(figure, stiffness=np.ones(3))
+        replace(layer, stiffness=np.ones(3))
     with pytest.raises(LissomError, match="bone ends at the handle 7, which is not there"):
-        replace(figure, bones=(Bone(ends=(0, 7)),))
+        replace(layer, bones=(Bone(ends=(0, 7)),))
     with pytest.raises(LissomError, match="Two bones are between handles"):
-        replace(figure, bones=(*figure.bones, Bone(ends=(1, 0))))
+        replace(layer, bones=(*layer.bones, Bone(ends=(1, 0))))

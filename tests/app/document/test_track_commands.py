@@ -9,18 +9,18 @@ from messages import says
 from numpy.testing import assert_allclose
 
 from app.document import (
-    figure_commands,
     handle_commands,
     key_commands,
     layer_commands,
     scene_commands,
+    shape_commands,
     track_commands as tracks,
 )
 from app.document.commands.keys_in_time import TWO_KEYS
 from app.document.commands.scene_commands import KEY_OUTSIDE
-from app.document.figure import NO_HANDLE, NO_KEY
 from app.document.history import History
 from app.document.keyframe import Keyframe
+from app.document.layer import NO_HANDLE, NO_KEY
 from app.document.queries.timeline import changed_stretches, exported_frames
 from app.document.settings import FrameRange
 from app.document.timing import HOLD, LINEAR, PRESETS, Easing, Passing, Spring, Track, TrackKey
@@ -49,12 +49,12 @@ def tracked(*made, springs=(), **settings):
 
 
 def only(document):
-    (track,) = document.figures[0].tracks
+    (track,) = document.layers[0].tracks
     return track
 
 
 def frames(document, handle=0):
-    return [key.frame for key in document.figures[0].track_of(handle).keys]
+    return [key.frame for key in document.layers[0].track_of(handle).keys]
 
 
 def test_a_handle_is_keyed_by_itself():
@@ -70,10 +70,10 @@ def test_a_handle_is_keyed_by_itself():
     held = tracks.set_track_passing(0, 1, {15}, Passing.STOP)(between)
     again = tracks.put_track_key(0, 1, 15, 7)(held)
     assert only(again).keys[1] == replace(only(held).keys[1], place=7)
-    assert tracks.put_track_key(0, 1, 10, 9)(again).figures[0].tracks[0].keys[0].turn == 0.5
+    assert tracks.put_track_key(0, 1, 10, 9)(again).layers[0].tracks[0].keys[0].turn == 0.5
     assert tracks.put_track_key(0, 1, 15, 7)(again) is again
     planted = tracks.put_track_key(0, 2, 4, 80j, planted=True)(again)
-    assert planted.figures[0].track_of(2).planted
+    assert planted.layers[0].track_of(2).planted
 
 
 def test_keys_of_a_track_are_moved_about_in_time_as_those_of_poses_are():
@@ -102,8 +102,8 @@ def test_keys_of_a_track_are_moved_about_in_time_as_those_of_poses_are():
 def test_a_track_goes_with_its_last_key():
     document = tracked(row(4, 10), row(5, handles=(1,)))
     left = tracks.delete_track_keys(0, 0, {4, 10})(document)
-    assert only(left) == document.figures[0].tracks[1]
-    assert tracks.remove_tracks(0, {0, 1})(document).figures[0].tracks == ()
+    assert only(left) == document.layers[0].tracks[1]
+    assert tracks.remove_tracks(0, {0, 1})(document).layers[0].tracks == ()
 
 
 def test_a_track_runs_backwards():
@@ -138,7 +138,7 @@ def led(*, planted=False):
 
 
 def velocities(document, handle=0):
-    return [key.velocity for key in document.figures[0].track_of(handle).keys]
+    return [key.velocity for key in document.layers[0].track_of(handle).keys]
 
 
 def test_keys_keep_their_velocities_wherever_they_go():
@@ -228,46 +228,46 @@ def test_what_a_track_is_like_is_set():
 def test_a_handle_has_one_track():
     document = tracked(row(4, handles=(0, 1)), row(5, handles=(2,)))
     new = row(7, 8, handles=(1, 2))
-    figure = tracks.put_track(0, new)(document).figures[0]
-    assert figure.tracks == (row(4), new)
-    assert figure.track_of(1) is figure.track_of(2)
+    layer = tracks.put_track(0, new)(document).layers[0]
+    assert layer.tracks == (row(4), new)
+    assert layer.track_of(1) is layer.track_of(2)
     # One of the same handles takes the old one's place.
     same = row(9, handles=(0, 1))
-    assert tracks.put_track(0, same)(document).figures[0].tracks == (
+    assert tracks.put_track(0, same)(document).layers[0].tracks == (
         same,
-        document.figures[0].tracks[1],
+        document.layers[0].tracks[1],
     )
 
 
 def test_a_copied_track_moves_another_handle_alike():
     document = tracked(row(4, 10, handles=(0, 1), delay=3))
-    figure = tracks.copy_track(0, 1, 2)(document).figures[0]
-    assert figure.tracks == (row(4, 10, handles=(0, 1), delay=3), row(4, 10, handles=(2,), delay=3))
+    layer = tracks.copy_track(0, 1, 2)(document).layers[0]
+    assert layer.tracks == (row(4, 10, handles=(0, 1), delay=3), row(4, 10, handles=(2,), delay=3))
     # To one of its own handles it is that one's alone.
-    figure = tracks.copy_track(0, 0, 1)(document).figures[0]
-    assert figure.tracks == (row(4, 10, delay=3), row(4, 10, handles=(1,), delay=3))
+    layer = tracks.copy_track(0, 0, 1)(document).layers[0]
+    assert layer.tracks == (row(4, 10, delay=3), row(4, 10, handles=(1,), delay=3))
 
 
-def reached(figure, frame, handle):
-    (place,) = figure.map_of(figure.key(frame).pose)(np.array([figure.handle(handle).position]))
+def reached(layer, frame, handle):
+    (place,) = layer.map_of(layer.key(frame).pose)(np.array([layer.handle(handle).position]))
     return complex(place)
 
 
 def test_a_planted_track_keeps_its_distance_from_what_it_is_of():
     document = tracked(row(2, 19, handles=(0, 1), planted=True))
-    figure = document.figures[0]
+    layer = document.layers[0]
     wanted = [
-        key.place + reached(figure, at, 1) - reached(figure, at, 0)
-        for key, at in zip(figure.tracks[0].keys, (0, 20), strict=True)
+        key.place + reached(layer, at, 1) - reached(layer, at, 0)
+        for key, at in zip(layer.tracks[0].keys, (0, 20), strict=True)
     ]
-    copied = tracks.copy_track(0, 0, 1)(document).figures[0].track_of(1)
+    copied = tracks.copy_track(0, 0, 1)(document).layers[0].track_of(1)
     left = only(handle_commands.remove_handles(0, {0})(document))
     for track in (copied, left):
         assert track.handles == (1,)
         assert_allclose([key.place for key in track.keys], wanted, rtol=0, atol=1e-9)
-    assert only(handle_commands.remove_handles(0, {1})(document)).keys == figure.tracks[0].keys
+    assert only(handle_commands.remove_handles(0, {1})(document)).keys == layer.tracks[0].keys
     # So does one whose handle is put elsewhere on the drawing.
-    moved = handle_commands.move_handle(0, 0, figure.handle(1).position + 1e-7)(document)
+    moved = handle_commands.move_handle(0, 0, layer.handle(1).position + 1e-7)(document)
     assert_allclose([key.place for key in only(moved).keys], wanted, rtol=0, atol=1e-5)
     beside = tracked(row(2, 19))
     assert only(handle_commands.move_handle(0, 0, CENTRE)(beside)) == row(2, 19)
@@ -278,16 +278,16 @@ def test_a_mirrored_track_is_that_of_the_other_side(planted):
     document = tracked(row(4, 10, planted=planted, turns=True), mirror=AXIS)
     keys = tuple(replace(key, turn=0.1 * key.frame) for key in only(document).keys)
     document = altered(document, tracks=(replace(only(document), keys=keys),))
-    figure = tracks.mirror_track(0, 0)(document).figures[0]
-    other = figure.track_of(1)
-    assert len(figure.tracks) == 2
+    layer = tracks.mirror_track(0, 0)(document).layers[0]
+    other = layer.track_of(1)
+    assert len(layer.tracks) == 2
     assert (other.planted, other.turns) == (planted, True)
     assert [key.turn for key in other.keys] == [-key.turn for key in keys]
     places = np.array([key.place for key in keys])
     if planted:
         # Beside its mirror image by as much as the handles are beside each other's.
-        places = places - figure.handle(0).position
-        found = [key.place - figure.handle(1).position for key in other.keys]
+        places = places - layer.handle(0).position
+        found = [key.place - layer.handle(1).position for key in other.keys]
     else:
         found = [key.place for key in other.keys]
     assert_allclose(found, -places.conj(), rtol=0, atol=1e-12)
@@ -295,7 +295,7 @@ def test_a_mirrored_track_is_that_of_the_other_side(planted):
         tracks.remove_tracks(0, {0})(tracks.mirror_track(0, 0)(document))
     )
     assert_allclose(
-        [key.place for key in back.figures[0].track_of(0).keys],
+        [key.place for key in back.layers[0].track_of(0).keys],
         [key.place for key in keys],
         rtol=0,
         atol=1e-12,
@@ -306,11 +306,11 @@ def test_a_track_is_mirrored_to_the_handle_on_the_other_side_if_names_tell_nothi
     document = tracked(row(4, 10, handles=(2,)), mirror=AXIS)
     for beside in (30 + 40j, -29 + 41j, -30 + 38j):
         document = handle_commands.add_handle(0, CENTRE + beside)(document)
-    ids = [handle.id for handle in document.figures[0].handles][-3:]
+    ids = [handle.id for handle in document.layers[0].handles][-3:]
     document = altered(document, tracks=(row(4, 10, handles=(ids[1], ids[2])),))
-    figure = tracks.mirror_track(0, ids[1])(document).figures[0]
-    assert [track.handles for track in figure.tracks] == [(ids[1], ids[2]), (ids[0],)]
-    assert [key.place for key in figure.tracks[1].keys] == [-4 + 8j, -10 + 20j]
+    layer = tracks.mirror_track(0, ids[1])(document).layers[0]
+    assert [track.handles for track in layer.tracks] == [(ids[1], ids[2]), (ids[0],)]
+    assert [key.place for key in layer.tracks[1].keys] == [-4 + 8j, -10 + 20j]
 
 
 def test_a_handle_without_a_partner_does_its_own_mirror_image():
@@ -321,39 +321,39 @@ def test_a_handle_without_a_partner_does_its_own_mirror_image():
 
 def test_springs_are_set_and_removed():
     document = tracks.put_spring(0, SPRING)(tracked())
-    assert document.figures[0].spring_of(2) == SPRING
+    assert document.layers[0].spring_of(2) == SPRING
     assert tracks.put_spring(0, SPRING)(document) is document
     stiff = replace(SPRING, frequency=5.0)
-    assert tracks.put_spring(0, stiff)(document).figures[0].springs == (stiff,)
-    assert tracks.remove_springs(0, {2})(document).figures[0].springs == ()
+    assert tracks.put_spring(0, stiff)(document).layers[0].springs == (stiff,)
+    assert tracks.remove_springs(0, {2})(document).layers[0].springs == ()
     assert tracks.remove_springs(0, {0})(document) is document
     with pytest.raises(LissomError, match="spring is of the handle 9, which is not there"):
         tracks.put_spring(0, replace(SPRING, handle=9))(document)
 
 
-def test_stillness_is_switched_for_a_figure_and_for_handles():
+def test_stillness_is_switched_for_a_layer_and_for_handles():
     document = tracked()
-    assert document.figures[0].stillness
-    loose = figure_commands.set_stillness(0, stillness=False)(document)
-    assert not loose.figures[0].stillness
-    assert figure_commands.set_stillness(0, stillness=False)(loose) is loose
+    assert document.layers[0].stillness
+    loose = shape_commands.set_stillness(0, stillness=False)(document)
+    assert not loose.layers[0].stillness
+    assert shape_commands.set_stillness(0, stillness=False)(loose) is loose
     freed = handle_commands.free_handles(0, {0, 2}, free=True)(document)
-    assert [handle.free for handle in freed.figures[0].handles] == [True, False, True]
+    assert [handle.free for handle in freed.layers[0].handles] == [True, False, True]
 
 
 def test_a_deleted_handle_takes_its_track_and_spring_along_in_one_step():
     document = tracked(row(4, handles=(0, 1)), row(5, handles=(2,)), springs=(SPRING,))
     history = History(document, saved=True)
     history.do(handle_commands.remove_handles(0, {0, 2}))
-    figure = history.document.figures[0]
-    assert figure.tracks == (row(4, handles=(1,)),)
-    assert figure.springs == ()
+    layer = history.document.layers[0]
+    assert layer.tracks == (row(4, handles=(1,)),)
+    assert layer.springs == ()
     history.undo()
     assert history.document is document
     rooted = tracked(springs=(replace(SPRING, root=1),))
-    assert handle_commands.remove_handles(0, {1})(rooted).figures[0].springs == (SPRING,)
-    renamed = handle_commands.rename_handle(0, 2, "tuft")(document).figures[0]
-    assert (renamed.tracks, renamed.springs) == (document.figures[0].tracks, (SPRING,))
+    assert handle_commands.remove_handles(0, {1})(rooted).layers[0].springs == (SPRING,)
+    renamed = handle_commands.rename_handle(0, 2, "tuft")(document).layers[0]
+    assert (renamed.tracks, renamed.springs) == (document.layers[0].tracks, (SPRING,))
 
 
 def test_the_animation_grows_for_keys_of_tracks_and_is_not_cut_under_them():
@@ -373,7 +373,7 @@ def test_tracks_are_stretched_with_the_scene():
     longer = scene_commands.scale_time(2)(document)
     assert frames(longer) == [8, 20]
     assert only(longer).delay == 6
-    assert longer.figures[0].springs == (SPRING,)
+    assert longer.layers[0].springs == (SPRING,)
     with pytest.raises(LissomError, match=TWO_KEYS.format(frame=r"\d+")):
         scene_commands.scale_time(0.1)(tracked(row(30, 31)))
     assert only(scene_commands.set_fps(12)(document)) == only(document)
@@ -395,11 +395,11 @@ def test_what_does_not_come_round_is_refused_in_a_loop():
 
 def test_a_duplicated_layer_has_tracks_and_springs_of_its_own():
     document = tracked(row(4, 10), springs=(SPRING,))
-    document = layer_commands.duplicate_figure(0)(document)
-    first, copy = document.figures
+    document = layer_commands.duplicate_layer(0)(document)
+    first, copy = document.layers
     assert (copy.tracks, copy.springs) == (first.tracks, first.springs)
     changed = tracks.set_delay(copy.id, 0, 7)(document)
-    assert [figure.tracks[0].delay for figure in changed.figures] == [0, 7]
+    assert [layer.tracks[0].delay for layer in changed.layers] == [0, 7]
 
 
 def test_undo_tells_where_tracks_have_changed():

@@ -24,11 +24,11 @@ def session(tmp_path):
 
 def test_refused_pose_is_told_once_and_hides_nothing(session):
     project = session.project
-    last = project.figure.keys[-1].frame
+    last = project.layer.keys[-1].frame
     frames = replace(project.document.frames, last=last + 20)
     project.history.do(scene_commands.set_frames(frames))
     playback.scrub(session, last + 5)
-    handle = project.figure.handles[0]
+    handle = project.layer.handles[0]
     with session.jobs.held():
         posing.wish(session, {handle.id: Target(position=handle.position + 9)})
         maintain(session)
@@ -44,8 +44,8 @@ def test_refused_pose_is_told_once_and_hides_nothing(session):
 def begun_pull(session):
     """Pull a handle of the last key until the document has the first pose of it."""
     project = session.project
-    playback.scrub(session, project.figure.keys[-1].frame)
-    handle = project.figure.handles[0]
+    playback.scrub(session, project.layer.keys[-1].frame)
+    handle = project.layer.handles[0]
     posing.wish(session, {handle.id: Target(position=handle.position + 9)})
     maintain(session)
     (pull,) = project.pulls
@@ -80,7 +80,7 @@ def test_pull_of_a_removed_layer_lets_its_copy_rest(session):
         layering.duplicate(session, original)
         layering.remove(session, original)
         assert not pull.is_in(project.history)
-        assert any(pose.phi is pull.kept.phi for pose in project.figure.poses)
+        assert any(pose.phi is pull.kept.phi for pose in project.layer.poses)
         playback.scrub(session, 5)
         posing.insert_key(session)
         maintain(session)
@@ -90,7 +90,7 @@ def test_pull_of_a_removed_layer_lets_its_copy_rest(session):
         maintain(session)
     assert is_shown(session), unrest(session)
     assert not project.pending, unrest(session)
-    assert 5 in project.figure.key_frames
+    assert 5 in project.layer.key_frames
 
 
 def test_clip_of_a_tried_pose_is_made_once_for_a_document(session):
@@ -109,10 +109,10 @@ def test_turn_of_a_handle_that_came_later_is_left_out(session):
     project = session.project
     playback.scrub(session, 5)
     with session.jobs.held():
-        handle = project.figure.handles[0]
+        handle = project.layer.handles[0]
         wishes = {handle.id: Target(position=handle.position + 9)}
         posing.pull(session, wishes, gesture="drag")
-        posing.add_handle(session, complex(project.figure.domain.mesh.vertices[0]))
-        posing.free_turn(session, project.figure.handles[-1].id)
+        posing.add_handle(session, complex(project.layer.domain.mesh.vertices[0]))
+        posing.free_turn(session, project.layer.handles[-1].id)
     settle(session)
     assert not [toast.text for toast in session.toasts]

@@ -80,7 +80,7 @@ def test_a_frame_looks_as_the_file_says(opened, tmp_path):
     document = opened.document
     settings = ExportSettings(format="picture", framing="canvas")
     request = ExportRequest(out=tmp_path / "a.png", settings=settings, project="walk")
-    poses = {f.id: KeptPoses(Animation(clip_of(document, f.id))) for f in document.figures}
+    poses = {f.id: KeptPoses(Animation(clip_of(document, f.id))) for f in document.layers}
     pictures = {identity: picture.rgba for identity, picture in opened.pictures.items()}
     context = create_context()
     painter = Painter(context, document, pictures, poses, plan_export(document, request, poses))
@@ -92,8 +92,8 @@ def test_a_frame_looks_as_the_file_says(opened, tmp_path):
 
 def small(opened, document):
     textures = {
-        figure.id: cut_picture(opened.pictures[figure.id], figure.cut_out).texture
-        for figure in document.figures
+        layer.id: cut_picture(opened.pictures[layer.id], layer.cut_out).texture
+        for layer in document.layers
     }
     return flattened(document, textures)
 

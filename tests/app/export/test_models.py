@@ -54,8 +54,8 @@ def exported(document, out, chosen=None):
     request = ExportRequest(out=out, settings=chosen or settings(), project="walk")
     check_request(document, request)
     light = with_light_meshes(document, request.settings.shapes.triangles)
-    poses = {f.id: KeptPoses(animation_of(clip_of(light, f.id))) for f in light.figures}
-    pictures = {f.id: decode_picture(f.picture.data, "").rgba for f in light.figures}
+    poses = {f.id: KeptPoses(animation_of(clip_of(light, f.id))) for f in light.layers}
+    pictures = {f.id: decode_picture(f.picture.data, "").rgba for f in light.layers}
     maker = ShapeExport(light, pictures, poses, plan_export(light, request, poses))
     steps = list(maker.run())
     assert steps == sorted(steps)
@@ -106,8 +106,8 @@ def played(gltf: GLTF2, node: int, seconds: float) -> Complexes:
 
 def largest_distance(gltf, document, times, *, node=0):
     """The largest distance from the engine's own positions, at seconds."""
-    figure = document.figures[node]
-    animation = animation_of(clip_of(document, figure.id))
+    layer = document.layers[node]
+    animation = animation_of(clip_of(document, layer.id))
     first = document.frames.first
     return max(
         np.abs(played(gltf, node, t) - animation.positions(first + document.fps * t)).max()
@@ -153,17 +153,17 @@ def test_the_giraffe_is_small(giraffe):
 def test_the_picture_is_where_the_mesh_shows_it(giraffe, tmp_path):
     """The base shape is the drawing at rest, and its texture the drawing's own pixels."""
     document, out = giraffe
-    gltf, figure = read(out), document.figures[0]
+    gltf, layer = read(out), document.layers[0]
     primitive = gltf.meshes[0].primitives[0]
     rest = places(gltf, primitive.attributes.POSITION) + complex(*gltf.asset.extras["origin"])
-    assert_allclose(rest, figure.domain.mesh.vertices, rtol=0, atol=1e-3)
-    assert gltf.asset.extras["origin"] == [figure.picture.size[0] / 2, 0]
+    assert_allclose(rest, layer.domain.mesh.vertices, rtol=0, atol=1e-3)
+    assert gltf.asset.extras["origin"] == [layer.picture.size[0] / 2, 0]
     view = gltf.bufferViews[gltf.images[0].bufferView]
     data = gltf.binary_blob()[view.byteOffset : view.byteOffset + view.byteLength]
     (tmp_path / "texture.png").write_bytes(data)
     with Image.open(tmp_path / "texture.png") as image:
         texture = np.asarray(image)
-    picture = decode_picture(figure.picture.data, "").rgba
+    picture = decode_picture(layer.picture.data, "").rgba
     height, width, _ = texture.shape
     uv = values(gltf, primitive.attributes.TEXCOORD_0)
     # uv (0, 0) is the upper left corner; pixels of both lie on one grid.
@@ -184,14 +184,14 @@ def test_the_picture_is_where_the_mesh_shows_it(giraffe, tmp_path):
 def test_a_slit_is_closed_in_a_model(tmp_path):
     out = tmp_path / "parted.glb"
     document, _ = exported(moving_document(cut_out=PARTED), out, settings(tolerance=0.01))
-    gltf, figure = read(out), document.figures[0]
-    seam = find_seam(figure.domain)
+    gltf, layer = read(out), document.layers[0]
+    seam = find_seam(layer.domain)
     primitive = gltf.meshes[0].primitives[0]
     rest = places(gltf, primitive.attributes.POSITION) + complex(*gltf.asset.extras["origin"])
-    wanted = seam.closed(figure.domain.mesh.vertices)
-    assert np.abs(wanted - figure.domain.mesh.vertices).max() > 0.05
+    wanted = seam.closed(layer.domain.mesh.vertices)
+    assert np.abs(wanted - layer.domain.mesh.vertices).max() > 0.05
     assert_allclose(rest, wanted, rtol=0, atol=1e-3)
-    animation = animation_of(clip_of(document, figure.id))
+    animation = animation_of(clip_of(document, layer.id))
     last = document.frames.last
     moved = seam.closed(animation.positions(last))
     assert np.abs(played(gltf, 0, last / document.fps) - moved).max() < 0.02
@@ -205,7 +205,7 @@ def test_materials_and_order_are_those_of_a_drawing(giraffe):
     assert gltf.extensionsUsed == ["KHR_materials_unlit"]
     assert "KHR_materials_unlit" in material.extensions
     indices = values(gltf, gltf.meshes[0].primitives[0].indices).reshape(-1, 3)
-    assert_array_equal(indices, document.figures[0].domain.mesh.triangles)
+    assert_array_equal(indices, document.layers[0].domain.mesh.triangles)
     assert [gltf.nodes[0].name, gltf.meshes[0].name, gltf.animations[0].name] == ["giraffe"] * 3
 
 
@@ -258,11 +258,11 @@ def test_the_structure_is_that_of_gltf(giraffe):
     structure_of(giraffe[1])
 
 
-def two_figures():
+def two_layers():
     document = moving_document()
-    (figure,) = document.figures
-    still = replace(figure, id=1, name="other", keys=figure.keys[1:])
-    return replace(document, figures=(figure, still))
+    (layer,) = document.layers
+    still = replace(layer, id=1, name="other", keys=layer.keys[1:])
+    return replace(document, layers=(layer, still))
 
 
 def validator() -> Path | None:
@@ -278,7 +278,7 @@ def validator() -> Path | None:
     reason="no node or no gltf-validator here: bash .ci/setup test installs that where node is",
 )
 def test_the_validator_of_khronos_finds_nothing(giraffe, tmp_path):
-    exported(two_figures(), tmp_path / "two.glb")
+    exported(two_layers(), tmp_path / "two.glb")
     exported(still(), tmp_path / "still.glb")
     script = (
         "const v = require(process.argv[1]), fs = require('fs');"
@@ -293,12 +293,12 @@ def test_the_validator_of_khronos_finds_nothing(giraffe, tmp_path):
         assert issues["numErrors"] == issues["numWarnings"] == 0, issues
 
 
-def test_every_figure_is_a_node_with_a_motion_of_its_own(tmp_path):
+def test_every_layer_is_a_node_with_a_motion_of_its_own(tmp_path):
     out = tmp_path / "two.glb"
-    document, _ = exported(two_figures(), out)
+    document, _ = exported(two_layers(), out)
     structure_of(out)
     gltf = read(out)
-    assert [node.name for node in gltf.nodes] == ["figure", "other"]
+    assert [node.name for node in gltf.nodes] == ["layer", "other"]
     assert gltf.scenes[0].nodes == [0, 1]
     assert gltf.nodes[1].translation[2] > 0  # in front
     for node in (0, 1):
@@ -308,15 +308,15 @@ def test_every_figure_is_a_node_with_a_motion_of_its_own(tmp_path):
 
 def still():
     document = moving_document()
-    return altered(document, keys=document.figures[0].keys[1:])
+    return altered(document, keys=document.layers[0].keys[1:])
 
 
 def test_what_a_model_does_not_composite_is_told(tmp_path):
-    document = two_figures()
-    first, second = document.figures
+    document = two_layers()
+    first, second = document.layers
     document = replace(
         document,
-        figures=(
+        layers=(
             replace(first, opacity=0.5, group="limbs"),
             replace(second, blend="multiply", clipped=True),
         ),
@@ -329,22 +329,22 @@ def test_what_a_model_does_not_composite_is_told(tmp_path):
         f"{second.name}: not multiplied in a glTF model, but painted over the rest",
         "limbs: not screened in a glTF model, but painted over the rest",
         f"{second.name}: not clipped in a glTF model, but painted over the rest",
-        "limbs: faded figure by figure in a glTF model, so that they shine through each other",
+        "limbs: faded layer by layer in a glTF model, so that they shine through each other",
     ]
-    _, maker = exported(two_figures(), tmp_path / "plain.glb")
+    _, maker = exported(two_layers(), tmp_path / "plain.glb")
     assert not any("painted over" in notice for notice in maker.notices)
 
 
-def test_figures_are_seen_when_and_as_much_as_they_should(tmp_path, monkeypatch):
-    document, out = two_figures(), tmp_path / "two.glb"
-    first, second = document.figures
+def test_layers_are_seen_when_and_as_much_as_they_should(tmp_path, monkeypatch):
+    document, out = two_layers(), tmp_path / "two.glb"
+    first, second = document.layers
     switched = replace(second, switches=(Switch(0, visible=False), Switch(4, visible=True)))
     monkeypatch.setattr(
         "app.export.moving_shape.PaintOrder.triangles",
-        lambda _, clip, n: clip.figure.domain.mesh.triangles[:: 1 if n < 3 else -1],
+        lambda _, clip, n: clip.layer.domain.mesh.triangles[:: 1 if n < 3 else -1],
     )
     faint = replace(first, opacity=0.5)
-    _, maker = exported(replace(document, figures=(faint, switched)), out)
+    _, maker = exported(replace(document, layers=(faint, switched)), out)
     structure_of(out)
     gltf = read(out)
     (channel,) = (c for c in gltf.animations[0].channels if c.target.path == "scale")
@@ -357,24 +357,24 @@ def test_figures_are_seen_when_and_as_much_as_they_should(tmp_path, monkeypatch)
     assert maker.shapes[0].texture[..., 3].max() == 255
     assert ["glTF model keeps" in notice for notice in maker.notices] == [True, True]
     off = (Switch(0, visible=False),)
-    unseen = tuple(replace(figure, switches=off) for figure in document.figures)
-    exported(replace(document, figures=(first, unseen[1])), out)
-    assert [node.name for node in read(out).nodes] == ["figure"]
-    with pytest.raises(LissomError, match="no figure is seen"):
-        exported(replace(document, figures=unseen), out)
+    unseen = tuple(replace(layer, switches=off) for layer in document.layers)
+    exported(replace(document, layers=(first, unseen[1])), out)
+    assert [node.name for node in read(out).nodes] == ["layer"]
+    with pytest.raises(LissomError, match="no layer is seen"):
+        exported(replace(document, layers=unseen), out)
 
 
 def test_a_still_shows_its_pose_without_an_animation(tmp_path):
     out = tmp_path / "still.glb"
     document, _ = exported(still(), out, replace(settings(), frames=still().frames))
     assert largest_distance(read(out), document, [0.0, 0.1]) <= TOLERANCE
-    exported(altered(still(), keys=moving_document().figures[0].keys[:1]), out)
+    exported(altered(still(), keys=moving_document().layers[0].keys[:1]), out)
     assert structure_of(out)["meshes"][0].keys() == {"name", "primitives"}
 
 
 def test_a_hold_jumps_within_a_thousandth_of_a_second(tmp_path):
     document = moving_document()
-    first, last = document.figures[0].keys
+    first, last = document.layers[0].keys
     document = altered(document, keys=(replace(first, easing=HOLD), last))
     out = tmp_path / "hold.glb"
     light, _ = exported(document, out)
@@ -435,7 +435,7 @@ def test_a_model_that_ends_early_is_not_there(tmp_path, ending):
     request = ExportRequest(out=tmp_path / "a.glb", settings=settings(), project="a")
     canvas = replace(request, settings=replace(request.settings, framing="canvas"))
     poses = {0: KeptPoses(Broken(clip_of(document, 0)))}
-    pictures = {0: decode_picture(document.figures[0].picture.data, "").rgba}
+    pictures = {0: decode_picture(document.layers[0].picture.data, "").rgba}
     steps = ShapeExport(document, pictures, poses, plan_export(document, canvas, poses)).run(
         waits=False
     )

@@ -63,7 +63,7 @@ def test_a_motion_that_leaves_the_frame_is_told_once_it_is_posed(gl, document):
 
 def test_a_drawing_that_fills_its_canvas_does_not_leave_it(gl):
     full = still_document(np.full((600, 800, 4), 255, dtype=np.uint8))
-    assert full.figures[0].domain.mesh.vertices.real.min() < -2
+    assert full.layers[0].domain.mesh.vertices.real.min() < -2
     assert notices(gl, full, Sliding(full, 0), framing="canvas") == ()
 
 
@@ -82,7 +82,7 @@ def test_the_drawing_at_rest_is_the_picture_and_nothing_hidden(gl, document):
 @pytest.mark.parametrize("triangles", [1_000, 40_000])
 def test_a_slit_is_not_seen_as_long_as_its_sides_lie_together(gl, triangles):
     document = still_document(triangles=triangles, cut_out=PARTED)
-    domain = document.figures[0].domain
+    domain = document.layers[0].domain
     assert not domain.contains(np.array([60.5 + 25j])).any()
     assert_array_equal(still(gl, document)[SEEN], BLOB[SEEN])
     with drawing(gl, document, Sliding(document, 3)) as draw:
@@ -151,7 +151,7 @@ class Folding:
     """The left side of a drawing bends, the more in later frames, until it lies over the right."""
 
     def __init__(self, document: Document) -> None:
-        self._rest = document.figures[0].domain.mesh.vertices
+        self._rest = document.layers[0].domain.mesh.vertices
 
     def positions(self, frame: float) -> Complexes:
         left = np.minimum(self._rest.real - 60, 0)

@@ -37,21 +37,21 @@ def browser(tmp_path_factory):
 
 
 def two_blobs() -> Document:
-    """Two figures of which one lies faintly over the other until it is hidden, in a loop."""
+    """Two layers of which one lies faintly over the other until it is hidden, in a loop."""
     document = moving_document()
-    (figure,) = document.figures
+    (layer,) = document.layers
     switches = (Switch(0, visible=True), Switch(3, visible=False))
-    above = replace(figure, id=1, name="above", opacity=0.6, keys=figure.keys[:1])
+    above = replace(layer, id=1, name="above", opacity=0.6, keys=layer.keys[:1])
     above = replace(above, switches=switches)
-    return replace(document, figures=(figure, above), frames=FrameRange(0, 8), loop=True)
+    return replace(document, layers=(layer, above), frames=FrameRange(0, 8), loop=True)
 
 
 def exported(document, out, **settings):
     """Export a page; return how the renderer draws a frame of it."""
     chosen = ExportSettings(format="html", size=SIZE, **settings)
     request = ExportRequest(out=out, settings=chosen, project="walk")
-    poses = {f.id: KeptPoses(Animation(clip_of(document, f.id))) for f in document.figures}
-    pictures = {f.id: decode_picture(f.picture.data, "").rgba for f in document.figures}
+    poses = {f.id: KeptPoses(Animation(clip_of(document, f.id))) for f in document.layers}
+    pictures = {f.id: decode_picture(f.picture.data, "").rgba for f in document.layers}
     plan = plan_export(document, request, poses)
     list(ShapeExport(document, pictures, poses, plan).run())
 
@@ -118,7 +118,7 @@ def test_the_browser_shows_what_the_renderer_draws(browser, tmp_path):
 @pytest.mark.parametrize("background", ["transparent", "#c08030"])
 def test_the_browser_composites_as_the_renderer_does(browser, tmp_path, background):
     document, out = two_blobs(), tmp_path / "walk.html"
-    low, high = document.figures
+    low, high = document.layers
     made = [
         replace(low, name="base", opacity=0.8),
         replace(high, id=1, name="shade", clipped=True, blend="screen"),
@@ -127,7 +127,7 @@ def test_the_browser_composites_as_the_renderer_does(browser, tmp_path, backgrou
         replace(high, id=4, name="light", clipped=True, blend="multiply", group="limbs/inner"),
     ]
     groups = (Group(name="limbs", opacity=0.6), Group(name="limbs/inner", blend="screen"))
-    document = replace(document, figures=tuple(made), groups=groups)
+    document = replace(document, layers=tuple(made), groups=groups)
     draw = exported(document, out, background=background)
     page, gl = opened(browser, out), create_context()
     page.run("lissom.pause()")
@@ -224,7 +224,7 @@ def test_a_lost_context_comes_back(browser, tmp_path):
 
 def test_what_lies_in_front_changes_when_it_should(browser, tmp_path, monkeypatch):
     document, out = moving_document(), tmp_path / "walk.html"
-    first = document.figures[0].domain.mesh.triangles
+    first = document.layers[0].domain.mesh.triangles
     then = first[::-1].copy()
     monkeypatch.setattr(
         "app.export.moving_shape.PaintOrder.triangles", lambda _, __, n: first if n < 3 else then
@@ -233,12 +233,12 @@ def test_what_lies_in_front_changes_when_it_should(browser, tmp_path, monkeypatc
     page = opened(browser, out)
     for frame, order in ((0, first), (2.9, first), (3, then), (1, first)):
         page.run(f"lissom.pause(); lissom.show({frame / document.fps + 1e-6})")
-        assert page.run("[...figures[0].order.slice(0, 3)]") == order[0].tolist()
+        assert page.run("[...layers[0].order.slice(0, 3)]") == order[0].tolist()
 
 
 def test_a_still_and_a_page_without_motion(browser, tmp_path):
     document, out = moving_document(), tmp_path / "walk.html"
-    still = altered(document, keys=document.figures[0].keys[:1])
+    still = altered(document, keys=document.layers[0].keys[:1])
     exported(still, out)
     page = opened(browser, out)
     assert shown(page, 3.0)[..., 3].max() == 255

@@ -29,14 +29,14 @@ class Counted:
 
 def test_a_fitted_export_works_every_frame_out_once(gl, tmp_path):
     document = moving_document()
-    (figure,) = document.figures
-    animation = Animation(clip_of(document, figure.id))
+    (layer,) = document.layers
+    animation = Animation(clip_of(document, layer.id))
     counted = Counted(animation)
-    poses = {figure.id: KeptPoses(counted)}
+    poses = {layer.id: KeptPoses(counted)}
     request = ExportRequest(out=tmp_path, settings=document.export, project="walk")
     assert request.settings.framing == "fit"
     plan = plan_export(document, request, poses)
-    painter = Painter(gl, document, {figure.id: BLOB}, poses, plan)
+    painter = Painter(gl, document, {layer.id: BLOB}, poses, plan)
     posed = [painter.pose(time) for time in plan.times]
     assert counted.asked == list(plan.times)
     # What is kept is as fine as what is uploaded.
@@ -48,11 +48,11 @@ def test_a_fitted_export_works_every_frame_out_once(gl, tmp_path):
 
 def test_an_extent_that_is_known_is_not_measured_again(tmp_path):
     document = altered(still_document(), frames=FrameRange(0, 10))
-    (figure,) = document.figures
-    counted = Counted(Animation(clip_of(document, figure.id)))
-    poses = {figure.id: KeptPoses(counted)}
+    (layer,) = document.layers
+    counted = Counted(Animation(clip_of(document, layer.id)))
+    poses = {layer.id: KeptPoses(counted)}
     request = ExportRequest(out=tmp_path, settings=document.export, project="walk")
-    box = box_around(figure.domain.mesh.vertices)
+    box = box_around(layer.domain.mesh.vertices)
     known = plan_export(document, request, poses, box)
     assert counted.asked == []
     assert plan_export(document, request, poses).view == known.view
@@ -60,9 +60,9 @@ def test_an_extent_that_is_known_is_not_measured_again(tmp_path):
 
 def test_what_is_kept_has_its_budget():
     document = still_document()
-    (figure,) = document.figures
-    size = 8 * len(figure.domain.mesh.vertices)
-    counted = Counted(Animation(clip_of(document, figure.id)))
+    (layer,) = document.layers
+    size = 8 * len(layer.domain.mesh.vertices)
+    counted = Counted(Animation(clip_of(document, layer.id)))
     poses = KeptPoses(counted, budget=2 * size)
     for _ in range(2):
         for frame in range(4):
@@ -78,8 +78,8 @@ def test_what_is_kept_has_its_budget():
 def test_once_it_was_cancelled_an_export_works_out_no_more_poses(tmp_path):
     """What is left behind ends with the frame it is at, though it was to measure all of them."""
     document, cancellation = moving_document(), Cancellation()
-    (figure,) = document.figures
-    animation = Animation(clip_of(document, figure.id))
+    (layer,) = document.layers
+    animation = Animation(clip_of(document, layer.id))
 
     class Cancelled(Counted):
         def positions(self, frame: float):
@@ -90,5 +90,5 @@ def test_once_it_was_cancelled_an_export_works_out_no_more_poses(tmp_path):
     counted = Cancelled(animation)
     request = ExportRequest(out=tmp_path, settings=document.export, project="walk")
     with pytest.raises(LissomError, match=CANCELLED):
-        plan_export(document, request, {figure.id: KeptPoses(counted, cancellation)})
+        plan_export(document, request, {layer.id: KeptPoses(counted, cancellation)})
     assert counted.asked == [0, 1, 2]

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
-from still_poses import DRAWN, MOVES, animate, animated, posed, with_figure
+from still_poses import DRAWN, MOVES, animate, animated, posed, with_layer
 
 from app.document import (
     HOLD,
@@ -56,7 +56,7 @@ def test_handles_stay_when_two_keys_have_them_at_one_place(loop, variant):
 
 
 def test_motion_is_the_closed_form_without_auto_pins():
-    document = with_figure(posed(), stillness=False)
+    document = with_layer(posed(), stillness=False)
     animation = animate(document)
     assert not any(animation.base.inbetweens(number).corrections for number in range(3))
     wandering = [animation.positions(float(t))[:3] for t in range(DRAWN + 1)]
@@ -67,7 +67,7 @@ def test_a_segment_is_solved_once_at_vertices_and_handles(monkeypatch):
     monkeypatch.setattr(pose_sampler, "_SAMPLED", ContentCache(2**26))
     document = posed(variant="metric")
     clip = clip_of(document, 0)
-    blend, called = BLENDS[clip.figure.variant], []
+    blend, called = BLENDS[clip.layer.variant], []
     for name in ("on_boundary", "tangent"):
         own = getattr(blend, name)
 
@@ -86,7 +86,7 @@ def test_a_segment_is_solved_once_at_vertices_and_handles(monkeypatch):
 def test_keys_stay_and_are_passed_smoothly_when_corrected(loop):
     document = posed(loop=loop)
     animation = animated(document)
-    for number, key in enumerate(document.figures[0].keys):
+    for number, key in enumerate(document.layers[0].keys):
         places = animation.positions(float(key.frame))
         assert_array_equal(places, animation.sampler.samples(key.pose).positions)
         near = animation.positions(key.frame + 1e-6)
@@ -99,7 +99,7 @@ def test_keys_stay_and_are_passed_smoothly_when_corrected(loop):
 
 def test_corrected_motion_does_not_jolt():
     times = np.arange(0, 30.01, 0.5)
-    both = (animated(posed()), animate(with_figure(posed(), stillness=False)))
+    both = (animated(posed()), animate(with_layer(posed(), stillness=False)))
     moved = [np.array([animation.positions(t) for t in times]) for animation in both]
     jolts = [np.abs(np.diff(places, 2, axis=0)).max() for places in moved]
     assert jolts[0] <= 2 * jolts[1]
@@ -107,8 +107,8 @@ def test_corrected_motion_does_not_jolt():
 
 def test_free_handle_gives_way_beside_a_pinned_one():
     document = posed()
-    figure = document.figures[0]
-    top = figure.handles[-1]
+    layer = document.layers[0]
+    top = layer.handles[-1]
     # A twin of the top that is pinned in every segment, at the place to which the poses bring it.
     twin = replace(top, id=top.id + 1, name="twin", position=top.position + 0.02)
     keys = tuple(
@@ -118,10 +118,10 @@ def test_free_handle_gives_way_beside_a_pinned_one():
                 key.pose, targets={**key.pose.targets, twin.id: Target(position=twin.position)}
             ),
         )
-        for key in figure.keys
+        for key in layer.keys
     )
-    doubled = with_figure(
-        document, handles=(*figure.handles, twin), keys=keys, next_handle=twin.id + 1
+    doubled = with_layer(
+        document, handles=(*layer.handles, twin), keys=keys, next_handle=twin.id + 1
     )
     assert pinned_handles(clip_of(doubled, 0))[:, -2:].tolist() == [[False, True]] * 3
     animation = animate(doubled)
@@ -141,7 +141,7 @@ def test_corrected_frames_are_the_same_in_any_order():
 
 def test_limits_are_kept_between_samples():
     document = posed()
-    figure = document.figures[0]
+    layer = document.layers[0]
     boundary = animated(document).sampler.sites.boundary
     ends = boundary.points[boundary.following]
     dense = np.concatenate([boundary.points * (1 - s) + ends * s for s in np.linspace(0, 0.9, 10)])
@@ -149,34 +149,34 @@ def test_limits_are_kept_between_samples():
     for frame in (2, 5, 8, 14, 18, 22, 27):
         moved = animation.frame(float(frame))
         a, b = np.abs(moved.fz), np.abs(moved.fzbar)
-        assert (b / a).max() <= figure.bounds.k
-        assert (a + b).max() <= figure.bounds.sigma_a
-        assert (a - b).min() >= figure.bounds.sigma_b
+        assert (b / a).max() <= layer.bounds.k
+        assert (a + b).max() <= layer.bounds.sigma_a
+        assert (a - b).min() >= layer.bounds.sigma_b
 
 
 def test_a_handle_that_is_free_or_follows_is_not_still():
     document = posed()
-    figure = document.figures[0]
-    left, middle = figure.handles[:2]
+    layer = document.layers[0]
+    left, middle = layer.handles[:2]
     free = replace(left, free=True)
-    changed = with_figure(
+    changed = with_layer(
         document,
-        handles=(free, *figure.handles[1:]),
+        handles=(free, *layer.handles[1:]),
         springs=(Spring(handle=middle.id, frequency=2, damping=0.3),),
     )
     assert_array_equal(pinned_handles(clip_of(changed, 0))[0], [False, False, True, False])
-    alone = with_figure(
+    alone = with_layer(
         document,
-        handles=(left, *(replace(each, free=True) for each in figure.handles[1:])),
+        handles=(left, *(replace(each, free=True) for each in layer.handles[1:])),
     )
     assert drift(alone) < 1e-3
 
 
 def test_a_handle_that_is_locked_goes_evenly_between_the_places_that_it_reaches():
     document = posed()
-    figure = document.figures[0]
-    *others, top = figure.handles
-    locked = with_figure(document, handles=(*others, replace(top, locked=True)))
+    layer = document.layers[0]
+    *others, top = layer.handles
+    locked = with_layer(document, handles=(*others, replace(top, locked=True)))
     assert pinned_handles(clip_of(locked, 0)).all(axis=0).tolist() == [True, True, False, True]
     assert drift(locked) < 0.05
 
@@ -184,8 +184,8 @@ def test_a_handle_that_is_locked_goes_evenly_between_the_places_that_it_reaches(
 @pytest.mark.parametrize("change", [{"easing": HOLD}, {"turns": 1}])
 def test_a_hold_and_a_whole_turn_are_left_as_they_are(change):
     document = posed()
-    first, *rest = document.figures[0].keys
-    changed = with_figure(document, keys=(replace(first, **change), *rest))
+    first, *rest = document.layers[0].keys
+    changed = with_layer(document, keys=(replace(first, **change), *rest))
     assert not pinned_handles(clip_of(changed, 0))[0].any()
     animation = animate(changed)
     assert np.isfinite(animation.positions(5.0)).all()
@@ -194,22 +194,22 @@ def test_a_hold_and_a_whole_turn_are_left_as_they_are(change):
 @pytest.mark.parametrize("passing", [Passing.STOP, Passing.CORNER])
 def test_keys_that_are_not_passed_through_keep_their_handles_too(passing):
     document = posed()
-    keys = tuple(replace(key, passing=passing) for key in document.figures[0].keys)
-    assert drift(with_figure(document, keys=keys)) < 0.05
+    keys = tuple(replace(key, passing=passing) for key in document.layers[0].keys)
+    assert drift(with_layer(document, keys=keys)) < 0.05
 
 
 def test_attached_layer_is_corrected_about_its_joint_alone():
     document = posed()
-    figure = document.figures[0]
+    layer = document.layers[0]
     child = replace(
-        figure,
+        layer,
         id=1,
         name="child",
         anchor=30 + 40j,
         joints=(Attachment(to=0, at=90 + 45j),),
     )
-    scene = replace(document, figures=(figure, child))
-    unpinned = replace(document, figures=(figure, replace(child, stillness=False)))
+    scene = replace(document, layers=(layer, child))
+    unpinned = replace(document, layers=(layer, replace(child, stillness=False)))
     joints = Joints(scene)
     handles = np.array([handle.position for handle in child.handles])
     points = np.append(handles, child.anchor)

@@ -30,7 +30,7 @@ def cycling(*frames, cycle, last=100, loop=False, **settings):
     document = row(len(frames))
     keys = tuple(
         replace(key, frame=frame)
-        for key, frame in zip(document.figures[0].keys, frames, strict=True)
+        for key, frame in zip(document.layers[0].keys, frames, strict=True)
     )
     return altered(
         document, keys=keys, cycles=(cycle,), frames=FrameRange(0, last), loop=loop, **settings
@@ -38,7 +38,7 @@ def cycling(*frames, cycle, last=100, loop=False, **settings):
 
 
 def moving(document):
-    return Animation(clip_of(document, 0), points=document.figures[0].domain.outline)
+    return Animation(clip_of(document, 0), points=document.layers[0].domain.outline)
 
 
 WALK = Cycle(first=20, last=44, until=92)
@@ -87,7 +87,7 @@ def test_it_is_led_to_gone_through_and_gone_on_from_at_one_velocity(variant):
 
 def test_a_cycle_whose_end_is_keyed_alike_goes_on_through_it():
     document = cycling(*KEYS, 92, 110, cycle=WALK, last=120)
-    keys = document.figures[0].keys
+    keys = document.layers[0].keys
     end = replace(keys[5], pose=keys[1].pose)
     document = altered(document, keys=(*keys[:5], end, keys[6]))
     change, speed = jump(moving(document), 92.0)
@@ -96,8 +96,8 @@ def test_a_cycle_whose_end_is_keyed_alike_goes_on_through_it():
 
 def test_a_key_where_the_repeats_end_takes_over():
     document = cycling(*KEYS, 92, cycle=WALK, last=120)
-    animation, keys = moving(document), document.figures[0].keys
-    posed = document.figures[0].map_of(keys[-1].pose)(document.figures[0].domain.outline)
+    animation, keys = moving(document), document.layers[0].keys
+    posed = document.layers[0].map_of(keys[-1].pose)(document.layers[0].domain.outline)
     for frame in (92, 100, 120):
         assert_allclose(animation.positions(frame), posed, rtol=0, atol=1e-9)
     assert unlike(animation, WALK, [21, 40, 43], until=91) < 1e-9
@@ -128,7 +128,7 @@ def test_it_is_told_where_repeats_may_end_before_a_key():
 
 
 def test_in_a_loop_keys_elsewhere_lead_through_a_stretch_without_one():
-    with pytest.raises(LissomError, match="no key of 'figure' in frames 0 to 4 that could repeat"):
+    with pytest.raises(LissomError, match="no key of 'layer' in frames 0 to 4 that could repeat"):
         cycling(35, 42, cycle=Cycle(first=0, last=4, until=20), loop=True)
 
 
@@ -173,9 +173,9 @@ def test_a_loop_of_whole_repeats_has_no_seam():
 def test_two_cycles_follow_each_other():
     document = cycling(0, 6, 40, 46, cycle=Cycle(first=0, last=12, until=36))
     second = Cycle(first=40, last=52)
-    document = altered(document, cycles=(*document.figures[0].cycles, second))
+    document = altered(document, cycles=(*document.layers[0].cycles, second))
     animation = moving(document)
-    assert unlike(animation, document.figures[0].cycles[0], range(12), until=36) < 1e-9
+    assert unlike(animation, document.layers[0].cycles[0], range(12), until=36) < 1e-9
     assert unlike(animation, second, range(40, 52), until=100) < 1e-9
     for frame in (12.0, 36.0, 40.0, 52.0):
         assert jump(animation, frame)[0] < 1e-3
@@ -191,17 +191,17 @@ def test_a_single_key_stands_until_the_repeats_end():
 
 def with_handles(document, *, free=False):
     """Return it with two handles, which the second and third of its keys have at one place."""
-    figure = document.figures[0]
+    layer = document.layers[0]
     handles = tuple(
         Handle(id=number, name=str(number), position=place, free=free)
         for number, place in enumerate((30 + 45j, 90 + 45j))
     )
 
     def targets(pose):
-        places = figure.map_of(pose)(np.array([handle.position for handle in handles]))
+        places = layer.map_of(pose)(np.array([handle.position for handle in handles]))
         return {i: Target(position=complex(place)) for i, place in enumerate(places)}
 
-    keys = [replace(k, pose=replace(k.pose, targets=targets(k.pose))) for k in figure.keys]
+    keys = [replace(k, pose=replace(k.pose, targets=targets(k.pose))) for k in layer.keys]
     still = dict(keys[2].pose.targets) | {0: keys[1].pose.targets[0]}
     keys[2] = replace(keys[2], pose=replace(keys[2].pose, targets=still))
     return altered(document, keys=tuple(keys), handles=handles, next_handle=2)
@@ -229,7 +229,7 @@ def test_handles_that_stay_and_tracks_repeat_with_it():
 
 def test_what_is_in_front_and_seen_repeats_with_it():
     document = with_handles(cycling(*KEYS, 110, cycle=WALK, last=120))
-    keys = list(document.figures[0].keys)
+    keys = list(document.layers[0].keys)
     keys[3] = replace(keys[3], fronts={1: 1.0})
     document = altered(document, keys=tuple(keys))
     clip = clip_of(document, 0)
@@ -237,8 +237,8 @@ def test_what_is_in_front_and_seen_repeats_with_it():
     assert ahead == [False, True, True, False, False, True, True, False, False]
     switches = (Switch(0, visible=True), Switch(30, visible=False))
     document = altered(document, switches=switches)
-    figure = document.figures[0]
-    shown = [is_visible(document, figure, frame) for frame in (29, 30, 43, 44, 53, 54, 91, 92, 120)]
+    layer = document.layers[0]
+    shown = [is_visible(document, layer, frame) for frame in (29, 30, 43, 44, 53, 54, 91, 92, 120)]
     assert shown == [True, False, False, True, True, False, False, True, True]
 
 
@@ -247,15 +247,15 @@ def test_what_moves_fades_and_is_ordered_repeats_with_it():
     bob = tuple(MoveKey(frame=f, shift=s) for f, s in ((20, 0j), (30, 9j), (44, 0j)))
     blink = tuple(OpacityKey(frame=f, opacity=o) for f, o in ((22, 1.0), (28, 0.2), (40, 1.0)))
     document = cycling(*KEYS, cycle=WALK, last=120, movement=bob, opacities=blink)
-    behind = replace(document.figures[0], id=1, name="behind", placings=())
-    weave = replace(document.figures[0], placings=(Placing(30, 1),))
-    document = replace(document, figures=(weave, behind))
+    behind = replace(document.layers[0], id=1, name="behind", placings=())
+    weave = replace(document.layers[0], placings=(Placing(30, 1),))
+    document = replace(document, layers=(weave, behind))
 
     def shown(document, frame):
-        figure = document.figure(0)
-        moved = movement_at(document, figure, frame).shift
+        layer = document.layer(0)
+        moved = movement_at(document, layer, frame).shift
         order = [each.id for each in in_order(document, frame)]
-        return moved, opacity_at(document, figure, frame), order
+        return moved, opacity_at(document, layer, frame), order
 
     for frame in (20, 23, 30 + wait, 39, 43):
         for again in (24, 48):
@@ -277,5 +277,5 @@ def test_what_moves_fades_and_is_ordered_repeats_with_it():
         assert shown(keyed, frame)[2] == shown(document, frame)[2]
     # Who goes on beyond the stretch, or comes elsewhere, has a time of their own.
     for last in (MoveKey(frame=60, shift=9), MoveKey(frame=44, shift=9)):
-        walk = replace(document.figure(0), movement=(MoveKey(frame=20), last))
-        assert shown(document.with_figure(walk), 92)[0] == 9
+        walk = replace(document.layer(0), movement=(MoveKey(frame=20), last))
+        assert shown(document.with_layer(walk), 92)[0] == 9

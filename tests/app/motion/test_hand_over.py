@@ -1,4 +1,4 @@
-"""What hangs on one figure, then on another one, and then on none."""
+"""What hangs on one layer, then on another one, and then on none."""
 
 from dataclasses import replace
 
@@ -33,20 +33,20 @@ TOL = 1e-9 * 200
 def hands():
     """Two hands that move by themselves, and a thing that hangs on the first of them."""
     document = layers.detach(1, 1, 0)(chain())
-    assert document.figure(2).joints[0].to == 1
+    assert document.layer(2).joints[0].to == 1
     joint = Attachment(to=0, at=CENTRE + 20j)
     return layers.attach(2, CENTRE - 30, joint)(document)
 
 
-def around(joints, figure, frame, by=1e-7):
-    """Where a figure is just before a frame and at it."""
-    return [joints.placement(figure, at) for at in (frame - by, frame)]
+def around(joints, layer, frame, by=1e-7):
+    """Where a layer is just before a frame and at it."""
+    return [joints.placement(layer, at) for at in (frame - by, frame)]
 
 
 def test_reparented_layer_goes_on_without_a_jump(hands):
     as_before = Joints(hands)
     joint = hand_over(as_before, 2, 1, 20, turns=True)
-    document = layers.attach(2, hands.figure(2).anchor, joint)(hands)
+    document = layers.attach(2, hands.layer(2).anchor, joint)(hands)
     joints = Joints(document)
     before, after = around(joints, 2, 20)
     assert abs(before.factor - after.factor) < 1e-6
@@ -57,7 +57,7 @@ def test_reparented_layer_goes_on_without_a_jump(hands):
     held = set()
     for frame in (20, 27.5, 40, 48):
         at, fz = exactly(document, 1, joint.at, frame)
-        own, _ = exactly(document, 2, document.figure(2).anchor, frame)
+        own, _ = exactly(document, 2, document.layer(2).anchor, frame)
         there = joints.placement(2, frame)
         turn = fz / abs(fz)
         held.add(
@@ -68,18 +68,18 @@ def test_reparented_layer_goes_on_without_a_jump(hands):
 
 def test_it_does_not_jump_whatever_is_posed_later(hands):
     joint = hand_over(Joints(hands), 2, 1, 20, turns=True)
-    document = layers.attach(2, hands.figure(2).anchor, joint)(hands)
+    document = layers.attach(2, hands.layer(2).anchor, joint)(hands)
     for identity in (0, 1):
-        figure = document.figure(identity)
-        keys = [replace(k, pose=bent(figure, 0.1 * k.frame, 0, k.frame)) for k in figure.keys]
-        document = document.with_figure(replace(figure, keys=tuple(keys)))
+        layer = document.layer(identity)
+        keys = [replace(k, pose=bent(layer, 0.1 * k.frame, 0, k.frame)) for k in layer.keys]
+        document = document.with_layer(replace(layer, keys=tuple(keys)))
     before, after = around(Joints(document), 2, 20)
     assert abs(before.factor - after.factor) < 1e-5
     assert abs(before.shift - after.shift) < 1e-3
 
 
 def test_detached_layer_stays_or_goes_back_as_asked(hands):
-    anchor, before = hands.figure(2).anchor, Joints(hands)
+    anchor, before = hands.layer(2).anchor, Joints(hands)
     there = before.placement(2, 20)
     for keeps in (True, False):
         document = layers.attach(2, anchor, Attachment(to=None, frame=20, keeps=keeps))(hands)
@@ -89,9 +89,9 @@ def test_detached_layer_stays_or_goes_back_as_asked(hands):
         assert joints.placement(2, 19.5) == before.placement(2, 19.5)
 
 
-def test_before_its_first_joint_a_figure_is_where_it_is_by_itself(hands):
-    late = replace(hands.figure(2).joints[0], frame=10, keeps=True)
-    document = hands.with_figure(replace(hands.figure(2), joints=(late,)))
+def test_before_its_first_joint_a_layer_is_where_it_is_by_itself(hands):
+    late = replace(hands.layer(2).joints[0], frame=10, keeps=True)
+    document = hands.with_layer(replace(hands.layer(2), joints=(late,)))
     joints = Joints(document)
     assert joints.placement(2, 9.9) == HERE
     assert abs(joints.placement(2, 10).shift) < TOL
@@ -104,30 +104,30 @@ def test_hands_may_take_turns_in_carrying_each_other(hands):
         layers.attach(2, CENTRE - 30, Attachment(to=None, frame=20, keeps=True))(hands)
     )
     joints = Joints(document)
-    for figure in (0, 2):
-        before, after = around(joints, figure, 20)
+    for layer in (0, 2):
+        before, after = around(joints, layer, 20)
         assert abs(before.shift - after.shift) < 1e-4
     assert [each.id for each in document.carriers(0, 30)] == [0, 2]
     assert [each.id for each in document.carriers(2, 10)] == [2, 0]
     # With springs, too, which follow from where they are carried.
     for identity in (0, 2):
-        figure = document.figure(identity)
-        handle = Handle(id=figure.next_handle, name="tip", position=CENTRE + 60j)
+        layer = document.layer(identity)
+        handle = Handle(id=layer.next_handle, name="tip", position=CENTRE + 60j)
         keys = tuple(
             replace(
                 key,
                 pose=replace(key.pose, targets={handle.id: Target(position=CENTRE + 60j)}),
             )
-            for key in figure.keys
+            for key in layer.keys
         )
-        figure = replace(
-            figure,
+        layer = replace(
+            layer,
             handles=(handle,),
             next_handle=handle.id + 1,
             keys=keys,
             springs=(Spring(handle=handle.id, frequency=2.0, damping=0.3),),
         )
-        document = document.with_figure(figure)
+        document = document.with_layer(layer)
     animations = hung_animations(
         [Animation(clip_of(document, each), points=np.array([CENTRE])) for each in (0, 2)], document
     )
@@ -145,27 +145,27 @@ def test_circles_at_any_frame_are_refused_by_name(hands):
 
 def test_it_is_listed_below_what_carries_it_then(hands):
     document = layers.attach(2, CENTRE, Attachment(to=None, frame=20))(hands)
-    assert [carried_by(document, document.figure(2), frame) for frame in (19, 20)] == [
+    assert [carried_by(document, document.layer(2), frame) for frame in (19, 20)] == [
         (1, "on 0"),
         (0, "on nothing…"),
     ]
     document = layers.attach(2, CENTRE, Attachment(to=1, at=CENTRE, frame=20))(chain())
-    assert carried_by(document, document.figure(2), 20) == (2, "on 1")
+    assert carried_by(document, document.layer(2), 20) == (2, "on 1")
 
 
 def test_joints_are_taken_back_moved_and_stretched_in_time(hands):
-    anchor = hands.figure(2).anchor
+    anchor = hands.layer(2).anchor
     document = layers.attach(2, anchor, Attachment(to=1, at=CENTRE, frame=20))(hands)
     moved = layers.move_joint(2, 20, 26)(document)
-    assert [joint.frame for joint in moved.figure(2).joints] == [0, 26]
+    assert [joint.frame for joint in moved.layer(2).joints] == [0, 26]
     back = layers.unjoin(2, 26)(moved)
-    assert back.figure(2).joints == hands.figure(2).joints
+    assert back.layer(2).joints == hands.layer(2).joints
     with pytest.raises(LissomError, match="not attached anew at frame 21"):
         layers.move_joint(2, 21, 5)(document)
     longer = scene_commands.scale_time(2.0)(document)
-    assert [joint.frame for joint in longer.figure(2).joints] == [0, 40]
-    gone = layers.remove_figure(1)(document)
-    assert gone.figure(2).joints == hands.figure(2).joints
+    assert [joint.frame for joint in longer.layer(2).joints] == [0, 40]
+    gone = layers.remove_layer(1)(document)
+    assert gone.layer(2).joints == hands.layer(2).joints
 
 
 def test_joints_come_round_in_a_loop(hands):
@@ -180,13 +180,13 @@ def test_joints_come_round_in_a_loop(hands):
 
 
 def cycling(document, *, until=None, last=200):
-    """The same with all figures coming round every 48 frames."""
+    """The same with all layers coming round every 48 frames."""
     document = replace(document, frames=FrameRange(0, last))
-    for figure in document.figures:
-        keys = tuple(key for key in figure.keys if key.frame < 48)
+    for layer in document.layers:
+        keys = tuple(key for key in layer.keys if key.frame < 48)
         cycles = (Cycle(first=0, last=48, until=until),)
-        changed = replace(figure, keys=keys, cycles=cycles, stillness=False)
-        document = document.with_figure(changed)
+        changed = replace(layer, keys=keys, cycles=cycles, stillness=False)
+        document = document.with_layer(changed)
     return document
 
 
@@ -196,7 +196,7 @@ def juggled(hands):
     document = cycling(hands)
     for frame, parent in ((14, 1), (32, 0)):
         joint = hand_over(Joints(document), 2, parent, frame, turns=True)
-        document = layers.attach(2, hands.figure(2).anchor, joint)(document)
+        document = layers.attach(2, hands.layer(2).anchor, joint)(document)
     return document
 
 
@@ -218,7 +218,7 @@ def test_reparented_layer_is_reparented_in_every_repeat(juggled):
 
 
 def test_a_joint_at_the_end_of_a_cycle_is_the_one_at_its_beginning(juggled):
-    anchor = juggled.figure(2).anchor
+    anchor = juggled.layer(2).anchor
     again = Attachment(to=0, at=CENTRE, frame=48, keeps=True)
     both = Joints(juggled), Joints(layers.attach(2, anchor, again)(juggled))
     for frame in (40, 48, 60, 70, 100):
@@ -227,12 +227,12 @@ def test_a_joint_at_the_end_of_a_cycle_is_the_one_at_its_beginning(juggled):
     # With another end, or what is said in the repeats, it has its own time.
     for joint in (replace(again, to=1), replace(again, frame=70)):
         document = layers.attach(2, anchor, joint)(juggled)
-        assert document.joints_of(document.figure(2)) == document.figure(2).joints
+        assert document.joints_of(document.layer(2)) == document.layer(2).joints
 
 
 def test_what_is_free_at_first_is_free_in_every_repeat(juggled):
-    caught = replace(juggled.figure(2), joints=juggled.figure(2).joints[1:])
-    document = juggled.with_figure(caught)
+    caught = replace(juggled.layer(2), joints=juggled.layer(2).joints[1:])
+    document = juggled.with_layer(caught)
     assert [len(document.carriers(2, frame)) for frame in (5, 20, 50, 68)] == [1, 2, 1, 2]
     free = Joints(document)
     for frame in (5, 50, 97):
@@ -245,18 +245,18 @@ def test_what_is_free_at_first_is_free_in_every_repeat(juggled):
 def test_repeats_of_joints_made_into_keys_move_as_before(juggled):
     document = juggled
     for keeps in (False, True):
-        first = replace(document.figure(2).joints[0], frame=5, keeps=keeps)
-        later = [joint for joint in document.figure(2).joints if joint.frame > 5]
-        document = document.with_figure(
+        first = replace(document.layer(2).joints[0], frame=5, keeps=keeps)
+        later = [joint for joint in document.layer(2).joints if joint.frame > 5]
+        document = document.with_layer(
             replace(
-                document.figure(2),
+                document.layer(2),
                 joints=(first, *later),
                 cycles=(Cycle(first=5, last=53),),
-                keys=document.figure(2).keys[:1],
+                keys=document.layer(2).keys[:1],
             )
         )
         keyed = cycle_commands.make_keys(2, 5, 200)(document)
-        assert not keyed.figure(2).cycles or keyed.figure(2).cycles[0].first > 5
+        assert not keyed.layer(2).cycles or keyed.layer(2).cycles[0].first > 5
         stopped = cycle_commands.stop(2, 5)(document)
         joints, of_keys, of_stopped = map(Joints, (document, keyed, stopped))
         for frame in (8, 20, 35, 52.5, 53, 60, 70, 90, 130, 199):
@@ -269,22 +269,22 @@ def test_repeats_of_joints_made_into_keys_move_as_before(juggled):
 
 
 def test_repeats_end_at_their_frame_and_what_comes_later_follows(juggled):
-    figure = juggled.figure(2)
+    layer = juggled.layer(2)
     later = Attachment(to=None, frame=150, keeps=True)
-    joints = (*figure.joints, later)
-    document = juggled.with_figure(
-        replace(figure, joints=joints, cycles=(Cycle(first=0, last=48, until=96),))
+    joints = (*layer.joints, later)
+    document = juggled.with_layer(
+        replace(layer, joints=joints, cycles=(Cycle(first=0, last=48, until=96),))
     )
     carriers = [[each.id for each in document.carriers(2, f)[1:]] for f in (62, 96, 130, 150)]
     assert carriers == [[1], [0], [0], []]
 
 
 def test_circles_in_repeats_are_refused(hands):
-    anchor = hands.figure(2).anchor
+    anchor = hands.layer(2).anchor
     document = cycling(layers.attach(2, anchor, Attachment(to=None, frame=20, keeps=True))(hands))
     joint = Attachment(to=2, at=CENTRE, frame=30)
     with pytest.raises(LissomError, match=says(HANGS_ON_ITSELF, name="0", when=" at frame 48")):
         layers.attach(0, CENTRE, joint)(
-            document.with_figure(replace(document.figure(0), cycles=(), keys=hands.figure(0).keys))
+            document.with_layer(replace(document.layer(0), cycles=(), keys=hands.layer(0).keys))
         )
     layers.attach(0, CENTRE, joint)(document)

@@ -50,7 +50,7 @@ def clip(document):
 @pytest.fixture(scope="module")
 def found(clip):
     """All in-betweens of the clip."""
-    store = IntervalStore(mesh=PosableMesh.fine(clip.figure.domain))
+    store = IntervalStore(mesh=PosableMesh.fine(clip.layer.domain))
     return store.mesh, store.preparing(clip, [0, 1, 2])()
 
 
@@ -70,17 +70,17 @@ def prepare(store, clip, *wanted):
 
 
 def variant_of(clip, variant):
-    return replace(clip, figure=replace(clip.figure, variant=Variant(variant)))
+    return replace(clip, layer=replace(clip.layer, variant=Variant(variant)))
 
 
 def posed(clip, frame):
     """Return the clip with another pose at a key."""
-    pose = clip.figure.key(frame).pose
+    pose = clip.layer.key(frame).pose
     keys = tuple(
         replace(key, pose=replace(pose, phi=1.01 * pose.phi)) if key.frame == frame else key
         for key in clip.keys
     )
-    return replace(clip, figure=replace(clip.figure, keys=keys))
+    return replace(clip, layer=replace(clip.layer, keys=keys))
 
 
 def finished(build: Build) -> Build:
@@ -112,7 +112,7 @@ def streamed(store, clip):
 def test_what_was_made_once_is_found_wherever_it_comes_again(clip, prepared):
     halves = [variant_of(clip, variant) for variant in ("eta", "nu")]
     assert prepare(prepared, halves[0]) == 3
-    # The same variant again, as another figure of another document.
+    # The same variant again, as another layer of another document.
     assert prepared.missing(halves[1], 0) == []
     assert prepared.has(clip)
     assert prepared.prepared(halves[1]) == prepared.prepared(clip)
@@ -123,10 +123,10 @@ def test_what_was_made_once_is_found_wherever_it_comes_again(clip, prepared):
 
 
 def test_a_copied_key_costs_nothing(document):
-    every = document.figures[0].key_frames
+    every = document.layers[0].key_frames
     corners = key_commands.set_passing(0, every, Passing.CORNER)(document)
     clip = clip_of(corners, 0)
-    store = IntervalStore(mesh=PosableMesh.fine(clip.figure.domain))
+    store = IntervalStore(mesh=PosableMesh.fine(clip.layer.domain))
     assert prepare(store, clip) == 3
     longer = replace(corners, frames=FrameRange(0, 60))
     copied = clip_of(key_commands.copy_keys(0, {0, 10}, 40)(longer), 0)
@@ -134,7 +134,7 @@ def test_a_copied_key_costs_nothing(document):
     assert store.missing(copied, 0) == [3]
 
 
-def test_another_method_of_the_split_view_finds_the_figures_own(document, tmp_path):
+def test_another_method_of_the_split_view_finds_the_layers_own(document, tmp_path):
     session = session_of(document, tmp_path, prepares_ahead=True)
     project, store = session.project, session.project.puppet.store
     viewing.compare_with(session, Variant.ETA)
@@ -143,7 +143,7 @@ def test_another_method_of_the_split_view_finds_the_figures_own(document, tmp_pa
     other = store.prepared(twin.clip(project.document))
     assert other is not None
     assert twin.shown.is_current
-    # The figure takes the method that it was compared with.
+    # The layer takes the method that it was compared with.
     keys.set_variant(session, "eta")
     assert store.prepared(project.clip) == other
 
@@ -197,7 +197,7 @@ def test_a_series_in_the_making_is_not_gone_on_with_for_other_keys(clip, prepare
 def test_a_failure_is_known_of_the_same_keys_as_long_as_they_are_there(clip, prepared):
     prepared.pin([clip], [], 0)
     prepared.fail("in-betweens", clip)
-    assert prepared.has_failed(replace(clip, figure=replace(clip.figure)))
+    assert prepared.has_failed(replace(clip, layer=replace(clip.layer)))
     assert not prepared.has_failed(clip, "series")
     other = variant_of(clip, "eta")
     assert not prepared.has_failed(other)
@@ -212,7 +212,7 @@ def test_a_failure_is_known_of_the_same_keys_as_long_as_they_are_there(clip, pre
 @pytest.mark.parametrize("variant", ["metric", "nu"])
 def test_only_exact_in_betweens_are_shown_as_current(variant):
     clip = clip_of(row(4, variant=variant), 0)
-    store = IntervalStore(mesh=PosableMesh.fine(clip.figure.domain))
+    store = IntervalStore(mesh=PosableMesh.fine(clip.layer.domain))
     frames = (0, 4, 10, 13, 17, 25, 30)
 
     def exact():
@@ -236,12 +236,12 @@ def test_only_exact_in_betweens_are_shown_as_current(variant):
     prepare(store, clip)
     assert exact() == list(frames)
     whole = store.prepared(clip)[1].frame(0.3).positions
-    size = np.ptp(clip.figure.domain.mesh.vertices.real)
+    size = np.ptp(clip.layer.domain.mesh.vertices.real)
     assert_allclose(one, whole, rtol=0, atol=1e-9 * size)
     stream(store, clip, FRAME)
     assert exact() == list(frames)
     # Of another domain nothing is.
-    other = replace(clip, figure=replace(clip.figure, domain=replace(clip.figure.domain)))
+    other = replace(clip, layer=replace(clip.layer, domain=replace(clip.layer.domain)))
     assert not store.has(other)
     assert not store.is_exact(other, 0)
     assert store.positions(other, 0) is None
@@ -394,7 +394,7 @@ def test_the_nearest_interval_is_built_first(clip, prepared):
     direct = [prepared.positions(clip, frame) for frame in frames]
     order = stream(prepared, clip, FRAME)
     assert order == [(1, False), (2, False), (0, False)]
-    size = np.ptp(clip.figure.domain.mesh.vertices.real)
+    size = np.ptp(clip.layer.domain.mesh.vertices.real)
     for frame, expected in zip(frames, direct, strict=True):
         vertices = prepared.vertices(clip, frame)
         assert isinstance(vertices, Streamed)
@@ -421,9 +421,9 @@ def test_a_session_streams_what_it_plays_and_stops_while_a_hand_pulls(document, 
     assert isinstance(project.puppet.shown.vertices, Streamed)
     assert store.build is None
     # Another key's pose: its two intervals are built anew, but not while it is being pulled.
-    key = clip.figure.keys[1]
+    key = clip.layer.keys[1]
     moved = replace(key, pose=replace(key.pose, phi=key.pose.phi + 1))
-    edited = altered(document, keys=(clip.figure.keys[0], moved, *clip.figure.keys[2:]))
+    edited = altered(document, keys=(clip.layer.keys[0], moved, *clip.layer.keys[2:]))
     project.history = History(edited, saved=True)
     settle(session)
     assert streamed(store, clip_of(edited, 0)) == [True] * 3
@@ -435,13 +435,13 @@ def test_a_session_streams_what_it_plays_and_stops_while_a_hand_pulls(document, 
     assert not list(missing(session, project))
 
 
-def test_where_much_is_prepared_figures_that_nobody_edits_come_one_after_the_other(
+def test_where_much_is_prepared_layers_that_nobody_edits_come_one_after_the_other(
     document, tmp_path, monkeypatch
 ):
     monkeypatch.setattr("app.editor.project.MOST_PASSING", 0)
-    (figure,) = document.figures
-    figures = tuple(replace(figure, id=number, name=f"{number}") for number in range(3))
-    document = replace(document, figures=figures)
+    (layer,) = document.layers
+    layers = tuple(replace(layer, id=number, name=f"{number}") for number in range(3))
+    document = replace(document, layers=layers)
     session = session_of(document, tmp_path, prepares_ahead=True)
     for clip, puppet in zip(
         [clip_of(document, number) for number in range(3)],
@@ -485,7 +485,7 @@ def test_a_series_that_failed_once_is_built_anew_when_the_document_changes(
     assert streamed(store, clip) == [False] * 3
     assert store.has_failed(clip, "series")
     # The other intervals are as they were.
-    *others, last = clip.figure.keys
+    *others, last = clip.layer.keys
     moved = replace(last, pose=replace(last.pose, phi=last.pose.phi + 1))
     edited = altered(document, keys=(*others, moved))
     project.history = History(edited, saved=True)
@@ -494,7 +494,7 @@ def test_a_series_that_failed_once_is_built_anew_when_the_document_changes(
 
 
 def test_the_worker_takes_few_steps_at_once(clip, prepared, monkeypatch):
-    monkeypatch.setattr("app.motion.intervals.BATCH", 3 * len(clip.figure.domain.mesh.vertices))
+    monkeypatch.setattr("app.motion.intervals.BATCH", 3 * len(clip.layer.domain.mesh.vertices))
     build = prepared.next_build(clip, 0, heat=False)
     batches = 0
     while build.series is None:

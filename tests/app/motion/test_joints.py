@@ -20,13 +20,13 @@ from engine.maps import distortion
 def check_closed(document, frames, earlier=None):
     """Hold each joint of a document against the points that it joins; return its joints."""
     joints = Joints(document, earlier=earlier)
-    for figure in document.figures:
-        joint = document.joint_at(figure, 0)
+    for layer in document.layers:
+        joint = document.joint_at(layer, 0)
         if joint is None:
             continue
         for frame in frames:
-            own, carrier = joints.placement(figure.id, frame), joints.placement(joint.to, frame)
-            anchor, _ = exactly(document, figure.id, figure.anchor, frame)
+            own, carrier = joints.placement(layer.id, frame), joints.placement(joint.to, frame)
+            anchor, _ = exactly(document, layer.id, layer.anchor, frame)
             at, fz = exactly(document, joint.to, joint.at, frame)
             there = carrier.on(np.array([at]))[0]
             assert abs(own.on(np.array([anchor]))[0] - there) < 1e-9 * SIZE
@@ -39,7 +39,7 @@ def check_closed(document, frames, earlier=None):
 @pytest.mark.parametrize("variant", VARIANTS)
 def test_joint_stays_closed_and_turns_with_its_parent(variant):
     document = chain(variant, 3 if variant == "nu" else 2)
-    last = document.figures[-1].id
+    last = document.layers[-1].id
     times = np.random.default_rng(2).uniform(0, 48, 16 if variant == "nu" else 2)
     joints = check_closed(document, (*times, 0, 20, 48))
     factors = [joints.placement(last, frame).factor for frame in times[:2]]
@@ -55,24 +55,24 @@ def test_what_hangs_on_nothing_is_where_it_is():
 
 def test_what_does_not_turn_only_moves():
     document = chain()
-    figure = document.figure(1)
-    still = replace(figure.joints[0], turns=False)
-    document = layers.attach(1, figure.anchor, still)(document)
+    layer = document.layer(1)
+    still = replace(layer.joints[0], turns=False)
+    document = layers.attach(1, layer.anchor, still)(document)
     assert Joints(document).placement(1, 30.0).factor == 1
 
 
 def test_a_pose_that_is_shown_takes_the_place_of_the_key_s():
     document = chain()
-    figure, joint = document.figure(0), document.figure(1).joints[0]
-    pose = bent(figure, 1.0, 2e-4, 5)
-    posed = document.with_figure(
-        replace(figure, keys=(replace(figure.keys[0], pose=pose), *figure.keys[1:]))
+    layer, joint = document.layer(0), document.layer(1).joints[0]
+    pose = bent(layer, 1.0, 2e-4, 5)
+    posed = document.with_layer(
+        replace(layer, keys=(replace(layer.keys[0], pose=pose), *layer.keys[1:]))
     )
     shown = Joints(document).placement(1, 0, {0: pose})
     keyed = Joints(posed).placement(1, 0)
     assert_allclose([*shown], [*keyed], rtol=0, atol=1e-9)
-    f = figure.map_of(pose)
-    own, _ = exactly(document, 1, document.figure(1).anchor, 0)
+    f = layer.map_of(pose)
+    own, _ = exactly(document, 1, document.layer(1).anchor, 0)
     assert_allclose(shown.on(own), f(np.array([joint.at]))[0], rtol=0, atol=1e-9)
 
 
@@ -88,7 +88,7 @@ def test_attaching_moves_nothing_at_the_present_frame(frame, turns):
     hung = layers.attach(2, anchor, joint)(loose)
     assert_allclose(seen(hung, 2, frame), seen(loose, 2, frame, before), rtol=0, atol=1e-8)
     by_anchor = hang(before, 2, 0, frame, turns=turns)
-    assert abs(by_anchor[0] - document.figure(2).anchor) < 1e-12
+    assert abs(by_anchor[0] - document.layer(2).anchor) < 1e-12
 
 
 def test_detaching_moves_nothing_at_the_present_frame():
@@ -101,10 +101,10 @@ def test_detaching_moves_nothing_at_the_present_frame():
 
 def test_layers_are_joined_where_they_overlap_without_an_anchor():
     document = layers.detach(2, 1, 0)(chain())
-    figure = document.figure(2)
-    apart = replace(figure, anchor=CENTRE - 80)
-    keys = tuple(replace(k, pose=bent(figure, 0, 0, 130)) for k in figure.keys)
-    document = document.with_figure(replace(apart, keys=keys))
+    layer = document.layer(2)
+    apart = replace(layer, anchor=CENTRE - 80)
+    keys = tuple(replace(k, pose=bent(layer, 0, 0, 130)) for k in layer.keys)
+    document = document.with_layer(replace(apart, keys=keys))
     before = Joints(document)
     anchor, joint = hang(before, 2, 0, 0, turns=True)
     assert anchor.real < CENTRE.real
@@ -115,12 +115,12 @@ def test_layers_are_joined_where_they_overlap_without_an_anchor():
 def test_attached_layer_keeps_its_distance_beside_its_parent():
     """Nothing moves now, and later it goes with the nearest point, as it was beside it."""
     document = layers.detach(2, 1, 0)(chain())
-    far = document.with_figure(
+    far = document.with_layer(
         replace(
-            document.figure(2),
+            document.layer(2),
             keys=tuple(
-                replace(k, pose=bent(document.figure(2), 0.3, 0, 400))
-                for k in document.figure(2).keys
+                replace(k, pose=bent(document.layer(2), 0.3, 0, 400))
+                for k in document.layer(2).keys
             ),
         )
     )
@@ -149,26 +149,26 @@ def test_joints_stay_closed_when_documents_change_and_are_saved(tmp_path):
     history, joints = History(document, saved=True), Joints(document)
     earlier = []
     changes = (
-        (layers.duplicate_figure(1), layers.duplicate_figure(2), layers.move_figure(2, 0)),
-        (layers.rename_figure(3, "copy"), key_commands.copy_keys(1, {20}, 7)),
+        (layers.duplicate_layer(1), layers.duplicate_layer(2), layers.move_layer(2, 0)),
+        (layers.rename_layer(3, "copy"), key_commands.copy_keys(1, {20}, 7)),
         (key_commands.move_keys(0, {20}, 5), layers.set_hidden(1, hidden=True)),
         (layers.detach(3, *joints.placement(1, 11.5)),),
-        (scene_commands.set_loop(loop=True), layers.remove_figure(0)),
+        (scene_commands.set_loop(loop=True), layers.remove_layer(0)),
     )
     for some in changes:
         for change in some:
             earlier.append(history.document)
             history.do(change)
         joints = check_closed(history.document, frames, joints)
-    assert len(history.document.figures) == 4
+    assert len(history.document.layers) == 4
     for before in reversed(earlier):
         history.undo()
         assert history.document is before
     history.redo()
     save_project(tmp_path / "chain.lissom", history.document)
     again = load_project(tmp_path / "chain.lissom")
-    assert [figure.joints for figure in again.figures] == [
-        figure.joints for figure in history.document.figures
+    assert [layer.joints for layer in again.layers] == [
+        layer.joints for layer in history.document.layers
     ]
     check_closed(again, frames)
 
@@ -180,9 +180,9 @@ def test_attached_layer_is_as_distorted_as_by_itself(variant):
     rng = np.random.default_rng(9)
     points = np.array([inside(rng) for _ in range(40)])
     points = points[np.abs(points - CENTRE) < 0.8 * 90]
-    for figure in hung.figures[1:]:
-        free = hung.with_figure(replace(figure, joints=(), anchor=None))
-        both = [Animation(clip_of(each, figure.id), points=points) for each in (hung, free)]
+    for layer in hung.layers[1:]:
+        free = hung.with_layer(replace(layer, joints=(), anchor=None))
+        both = [Animation(clip_of(each, layer.id), points=points) for each in (hung, free)]
         for frame in rng.uniform(0, 48, 5 if variant == "nu" else 2):
             one, other = (animation.frame(frame) for animation in both)
             for measure in (distortion.k, distortion.sigma_a, distortion.sigma_b):
@@ -193,20 +193,20 @@ def test_attached_layer_is_as_distorted_as_by_itself(variant):
 def test_streamed_joint_stays_closed_on_the_screen():
     document = chain()
     # Joints at vertices of a finer mesh, which series move.
-    domain = document.figures[0].domain
+    domain = document.layers[0].domain
     mesh = triangulate(domain.outline, 300)
     middle = mesh.vertices[np.argsort(np.abs(mesh.vertices - CENTRE))[[3, 20]]]
-    for index, figure in enumerate(document.figures):
-        finer = replace(figure, domain=replace(domain, mesh=mesh))
+    for index, layer in enumerate(document.layers):
+        finer = replace(layer, domain=replace(domain, mesh=mesh))
         if index:
-            joint = replace(figure.joints[0], at=complex(middle[1]))
+            joint = replace(layer.joints[0], at=complex(middle[1]))
             finer = replace(finer, anchor=complex(middle[0]), joints=(joint,))
-        document = document.with_figure(finer)
+        document = document.with_layer(finer)
     joints = Joints(document)
     stores = []
-    for figure in document.figures:
-        clip = clip_of(document, figure.id)
-        store = IntervalStore(mesh=PosableMesh.fine(figure.domain))
+    for layer in document.layers:
+        clip = clip_of(document, layer.id)
+        store = IntervalStore(mesh=PosableMesh.fine(layer.domain))
         store.take(store.preparing(clip, store.missing(clip, 0))())
         while build := store.next_build(clip, 0, heat=False):
             store.take_build(build.advance())
@@ -241,10 +241,10 @@ def test_an_edit_costs_the_frames_of_its_intervals_and_undo_none():
     assert count == 3 * frames
     assert batches > 1
     # The last key of one of them: the way to it from the middle one passes through that.
-    figure = document.figure(1)
-    last = figure.keys[-1]
-    cornered = key_commands.set_passing(1, figure.key_frames, Passing.CORNER)(document)
-    edited = key_commands.pose_key(1, last.frame, bent(figure, 0.3, 1e-4, 2))(cornered)
+    layer = document.layer(1)
+    last = layer.keys[-1]
+    cornered = key_commands.set_passing(1, layer.key_frames, Passing.CORNER)(document)
+    edited = key_commands.pose_key(1, last.frame, bent(layer, 0.3, 1e-4, 2))(cornered)
     before = Joints(cornered, earlier=first)
     worked_out(before)
     after = Joints(edited, earlier=before)
@@ -254,7 +254,7 @@ def test_an_edit_costs_the_frames_of_its_intervals_and_undo_none():
         for each in (1, 2):
             expected = check.placement(each, frame)
             assert_allclose([*after.placement(each, frame)], [*expected], rtol=0, atol=1e-9)
-    # So far only the frames of one figure; and nothing of what was is lost.
+    # So far only the frames of one layer; and nothing of what was is lost.
     assert worked_out(Joints(cornered, earlier=after))[0] == 0
     assert worked_out(Joints(document, earlier=after))[0] == 0
     # What began and was left is gone on with.

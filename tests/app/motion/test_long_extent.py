@@ -16,13 +16,13 @@ LONG = FrameRange(0, LAST)
 
 def keyed(*frames, cycles=()):
     document = disc_document()
-    pose = document.figures[0].keys[0].pose
+    pose = document.layers[0].keys[0].pose
     keys = tuple(Keyframe(frame=frame, pose=pose, easing=LINEAR) for frame in frames)
     return altered(replace(document, frames=LONG), keys=keys, cycles=cycles)
 
 
 class Reaching:
-    """Says how far a figure reaches in a frame, the same each way, and counts the frames."""
+    """Says how far a layer reaches in a frame, the same each way, and counts the frames."""
 
     def __init__(self, how):
         self.how, self.seen = how, set()
@@ -87,27 +87,27 @@ def test_few_frames_are_all_measured():
 def test_a_spike_that_a_cycle_brings_again_is_within():
     period, spike = 60_000, 31_234
     document = keyed(0, spike - 1, spike, spike + 1, cycles=(Cycle(first=0, last=period),))
-    (figure,) = document.figures
+    (layer,) = document.layers
     # Another layer's keys part its rounds, and each spike lies farther than the one before.
-    other = replace(figure, id=1, name="other", cycles=())
+    other = replace(layer, id=1, name="other", cycles=())
     keys = [replace(other.keys[0], frame=frame) for frame in range(0, LAST, 90_000)]
-    document = replace(document, figures=(figure, replace(other, keys=tuple(keys))))
+    document = replace(document, layers=(layer, replace(other, keys=tuple(keys))))
     (found, *_) = reach(document, lambda at: 1e-3 * at + 1000.0 * (at % period == spike))
     assert found >= 1e-3 * (15 * period + spike) + 1000.0
 
 
 def test_a_spring_that_swings_with_what_carries_it_is_within():
     document, kicked = keyed(0), 500_000
-    (figure,) = document.figures
-    anchor = complex(figure.domain.mesh.vertices[0])
+    (layer,) = document.layers
+    anchor = complex(layer.domain.mesh.vertices[0])
     handle = Handle(id=0, name="tip", position=anchor)
-    pose = replace(figure.keys[0].pose, targets={0: Target(position=anchor)})
-    keys = (replace(figure.keys[0], pose=pose),)
+    pose = replace(layer.keys[0].pose, targets={0: Target(position=anchor)})
+    keys = (replace(layer.keys[0], pose=pose),)
     spring = Spring(handle=0, frequency=2.0, damping=0.1)
     moves = tuple(MoveKey(frame=at) for at in (0, kicked, LAST))
-    carrier = replace(figure, id=1, name="carrier", movement=moves)
+    carrier = replace(layer, id=1, name="carrier", movement=moves)
     child = replace(
-        figure,
+        layer,
         handles=(handle,),
         next_handle=1,
         keys=keys,
@@ -116,7 +116,7 @@ def test_a_spring_that_swings_with_what_carries_it_is_within():
         springs=(spring,),
     )
     (found, *_) = reach(
-        replace(document, figures=(child, carrier)),
+        replace(document, layers=(child, carrier)),
         lambda at: 1000.0 if at == kicked + 7 else 10.0,
     )
     assert found >= 1000.0

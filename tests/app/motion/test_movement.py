@@ -1,4 +1,4 @@
-"""Figures moved as a whole: a rigid motion after the map, with all that hangs on them."""
+"""Layers moved as a whole: a rigid motion after the map, with all that hangs on them."""
 
 from dataclasses import replace
 
@@ -15,29 +15,29 @@ MOVES = (MoveKey(frame=0), MoveKey(frame=20, shift=40 - 10j, turn=1.2), MoveKey(
 
 
 def moving(document, identity, keys=MOVES):
-    return document.with_figure(replace(document.figure(identity), movement=keys))
+    return document.with_layer(replace(document.layer(identity), movement=keys))
 
 
 def test_attached_layers_go_along_when_their_parent_moves():
     still, moved = chain(), moving(chain(), 0)
     without, along = Joints(still), Joints(moved)
     for frame in (0.0, 7.5, 20.0, 33.0):
-        motion = movement_at(moved, moved.figure(0), frame)
-        for figure in (0, 1, 2):
-            before = without.placement(figure, frame)
-            after = along.placement(figure, frame)
+        motion = movement_at(moved, moved.layer(0), frame)
+        for layer in (0, 1, 2):
+            before = without.placement(layer, frame)
+            after = along.placement(layer, frame)
             assert_allclose(after, motion.after(before), rtol=0, atol=1e-9)
 
 
-def test_a_figure_is_as_distorted_and_certified_as_without():
+def test_a_layer_is_as_distorted_and_certified_as_without():
     still, moved = chain(), moving(chain(), 0)
-    points = still.figure(0).domain.mesh.vertices * 0.9 + 10 + 10j
+    points = still.layer(0).domain.mesh.vertices * 0.9 + 10 + 10j
     one, other = (Animation(clip_of(each, 0), points=points).frame(13.0) for each in (still, moved))
     assert np.array_equal(one.fz, other.fz)
     assert np.array_equal(one.fzbar, other.fzbar)
-    assert [key.pose for key in still.figure(0).keys] == [key.pose for key in moved.figure(0).keys]
+    assert [key.pose for key in still.layer(0).keys] == [key.pose for key in moved.layer(0).keys]
     hung = hung_animations([Animation(clip_of(moved, 0), points=points)], moved)[0]
-    motion = movement_at(moved, moved.figure(0), 13.0)
+    motion = movement_at(moved, moved.layer(0), 13.0)
     assert_allclose(hung.positions(13.0), motion.on(one.positions), rtol=0, atol=1e-9)
 
 
@@ -49,33 +49,33 @@ def test_layer_is_not_moved_by_itself_while_attached():
 
 def test_what_is_let_go_goes_on_from_where_it_is():
     document = moving(chain(), 1)
-    figure = document.figure(1)
+    layer = document.layer(1)
     released = Attachment(to=None, frame=20, keeps=True)
-    document = layers.attach(1, figure.anchor, released)(document)
+    document = layers.attach(1, layer.anchor, released)(document)
     joints = Joints(document)
     at, before = joints.placement(1, 20), joints.placement(1, 20, before=True)
     assert_allclose(at, before, rtol=0, atol=1e-9)
-    own = document.figure(1)
+    own = document.layer(1)
     gone = movement_at(document, own, 30).after(movement_at(document, own, 20).inverse)
     assert_allclose(joints.placement(1, 30), gone.after(at), rtol=0, atol=1e-9)
     assert np.abs(seen(document, 1, 30) - seen(document, 1, 20)).min() > 1
 
 
-def test_what_takes_hold_of_a_moving_figure_does_not_let_it_jump():
+def test_what_takes_hold_of_a_moving_layer_does_not_let_it_jump():
     document = moving(chain(), 1)
-    figure = document.figure(1)
-    later = (Attachment(to=0, at=figure.joints[0].at, frame=12, keeps=True),)
-    document = document.with_figure(replace(figure, joints=later))
+    layer = document.layer(1)
+    later = (Attachment(to=0, at=layer.joints[0].at, frame=12, keeps=True),)
+    document = document.with_layer(replace(layer, joints=later))
     joints = Joints(document)
     assert_allclose(
         joints.placement(1, 12), joints.placement(1, 12, before=True), rtol=0, atol=1e-9
     )
-    assert joints.placement(1, 12, before=True) == movement_at(document, figure, 12)
+    assert joints.placement(1, 12, before=True) == movement_at(document, layer, 12)
 
 
 def test_springs_feel_the_movement():
     assert carried_in(chain(), 0) is None
     moved = moving(chain(), 0)
     carried = carried_in(moved, 0)
-    assert carried(20.0) == movement_at(moved, moved.figure(0), 20.0)
+    assert carried(20.0) == movement_at(moved, moved.layer(0), 20.0)
     assert carried(20.0).shift != pytest.approx(0)

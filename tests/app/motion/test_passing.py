@@ -20,12 +20,12 @@ from engine.maps import Bounds
 def test_keys_are_passed_at_one_velocity_whatever_the_easings(easing):
     document = row(4, loop=True)
     document = key_commands.set_easing(0, {10}, easing)(document)
-    animation = Animation(clip_of(document, 0), points=document.figures[0].domain.outline)
+    animation = Animation(clip_of(document, 0), points=document.layers[0].domain.outline)
     speeds = [jump(animation, frame) for frame in (0.0, 10.0, 20.0, 30.0)]
     largest = max(speed for _, speed in speeds)
     assert max(change for change, _ in speeds) < 1e-5 * largest
     cornered = key_commands.set_passing(0, {20}, Passing.CORNER)(document)
-    animation = Animation(clip_of(cornered, 0), points=document.figures[0].domain.outline)
+    animation = Animation(clip_of(cornered, 0), points=document.layers[0].domain.outline)
     assert jump(animation, 20.0)[0] > 0.1 * largest
 
 
@@ -45,14 +45,14 @@ def test_a_key_that_changes_has_four_intervals_prepared_again():
     document = row(7)
     store, _ = prepared(document)
     before = store.prepared(clip_of(document, 0))
-    pose = document.figures[0].key(20).pose
+    pose = document.layers[0].key(20).pose
     posed = key_commands.pose_key(0, 30, replace(pose, phi=1.01 * pose.phi))(document)
     assert prepared(posed, store)[1] == 4
     after = store.prepared(clip_of(posed, 0))
     kept = [new is old for new, old in zip(after, before, strict=True)]
     assert kept == [True, False, False, False, False, True]
     # Corners and stops blend two keys alike, at another pace.
-    every = document.figures[0].key_frames
+    every = document.layers[0].key_frames
     cornered, stopped = (
         key_commands.set_passing(0, every, passing)(document)
         for passing in (Passing.CORNER, Passing.STOP)

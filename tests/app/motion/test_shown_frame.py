@@ -15,11 +15,11 @@ from engine.domain.meshing import triangulate
 def test_the_nearer_key_stands_in_until_the_in_between_is_prepared():
     """As for a layer that is duplicated there, which was never shown before."""
     document = disc_document()
-    figure = document.figures[0]
-    first = figure.keys[0].pose
+    layer = document.layers[0]
+    first = layer.keys[0].pose
     turned = replace(first, phi=CENTRE + (first.phi - CENTRE) * np.exp(0.8j))
-    clip = clip_of(key_commands.insert_key(figure.id, 24, turned)(document), figure.id)
-    store = IntervalStore(mesh=PosableMesh.coarse(figure.domain))
+    clip = clip_of(key_commands.insert_key(layer.id, 24, turned)(document), layer.id)
+    store = IntervalStore(mesh=PosableMesh.coarse(layer.domain))
     for frame, pose in ((6, first), (18, turned)):
         shown = show(clip, frame, None, [store], None)
         assert shown.stand_in is pose
@@ -31,13 +31,13 @@ def test_the_nearer_key_stands_in_until_the_in_between_is_prepared():
 
 def test_one_exact_in_between_stands_in_for_others_nearby():
     document = disc_document()
-    figure = document.figures[0]
-    first = figure.keys[0].pose
-    pair = clip_of(key_commands.insert_key(figure.id, 24, first)(document), figure.id)
-    store = IntervalStore(mesh=PosableMesh.coarse(figure.domain))
+    layer = document.layers[0]
+    first = layer.keys[0].pose
+    pair = clip_of(key_commands.insert_key(layer.id, 24, first)(document), layer.id)
+    store = IntervalStore(mesh=PosableMesh.coarse(layer.domain))
     store.take(store.preparing(pair, [0])())
     bent = replace(first, phi=CENTRE + (first.phi - CENTRE) * np.exp(0.8j))
-    clip = clip_of(key_commands.insert_key(figure.id, 24, bent)(document), figure.id)
+    clip = clip_of(key_commands.insert_key(layer.id, 24, bent)(document), layer.id)
     assert store.making_frame(pair, 12) is None
     assert store.making_frame(clip, 24) is None
     store.take(store.making_frame(clip, 12)())
@@ -51,7 +51,7 @@ def test_one_exact_in_between_stands_in_for_others_nearby():
             expected = exact.positions(clip, frame)
             np.testing.assert_allclose(shown.positions, expected, atol=1e-5)
     # Of other keys it shows nothing.
-    other = clip_of(key_commands.insert_key(figure.id, 24, turned_back(bent))(document), figure.id)
+    other = clip_of(key_commands.insert_key(layer.id, 24, turned_back(bent))(document), layer.id)
     assert show(other, 12, None, [store], None).stand_in is first
 
 
@@ -59,17 +59,17 @@ def turned_back(pose):
     return replace(pose, phi=CENTRE + (pose.phi - CENTRE) * np.exp(-0.4j))
 
 
-def test_twenty_figures_with_something_in_front_are_drawn_again_as_they_are():
+def test_twenty_layers_with_something_in_front_are_drawn_again_as_they_are():
     """Each in the order that it was painted in before, without finding or uploading it anew."""
     document = handle_commands.add_handle(0, CENTRE)(disc_document())
     document = layer_commands.set_front(0, 0, 1.0, None)(document)
     clip = clip_of(document, 0)
-    figure = clip.figure
+    layer = clip.layer
     stores = []
     for triangles in range(300, 500, 10):
-        mesh = triangulate(figure.domain.outline, triangles)
-        own = replace(figure, domain=replace(figure.domain, mesh=mesh))
-        clip = replace(clip, figure=own)
+        mesh = triangulate(layer.domain.outline, triangles)
+        own = replace(layer, domain=replace(layer.domain, mesh=mesh))
+        clip = replace(clip, layer=own)
         stores.append((clip, IntervalStore(mesh=PosableMesh.fine(own.domain))))
     shows = [show(clip, 0, None, [store], None) for clip, store in stores]
     for (clip, store), shown in zip(stores, shows, strict=True):
@@ -82,8 +82,8 @@ def test_twenty_figures_with_something_in_front_are_drawn_again_as_they_are():
 def test_a_mesh_with_something_in_front_goes_with_what_showed_it():
     document = handle_commands.add_handle(0, CENTRE)(disc_document())
     clip = clip_of(layer_commands.set_front(0, 0, 1.0, None)(document), 0)
-    mesh = triangulate(clip.figure.domain.outline, 300)
-    posable = PosableMesh.fine(replace(clip.figure.domain, mesh=mesh))
+    mesh = triangulate(clip.layer.domain.outline, 300)
+    posable = PosableMesh.fine(replace(clip.layer.domain, mesh=mesh))
     order, depths = posable.order.triangles(clip, 0), posable.order.depths(clip, 0)
     assert not np.array_equal(order, mesh.triangles)
     np.testing.assert_allclose(depths.max(), 1, rtol=0, atol=1e-6)
@@ -92,7 +92,7 @@ def test_a_mesh_with_something_in_front_goes_with_what_showed_it():
     assert vertices() is None
 
 
-def test_figures_that_are_drawn_together_share_the_coarse_triangles():
+def test_layers_that_are_drawn_together_share_the_coarse_triangles():
     outline = 100 * regular_polygon(30)
     mesh = triangulate(outline, 30_000)
     domain = Domain(outline=outline, cage=1.2 * outline, mesh=mesh)

@@ -1,4 +1,4 @@
-"""Tracks and springs: handles that go their own ways over the motion of their figure."""
+"""Tracks and springs: handles that go their own ways over the motion of their layer."""
 
 import gc
 import weakref
@@ -9,7 +9,7 @@ import pytest
 from animations import still_document, within
 from numpy.testing import assert_allclose, assert_array_equal
 from shapes import regular_polygon
-from still_poses import CORNERS, PLACES, animate, animated, posed, with_figure
+from still_poses import CORNERS, PLACES, animate, animated, posed, with_layer
 
 from app.document import (
     RUBBERY,
@@ -57,13 +57,13 @@ def track(name="right", keys=WAVE, **settings):
 
 
 def tracked(*tracks, loop=False, **changes):
-    return with_figure(posed(loop=loop), tracks=tracks, **changes)
+    return with_layer(posed(loop=loop), tracks=tracks, **changes)
 
 
 def pulled(wish, variant="nu", **changes):
     """A short document whose right handle is wanted elsewhere in its frame 3."""
     away = track(keys=((1, 0), (3, wish), (5, 0)))
-    return with_figure(posed(FEW, drawn=SHORT, variant=variant), tracks=(away,), **changes)
+    return with_layer(posed(FEW, drawn=SHORT, variant=variant), tracks=(away,), **changes)
 
 
 def reversed_in_time(keys):
@@ -105,11 +105,11 @@ def test_a_planted_handle_stays_in_the_picture():
 
 
 def planted_child():
-    """A figure that hangs on a moving one, with a handle that stays in the scene; and where."""
+    """A layer that hangs on a moving one, with a handle that stays in the scene; and where."""
     document = posed(FEW, drawn=SHORT)
     place = PLACES["top"] + 2j
     child = replace(
-        document.figures[0],
+        document.layers[0],
         id=1,
         name="child",
         anchor=60 + 45j,
@@ -117,13 +117,13 @@ def planted_child():
         bounds=RUBBERY.bounds,
         tracks=(track("top", ((0, place), (8, place)), planted=True),),
     )
-    parent = with_figure(document, stillness=False).figures[0]
-    return replace(document, figures=(parent, child)), place
+    parent = with_layer(document, stillness=False).layers[0]
+    return replace(document, layers=(parent, child)), place
 
 
 def test_planted_handle_stays_in_the_scene_when_attached():
     scene, place = planted_child()
-    child = scene.figures[1]
+    child = scene.layers[1]
     joints = Joints(scene)
     handles = np.array([handle.position for handle in child.handles])
     hung = Animation(clip_of(scene, 1), points=np.append(handles, child.anchor))
@@ -150,7 +150,7 @@ def test_a_group_moves_together_and_a_handle_turns_where_that_is_asked():
 def test_a_still_handle_beside_one_that_goes_gives_way():
     document = posed()
     beside = handle_commands.add_handle(0, PLACES["right"] - 1.5, name="beside")(document)
-    animation = animate(with_figure(beside, tracks=(track(),)))
+    animation = animate(with_layer(beside, tracks=(track(),)))
     still = animation.base.frame(10.0)
     turn = still.fz[IDS["right"]] / abs(still.fz[IDS["right"]])
     moved = animation.positions(10.0) - still.positions
@@ -182,7 +182,7 @@ def test_corrected_frames_are_proven_in_closed_variants(variant, wish):
     assert corrected.frames == corrected.proven == 3
     assert report.corrected_verdict is Verdict.PROVEN
     clip = clip_of(document, 0)
-    outline = clip.figure.domain.outline
+    outline = clip.layer.domain.outline
     between = outline + np.linspace(0, 1, 40)[:, None] * (np.roll(outline, -1) - outline)
     animation = Animation(clip, variant, points=between.ravel())
     shown = animation.frame(3)
@@ -192,7 +192,7 @@ def test_corrected_frames_are_proven_in_closed_variants(variant, wish):
 
 def test_repeats_of_a_track_are_proven_once_however_many():
     cycles = (Cycle(first=0, last=10),)
-    document = pulled(8j, keys=posed(1).figures[0].keys, cycles=cycles)
+    document = pulled(8j, keys=posed(1).layers[0].keys, cycles=cycles)
     clip = clip_of(replace(document, frames=FrameRange(0, 999_999)), 0)
     frames, counts = acting_frames(clip)
     assert_array_equal(frames, range(1, 6))
@@ -212,7 +212,7 @@ def test_acting_frames_are_those_of_the_tracks(loop):
         shown = {
             frame: (
                 time_of(clip, frame),
-                *(track_at(each, clip, frame) for each in clip.figure.tracks),
+                *(track_at(each, clip, frame) for each in clip.layer.tracks),
             )
             for frame in range(clip.frames.first, clip.frames.last + 1)
         }
@@ -253,7 +253,7 @@ def test_a_smaller_reach_moves_less_of_the_drawing():
 
 def springy(*, loop=False, **settings):
     spring = Spring(handle=IDS["top"], **({"frequency": 7.5, "damping": 0.2} | settings))
-    return with_figure(posed(loop=loop, drawn=SHORT), springs=(spring,))
+    return with_layer(posed(loop=loop, drawn=SHORT), springs=(spring,))
 
 
 def test_spring_swings_about_its_place_and_closes_a_loop():
@@ -275,8 +275,8 @@ def test_spring_moves_nothing_without_strength_or_under_a_track():
     wave = (track("top", ((0, 0), (4, 6j), (12, 0))),)
     sprung = springy()
     alone, both = (
-        animate(with_figure(sprung, tracks=wave, springs=each))
-        for each in ((), sprung.figures[0].springs)
+        animate(with_layer(sprung, tracks=wave, springs=each))
+        for each in ((), sprung.layers[0].springs)
     )
     # What follows is not still, so that the motion under the track is another one.
     offset = {
@@ -291,7 +291,7 @@ def arms(frames, **settings):
     document = springy(**settings)
     animation, root = (
         animate(document),
-        root_of(document.figures[0], document.figures[0].springs[0]),
+        root_of(document.layers[0], document.layers[0].springs[0]),
     )
     both = [(animation.base.frame(frame).positions, animation.positions(frame)) for frame in frames]
     tip, foot = np.array([[each[[IDS["top"], root]] for each in pair] for pair in both]).T
@@ -342,7 +342,7 @@ def test_what_swings_goes_along_where_a_track_moves_its_root(turn):
     document = springy(root=IDS["middle"])
     frames, seen = (3, 6, 8), []
     for tracks in ((), (moves,)):
-        animation = animate(with_figure(document, tracks=tracks, bounds=RUBBERY.bounds))
+        animation = animate(with_layer(document, tracks=tracks, bounds=RUBBERY.bounds))
         places = np.array([animation.positions(frame) for frame in frames])
         seen.append(places[:, IDS["top"]] - places[:, IDS["middle"]])
     turns = [track_at(moves, clip_of(document, 0), frame).turn for frame in frames]
@@ -354,15 +354,15 @@ def test_what_swings_goes_along_where_a_track_moves_its_root(turn):
 def test_pieces_of_a_swing_are_those_of_the_whole(loop, stretch):
     document = springy(loop=loop, damping=0.2, lag=2.5, stretch=stretch)
     clip = clip_of(replace(document, frames=FrameRange(0, 300)), 0)
-    (spring,) = clip.figure.springs
+    (spring,) = clip.layer.springs
     places = np.cumsum(np.random.default_rng(0).normal(0, 20, (301, 4, 2)) @ [1, 1j], axis=0)
     places[40:100] = places[40]  # where the swing fades
     places[-1] = places[0]
     swings = Swings(clip, lambda _: HERE)
     assert PIECE < swings.run_up < 300 - 2 * PIECE
     settings = {"frequency": spring.frequency, "damping": spring.damping, "lag": spring.lag}
-    limit = FARTHEST_SWING * box_diagonal(clip.figure.domain.outline)
-    root = places[:, root_of(clip.figure, spring)]
+    limit = FARTHEST_SWING * box_diagonal(clip.layer.domain.outline)
+    root = places[:, root_of(clip.layer, spring)]
     roots = None if stretch else root
     whole = swing(places[:, IDS["top"]], clip.fps, limit=limit, loop=loop, roots=roots, **settings)
     for frame in (299.5, 150, 63.9, 64, 0.5, 98, 299, *range(0, 301, 7)):
@@ -376,7 +376,7 @@ def test_pieces_of_a_swing_are_those_of_the_whole(loop, stretch):
 def test_spring_is_worked_out_around_the_frame_it_is_asked_for(damping):
     document = springy(damping=damping)
     clip = clip_of(replace(document, frames=FrameRange(0, 999_999), loop=damping > 0), 0)
-    (spring,) = clip.figure.springs
+    (spring,) = clip.layer.springs
     asked = []
 
     def at(frame):
@@ -396,7 +396,7 @@ def test_spring_acts_until_it_has_settled():
     assert frames[0] == 0
     assert 3 * SHORT < frames[-1] < 50
     swings = Swings(clip, None)
-    (spring,) = clip.figure.springs
+    (spring,) = clip.layer.springs
     animation = animate(document)
 
     def base(frame):
@@ -412,15 +412,15 @@ def test_attached_spring_swings_with_its_parent():
     document = posed(FEW, drawn=SHORT)
     spring = Spring(handle=IDS["top"], frequency=5.0, damping=0.2)
     child = replace(
-        document.figures[0],
+        document.layers[0],
         id=1,
         name="child",
-        keys=document.figures[0].keys[:1],
+        keys=document.layers[0].keys[:1],
         anchor=30 + 40j,
         joints=(Attachment(to=0, at=90 + 45j),),
         springs=(spring,),
     )
-    scene = replace(document, figures=(document.figures[0], child))
+    scene = replace(document, layers=(document.layers[0], child))
     points = np.array([handle.position for handle in child.handles])
     alone = Animation(clip_of(scene, 1), points=points)
     assert_array_equal(alone.positions(5.0), alone.base.frame(5.0).positions)
@@ -432,7 +432,7 @@ def test_attached_spring_swings_with_its_parent():
     swung = hung.positions(5.0) - hung.base.frame(5.0).positions
     assert abs(swung[IDS["top"]]) > 0.1
     # What was found for another motion of what it hangs on does not stay.
-    moved = with_figure(scene, keys=tuple(reversed_in_time(scene.figures[0].keys)))
+    moved = with_layer(scene, keys=tuple(reversed_in_time(scene.layers[0].keys)))
     window = corrected_clip(scene, 1, None)
     assert corrected_clip(scene, 1, window) is window
     assert corrected_clip(moved, 1, window) is not window
@@ -475,7 +475,7 @@ def test_the_frames_of_a_window_are_those_of_an_export():
     exact = animation.corrections.at(12.0)
     assert_array_equal(frames.at(clip, 12).known.h, exact.known.h)
     # Until the frames of a changed clip are there, those of before stand in.
-    changed = with_figure(document, tracks=(track(keys=((5, 0), (12, 4j), (20, 0))),))
+    changed = with_layer(document, tracks=(track(keys=((5, 0), (12, 4j), (20, 0))),))
     later = CorrectedFrames(clip_of(changed, 0), frames)
     assert later.at(clip_of(changed, 0), 12) is frames.at(clip, 12)
     assert not later.is_exact(clip_of(changed, 0), 12)
@@ -492,8 +492,8 @@ def test_no_places_are_asked_for_without_handles():
 
 def test_extent_and_exports_are_of_the_shown_frames():
     document = pulled(14 - 6j)
-    clip, figure = clip_of(document, 0), document.figures[0]
-    store = IntervalStore(mesh=PosableMesh.coarse(figure.domain))
+    clip, layer = clip_of(document, 0), document.layers[0]
+    store = IntervalStore(mesh=PosableMesh.coarse(layer.domain))
     store.take(store.preparing(clip, store.missing(clip, 0))())
     frames = corrected_clip(document, 0, None)
     while (work := frames.missing(document, 0, {0: store.sampler})) is not None:
@@ -513,14 +513,14 @@ def test_extent_and_exports_are_of_the_shown_frames():
 
 def test_planted_track_is_solved_anew_when_the_parent_changes():
     scene, place = planted_child()
-    parent, child = scene.figures
+    parent, child = scene.layers
     points = np.array([handle.position for handle in child.handles])
     before = trace_paths(clip_of(scene, 1), carried=carried_in(scene, 1))
     joints = Joints(scene)
     assert joints.tracked[1].at(6.0) is joints.tracked[1].at(6.0)
     # The child is the same, but what it hangs on is not.
     moved = replace(parent, keys=(parent.keys[0], replace(parent.keys[1], frame=5)))
-    changed = replace(scene, figures=(moved, child))
+    changed = replace(scene, layers=(moved, child))
     later = Joints(changed, earlier=joints)
     paths = trace_paths(clip_of(changed, 1), before, carried=carried_in(changed, 1))
     fresh = Animation(clip_of(changed, 1), points=points, carried=carried_in(changed, 1))

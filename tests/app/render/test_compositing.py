@@ -1,4 +1,4 @@
-"""Faded and blended figures and groups, against the formulas of the W3C in double precision.
+"""Faded and blended layers and groups, against the formulas of the W3C in double precision.
 
 "Compositing and Blending Level 1", Sections 9.1.4 and 10.
 """
@@ -94,7 +94,7 @@ PAPER = (0.8, 0.5, 0.1, 1.0)
     ("opacity", "colour"),
     [(1.0, (0.0, 0.0, 0.0, 0.0)), (0.4, (0.0, 0.0, 0.0, 0.0)), (0.4, PAPER), (0.0, PAPER)],
 )
-def test_figures_meet_what_is_behind_them_as_they_are_blended(easel, blend, opacity, colour):
+def test_layers_meet_what_is_behind_them_as_they_are_blended(easel, blend, opacity, colour):
     pictures = {laid(easel, pixels): pixels for pixels in (colours(1), colours(2))}
     below, above = pictures
     check(easel, (below, Composite((above,), opacity, blend)), pictures, colour)

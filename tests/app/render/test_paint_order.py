@@ -136,10 +136,10 @@ def star_and_clip(seed):
     """The arm that is told apart behind all else at first, and from a key on in front."""
     star = Star.drawn_by(np.random.default_rng(seed))
     document = star.document((star.tip, -1.0, star.extent))
-    figure = document.figures[0]
-    first = figure.keys[0]
+    layer = document.layers[0]
+    first = layer.keys[0]
     keys = (first, Keyframe(frame=CHANGE, pose=first.pose, fronts={0: 1.0}))
-    return star, clip_of(document.with_figure(replace(figure, keys=keys)), 0)
+    return star, clip_of(document.with_layer(replace(layer, keys=keys)), 0)
 
 
 @pytest.fixture(autouse=True)
@@ -159,8 +159,8 @@ def _always_coarse(monkeypatch):
 def test_no_pixel_of_what_is_behind_shows_through(easel, seed, is_coarse):
     star, clip = star_and_clip(seed)
     posable = PosableMesh.coarse if is_coarse else PosableMesh.fine
-    mesh = posable(clip.figure.domain).domain.mesh
-    assert (len(mesh.triangles) < len(clip.figure.domain.mesh.triangles)) == is_coarse
+    mesh = posable(clip.layer.domain).domain.mesh
+    assert (len(mesh.triangles) < len(clip.layer.domain.mesh.triangles)) == is_coarse
     corners = mesh.vertices[mesh.triangles]
     red = star.is_red(corners.ravel(), BAND).reshape(-1, 3).all(axis=1)
     blue = ~star.is_red(corners.ravel(), -2 * BAND).reshape(-1, 3).any(axis=1)
@@ -215,7 +215,7 @@ def test_arms_that_cross(easel, check_golden, name):
     paper = Backdrop(colour=(0.97, 0.97, 0.95, 1.0))
     frames = []
     for posable in (PosableMesh.fine, PosableMesh.coarse):
-        mesh = posable(clip.figure.domain).domain.mesh
+        mesh = posable(clip.layer.domain).domain.mesh
         drawn = easel.mesh(picture, mesh.vertices, PaintOrder(mesh).triangles(clip, 0))
         pose = easel.pose(drawn, CROSSED.bent(mesh.vertices, 1.0))
         frames.append(easel.frame(VIEW, Scene(background=paper, meshes=(pose,))))

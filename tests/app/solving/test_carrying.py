@@ -1,4 +1,4 @@
-"""Poses carried from one figure to another by a similarity of their handles."""
+"""Poses carried from one layer to another by a similarity of their handles."""
 
 from dataclasses import replace
 
@@ -53,23 +53,23 @@ def test_a_straight_limb_is_mirrored_only_where_that_is_asked():
         assert likeness.to(15 + 50j) == pytest.approx(35 + 50j if mirrors else 45 + 50j)
 
 
-def by_names(figure, source):
+def by_names(layer, source):
     names = {handle.name: handle.id for handle in source.handles}
-    return {each.id: names[each.name] for each in figure.handles if each.name in names}
+    return {each.id: names[each.name] for each in layer.handles if each.name in names}
 
 
-def carriage(source, figure, mirrors=None):
-    pairs = by_names(figure, source)
+def carriage(source, layer, mirrors=None):
+    pairs = by_names(layer, source)
     places = np.array([source.handle(other).position for other in pairs.values()])
-    images = np.array([figure.handle(one).position for one in pairs])
+    images = np.array([layer.handle(one).position for one in pairs])
     likeness = Likeness.of(places, images, mirrors=mirrors)
     return Carriage(source=source, pairs=pairs, likeness=likeness)
 
 
-def raised(figure):
+def raised(layer):
     """The leg with its knee bent and its foot back, as the solver has it."""
-    rig, pose = Rig.of(figure), figure.keys[0].pose
-    names = {handle.name: handle.id for handle in figure.handles}
+    rig, pose = Rig.of(layer), layer.keys[0].pose
+    names = {handle.name: handle.id for handle in layer.handles}
     targets = dict(pose.targets)
     for name, way in (("knee", 18 + 8j), ("foot", -20 + 30j)):
         old = targets[names[name]]
@@ -79,8 +79,8 @@ def raised(figure):
 
 @pytest.fixture(scope="module")
 def near():
-    figure = leg("near leg", 0)
-    return figure, raised(figure)
+    layer = leg("near leg", 0)
+    return layer, raised(layer)
 
 
 @pytest.mark.parametrize("drawn", ["elsewhere", "mirrored and turned"])
@@ -88,13 +88,13 @@ def test_carried_pose_is_the_same_on_a_leg_drawn_elsewhere(near, drawn):
     source, pose = near
     mirrored, turned = "mirrored" in drawn, "turned" in drawn
     by = FAR.shift if drawn == "elsewhere" else 0j
-    figure = leg("far leg", 1, by, mirrored=mirrored, turned=turned)
-    way = carriage(source, figure)
+    layer = leg("far leg", 1, by, mirrored=mirrored, turned=turned)
+    way = carriage(source, layer)
     assert way.likeness.mirrors == mirrored
-    carried = way.carry(Rig.of(figure), pose)
-    check_pose(figure, carried)
+    carried = way.carry(Rig.of(layer), pose)
+    check_pose(layer, carried)
     assert carried.certificate.certified
-    for handle in figure.handles:
+    for handle in layer.handles:
         wished = pose.targets[way.pairs[handle.id]].position
         image = 2 * AXIS - wished.conjugate() if mirrored else wished + by
         image = 1j * image + SIZE[1] if turned else image
@@ -102,25 +102,25 @@ def test_carried_pose_is_the_same_on_a_leg_drawn_elsewhere(near, drawn):
     # Not its handles alone: all of it is the image, as near as two cages have it.
     points = source.domain.mesh.vertices
     images = way.likeness.on(points)
-    inside = figure.covers(images)
-    apart = figure.map_of(carried)(images) - way.likeness.on(source.map_of(pose)(points))
+    inside = layer.covers(images)
+    apart = layer.map_of(carried)(images) - way.likeness.on(source.map_of(pose)(points))
     assert np.abs(apart[inside]).max() < 0.05 * np.abs(source.map_of(pose)(points) - points).max()
 
 
 def test_there_and_back_wishes_are_what_they_were(near):
     source, pose = near
-    figure = leg("far leg", 1, FAR.shift)
-    carried = carriage(source, figure).carry(Rig.of(figure), pose)
-    back = carriage(figure, source).targets(source, carried)
+    layer = leg("far leg", 1, FAR.shift)
+    carried = carriage(source, layer).carry(Rig.of(layer), pose)
+    back = carriage(layer, source).targets(source, carried)
     for identity, target in pose.targets.items():
         assert back[identity].position == pytest.approx(target.position, abs=1e-6)
 
 
 def other_leg(**places):
     """A leg drawn elsewhere, whose handles are moved from where they would be alike."""
-    figure = leg("far leg", 1, FAR.shift)
+    layer = leg("far leg", 1, FAR.shift)
     handles = tuple(
-        replace(each, position=each.position + places.get(each.name, 0)) for each in figure.handles
+        replace(each, position=each.position + places.get(each.name, 0)) for each in layer.handles
     )
     keys = [
         replace(
@@ -129,18 +129,18 @@ def other_leg(**places):
                 key.pose, targets={each.id: Target(position=each.position) for each in handles}
             ),
         )
-        for key in figure.keys
+        for key in layer.keys
     ]
-    return replace(figure, handles=handles, keys=tuple(keys))
+    return replace(layer, handles=handles, keys=tuple(keys))
 
 
 @pytest.mark.parametrize("mirrors", [False, True])
 def test_rest_stays_rest_and_a_turn_of_the_whole_is_as_great_in_any_proportions(near, mirrors):
     source, _ = near
-    figure = other_leg(knee=6 - 9j, foot=-8 + 3j)
-    way = carriage(source, figure, mirrors=mirrors)
-    at_rest = way.targets(figure, source.keys[0].pose)
-    for handle in figure.handles:
+    layer = other_leg(knee=6 - 9j, foot=-8 + 3j)
+    way = carriage(source, layer, mirrors=mirrors)
+    at_rest = way.targets(layer, source.keys[0].pose)
+    for handle in layer.handles:
         assert at_rest[handle.id].position == pytest.approx(handle.position, abs=1e-9)
     turn, centre = np.exp(2.8j), HANDLES["hip"]
     rest = source.keys[0].pose
@@ -152,9 +152,9 @@ def test_rest_stays_rest_and_a_turn_of_the_whole_is_as_great_in_any_proportions(
         },
         phi=centre + turn * (source.domain.cage - centre),
     )
-    carried = way.carry(Rig.of(figure), turned)
+    carried = way.carry(Rig.of(layer), turned)
     image = turn.conjugate() if mirrors else turn
-    fz, fzbar = figure.map_of(carried).derivatives(figure.domain.mesh.vertices)
+    fz, fzbar = layer.map_of(carried).derivatives(layer.domain.mesh.vertices)
     np.testing.assert_allclose(fz, image, rtol=0, atol=1e-6)
     np.testing.assert_allclose(fzbar, 0, rtol=0, atol=1e-6)
     assert all(t.rotation == (-2.8 if mirrors else 2.8) for t in carried.targets.values())
@@ -162,16 +162,16 @@ def test_rest_stays_rest_and_a_turn_of_the_whole_is_as_great_in_any_proportions(
 
 def test_handles_that_take_nothing_over_stay_where_they_are(near):
     source, pose = near
-    figure = leg("far leg", 1, FAR.shift)
+    layer = leg("far leg", 1, FAR.shift)
     add = handle_commands.add_handle(1, HANDLES["hip"] + FAR.shift + 4 - 60j, name="shin")
-    (added,) = add(Document(figures=(figure,))).figures
+    (added,) = add(Document(layers=(layer,))).layers
     present = added.keys[0].pose
     carried = carriage(source, added).carry(Rig.of(added), pose, present)
     shin = next(each.id for each in added.handles if each.name == "shin")
     assert carried.targets[shin].position == present.targets[shin].position
     foot = next(each for each in added.handles if each.name == "foot")
-    wished = carriage(source, figure).targets(figure, pose)
-    named = {figure.handle(i).name: target for i, target in wished.items()}
+    wished = carriage(source, layer).targets(layer, pose)
+    named = {layer.handle(i).name: target for i, target in wished.items()}
     assert carried.targets[foot.id].position == pytest.approx(named["foot"].position)
     check_pose(added, carried)
 
@@ -180,19 +180,19 @@ def test_handles_that_take_nothing_over_stay_where_they_are(near):
 def test_what_no_handle_tells_is_taken_over_too(near, far):
     """One handle alone does not tell how the shape is turned."""
     source = with_one_handle(near[0])
-    figure = with_one_handle(leg("far leg", 1, FAR.shift, turned=far))
+    layer = with_one_handle(leg("far leg", 1, FAR.shift, turned=far))
     turn, rest = np.exp(0.6j), source.keys[0].pose
     turned = replace(rest, phi=HANDLES["hip"] + turn * (source.domain.cage - HANDLES["hip"]))
-    carried = carriage(source, figure).carry(Rig.of(figure), turned)
-    fz, _ = figure.map_of(carried).derivatives(figure.domain.mesh.vertices)
+    carried = carriage(source, layer).carry(Rig.of(layer), turned)
+    fz, _ = layer.map_of(carried).derivatives(layer.domain.mesh.vertices)
     np.testing.assert_allclose(fz, turn, rtol=0, atol=1e-6)
-    assert figure.lags(carried)[0] < 1e-6
+    assert layer.lags(carried)[0] < 1e-6
 
 
-def with_one_handle(figure):
-    (hip, *others) = figure.handles
-    remove = handle_commands.remove_handles(figure.id, frozenset(each.id for each in others))
-    (alone,) = remove(Document(figures=(figure,))).figures
+def with_one_handle(layer):
+    (hip, *others) = layer.handles
+    remove = handle_commands.remove_handles(layer.id, frozenset(each.id for each in others))
+    (alone,) = remove(Document(layers=(layer,))).layers
     assert alone.handles == (hip,)
     return alone
 
@@ -200,12 +200,12 @@ def with_one_handle(figure):
 @pytest.mark.parametrize("mirrored", [False, True])
 def test_the_solver_begins_with_the_image_of_the_whole_map(near, mirrored):
     source, pose = near
-    figure = leg("far leg", 1, mirrored=mirrored, turned=True)
-    likeness = carriage(source, figure).likeness
-    begin, _ = begin_like(Rig.of(figure), source, pose, likeness, {})
+    layer = leg("far leg", 1, mirrored=mirrored, turned=True)
+    likeness = carriage(source, layer).likeness
+    begin, _ = begin_like(Rig.of(layer), source, pose, likeness, {})
     points = source.domain.mesh.vertices
     images, shape = likeness.on(points), source.map_of(pose)
-    inside = figure.covers(images)
+    inside = layer.covers(images)
     wanted = likeness.on(shape(points))[inside]
     moved = np.abs(shape(points) - points).max()
     assert np.abs(begin(images[inside]) - wanted).max() < 0.02 * moved
@@ -218,11 +218,11 @@ def test_what_hangs_is_held_at_its_joint_as_the_source_is_at_its_own(near, by):
     source = replace(near[0], anchor=62 + 162j, joints=(hung,))
     pose = raised(source)
     assert abs(source.map_of(pose)(np.array([source.anchor]))[0] - source.anchor) < 3
-    figure = replace(leg("far leg", 1, FAR.shift), anchor=62 + 162j + by, joints=(hung,))
-    rig = Rig.of(figure)
+    layer = replace(leg("far leg", 1, FAR.shift), anchor=62 + 162j + by, joints=(hung,))
+    rig = Rig.of(layer)
     assert len(rig.pins) == 1
-    carried = carriage(source, figure).carry(rig, pose)
-    check_pose(figure, carried)
+    carried = carriage(source, layer).carry(rig, pose)
+    check_pose(layer, carried)
     there = source.map_of(pose)(np.array([source.anchor]))[0] + by
-    here = figure.map_of(carried)(np.array([figure.anchor]))[0]
+    here = layer.map_of(carried)(np.array([layer.anchor]))[0]
     assert abs(here - there) < 3

@@ -14,7 +14,7 @@ MIDDLE = 80.0
 NAMES = {"arm.L": 22 + 60j, "arm.R": 138 + 60j, "hip": 80 + 20j}
 
 
-def figure_of(places, *, symmetric=True):
+def layer_of(places, *, symmetric=True):
     """A drawing with an arm on either side, or on one only."""
     picture = Image.new("RGBA", (160, 120))
     pen = ImageDraw.Draw(picture)
@@ -23,14 +23,14 @@ def figure_of(places, *, symmetric=True):
     document = still_document(np.array(picture))
     for name, place in places.items():
         document = handle_commands.add_handle(0, place, name=name)(document)
-    return document.figures[0]
+    return document.layers[0]
 
 
-def posed(figure, **moves):
+def posed(layer, **moves):
     """Pull handles, by name, as far as is told."""
-    rig = Rig.of(figure)
-    pose = figure.keys[0].pose
-    names = {handle.name: handle.id for handle in figure.handles}
+    rig = Rig.of(layer)
+    pose = layer.keys[0].pose
+    names = {handle.name: handle.id for handle in layer.handles}
     targets = dict(pose.targets)
     for name, way in moves.items():
         identity = names[name.replace("_", ".")]
@@ -41,33 +41,33 @@ def posed(figure, **moves):
 
 @pytest.fixture(scope="module")
 def raised():
-    figure = figure_of(NAMES)
-    return figure, *posed(figure, arm_L=10 + 30j)
+    layer = layer_of(NAMES)
+    return layer, *posed(layer, arm_L=10 + 30j)
 
 
 def test_a_symmetric_drawing_is_posed_as_its_mirror_image(raised):
-    figure, rig, pose = raised
-    assert figure.axis == MIDDLE
-    (flipped,) = flip_poses(rig, [pose], figure.axis)
-    check_pose(figure, flipped)
+    layer, rig, pose = raised
+    assert layer.axis == MIDDLE
+    (flipped,) = flip_poses(rig, [pose], layer.axis)
+    check_pose(layer, flipped)
     assert flipped.certificate.certified
-    points = figure.domain.mesh.vertices
-    mirrored = 2 * MIDDLE - figure.map_of(pose)(2 * MIDDLE - points.conj()).conj()
+    points = layer.domain.mesh.vertices
+    mirrored = 2 * MIDDLE - layer.map_of(pose)(2 * MIDDLE - points.conj()).conj()
     # The cage is not symmetric, so that the same wishes lead to slightly other maps.
-    apart = np.abs(figure.map_of(flipped)(points) - mirrored)
-    moved = np.abs(figure.map_of(pose)(points) - points)
+    apart = np.abs(layer.map_of(flipped)(points) - mirrored)
+    moved = np.abs(layer.map_of(pose)(points) - points)
     assert apart.max() < 0.1 * moved.max()
 
 
 def test_pairs_exchange_their_wishes_and_twice_is_nothing(raised):
-    figure, rig, pose = raised
-    left, right, hip = (handle.id for handle in figure.handles)
-    targets = flipped_targets(figure, pose, figure.axis)
+    layer, rig, pose = raised
+    left, right, hip = (handle.id for handle in layer.handles)
+    targets = flipped_targets(layer, pose, layer.axis)
     assert targets[right].position == pytest.approx(NAMES["arm.R"] - 10 + 30j, abs=1e-9)
     assert targets[left].position == pytest.approx(NAMES["arm.L"], abs=1e-9)
     assert targets[hip].position == pytest.approx(NAMES["hip"], abs=1e-9)
-    (flipped,) = flip_poses(rig, [pose], figure.axis)
-    again = flipped_targets(figure, flipped, figure.axis)
+    (flipped,) = flip_poses(rig, [pose], layer.axis)
+    again = flipped_targets(layer, flipped, layer.axis)
     for identity, target in pose.targets.items():
         assert again[identity].position == pytest.approx(target.position, abs=1e-6)
 
@@ -75,30 +75,30 @@ def test_pairs_exchange_their_wishes_and_twice_is_nothing(raised):
 @pytest.mark.parametrize("axis", [80.0, 20.0, 300.0])
 @pytest.mark.parametrize("symmetric", [True, False])
 def test_a_drawing_at_rest_stays_at_rest(symmetric, axis):
-    figure = figure_of({"hip": 80 + 20j, "arm.R": 138 + 60j}, symmetric=symmetric)
-    targets = flipped_targets(figure, figure.keys[0].pose, axis)
-    for handle in figure.handles:
+    layer = layer_of({"hip": 80 + 20j, "arm.R": 138 + 60j}, symmetric=symmetric)
+    targets = flipped_targets(layer, layer.keys[0].pose, axis)
+    for handle in layer.handles:
         assert targets[handle.id].position == pytest.approx(handle.position, abs=1e-9)
 
 
 def test_what_is_turned_as_a_whole_is_turned_the_other_way():
-    figure = figure_of({"hip": 70 + 20j, "arm.L": 90 + 90j, "arm.R": 138 + 60j}, symmetric=False)
+    layer = layer_of({"hip": 70 + 20j, "arm.L": 90 + 90j, "arm.R": 138 + 60j}, symmetric=False)
     turn, centre = np.exp(0.4j), 80 + 60j
-    cage = figure.domain.cage
-    pose = figure.keys[0].pose
+    cage = layer.domain.cage
+    pose = layer.keys[0].pose
     turned = type(pose)(
         targets={
             handle.id: type(pose.targets[handle.id])(
                 position=centre + turn * (handle.position - centre), rotation=0.4
             )
-            for handle in figure.handles
+            for handle in layer.handles
         },
         phi=centre + turn * (cage - centre),
         psi=np.zeros_like(cage),
         certificate=pose.certificate,
     )
-    targets = flipped_targets(figure, turned, MIDDLE)
-    for handle in figure.handles:
+    targets = flipped_targets(layer, turned, MIDDLE)
+    for handle in layer.handles:
         expected = centre + turn.conjugate() * (handle.position - centre)
         assert targets[handle.id].position == pytest.approx(expected, abs=1e-9)
         assert targets[handle.id].rotation == -0.4
@@ -106,15 +106,15 @@ def test_what_is_turned_as_a_whole_is_turned_the_other_way():
 
 def test_handles_are_pairs_by_their_places_and_alone_on_a_symmetric_drawing_follow_the_shape():
     by_place = {"handle 1": 22 + 60j, "handle 2": 137 + 61j, "handle 3": 80 + 20j}
-    figure = figure_of(by_place)
-    one, two, _ = (handle.id for handle in figure.handles)
-    _, pose = posed(figure, **{"handle 1": 10 + 30j})
-    targets = flipped_targets(figure, pose, MIDDLE)
-    moved = targets[two].position - figure.handle(two).position
+    layer = layer_of(by_place)
+    one, two, _ = (handle.id for handle in layer.handles)
+    _, pose = posed(layer, **{"handle 1": 10 + 30j})
+    targets = flipped_targets(layer, pose, MIDDLE)
+    moved = targets[two].position - layer.handle(two).position
     assert abs(moved - (-10 + 30j)) < 2
-    figure = figure_of({"handle 1": 22 + 60j, "handle 3": 80 + 20j})
-    _, pose = posed(figure, **{"handle 1": 10 + 30j})
-    targets = flipped_targets(figure, pose, MIDDLE)
+    layer = layer_of({"handle 1": 22 + 60j, "handle 3": 80 + 20j})
+    _, pose = posed(layer, **{"handle 1": 10 + 30j})
+    targets = flipped_targets(layer, pose, MIDDLE)
     # It does what the other arm does, though no handle is there.
-    (there,) = figure.map_of(pose)(np.array([138 + 60j]))
+    (there,) = layer.map_of(pose)(np.array([138 + 60j]))
     assert targets[one].position == pytest.approx(2 * MIDDLE - there.conjugate(), abs=1e-9)

@@ -35,31 +35,31 @@ def bar():
     return track_commands.put_spring(0, SPRING)(document)
 
 
-def dragged(figure, targets=MappingProxyType({}), pulled=()):
+def dragged(layer, targets=MappingProxyType({}), pulled=()):
     """Return the pose to which a drag of the drawing leads."""
-    pose = figure.keys[0].pose
-    wanted = {i: Target(position=ASIDE.get(i, h.position)) for i, h in enumerate(figure.handles)}
+    pose = layer.keys[0].pose
+    wanted = {i: Target(position=ASIDE.get(i, h.position)) for i, h in enumerate(layer.handles)}
     wanted |= targets
-    drag = Drag.begin(Rig.of(figure), pose).towards(wanted, 600, (), pulled)
+    drag = Drag.begin(Rig.of(layer), pose).towards(wanted, 600, (), pulled)
     assert drag.is_over
     return drag.pose(wanted)
 
 
-def places(figure, pose):
-    at = np.array([handle.position for handle in figure.handles])
-    return figure.map_of(pose)(at)
+def places(layer, pose):
+    at = np.array([handle.position for handle in layer.handles])
+    return layer.map_of(pose)(at)
 
 
 def without_middle(document):
-    """Return the figure that has no handle in its middle at all."""
-    return handle_commands.remove_handles(0, {MIDDLE})(document).figures[0]
+    """Return the layer that has no handle in its middle at all."""
+    return handle_commands.remove_handles(0, {MIDDLE})(document).layers[0]
 
 
 def test_what_follows_goes_where_the_body_carries_it(bar):
-    figure = bar.figures[0]
-    pose = dragged(figure)
-    place = places(figure, pose)[MIDDLE]
-    assert abs(place - figure.handle(MIDDLE).position) > 20
+    layer = bar.layers[0]
+    pose = dragged(layer)
+    place = places(layer, pose)[MIDDLE]
+    assert abs(place - layer.handle(MIDDLE).position) > 20
     assert_allclose(pose.targets[MIDDLE].position, place, rtol=0, atol=1e-9)
     # It is the very pose that there is without the handle.
     free = without_middle(bar)
@@ -75,61 +75,61 @@ def test_what_has_a_track_of_its_own_or_a_spring_that_is_off_is_held(bar):
     )(bar)
     off = track_commands.put_spring(0, replace(SPRING, enabled=False))(bar)
     for document in (tracked, off):
-        figure = document.figures[0]
-        assert figure.followers == frozenset()
-        pose = dragged(figure)
-        assert abs(places(figure, pose)[MIDDLE] - figure.handle(MIDDLE).position) < 2
-        assert pose.targets[MIDDLE].position == figure.handle(MIDDLE).position
+        layer = document.layers[0]
+        assert layer.followers == frozenset()
+        pose = dragged(layer)
+        assert abs(places(layer, pose)[MIDDLE] - layer.handle(MIDDLE).position) < 2
+        assert pose.targets[MIDDLE].position == layer.handle(MIDDLE).position
     switched_off = track_commands.enable_track(0, MIDDLE, enabled=False)(tracked)
-    assert switched_off.figures[0].followers == {MIDDLE}
+    assert switched_off.layers[0].followers == {MIDDLE}
 
 
 def test_a_person_who_pulls_at_it_does_pull(bar):
-    figure, to = bar.figures[0], 120 + 58j
+    layer, to = bar.layers[0], 120 + 58j
     pulled = {MIDDLE}
-    pose = dragged(figure, {MIDDLE: Target(position=to)}, pulled)
-    assert abs(places(figure, pose)[MIDDLE] - to) < 1
+    pose = dragged(layer, {MIDDLE: Target(position=to)}, pulled)
+    assert abs(places(layer, pose)[MIDDLE] - to) < 1
     assert pose.targets[MIDDLE].position == to
     # It stays as the hand left it, and is let go by the next pull elsewhere.
     hand = Hand(frozenset(pulled))
-    drag = Drag.begin(Rig.of(figure), pose).towards(pose.targets, 600, (), pulled)
+    drag = Drag.begin(Rig.of(layer), pose).towards(pose.targets, 600, (), pulled)
     assert drag.release(pose.targets, (hand,))[1].keys() == pulled
     after = drag.towards(pose.targets, 600)
-    assert abs(places(figure, after.pose(pose.targets))[MIDDLE] - to) > 5
+    assert abs(places(layer, after.pose(pose.targets))[MIDDLE] - to) > 5
     assert drag.rig.deformer.handles is not after.rig.deformer.handles
 
 
 def test_what_sits_on_a_joint_is_held_by_it(bar):
-    document = layer_commands.duplicate_figure(0)(bar)
-    (body, _) = document.figures
+    document = layer_commands.duplicate_layer(0)(bar)
+    (body, _) = document.layers
     at = body.handle(MIDDLE).position
-    hung = layer_commands.attach(0, at, Attachment(to=1, at=at))(document).figures[0]
+    hung = layer_commands.attach(0, at, Attachment(to=1, at=at))(document).layers[0]
     assert (body.followers, hung.followers) == ({MIDDLE}, frozenset())
     assert Rig.of(hung).pins == ()
-    elsewhere = layer_commands.attach(0, at + 20, Attachment(to=1, at=at))(document).figures[0]
+    elsewhere = layer_commands.attach(0, at + 20, Attachment(to=1, at=at))(document).layers[0]
     assert elsewhere.followers == {MIDDLE}
 
 
 def test_all_handles_may_follow(bar):
-    figure = bar.figures[0]
-    springs = tuple(replace(SPRING, handle=handle.id) for handle in figure.handles)
-    figure = replace(figure, springs=springs)
-    assert np.array_equal(dragged(figure).phi, figure.keys[0].pose.phi)
+    layer = bar.layers[0]
+    springs = tuple(replace(SPRING, handle=handle.id) for handle in layer.handles)
+    layer = replace(layer, springs=springs)
+    assert np.array_equal(dragged(layer).phi, layer.keys[0].pose.phi)
 
 
 def test_poses_that_are_solved_again_are_not_held_by_it_either(bar):
-    figure = bar.figures[0]
-    pose = dragged(figure)
+    layer = bar.layers[0]
+    pose = dragged(layer)
     # Where it was wanted when it did not follow yet does not count.
     stale = replace(pose, targets={**pose.targets, MIDDLE: Target(position=120 + 40j)})
-    posed = figure.with_poses([stale])
+    posed = layer.with_poses([stale])
     renewal = Renewal(before=posed, bounds=Bounds(k=0.45, sigma_a=1.9, sigma_b=0.55))
     while not renewal.is_over:
         renewal = go_on(renewal, np.zeros((1, 1, 4), np.uint8))
     (again,) = renewal.poses
     (flipped,) = flip_poses(Rig.of(posed), [stale], 120.0)
     for solved in (again, flipped):
-        place = places(figure, solved)[MIDDLE]
+        place = places(layer, solved)[MIDDLE]
         assert_allclose(solved.targets[MIDDLE].position, place, rtol=0, atol=1e-9)
         assert abs(place - 120 - 40j) > 20
 
@@ -151,11 +151,11 @@ def test_keys_of_a_script_do_not_hold_what_follows_and_say_so():
     document, notices = pose_document(
         still_document(bar_picture()), parse_pose_script(SCRIPT), lambda _: None
     )
-    (figure,) = document.figures
-    first, second, last = figure.keys
-    for key in figure.keys:
+    (layer,) = document.layers
+    first, second, last = layer.keys
+    for key in layer.keys:
         assert_allclose(
-            key.pose.targets[MIDDLE].position, places(figure, key.pose)[MIDDLE], rtol=0, atol=1e-9
+            key.pose.targets[MIDDLE].position, places(layer, key.pose)[MIDDLE], rtol=0, atol=1e-9
         )
     assert abs(second.pose.targets[MIDDLE].position - 120 - 40j) > 10
     (notice,) = notices
@@ -175,11 +175,11 @@ def test_springs_are_carried_by_drags_and_pose_when_dragged(bar, tmp_path):
         posing.pull(session, {identity: Target(position=place + way)}, hand=hand)
         posing.let_go(session)
         settle(session)
-        return places(project.figure, project.figure.keys[0].pose)
+        return places(project.layer, project.layer.keys[0].pose)
 
     carried = drag(END, 24j)
     assert abs(carried[MIDDLE] - 120 - 40j) > 5
-    pose = project.figure.keys[0].pose
+    pose = project.layer.keys[0].pose
     assert_allclose(pose.targets[MIDDLE].position, carried[MIDDLE], rtol=0, atol=1e-9)
     # At once once more, before the first drag has come to rest.
     posing.pull(session, {END: Target(position=210 + 80j)})
@@ -193,5 +193,5 @@ def test_springs_are_carried_by_drags_and_pose_when_dragged(bar, tmp_path):
     project.selected = frozenset({MIDDLE})
     posing.nudge(session, 5j)
     settle(session)
-    nudged = places(project.figure, project.figure.keys[0].pose)
+    nudged = places(project.layer, project.layer.keys[0].pose)
     assert abs(nudged[MIDDLE] - bent[MIDDLE] - 5j) < 2

@@ -1,4 +1,4 @@
-"""Ready motions on figures: given, blended in, repeated, given again, and saved."""
+"""Ready motions on layers: given, blended in, repeated, given again, and saved."""
 
 from dataclasses import replace
 
@@ -28,7 +28,7 @@ COARSE = {
 
 
 def given(document: Document, order: MotionOrder) -> Document:
-    giving = begin_giving(document, document.figures[0].id, order)
+    giving = begin_giving(document, document.layers[0].id, order)
     while not giving.is_over:
         assert giving.progress < 1
         assert giving.now
@@ -46,7 +46,7 @@ def scenes(tmp_path_factory) -> dict[str, Document]:
         opened = open_picture(folder / f"{kind}.png", FEW).document
         if kind in COARSE:
             opened = within(opened, COARSE[kind])
-        scenes[kind] = replace(opened, fps=12).with_figure(replace(opened.figures[0], variant="nu"))
+        scenes[kind] = replace(opened, fps=12).with_layer(replace(opened.layers[0], variant="nu"))
     return scenes
 
 
@@ -56,13 +56,13 @@ def wagging(scenes) -> Document:
 
 
 def test_given_motion_loops_exactly_on_a_new_drawing(wagging):
-    (figure,) = wagging.figures
+    (layer,) = wagging.layers
     assert (wagging.frames, wagging.loop) == (FrameRange(0, 12), True)
-    assert figure.keys[0].pose is figure.keys[-1].pose
-    (motion,) = figure.motions
-    assert is_as_given(figure, motion)
-    assert [figure.handle(each).name for each in motion.joints.values()] == list(motion.joints)
-    assert all(figure.is_proven(key.pose) for key in figure.keys)
+    assert layer.keys[0].pose is layer.keys[-1].pose
+    (motion,) = layer.motions
+    assert is_as_given(layer, motion)
+    assert [layer.handle(each).name for each in motion.joints.values()] == list(motion.joints)
+    assert all(layer.is_proven(key.pose) for key in layer.keys)
 
 
 def test_planted_feet_keep_one_speed_and_shins_their_length(scenes):
@@ -73,16 +73,16 @@ def test_planted_feet_keep_one_speed_and_shins_their_length(scenes):
         parameters=Parameters(speed=2.0, size=0.8),
     )
     scene = scenes["biped-side"]
-    giving = begin_giving(scene, scene.figures[0].id, order)
+    giving = begin_giving(scene, scene.layers[0].id, order)
     assert giving.given.facing == 1
     # One foot stands from the first frame on, for more than half of the cycle.
     assert [moment.frame for moment in giving.wanted] == [*range(12)]
     while len(giving.poses) < 7:
         giving = give_on(giving)
-    figure = giving.rig.figure
-    handles = np.array([handle.position for handle in figure.handles])
-    places = np.array([figure.map_of(pose)(handles) for pose in giving.poses])
-    columns = {handle.name: number for number, handle in enumerate(figure.handles)}
+    layer = giving.rig.layer
+    handles = np.array([handle.position for handle in layer.handles])
+    places = np.array([layer.map_of(pose)(handles) for pose in giving.poses])
+    columns = {handle.name: number for number, handle in enumerate(layer.handles)}
     steps = np.diff(places[:, columns["foot.L"]])
     assert_allclose(steps, steps.mean(), atol=0.01 * abs(steps.mean()))
     assert steps.mean().real < 0
@@ -93,22 +93,22 @@ def test_planted_feet_keep_one_speed_and_shins_their_length(scenes):
 
 
 def test_it_is_given_again_in_another_way_until_it_is_edited(wagging):
-    figure = wagging.figures[0]
-    again = replace(CHAIN, handles=figure.motions[0].joints, stiff=False, limits=None)
+    layer = wagging.layers[0]
+    again = replace(CHAIN, handles=layer.motions[0].joints, stiff=False, limits=None)
     slower = replace(again, parameters=Parameters(speed=0.5, size=0.5))
     twice = given(given(wagging, slower), again)
-    assert twice.figures[0].handles == figure.handles
-    assert [key.frame for key in twice.figures[0].keys] == [key.frame for key in figure.keys]
-    for one, other in zip(twice.figures[0].keys, figure.keys, strict=True):
+    assert twice.layers[0].handles == layer.handles
+    assert [key.frame for key in twice.layers[0].keys] == [key.frame for key in layer.keys]
+    for one, other in zip(twice.layers[0].keys, layer.keys, strict=True):
         assert one.pose.targets == other.pose.targets
-    moved = key_commands.pose_key(figure.id, 4, figure.keys[0].pose)(wagging)
-    assert not is_as_given(moved.figures[0], figure.motions[0])
+    moved = key_commands.pose_key(layer.id, 4, layer.keys[0].pose)(wagging)
+    assert not is_as_given(moved.layers[0], layer.motions[0])
 
 
 def test_second_motion_blends_in_when_it_begins_in_the_first(wagging):
     second = replace(CHAIN, motion="slither", first=9, rounds=2, stiff=False, limits=None)
     scene = given(wagging, second)
-    moved = scene.figures[0]
+    moved = scene.layers[0]
     first, slither = moved.motions[0], moved.motions[-1]
     assert (slither.first, slither.start, slither.last) == (9, 12, 48)
     # The former lost its end, and is forgotten.
@@ -123,8 +123,8 @@ def test_second_motion_blends_in_when_it_begins_in_the_first(wagging):
 
 def test_it_survives_saving(wagging, tmp_path):
     save_project(tmp_path / "wag.lissom", wagging, thumbnail=None)
-    read = load_project(tmp_path / "wag.lissom").figures[0]
-    assert read.motions == wagging.figures[0].motions
+    read = load_project(tmp_path / "wag.lissom").layers[0]
+    assert read.motions == wagging.layers[0].motions
     assert is_as_given(read, read.motions[0])
 
 
@@ -132,9 +132,9 @@ def test_motion_out_of_reach_is_told_with_a_size_in_reach(scenes):
     order = MotionOrder(
         motion="breathe", kind="anything", joints={}, parameters=Parameters(size=2.0), limits=None
     )
-    tight = scenes["anything"].figures[0]
+    tight = scenes["anything"].layers[0]
     bounds = replace(tight.bounds, k=0.05, sigma_a=1.05, sigma_b=0.95)
-    scene = scenes["anything"].with_figure(replace(tight, bounds=bounds))
+    scene = scenes["anything"].with_layer(replace(tight, bounds=bounds))
     giving = begin_giving(scene, tight.id, order)
     while not giving.is_over:
         giving = give_on(giving)
@@ -152,7 +152,7 @@ def test_motion_out_of_reach_is_told_with_a_size_in_reach(scenes):
 
 
 def test_what_cannot_be_given_is_refused(scenes):
-    chain, identity = scenes["chain"], scenes["chain"].figures[0].id
+    chain, identity = scenes["chain"], scenes["chain"].layers[0].id
     with pytest.raises(EngineError, match="there is no motion 'dance'"):
         MotionOrder(motion="dance", kind="chain", joints={})
     with pytest.raises(LissomError, match=r"the joint 'joint.2' at \(5, 5\) is not on the drawing"):

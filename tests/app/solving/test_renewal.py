@@ -10,10 +10,10 @@ def test_a_layer_that_is_built_anew_stays_where_it_is(tmp_path):
     stack = '<layer name="head" src="data/0.png" x="60" y="10"/>'
     path.write_bytes(openraster((200, 220), stack, [blob(70, 50)]))
     opened = open_layered(path, Meshing(triangles=4_000))
-    (head,) = opened.document.figures
+    (head,) = opened.document.layers
     renewal = Renewal(before=head, bounds=head.bounds, meshing=Meshing(triangles=5_000))
     while not renewal.is_over:
         renewal = go_on(renewal, opened.pictures[head.id].rgba)
     assert abs(renewal.into.domain.outline.mean() - head.domain.outline.mean()) < 1
-    (again,) = renewal.command(opened.document).figures
+    (again,) = renewal.command(opened.document).layers
     assert again.corner == head.corner == 60 + 160j

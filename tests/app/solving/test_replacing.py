@@ -1,4 +1,4 @@
-"""Another picture under the handles and keys of a figure."""
+"""Another picture under the handles and keys of a layer."""
 
 from dataclasses import replace
 
@@ -23,38 +23,38 @@ from app.storage.project_file import load_project
 MESHING = Meshing(triangles=1_000, detail="coarse")
 
 
-def figure_of(image, corner=0j):
+def layer_of(image, corner=0j):
     data = png(image)
-    layer = ImportedLayer(
+    imported = ImportedLayer(
         name="arm", data=data, picture=decode_picture(data, "arm.png"), corner=corner
     )
-    figure, _ = posable_layer(layer, 0, MESHING, is_cut_out=True)
-    return figure
+    layer, _ = posable_layer(imported, 0, MESHING, is_cut_out=True)
+    return layer
 
 
 @pytest.fixture(scope="module")
 def raised():
     """An ellipse around 90 + 50i with an anchor and two handles, one of them raised at frame 10."""
-    document = Document(figures=(figure_of(blob(120, 40), 30 + 30j),), size=(300, 200))
-    figure = replace(document.figures[0], anchor=50 + 50j)
-    document = document.with_figure(figure)
+    document = Document(layers=(layer_of(blob(120, 40), 30 + 30j),), size=(300, 200))
+    layer = replace(document.layers[0], anchor=50 + 50j)
+    document = document.with_layer(layer)
     for place in (50 + 50j, 140 + 50j):
         document = handle_commands.add_handle(0, place)(document)
-    (figure,) = document.figures
+    (layer,) = document.layers
     wishes = {0: Target(position=50 + 50j), 1: Target(position=130 + 75j)}
-    drag = Drag.begin(Rig.of(figure), figure.keys[0].pose).towards(wishes, 300)
+    drag = Drag.begin(Rig.of(layer), layer.keys[0].pose).towards(wishes, 300)
     return key_commands.insert_key(0, 10, drag.pose(wishes))(document)
 
 
 def replaced(document, made):
-    (before,) = document.figures
+    (before,) = document.layers
     renewal = begin_replacing(before, made, document.canvas)
     while not renewal.is_over:
         renewal = go_on(renewal, np.zeros((1, 1, 4), np.uint8))
     assert renewal.progress == 1
     after = renewal.command(document)
     assert after.canvas == document.canvas
-    return after.figures[0]
+    return after.layers[0]
 
 
 def test_tracks_and_springs_stay_and_planted_places_go_with_their_handles(raised):
@@ -62,22 +62,22 @@ def test_tracks_and_springs_stay_and_planted_places_go_with_their_handles(raised
     planted = Track(handles=(1,), planted=True, keys=at, delay=2)
     beside = Track(handles=(0,), keys=at)
     springs = (Spring(handle=1, frequency=3.0, damping=0.2),)
-    before = replace(raised.figures[0], tracks=(planted, beside), springs=springs)
-    document = raised.with_figure(before)
-    figure = replaced(document, figure_of(blob(120, 40, (10, 20, 30))))
-    assert (figure.tracks, figure.springs) == (before.tracks, springs)
+    before = replace(raised.layers[0], tracks=(planted, beside), springs=springs)
+    document = raised.with_layer(before)
+    layer = replaced(document, layer_of(blob(120, 40, (10, 20, 30))))
+    assert (layer.tracks, layer.springs) == (before.tracks, springs)
     # On a smaller shape the handle comes nearer to the middle, and is wanted as far from there.
-    figure = replaced(document, figure_of(blob(62, 20)))
-    by = figure.handle(1).position - before.handle(1).position
+    layer = replaced(document, layer_of(blob(62, 20)))
+    by = layer.handle(1).position - before.handle(1).position
     assert abs(by) > 10
     one, other = (
-        new.place - old.place for new, old in zip(figure.track_of(1).keys, at, strict=True)
+        new.place - old.place for new, old in zip(layer.track_of(1).keys, at, strict=True)
     )
     (fz,), _ = before.map_of(before.key(10).pose).derivatives(np.array([before.handle(1).position]))
     assert abs(one - by) < 1e-9
     assert abs(other - by * fz / abs(fz)) < 1e-9
-    assert replace(figure.track_of(1), keys=at) == planted
-    assert figure.track_of(0) == beside
+    assert replace(layer.track_of(1), keys=at) == planted
+    assert layer.track_of(0) == beside
 
 
 @pytest.mark.parametrize(
@@ -85,34 +85,34 @@ def test_tracks_and_springs_stay_and_planted_places_go_with_their_handles(raised
     [((120, 40), 30 + 30j), ((300, 200), 0j), ((60, 80), 60 + 10j), ((62, 20), 59 + 40j)],
 )
 def test_where_another_picture_comes(raised, size, corner):
-    figure = replaced(raised, figure_of(blob(*size)))
-    assert figure.corner == corner
-    assert figure.picture.size == size
-    assert figure.domain.contains(np.array([figure.anchor])).all()
+    layer = replaced(raised, layer_of(blob(*size)))
+    assert layer.corner == corner
+    assert layer.picture.size == size
+    assert layer.domain.contains(np.array([layer.anchor])).all()
 
 
 def test_the_same_shape_is_posed_as_before(raised):
-    (before,) = raised.figures
-    figure = replaced(raised, figure_of(blob(120, 40, (10, 20, 30))))
-    assert figure.handles == before.handles
-    assert figure.anchor == before.anchor
+    (before,) = raised.layers
+    layer = replaced(raised, layer_of(blob(120, 40, (10, 20, 30))))
+    assert layer.handles == before.handles
+    assert layer.anchor == before.anchor
     points = np.array([60 + 50j, 90 + 50j, 120 + 52j])
-    for key, old in zip(figure.keys, before.keys, strict=True):
+    for key, old in zip(layer.keys, before.keys, strict=True):
         assert key.frame == old.frame
         assert key.pose.certificate.certified
-        moved = figure.map_of(key.pose)(points) - before.map_of(old.pose)(points)
+        moved = layer.map_of(key.pose)(points) - before.map_of(old.pose)(points)
         assert np.abs(moved).max() < 1
 
 
 def test_what_is_not_on_the_new_shape_comes_onto_it_and_its_wishes_follow(raised):
-    (before,) = raised.figures
-    figure = replaced(raised, figure_of(blob(50, 30)))
-    places = np.array([handle.position for handle in figure.handles])
-    assert figure.domain.contains(places).all()
+    (before,) = raised.layers
+    layer = replaced(raised, layer_of(blob(50, 30)))
+    places = np.array([handle.position for handle in layer.handles])
+    assert layer.domain.contains(places).all()
     # The anchor is at the first handle still.
-    assert figure.anchor == figure.handles[0].position
-    rest, up = figure.keys
-    for handle, old in zip(figure.handles, before.handles, strict=True):
+    assert layer.anchor == layer.handles[0].position
+    rest, up = layer.keys
+    for handle, old in zip(layer.handles, before.handles, strict=True):
         by = handle.position - old.position
         assert abs(by) > 5
         assert abs(rest.pose.targets[handle.id].position - handle.position) < 1e-9
@@ -121,31 +121,31 @@ def test_what_is_not_on_the_new_shape_comes_onto_it_and_its_wishes_follow(raised
         assert abs(abs(moved) - abs(by)) < 1e-9
     # At the raised end the shape is turned, and so is the way that its wish goes.
     turned = up.pose.targets[1].position - before.keys[1].pose.targets[1].position
-    assert abs(np.angle(turned / (figure.handles[1].position - before.handles[1].position))) > 0.1
+    assert abs(np.angle(turned / (layer.handles[1].position - before.handles[1].position))) > 0.1
 
 
 def test_a_still_picture_stays_where_it_was_put():
     still = replace(still_picture(png(blob(40, 20)), decode_picture(png(blob(40, 20)), "a")), id=0)
-    document = Document(figures=(still,))
+    document = Document(layers=(still,))
     pose = still.keys[0].pose
     turned = pose.with_map(still.map_of(pose).moved(1j, 50 + 5j))
     document = key_commands.pose_key(0, 0, turned)(document)
     data = png(blob(40, 20, (0, 0, 250)))
-    figure = replaced(document, still_picture(data, decode_picture(data, "b")))
-    assert figure.still
-    assert figure.picture.data == data
+    layer = replaced(document, still_picture(data, decode_picture(data, "b")))
+    assert layer.still
+    assert layer.picture.data == data
     points = np.array([5 + 5j, 30 + 12j])
-    moved = figure.map_of(figure.keys[0].pose)(points)
+    moved = layer.map_of(layer.keys[0].pose)(points)
     assert np.abs(moved - (1j * points + 50 + 5j)).max() < 1e-6
 
 
 def test_a_pose_that_cannot_be_carried_over_is_reached_from_rest():
     """The head of the sample as an ellipse: carried over, one pose is squeezed below."""
     document = load_project(sample_images() / "friend.lissom")
-    head = next(figure for figure in document.figures if figure.name == "head")
+    head = next(layer for layer in document.layers if layer.name == "head")
     image = Image.new("RGBA", (460, 460))
     ImageDraw.Draw(image).ellipse((10, 10, 450, 450), fill=(250, 210, 170, 255))
-    renewal = begin_replacing(head, figure_of(image), document.canvas)
+    renewal = begin_replacing(head, layer_of(image), document.canvas)
     while not renewal.is_over:
         renewal = go_on(renewal, np.zeros((1, 1, 4), np.uint8))
     assert not renewal.outside

@@ -65,7 +65,7 @@ def test_a_whole_script_is_read(tmp_path):
     path.write_text(json.dumps(WHOLE), encoding="utf-8-sig")
     script = load_pose_script(path)
     assert (script.fps, script.loop) == (12.5, True)
-    (script,) = script.figures
+    (script,) = script.layers
     assert (script.layer, script.variant) == (None, "scaled-eta")
     assert script.bounds == Bounds(k=0.7, sigma_a=4.0, sigma_b=0.25)
     assert script.anchor == 10 + 20.5j
@@ -80,7 +80,7 @@ def test_a_whole_script_is_read(tmp_path):
 def test_what_is_left_out_has_its_documented_default():
     script = parse_pose_script({"schema": 1, "handles": {}, "keys": [{"frame": 3}]})
     assert (script.fps, script.loop) == (24.0, False)
-    (script,) = script.figures
+    (script,) = script.layers
     assert (script.variant, script.attach, script.visible) == ("metric", (), None)
     assert script.bounds == Bounds(k=0.5, sigma_a=2.0, sigma_b=0.5)
     assert script.anchor is None
@@ -174,8 +174,8 @@ CLOCKED = {
 
 def test_tracks_and_springs_are_read():
     script = parse_pose_script(CLOCKED)
-    (figure,) = script.figures
-    tail, hoof = figure.tracks
+    (layer,) = script.layers
+    tail, hoof = layer.tracks
     assert tail == Track(
         handles=(2,),
         keys=(
@@ -196,7 +196,7 @@ def test_tracks_and_springs_are_read():
         turns=True,
     )
     assert hoof == Track(handles=(1, 0), planted=True, keys=(TrackKey(frame=3, place=9),))
-    assert figure.springs == (
+    assert layer.springs == (
         Spring(handle=0, frequency=3.0, damping=0.25),
         Spring(handle=2, frequency=1.6, damping=0.5, lag=1.5),
         Spring(handle=1, frequency=3.0, damping=0.25, lag=1.0, strength=0.5, root=2, stretch=0.5),
@@ -206,15 +206,15 @@ def test_tracks_and_springs_are_read():
 
 
 def test_handles_stay_where_keys_have_them_unless_a_script_says_otherwise():
-    (figure,) = parse_pose_script(CLOCKED).figures
-    assert figure.still
-    assert [handle.still for handle in figure.handles.values()] == [True, False, True]
-    (figure,) = parse_pose_script({**CLOCKED, "still": False}).figures
-    assert not figure.still
-    body, arm = parse_pose_script({**SCENE, "figures": [BODY, {**ARM, "still": False}]}).figures
+    (layer,) = parse_pose_script(CLOCKED).layers
+    assert layer.still
+    assert [handle.still for handle in layer.handles.values()] == [True, False, True]
+    (layer,) = parse_pose_script({**CLOCKED, "still": False}).layers
+    assert not layer.still
+    body, arm = parse_pose_script({**SCENE, "layers": [BODY, {**ARM, "still": False}]}).layers
     assert (body.still, arm.still) == (True, False)
-    loose = {**SCENE, "still": False, "figures": [BODY, {**ARM, "still": True}]}
-    body, arm = parse_pose_script(loose).figures
+    loose = {**SCENE, "still": False, "layers": [BODY, {**ARM, "still": True}]}
+    body, arm = parse_pose_script(loose).layers
     assert (body.still, arm.still) == (False, True)
 
 
@@ -321,14 +321,14 @@ ARM = {
     "variant": "nu",
 }
 BODY = {"layer": "body", "handles": {}, "keys": [{"frame": 0}]}
-SCENE = {"schema": 1, "fps": 8, "bounds": {"k": 0.7}, "figures": [BODY, ARM]}
+SCENE = {"schema": 1, "fps": 8, "bounds": {"k": 0.7}, "layers": [BODY, ARM]}
 
 
-def test_a_script_of_several_figures():
+def test_a_script_of_several_layers():
     script = parse_pose_script(SCENE)
-    body, arm = script.figures
+    body, arm = script.layers
     assert (script.fps, body.layer, arm.layer) == (8, "body", "arm")
-    # What the scene says holds for all figures that say nothing else.
+    # What the scene says holds for all layers that say nothing else.
     assert (body.variant, arm.variant) == ("metric", "nu")
     assert body.bounds == arm.bounds == Bounds(k=0.7, sigma_a=2.0, sigma_b=0.5)
     assert arm.handles["hand"] == ScriptHandle(at=7 + 8j, front=0.5, extent=60.0)
@@ -340,9 +340,9 @@ def test_a_script_of_several_figures():
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"layer": 5}, says(NOT_TEXT, where="figures[0].layer")),
-        ({"colour": 1}, r"figures\[0\] has an unknown field 'colour'"),
-        ({"keys": []}, says(NO_KEYS, where="figures[0]")),
+        ({"layer": 5}, says(NOT_TEXT, where="layers[0].layer")),
+        ({"colour": 1}, r"layers\[0\] has an unknown field 'colour'"),
+        ({"keys": []}, says(NO_KEYS, where="layers[0]")),
         ({"keys": [{"frame": 0, "front": {"toe": 1}}]}, r"keys\[0\] names the handle 'toe'"),
         ({"handles": {"hand": {"front": 1}}}, says(LACKS_FIELD, name="at")),
         ({"handles": {"hand": {"at": [1, 2], "depth": 1}}}, "unknown field 'depth'"),
@@ -351,16 +351,16 @@ def test_a_script_of_several_figures():
         ({"visible": [[0.5, True]]}, "whole number"),
     ],
 )
-def test_whatever_a_figure_cannot_say_is_refused(change, message):
+def test_whatever_a_layer_cannot_say_is_refused(change, message):
     with pytest.raises(LissomError, match=message):
-        parse_pose_script({**SCENE, "figures": [{**ARM, **change}]})
+        parse_pose_script({**SCENE, "layers": [{**ARM, **change}]})
 
 
-def test_figures_have_layers_of_their_own():
-    with pytest.raises(LissomError, match="two figures are of the layer 'arm'"):
-        parse_pose_script({**SCENE, "figures": [ARM, ARM]})
-    with pytest.raises(LissomError, match="at least one figure"):
-        parse_pose_script({**SCENE, "figures": []})
+def test_layers_have_layers_of_their_own():
+    with pytest.raises(LissomError, match="two layers are of the layer 'arm'"):
+        parse_pose_script({**SCENE, "layers": [ARM, ARM]})
+    with pytest.raises(LissomError, match="at least one layer"):
+        parse_pose_script({**SCENE, "layers": []})
     with pytest.raises(LissomError, match="unknown field 'handles'"):
         parse_pose_script({**SCENE, "handles": {}})
 
@@ -397,11 +397,11 @@ def test_a_key_on_request_pulls_with_bounded_force():
         script = {"schema": 1, "handles": handles, "keys": [{"frame": 0}, far, after]}
         script["bounds"] = {"k": 0.5, "sigma_a": 2, "sigma_b": 0.5}
         told, notices = pose_document(document, parse_pose_script(script), lambda _: None)
-        posed[bool(pull)] = told.figures[0], notices
+        posed[bool(pull)] = told.layers[0], notices
     (held, _), (pulled, notices) = posed[False], posed[True]
-    for figure, far in ((held, True), (pulled, False)):
-        for key in figure.keys[1:]:
-            assert (abs(figure.lags(key.pose)[1]) > 5) == far
+    for layer, far in ((held, True), (pulled, False)):
+        for key in layer.keys[1:]:
+            assert (abs(layer.lags(key.pose)[1]) > 5) == far
     # It is told how far short it is, and it is wanted where it came to.
     assert len(notices) == 1
     assert re.fullmatch(r"frame 8: 'end' is \d+\.\d px short .* by the limits", notices[0])
@@ -411,7 +411,7 @@ def test_a_key_on_request_pulls_with_bounded_force():
     assert pulled.keys[2].pose.targets[0].position == wanted
 
 
-def test_a_script_gives_its_figure_tracks_springs_and_stillness():
+def test_a_script_gives_its_layer_tracks_springs_and_stillness():
     opened = still_document(bar_picture())
     handles = {"end": [210, 40], "start": {"at": [30, 40], "still": False}}
     script = {
@@ -421,17 +421,17 @@ def test_a_script_gives_its_figure_tracks_springs_and_stillness():
         "springs": [{"handle": "end", "preset": "tail", "root": "start"}],
     }
     document, _ = pose_document(opened, parse_pose_script(script), lambda _: None)
-    figure = document.figures[0]
-    end, start = figure.handles
+    layer = document.layers[0]
+    end, start = layer.handles
     assert (document.frames.last, document.loop) == (40, True)
-    assert figure.stillness
+    assert layer.stillness
     assert (end.free, start.free) == (False, True)
-    assert figure.track_of(start.id).keys == (TrackKey(frame=40, place=3 + 4j),)
-    assert figure.spring_of(end.id).frequency == 1.6
-    assert figure.spring_of(end.id).root == start.id
+    assert layer.track_of(start.id).keys == (TrackKey(frame=40, place=3 + 4j),)
+    assert layer.spring_of(end.id).frequency == 1.6
+    assert layer.spring_of(end.id).root == start.id
     loose = parse_pose_script({**script, "still": False})
     document, _ = pose_document(opened, loose, lambda _: None)
-    assert not document.figures[0].stillness
+    assert not document.layers[0].stillness
 
 
 CAMERA = {"keys": [{"frame": 0, "centre": [100, 60]}, {"frame": 12, "centre": [1, 2], "turn": 90}]}
@@ -446,11 +446,11 @@ def test_the_camera_and_movements_are_read():
     assert (camera[0].passing, camera[1].passing) == (Passing.THROUGH, Passing.CORNER)
     moved = {"keys": [{"frame": 0}, {"frame": 40, "shift": [3, -4], "turn": -180}]}
     script = parse_pose_script({**WHOLE, "movement": moved, "opacity": [[0, 1], [50, 0.5]]})
-    (figure,) = script.figures
-    assert (figure.movement[1].shift, figure.movement[1].turn) == (3 - 4j, -np.pi)
-    assert [(key.frame, key.opacity) for key in figure.opacity] == [(0, 1), (50, 0.5)]
+    (layer,) = script.layers
+    assert (layer.movement[1].shift, layer.movement[1].turn) == (3 - 4j, -np.pi)
+    assert [(key.frame, key.opacity) for key in layer.opacity] == [(0, 1), (50, 0.5)]
     assert script.last == 50
-    assert parse_pose_script({**WHOLE, "opacity": 0.25}).figures[0].opacity == 0.25
+    assert parse_pose_script({**WHOLE, "opacity": 0.25}).layers[0].opacity == 0.25
 
 
 @pytest.mark.parametrize(
@@ -485,7 +485,7 @@ def test_the_camera_and_movements_are_read():
         ({"opacity": [[0, 1], [0, 0]]}, says(OUT_OF_ORDER, what="opacity is")),
         ({"opacity": [[0]]}, r"opacity\[0\] must be a frame and a number"),
         ({"opacity": []}, "at least one key"),
-        ({"order": [[0, None]]}, 'order needs "figures"'),
+        ({"order": [[0, None]]}, 'order needs "layers"'),
     ],
 )
 def test_a_camera_that_cannot_be_is_refused(change, words):
@@ -496,8 +496,8 @@ def test_a_camera_that_cannot_be_is_refused(change, words):
 @pytest.mark.parametrize("place", [{}, {"beside": "arm"}, 3, {"in_front_of": "a", "behind": "b"}])
 def test_an_order_is_in_front_of_a_layer_or_behind_it(place):
     own = {"layer": "arm", "handles": {}, "keys": [{"frame": 0}], "order": [[3, place]]}
-    with pytest.raises(LissomError, match=r"figures\[0\]\.order\[0\] must"):
-        parse_pose_script({"schema": 1, "figures": [own]})
+    with pytest.raises(LissomError, match=r"layers\[0\]\.order\[0\] must"):
+        parse_pose_script({"schema": 1, "layers": [own]})
 
 
 ROUND = {"schema": 1, "handles": {"end": [210, 40], "start": [30, 40]}, "keys": [{"frame": 0}]}
@@ -512,11 +512,11 @@ def test_a_script_says_what_repeats():
     script = parse_pose_script({**ROUND, "keys": keys + second, "cycles": cycles})
     assert script.last == 60
     document, _ = pose_document(opened, script, lambda _: None)
-    figure = document.figures[0]
+    layer = document.layers[0]
     # The key at 24 is the first one again, and what comes at 48 is like it to the last digit.
-    assert [key.frame for key in figure.keys] == [0, 8, 16, 48, 54]
-    assert figure.cycles == (Cycle(first=0, last=24, until=48), Cycle(first=48, last=60))
-    assert figure.key(48).pose is figure.key(0).pose
+    assert [key.frame for key in layer.keys] == [0, 8, 16, 48, 54]
+    assert layer.cycles == (Cycle(first=0, last=24, until=48), Cycle(first=48, last=60))
+    assert layer.key(48).pose is layer.key(0).pose
     keys[-1] = {"frame": 24, "targets": {"end": [210, 50]}}
     script = parse_pose_script({**ROUND, "keys": keys, "cycles": cycles[1:]})
     with pytest.raises(LissomError, match="frame 24 is where frames 0 to 24 begin again, but it"):

@@ -1,4 +1,4 @@
-"""Poses of figures that are stiff in places."""
+"""Poses of layers that are stiff in places."""
 
 from dataclasses import replace
 from functools import cache
@@ -44,27 +44,27 @@ def bar(amount=40.0):
         document = handle_commands.add_handle(0, place)(document)
     if amount is not None:
         document = material_commands.add_bone(0, (0, 1), amount)(document)
-    return document.figures[0]
+    return document.layers[0]
 
 
 def targets_of(*places):
     return {number: Target(position=place) for number, place in enumerate(places)}
 
 
-def pulled(figure, start, targets, steps=300):
-    drag = Drag.begin(Rig.of(figure), start).towards(targets, steps)
+def pulled(layer, start, targets, steps=300):
+    drag = Drag.begin(Rig.of(layer), start).towards(targets, steps)
     assert drag.state.certificate.certified
     return drag.pose(targets)
 
 
-def bent_in(figure, pose, left, right):
+def bent_in(layer, pose, left, right):
     """Return the largest k at the outline between two places."""
-    outline = figure.domain.outline
+    outline = layer.domain.outline
     outline = (
         outline[:, None] + np.linspace(0, 1, 20) * (np.roll(outline, -1) - outline)[:, None]
     ).ravel()
     points = outline[(outline.real > left) & (outline.real < right)]
-    fz, fzbar = figure.map_of(pose).derivatives(points)
+    fz, fzbar = layer.map_of(pose).derivatives(points)
     return float((np.abs(fzbar) / np.abs(fz)).max())
 
 
@@ -88,29 +88,29 @@ def test_what_is_stiff_is_known_to_rigs_and_taken_from_earlier_ones():
     assert stiff.deformer.boundary.points is first.deformer.boundary.points
     assert stiff.deformer.boundary.stiffness.max() == pytest.approx(40)
     assert stiff.deformer.handles.around.max() > 5
-    assert Rig.of(replace(stiff.figure, name="other"), stiff).deformer.handles is (
+    assert Rig.of(replace(stiff.layer, name="other"), stiff).deformer.handles is (
         stiff.deformer.handles
     )
     back = Rig.of(usual, stiff)
     assert (back.deformer.boundary.stiffness == 1).all()
     moved = handle_commands.move_handle(0, 1, 200 + 40j)
-    longer = moved(still_with(stiff.figure)).figures[0]
+    longer = moved(still_with(stiff.layer)).layers[0]
     assert not np.array_equal(
         Rig.of(longer, stiff).deformer.boundary.stiffness, stiff.deformer.boundary.stiffness
     )
 
 
-def still_with(figure):
-    return drawn().with_figure(figure)
+def still_with(layer):
+    return drawn().with_layer(layer)
 
 
 def test_a_pose_of_before_stays_and_begins_a_drag_though_it_is_beyond_new_limits():
     usual, boned = bar(None), bar(100.0)
     before = pulled(usual, usual.keys[0].pose, UP)
-    figure = boned.with_poses([before])
-    assert figure.keys[0].pose.phi is before.phi
-    assert figure.is_proven(before)
-    drag = Drag.begin(Rig.of(figure), before)
+    layer = boned.with_poses([before])
+    assert layer.keys[0].pose.phi is before.phi
+    assert layer.is_proven(before)
+    drag = Drag.begin(Rig.of(layer), before)
     assert np.array_equal(drag.state.map.phi, before.phi)
     assert drag.state.certificate.certified
     assert drag.towards(UP, 200).state.certificate.certified
@@ -139,15 +139,15 @@ SCRIPT = {
 
 def test_script_stiffens_what_it_says():
     document, notices = pose_document(drawn(), parse_pose_script(SCRIPT), lambda _: None)
-    (figure,) = document.figures
+    (layer,) = document.layers
     assert notices == ()
-    assert figure.bones[0].ends == (0, 1)
-    assert figure.bones[0].amount == 30
-    assert figure.stiffness[np.argmax(figure.domain.outline.real)] > 5
+    assert layer.bones[0].ends == (0, 1)
+    assert layer.bones[0].amount == 30
+    assert layer.stiffness[np.argmax(layer.domain.outline.real)] > 5
     plain = {name: value for name, value in SCRIPT.items() if name != "stiff"}
     usual, _ = pose_document(drawn(), parse_pose_script(plain), lambda _: None)
-    stiff, soft = figure.keys[1].pose, usual.figures[0].keys[1].pose
-    assert bent_in(figure, stiff, 110, 160) < 0.5 * bent_in(figure, soft, 110, 160)
+    stiff, soft = layer.keys[1].pose, usual.layers[0].keys[1].pose
+    assert bent_in(layer, stiff, 110, 160) < 0.5 * bent_in(layer, soft, 110, 160)
     nowhere = {**SCRIPT, "stiff": [{"around": [240, 400], "radius": 6, "amount": 10}]}
     _, notices = pose_document(drawn(), parse_pose_script(nowhere), lambda _: None)
     assert notices == (
@@ -199,21 +199,21 @@ def arm():
         document = handle_commands.add_handle(0, place)(document)
     for ends in ((0, 1), (1, 2)):
         document = material_commands.add_bone(0, ends, 30.0)(document)
-    return document.figures[0]
+    return document.layers[0]
 
 
 def test_a_hand_that_is_pulled_too_far_draws_the_elbow_straight_and_stops():
-    figure = arm()
-    rest = figure.keys[0].pose
-    bent = pulled(figure, rest, targets_of(30 + 40j, 230 + 90j, 430 + 40j))
+    layer = arm()
+    rest = layer.keys[0].pose
+    bent = pulled(layer, rest, targets_of(30 + 40j, 230 + 90j, 430 + 40j))
     targets = targets_of(30 + 40j, 230 + 90j, 900 + 40j)
     hands = (Hand((2,)),)
-    drag = Drag.begin(Rig.of(figure), bent)
+    drag = Drag.begin(Rig.of(layer), bent)
     for _ in range(40):
         drag = drag.towards(targets, 10, hands)
     assert drag.is_over
     shoulder, elbow, hand = drag.rig.deformer.positions(drag.state).tolist()
-    longest = float(figure.bounds.stiffened(np.array(30.0)).sigma_a) * 210
+    longest = float(layer.bounds.stiffened(np.array(30.0)).sigma_a) * 210
     for length in (abs(elbow - shoulder), abs(hand - elbow)):
         assert 210 < length < 1.005 * longest
     assert abs(shoulder - 30 - 40j) < 1
@@ -231,15 +231,15 @@ def test_a_hand_that_is_pulled_too_far_draws_the_elbow_straight_and_stops():
 
 
 def test_joints_hold_still_for_hands_within_reach_and_where_they_are_locked():
-    figure = arm()
-    rig, hands = Rig.of(figure), (Hand((2,)),)
+    layer = arm()
+    rig, hands = Rig.of(layer), (Hand((2,)),)
     assert [hand.handles for hand in rig.yielding(hands)] == [[1]]
     assert rig.yielding((Hand((1,)),)) == []
-    locked = tuple(replace(handle, locked=handle.id == 1) for handle in figure.handles)
-    assert Rig.of(replace(figure, handles=locked)).yielding(hands) == []
+    locked = tuple(replace(handle, locked=handle.id == 1) for handle in layer.handles)
+    assert Rig.of(replace(layer, handles=locked)).yielding(hands) == []
     assert rig.wish(targets_of(*PLACES), ()).links is None
     near = targets_of(30 + 40j, 240 + 40j, 440 + 70j)
-    drag = Drag.begin(rig, figure.keys[0].pose)
+    drag = Drag.begin(rig, layer.keys[0].pose)
     for _ in range(40):
         drag = drag.towards(near, 10, hands)
     _, elbow, hand = drag.rig.deformer.positions(drag.state).tolist()
@@ -247,23 +247,23 @@ def test_joints_hold_still_for_hands_within_reach_and_where_they_are_locked():
     assert abs(elbow - 240 - 40j) < 12
 
 
-def stiffness_near(figure, *places):
-    points, stiffness = stiff_outline(figure)
+def stiffness_near(layer, *places):
+    points, stiffness = stiff_outline(layer)
     return [float(stiffness[np.abs(points - place).argmin()]) for place in places]
 
 
 @pytest.mark.parametrize("detail", ["coarse", "fine"])
 def test_what_is_stiff_stays_in_its_place_on_another_domain_and_beside_a_cut(detail):
     document = material_commands.paint(0, [450 + 40j], radius=70, amount=20.0)(still_with(bar()))
-    figure = document.figures[0]
+    layer = document.layers[0]
     slit = Slit(points=np.array([330 + 0j, 331 + 45j]))
-    for cut_out in (figure.cut_out, CutOut(slits=(slit,))):
-        before = replace(figure, cut_out=cut_out)
+    for cut_out in (layer.cut_out, CutOut(slits=(slit,))):
+        before = replace(layer, cut_out=cut_out)
         meshing = Meshing(detail=detail, triangles=1_000)
         renewal = Renewal(before=before, bounds=before.bounds, meshing=meshing)
         while not renewal.is_over:
             renewal = go_on(renewal, BAR)
-        after = renewal.command(document.with_figure(before)).figures[0]
+        after = renewal.command(document.with_layer(before)).layers[0]
         assert after.domain is not before.domain
         assert after.bones == before.bones
         places = (130 + 20j, 130 + 60j, 240 + 20j, 460 + 40j, 330 + 60j)
@@ -276,11 +276,11 @@ def test_another_picture_takes_over_what_is_stiff():
     document = material_commands.paint(0, [450 + 40j], radius=70, amount=20.0)(still_with(bar()))
     larger = np.zeros((80, 500, 4), np.uint8)
     larger[16:64, 20:480] = 255
-    made = still_document(larger).figures[0]
-    renewal = begin_replacing(document.figures[0], made, (480, 80))
+    made = still_document(larger).layers[0]
+    renewal = begin_replacing(document.layers[0], made, (480, 80))
     while not renewal.is_over:
         renewal = go_on(renewal, larger)
-    after = renewal.command(document).figures[0]
+    after = renewal.command(document).layers[0]
     assert after.stiffness.max() > 5
     assert stiffness_near(after, 240 + 15j)[0] < 1.1
-    assert after.bones == document.figures[0].bones
+    assert after.bones == document.layers[0].bones

@@ -150,11 +150,11 @@ def npy(array):
 def test_small_file_is_refused_unread_when_it_has_large_arrays(tmp_path, members):
     """The most that was ever taken by one of these: 0.9 MB of file, 792 MiB."""
     content = json.loads(members["project.json"])
-    figure = content["figures"][0]
-    figure["keys"] = [figure["keys"][0] | {"frame": frame} for frame in range(3, 43)]
+    layer = content["layers"][0]
+    layer["keys"] = [layer["keys"][0] | {"frame": frame} for frame in range(3, 43)]
     zeros = npy(np.zeros(MEBIBYTE // 4, complex))
     keys = [
-        f"figures/0/keys/{index:05}.{part}.npy" for index in range(40) for part in ("phi", "psi")
+        f"layers/0/keys/{index:05}.{part}.npy" for index in range(40) for part in ("phi", "psi")
     ]
     large = members | {"project.json": json.dumps(content).encode()} | dict.fromkeys(keys, zeros)
     path = pack(tmp_path / "a", large, method=zipfile.ZIP_DEFLATED)
@@ -164,12 +164,12 @@ def test_small_file_is_refused_unread_when_it_has_large_arrays(tmp_path, members
 
 
 def test_arrays_larger_than_a_domain_can_be_are_not_read(tmp_path, members):
-    large = members | {"figures/0/keys/00001.phi.npy": npy(np.zeros(MEBIBYTE, complex))}
+    large = members | {"layers/0/keys/00001.phi.npy": npy(np.zeros(MEBIBYTE, complex))}
     path = pack(tmp_path / "a", large, method=zipfile.ZIP_DEFLATED)
     with (
         memory_below(4 * MEBIBYTE),
         pytest.raises(
-            LissomError, match=says(MEMBER_TOO_LARGE, name="figures/0/keys/00001.phi.npy")
+            LissomError, match=says(MEMBER_TOO_LARGE, name="layers/0/keys/00001.phi.npy")
         ),
     ):
         load_project(path)
@@ -183,13 +183,13 @@ def test_json_of_many_values_is_not_decoded(tmp_path, members, text):
         load_project(path)
 
 
-def test_figure_is_never_read_when_it_is_named_many_times(tmp_path, members):
+def test_layer_is_never_read_when_it_is_named_many_times(tmp_path, members):
     content = json.loads(members["project.json"])
-    content["figures"] = content["figures"] * 100
-    picture = members["figures/0/source.png"] + bytes(MEBIBYTE)
+    content["layers"] = content["layers"] * 100
+    picture = members["layers/0/source.png"] + bytes(MEBIBYTE)
     again = members | {"project.json": json.dumps(content).encode()}
-    path = pack(tmp_path / "a", again | {"figures/0/source.png": picture})
-    refused = pytest.raises(LissomError, match="two of its figures have the same id")
+    path = pack(tmp_path / "a", again | {"layers/0/source.png": picture})
+    refused = pytest.raises(LissomError, match="two of its layers have the same id")
     with memory_below(16 * MEBIBYTE), refused:
         load_project(path)
 

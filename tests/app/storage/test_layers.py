@@ -25,37 +25,37 @@ def drawing(tmp_path):
     return path
 
 
-def test_every_layer_is_a_figure_where_it_is_on_the_canvas(drawing):
+def test_every_layer_is_a_layer_where_it_is_on_the_canvas(drawing):
     opened = open_layered(drawing, MESHING)
     document = opened.document
-    _, body, head = document.figures
-    assert [figure.name for figure in document.figures] == ["sky", "body", "head"]
+    _, body, head = document.layers
+    assert [layer.name for layer in document.layers] == ["sky", "body", "head"]
     assert document.canvas == (200, 220)
     assert head.corner == 60 + 160j
     outline = head.domain.outline
     assert abs(outline.mean() - (60 + 35 + 1j * (160 + 25))) < 2
     assert body.corner == 20 + 20j
     assert (body.hidden, head.hidden, head.opacity) == (True, False, 0.5)
-    for figure in document.figures:
-        require_domain(figure.domain)
-        rest = figure.domain.mesh.vertices
-        (key,) = figure.keys
-        np.testing.assert_allclose(figure.map_of(key.pose)(rest), rest, rtol=0, atol=1e-9)
-        assert opened.pictures[figure.id].size == figure.picture.size
+    for layer in document.layers:
+        require_domain(layer.domain)
+        rest = layer.domain.mesh.vertices
+        (key,) = layer.keys
+        np.testing.assert_allclose(layer.map_of(key.pose)(rest), rest, rtol=0, atol=1e-9)
+        assert opened.pictures[layer.id].size == layer.picture.size
 
 
 def test_a_layer_that_is_opaque_all_over_stands_still(drawing):
     opened = open_layered(drawing, MESHING)
-    assert [figure.still for figure in opened.document.figures] == [True, False, False]
+    assert [layer.still for layer in opened.document.layers] == [True, False, False]
     assert "sky: opaque all over, so that it stands still" in opened.document.told.matters
 
 
 def test_layers_share_the_triangles(drawing):
-    figures = open_layered(drawing, MESHING).document.figures
-    assert [len(figure.domain.mesh.triangles) for figure in figures[:1]] == [2]
-    for figure in figures[1:]:
-        assert figure.meshing.triangles == 4_000
-        assert abs(len(figure.domain.mesh.triangles) - 4_000) < 400
+    layers = open_layered(drawing, MESHING).document.layers
+    assert [len(layer.domain.mesh.triangles) for layer in layers[:1]] == [2]
+    for layer in layers[1:]:
+        assert layer.meshing.triangles == 4_000
+        assert abs(len(layer.domain.mesh.triangles) - 4_000) < 400
 
 
 def test_a_scene_of_layers_comes_back_from_its_file(drawing, tmp_path):
@@ -63,7 +63,7 @@ def test_a_scene_of_layers_comes_back_from_its_file(drawing, tmp_path):
     save_project(tmp_path / "a.lissom", document)
     again = load_project(tmp_path / "a.lissom")
     assert again.canvas == document.canvas
-    for one, other in zip(document.figures, again.figures, strict=True):
+    for one, other in zip(document.layers, again.layers, strict=True):
         assert (one.name, one.corner, one.still, one.hidden, one.opacity) == (
             other.name,
             other.corner,
@@ -76,12 +76,12 @@ def test_a_scene_of_layers_comes_back_from_its_file(drawing, tmp_path):
 def test_several_pictures_become_layers_in_the_middle_of_the_largest(tmp_path):
     for folder, size in (("a", (160, 120)), ("b", (60, 40))):
         (tmp_path / folder).mkdir()
-        (tmp_path / folder / "figure.png").write_bytes(png(blob(*size)))
-    paths = [tmp_path / "a" / "figure.png", tmp_path / "b" / "figure.png"]
+        (tmp_path / folder / "layer.png").write_bytes(png(blob(*size)))
+    paths = [tmp_path / "a" / "layer.png", tmp_path / "b" / "layer.png"]
     document = open_pictures(paths, MESHING).document
     assert document.canvas == (160, 120)
-    assert [figure.name for figure in document.figures] == ["figure", "figure 2"]
-    assert [figure.corner for figure in document.figures] == [0, 50 + 40j]
+    assert [layer.name for layer in document.layers] == ["layer", "layer 2"]
+    assert [layer.corner for layer in document.layers] == [0, 50 + 40j]
 
 
 def test_bad_drawings_are_told_in_words(tmp_path):

@@ -37,17 +37,17 @@ from app.document import (
     Track,
     TrackKey,
     choice_commands,
-    figure_commands,
     filming_commands,
     group_commands,
     handle_commands,
     key_commands,
     layer_commands,
     motion_notices,
-    new_figure,
+    new_layer,
     pose_as_drawn,
     pose_commands,
     scene_commands,
+    shape_commands,
     track_commands,
 )
 from app.document.body.pairs import MOST_PAIRS
@@ -81,9 +81,9 @@ BREATHE = GivenMotion(
 )
 
 
-def far_pose(figure, place):
-    """The pose of a figure as it was drawn, moved as a whole, with its handles' targets there."""
-    drawn = pose_as_drawn(figure.domain, figure.handles)
+def far_pose(layer, place):
+    """The pose of a layer as it was drawn, moved as a whole, with its handles' targets there."""
+    drawn = pose_as_drawn(layer.domain, layer.handles)
     targets = {
         identity: replace(target, position=place) for identity, target in drawn.targets.items()
     }
@@ -94,8 +94,8 @@ def extreme_command(rng, document):
     """A command that brings a field of a document to its limit, or beyond."""
     frame, to = (FRAMES[at] for at in rng.integers(len(FRAMES), size=2))
     name, place = NAMES[rng.integers(len(NAMES))], complex(FAR[rng.integers(len(FAR))])
-    figure = document.figures[rng.integers(len(document.figures))]
-    identity, pose = figure.id, far_pose(figure, place)
+    layer = document.layers[rng.integers(len(document.layers))]
+    identity, pose = layer.id, far_pose(layer, place)
     turn = float(rng.choice([-40 * np.pi, 40 * np.pi]))
     commands = [
         scene_commands.set_fps(float(rng.choice([SLOWEST, FASTEST]))),
@@ -106,26 +106,26 @@ def extreme_command(rng, document):
         filming_commands.key_movement(identity, frame, place, turn),
         filming_commands.key_opacity(identity, frame, float(rng.integers(2))),
         filming_commands.place_at(identity, Placing(frame, None)),
-        key_commands.put_pose(identity, frame, pose, figure.keys[0].easing),
+        key_commands.put_pose(identity, frame, pose, layer.keys[0].easing),
         key_commands.insert_key(identity, to, pose),
         pose_commands.keep_pose(identity, pose, name),
         pose_commands.set_mirror(identity, FARTHEST),
         handle_commands.add_handle(identity, inside(rng), name=name),
-        layer_commands.rename_figure(identity, name),
-        layer_commands.duplicate_figure(identity),
+        layer_commands.rename_layer(identity, name),
+        layer_commands.duplicate_layer(identity),
         layer_commands.switch_at(identity, frame, visible=bool(rng.integers(2))),
         layer_commands.attach(
             identity,
             CENTRE,
-            Attachment(to=document.figures[0].id, at=place, rest=turn, frame=frame, offset=place),
+            Attachment(to=document.layers[0].id, at=place, rest=turn, frame=frame, offset=place),
         ),
-        choice_commands.form_choice(name, [each.id for each in document.figures][:2]),
+        choice_commands.form_choice(name, [each.id for each in document.layers][:2]),
         choice_commands.choose_at(identity, frame),
-        figure_commands.set_bounds(identity, Bounds(k=1 - 1e-9, sigma_a=1e9, sigma_b=1e-9)),
+        shape_commands.set_bounds(identity, Bounds(k=1 - 1e-9, sigma_a=1e9, sigma_b=1e-9)),
         group_commands.put_in_group([identity], name.strip()),
     ]
-    if figure.handles:
-        handle = figure.handles[0].id
+    if layer.handles:
+        handle = layer.handles[0].id
         key = TrackKey(frame=frame, place=place, turn=turn, velocity=place)
         track = Track(handles=(handle,), keys=(key,), delay=LAST_FRAME, planted=True, turns=True)
         spring = Spring(handle=handle, frequency=1e3, damping=100.0, lag=10_000.0, strength=10.0)
@@ -144,8 +144,8 @@ def far_document():
     mesh = replace(disc.mesh, vertices=outline)
     domain = Domain(outline=outline, cage=cage, mesh=mesh)
     picture = PictureFile(data=blank_png(1, 1), suffix=".png", size=(1, 1))
-    figure = replace(new_figure(picture, domain, Meshing()), corner=corner)
-    return Document(figures=(figure,), size=(WIDEST, WIDEST))
+    layer = replace(new_layer(picture, domain, Meshing()), corner=corner)
+    return Document(layers=(layer,), size=(WIDEST, WIDEST))
 
 
 BEGINNINGS = (disc_document, clocked_document, far_document)
@@ -204,7 +204,7 @@ def saved(tmp_path):
 
 def two_layers():
     document = handle_commands.add_handle(0, CENTRE)(disc_document())
-    return layer_commands.duplicate_figure(0)(document)
+    return layer_commands.duplicate_layer(0)(document)
 
 
 NOT_READ_BACK = (
@@ -248,9 +248,9 @@ def test_arrays_are_not_packed_when_they_would_be_refused(monkeypatch, saved):
 
 
 def test_a_pose_beyond_all_pixels_is_refused():
-    figure = disc_document().figures[0]
+    layer = disc_document().layers[0]
     with pytest.raises(LissomError, match="coefficients of a pose"):
-        far_pose(figure, 2 * LARGEST_COEFFICIENT)
+        far_pose(layer, 2 * LARGEST_COEFFICIENT)
 
 
 KNOWN = {
@@ -290,51 +290,51 @@ UNKNOWN_MOTIONS = (
 @pytest.mark.parametrize(("motion", "reason"), UNKNOWN_MOTIONS)
 def test_motion_is_kept_and_told_when_it_is_not_known(saved, motion, reason):
     later = KNOWN | {"first": 10, "start": 10, "last": 20}
-    with_content(saved, lambda c: c["figures"][0].update(motions=[KNOWN, motion, later]))
+    with_content(saved, lambda c: c["layers"][0].update(motions=[KNOWN, motion, later]))
     document = load_project(saved)
-    figure = document.figures[0]
-    assert [each.first for each in figure.motions] == [0, 10]
+    layer = document.layers[0]
+    assert [each.first for each in layer.motions] == [0, 10]
     (notice,) = motion_notices(document)
-    assert figure.name in notice
+    assert layer.name in notice
     assert reason in notice
-    renamed = layer_commands.rename_figure(figure.id, "other")(document)
+    renamed = layer_commands.rename_layer(layer.id, "other")(document)
     save_project(saved, renamed)
-    assert read_content(saved)["figures"][0]["motions"] == [KNOWN, motion, later]
+    assert read_content(saved)["layers"][0]["motions"] == [KNOWN, motion, later]
 
 
 def test_motion_is_not_shown_when_it_begins_in_another(saved):
-    with_content(saved, lambda c: c["figures"][0].update(motions=[KNOWN, KNOWN]))
-    (figure, _) = load_project(saved).figures
-    assert (len(figure.motions), len(figure.unread_motions)) == (1, 1)
+    with_content(saved, lambda c: c["layers"][0].update(motions=[KNOWN, KNOWN]))
+    (layer, _) = load_project(saved).layers
+    assert (len(layer.motions), len(layer.unread_motions)) == (1, 1)
 
 
 def test_motion_keeps_its_other_joints_when_a_handle_goes():
     document = handle_commands.add_handle(0, CENTRE + 9)(two_layers())
     motion = replace(BREATHE, joints={"top": 0, "foot": 1})
-    figure = replace(document.figure(0), motions=(motion,))
-    left = handle_commands.remove_handles(0, {0})(document.with_figure(figure))
-    assert left.figure(0).motions[0].joints == {"foot": 1}
+    layer = replace(document.layer(0), motions=(motion,))
+    left = handle_commands.remove_handles(0, {0})(document.with_layer(layer))
+    assert left.layer(0).motions[0].joints == {"foot": 1}
 
 
 REFUSED = (
     (lambda c: c.update(fps=0.01), "speed is from 1/60 to 1,000 frames"),
     (lambda c: c.update(fps=5e-324), "speed is from 1/60 to 1,000 frames"),
     (lambda c: c.update(fps=1000.1), "speed is from 1/60 to 1,000 frames"),
-    (lambda c: c["figures"][0].update(switches=[[-1, True]]), "frame from 0 to 999,999, not at -1"),
-    (lambda c: c["figures"][0].update(switches=[[10**6, True]]), "frame from 0 to 999,999"),
-    (lambda c: c["figures"][0].update(id=LARGEST_ID + 1), "lacks figures/2147483648"),
-    (lambda c: c["figures"][0].update(next_handle=2**31), "id of the next handle is 0 to"),
-    (lambda c: c["figures"][0]["handles"][0].update(id=10**30), "id of a handle is 0 to"),
+    (lambda c: c["layers"][0].update(switches=[[-1, True]]), "frame from 0 to 999,999, not at -1"),
+    (lambda c: c["layers"][0].update(switches=[[10**6, True]]), "frame from 0 to 999,999"),
+    (lambda c: c["layers"][0].update(id=LARGEST_ID + 1), "lacks layers/2147483648"),
+    (lambda c: c["layers"][0].update(next_handle=2**31), "id of the next handle is 0 to"),
+    (lambda c: c["layers"][0]["handles"][0].update(id=10**30), "id of a handle is 0 to"),
     (
-        lambda c: c.update(choices=[{"name": "{", "figures": [0, 1], "turns": [[10**6, 0]]}]),
+        lambda c: c.update(choices=[{"name": "{", "layers": [0, 1], "turns": [[10**6, 0]]}]),
         "frame from 0 to 999,999",
     ),
     (
-        lambda c: c.update(choices=[{"name": "{", "figures": [0, 0], "turns": []}]),
+        lambda c: c.update(choices=[{"name": "{", "layers": [0, 0], "turns": []}]),
         "A choice has the layer 0 twice",
     ),
     (
-        lambda c: c["figures"][0].update(cycles=[{"first": -2, "last": 2, "until": None}]),
+        lambda c: c["layers"][0].update(cycles=[{"first": -2, "last": 2, "until": None}]),
         "frame from 0 to 999,999, not at -2",
     ),
     (
@@ -342,7 +342,7 @@ REFUSED = (
         "at most 1,000 pairs, not 1,001",
     ),
     (
-        lambda c: c["figures"][0].update(
+        lambda c: c["layers"][0].update(
             cycles=[
                 {"first": 2 * i, "last": 2 * i + 1, "until": 2 * i + 1}
                 for i in range(MOST_CYCLES + 1)
@@ -361,10 +361,10 @@ def test_project_is_refused_when_a_value_is_out_of_range(saved, change, message)
 
 def test_changes_are_refused_when_they_repeat_too_often():
     document = two_layers()
-    figure = document.figure(0)
+    layer = document.layer(0)
     cycles = (Cycle(first=0, last=2),)
-    figure = layer_commands.switch_at(0, 1, visible=False)(document).figure(0)
-    repeating = document.with_figure(replace(figure, cycles=cycles))
+    layer = layer_commands.switch_at(0, 1, visible=False)(document).layer(0)
+    repeating = document.with_layer(replace(layer, cycles=cycles))
     count = MOST_CHANGES - 3
     assert scene_commands.set_frames(FrameRange(0, 2 * count // 3))(repeating)
     with pytest.raises(LissomError, match=f"more than {MOST_CHANGES:,}; let the repeats end"):

@@ -1,6 +1,5 @@
 import io
 import json
-import re
 import struct
 import tracemalloc
 import zipfile
@@ -23,9 +22,9 @@ from hypothesis import given, settings, strategies as st
 from messages import says
 
 from app.document.commands import handle_commands, key_commands, layer_commands, track_commands
-from app.document.figure import BONES_IN_ONE_PLACE
 from app.document.keyframe import Passing
-from app.document.model import HANGS_ON_ITSELF, NO_FIGURE
+from app.document.layer import BONES_IN_ONE_PLACE
+from app.document.model import HANGS_ON_ITSELF, NO_LAYER
 from app.document.timing import Cycle
 from app.errors import LissomError
 from app.storage import NO_FOLDER
@@ -65,7 +64,7 @@ THUMBNAIL = b"\x89PNG small"
 STORED = Path(__file__).parent / "data" / "schema_1.lissom"
 STORED_2 = Path(__file__).parent / "data" / "schema_2.lissom"
 
-# The fields that a scene of one figure says nothing of.
+# The fields that a scene of one layer says nothing of.
 LAYER = ("name", "corner", "still", "reference", "locked", "hidden", "switches", "opacity")
 LAYER += ("attachment", "handovers")
 # What an animation has that is more than poses: older projects have none of it.
@@ -124,9 +123,9 @@ def test_only_clocks_that_there_are_are_written(tmp_path):
         assert {name for name in CLOCKS if f'"{name}"'.encode() in text} == written
     # What is new keeps still what is still; what older versions made does as it did.
     save_project(tmp_path / "a", disc_document())
-    assert load_project(tmp_path / "a").figures[0].stillness
-    assert not load_project(STORED).figures[0].stillness
-    assert not load_project(STORED_2).figures[1].stillness
+    assert load_project(tmp_path / "a").layers[0].stillness
+    assert not load_project(STORED).layers[0].stillness
+    assert not load_project(STORED_2).layers[1].stillness
 
 
 @settings(max_examples=20)
@@ -146,9 +145,9 @@ def test_any_document_comes_back_to_the_last_bit(tmp_path_factory, seeds, begin)
     loaded = load_project(path)
     assert not differences(loaded, document)
     for array in (
-        loaded.figures[0].domain.cage,
-        loaded.figures[0].domain.mesh.triangles,
-        loaded.figures[0].keys[0].pose.phi,
+        loaded.layers[0].domain.cage,
+        loaded.layers[0].domain.mesh.triangles,
+        loaded.layers[0].keys[0].pose.phi,
     ):
         assert not array.flags.writeable
         assert array.dtype.isnative
@@ -156,52 +155,70 @@ def test_any_document_comes_back_to_the_last_bit(tmp_path_factory, seeds, begin)
 
 def test_a_stored_file_of_schema_1_opens():
     full = full_document()
-    figure = full.figures[0]
-    usual = disc_document().figures[0]
+    layer = full.layers[0]
+    usual = disc_document().layers[0]
     own = [name for name in LAYER if hasattr(usual, name)]
     as_layer = {name: getattr(usual, name) for name in own}
     first = altered(
-        replace(full, figures=(replace(figure, joints=()),), size=None),
+        replace(full, layers=(replace(layer, joints=()),), size=None),
         markers=(),
         library=(),
         mirror=None,
         # Holes were filled, and what was enclosed was kept.
-        cut_out=CutOut(tolerance=figure.cut_out.tolerance, enclosed="keep", holes="fill"),
+        cut_out=CutOut(tolerance=layer.cut_out.tolerance, enclosed="keep", holes="fill"),
         is_stale=False,
-        handles=tuple(replace(handle, front=0.0, extent=None) for handle in figure.handles),
+        handles=tuple(replace(handle, front=0.0, extent=None) for handle in layer.handles),
         # Keys of that time have corners.
-        keys=tuple(replace(key, fronts={}, passing=Passing.CORNER) for key in figure.keys),
+        keys=tuple(replace(key, fronts={}, passing=Passing.CORNER) for key in layer.keys),
         **as_layer,
     )
     assert not differences(load_project(STORED), first)
     assert load_thumbnail(STORED) == THUMBNAIL
 
 
-def test_a_stored_file_of_schema_2_is_written_again_as_it_was(tmp_path):
-    document = load_project(STORED_2)
-    assert not differences(document, full_document())
-    save_project(tmp_path / "a", document)
-    written, stored = read_members(tmp_path / "a"), read_members(STORED_2)
-    own = re.compile(b'"app_version": ".*"')
-    written["project.json"], stored["project.json"] = (
-        own.sub(b"", members["project.json"]) for members in (written, stored)
-    )
-    assert list(written.items()) == list(stored.items())
+# What fields of schema 2 are called now.
+RENAMED = {"figures": "layers"}
+
+
+def renamed(content):
+    """The fields of schema 2 by their present names."""
+    if isinstance(content, list):
+        return [renamed(each) for each in content]
+    if isinstance(content, dict):
+        return {RENAMED.get(name, name): renamed(each) for name, each in content.items()}
+    return content
+
+
+def members_by_their_present_names(path):
+    """The members of a file of schema 2 but for its thumbnail, and what its JSON says."""
+    members = read_members(path)
+    content = renamed(json.loads(members.pop("project.json"))) | {"schema": 3}
+    del content["app_version"]
+    members = {name.replace("figures/", "layers/"): each for name, each in members.items()}
+    return members, content
+
+
+def written_again(path, to):
+    """What a file's document is saved as."""
+    save_project(to, load_project(path))
+    members = read_members(to)
+    content = json.loads(members.pop("project.json"))
+    del content["app_version"]
+    return members, content
+
+
+def test_stored_schema_2_keeps_everything_but_its_names(tmp_path):
+    assert not differences(load_project(STORED_2), full_document())
+    assert written_again(STORED_2, tmp_path / "a") == members_by_their_present_names(STORED_2)
 
 
 @pytest.mark.parametrize("sample", sorted(sample_images().glob("*.lissom")), ids=lambda p: p.stem)
 def test_samples_are_written_again_as_they_were(tmp_path, sample):
-    stored = read_members(sample)
-    del stored["thumbnail.png"]
-    save_project(tmp_path / "a", load_project(sample))
-    written = read_members(tmp_path / "a")
-    content = json.loads(stored.pop("project.json"))
-    for figure in content["figures"]:
-        figure["domain"].setdefault("enclosed", "keep")  # which came later
-    rewritten = json.loads(written.pop("project.json"))
-    del content["app_version"], rewritten["app_version"]
-    assert rewritten == content
-    assert written == stored
+    members, content = members_by_their_present_names(sample)
+    del members["thumbnail.png"]
+    for layer in content["layers"]:
+        layer["domain"].setdefault("enclosed", "keep")  # which came later
+    assert written_again(sample, tmp_path / "a") == (members, content)
 
 
 def test_what_played_in_a_file_of_schema_1_is_still_exported(tmp_path):
@@ -232,15 +249,15 @@ def test_the_layout_of_the_file(tmp_path, members):
     # The mimetype can be read at a fixed place, as `file` and desktops do.
     assert path.read_bytes()[30:].startswith(b"mimetype" + MIMETYPE)
     assert list(read_members(path)) == [name for name in members if name != "thumbnail.png"]
-    assert list(members)[:3] == ["mimetype", "project.json", "figures/0/source.png"]
-    assert members["figures/0/source.png"] == full_document().figures[0].picture.data
-    phi = np.load(io.BytesIO(members["figures/0/keys/00001.phi.npy"]), allow_pickle=False)
-    assert phi.tobytes() == full_document().figures[0].keys[1].pose.phi.tobytes()
+    assert list(members)[:3] == ["mimetype", "project.json", "layers/0/source.png"]
+    assert members["layers/0/source.png"] == full_document().layers[0].picture.data
+    phi = np.load(io.BytesIO(members["layers/0/keys/00001.phi.npy"]), allow_pickle=False)
+    assert phi.tobytes() == full_document().layers[0].keys[1].pose.phi.tobytes()
     content = json.loads(members["project.json"])
-    assert content["schema"] == 2
+    assert content["schema"] == 3
     assert content["app_version"].count(".") >= 1
     assert list(content) == sorted(content)
-    keys = content["figures"][0]["keys"]
+    keys = content["layers"][0]["keys"]
     assert keys[0]["easing"] == "in-out"
     # What a map is proven to keep is found out anew by whoever reads it.
     assert "certificate" not in keys[1]
@@ -248,17 +265,17 @@ def test_the_layout_of_the_file(tmp_path, members):
 
 def test_unknown_fields_are_kept_everywhere(tmp_path, members):
     content = json.loads(members["project.json"])
-    figure = content["figures"][0]
-    places = [content, content["export"], figure]
-    places += [figure["picture"], figure["domain"], figure["bounds"], figure["handles"][0]]
-    places += [figure["keys"][1], figure["keys"][2]["targets"][1]]
+    layer = content["layers"][0]
+    places = [content, content["export"], layer]
+    places += [layer["picture"], layer["domain"], layer["bounds"], layer["handles"][0]]
+    places += [layer["keys"][1], layer["keys"][2]["targets"][1]]
     for index, place in enumerate(places):
         place["from the future"] = {"list": [index, None, {"x": 1.5}]}
     text = json.dumps(content).encode()
     document = load_project(pack(tmp_path / "a", members | {"project.json": text}))
     changed = handle_commands.rename_handle(0, 4, "other")(document)
     save_project(tmp_path / "b", changed)
-    figure["handles"][1]["name"] = "other"
+    layer["handles"][1]["name"] = "other"
     assert json.loads(read_members(tmp_path / "b")["project.json"]) == content
 
 
@@ -266,9 +283,9 @@ def test_unknown_fields_of_tracks_and_springs_are_kept(tmp_path):
     save_project(tmp_path / "a", clocked_document())
     members = read_members(tmp_path / "a")
     content = json.loads(members["project.json"])
-    figure = content["figures"][0]
-    track = figure["tracks"][0]
-    for index, place in enumerate([track, track["keys"][1], figure["springs"][0]]):
+    layer = content["layers"][0]
+    track = layer["tracks"][0]
+    for index, place in enumerate([track, track["keys"][1], layer["springs"][0]]):
         place["from the future"] = {"list": [index, None]}
     text = json.dumps(content).encode()
     document = load_project(pack(tmp_path / "a", members | {"project.json": text}))
@@ -281,10 +298,10 @@ def test_springs_of_older_files_swing_as_freely_as_they_did(tmp_path):
     save_project(tmp_path / "a", clocked_document())
     members = read_members(tmp_path / "a")
     content = json.loads(members["project.json"])
-    (spring,) = content["figures"][0]["springs"]
+    (spring,) = content["layers"][0]["springs"]
     del spring["stretch"], spring["root"]
     older = pack(tmp_path / "b", members | {"project.json": json.dumps(content).encode()})
-    (spring,) = load_project(older).figures[0].springs
+    (spring,) = load_project(older).layers[0].springs
     assert (spring.stretch, spring.root) == (1.0, None)
 
 
@@ -335,7 +352,7 @@ def test_springs_of_older_files_swing_as_freely_as_they_did(tmp_path):
 )
 def test_clocks_that_make_no_sense_are_named(tmp_path, way, value, message):
     save_project(tmp_path / "a", clocked_document())
-    broken = with_json(read_members(tmp_path / "a"), "figures", 0, *way, value=value)
+    broken = with_json(read_members(tmp_path / "a"), "layers", 0, *way, value=value)
     with pytest.raises(LissomError, match=message) as raised:
         load_project(pack(tmp_path / "a.lissom", broken))
     assert str(raised.value).startswith(f"cannot open {tmp_path / 'a.lissom'}: ")
@@ -357,7 +374,7 @@ def test_clocks_that_make_no_sense_are_named(tmp_path, way, value, message):
 )
 def test_material_that_makes_no_sense_is_named(tmp_path, way, value, message):
     save_project(tmp_path / "a", clocked_document())
-    broken = with_json(read_members(tmp_path / "a"), "figures", 0, *way, value=value)
+    broken = with_json(read_members(tmp_path / "a"), "layers", 0, *way, value=value)
     with pytest.raises(LissomError, match=message):
         load_project(pack(tmp_path / "a.lissom", broken))
 
@@ -365,12 +382,12 @@ def test_material_that_makes_no_sense_is_named(tmp_path, way, value, message):
 def test_two_bones_in_one_place_and_wild_stiffnesses_are_refused(tmp_path):
     save_project(tmp_path / "a", clocked_document())
     members = read_members(tmp_path / "a")
-    bone = json.loads(members["project.json"])["figures"][0]["bones"][0]
-    twice = with_json(members, "figures", 0, "bones", value=[bone, bone | {"ends": [1, 4]}])
+    bone = json.loads(members["project.json"])["layers"][0]["bones"][0]
+    twice = with_json(members, "layers", 0, "bones", value=[bone, bone | {"ends": [1, 4]}])
     with pytest.raises(LissomError, match=says(BONES_IN_ONE_PLACE)):
         load_project(pack(tmp_path / "b", twice))
     (name,) = (name for name in members if name.endswith("stiffness.npy"))
-    count = len(clocked_document().figures[0].stiffness)
+    count = len(clocked_document().layers[0].stiffness)
     for wrong, message in (
         (np.ones(count - 1), "stiffness must be one number for each"),
         (np.full(count, np.nan), "stiffness must be from 1/30"),
@@ -382,7 +399,7 @@ def test_two_bones_in_one_place_and_wild_stiffnesses_are_refused(tmp_path):
         with pytest.raises(LissomError, match=message):
             load_project(pack(tmp_path / "b", other))
     del members[name]
-    with pytest.raises(LissomError, match=r"lacks figures/0/stiffness\.npy"):
+    with pytest.raises(LissomError, match=r"lacks layers/0/stiffness\.npy"):
         load_project(pack(tmp_path / "b", members))
 
 
@@ -391,9 +408,9 @@ def test_what_repeats_comes_back_and_is_written_where_it_is_there(tmp_path):
     cycles = (Cycle(first=0, last=24, until=40, unknown=more), Cycle(first=40, last=48))
     path = tmp_path / "a.lissom"
     save_project(path, altered(disc_document(), cycles=cycles))
-    assert load_project(path).figures[0].cycles == cycles
+    assert load_project(path).layers[0].cycles == cycles
     members = read_members(path)
-    apart = with_json(members, "figures", 0, "cycles", 0, "until", value=41)
+    apart = with_json(members, "layers", 0, "cycles", 0, "until", value=41)
     with pytest.raises(LissomError, match="repeats of frames 0 to 24 and of frames 40 to 48 overl"):
         load_project(pack(tmp_path / "b", apart))
     save_project(path, disc_document())
@@ -403,24 +420,24 @@ def test_what_repeats_comes_back_and_is_written_where_it_is_there(tmp_path):
 def test_a_spring_without_damping_is_refused_in_a_loop(tmp_path):
     save_project(tmp_path / "a", clocked_document())
     members = read_members(tmp_path / "a")
-    undamped = with_json(members, "figures", 0, "springs", 0, "damping", value=0)
+    undamped = with_json(members, "layers", 0, "springs", 0, "damping", value=0)
     # It swings nowhere as long as it is switched off.
-    assert load_project(pack(tmp_path / "b", undamped)).figures[0].springs[0].damping == 0
-    swinging = with_json(undamped, "figures", 0, "springs", 0, "enabled", value=True)
+    assert load_project(pack(tmp_path / "b", undamped)).layers[0].springs[0].damping == 0
+    swinging = with_json(undamped, "layers", 0, "springs", 0, "enabled", value=True)
     with pytest.raises(LissomError, match="no damping, so that it never comes round in a loop"):
         load_project(pack(tmp_path / "b", swinging))
     once = with_json(swinging, "loop", value=False)
-    assert load_project(pack(tmp_path / "b", once)).figures[0].springs[0].enabled
+    assert load_project(pack(tmp_path / "b", once)).layers[0].springs[0].enabled
 
 
 def test_an_unknown_field_of_a_joint_goes_with_the_joint(tmp_path, members):
-    newer = with_json(members, "figures", 0, "attachment", "spring", value=0.5)
+    newer = with_json(members, "layers", 0, "attachment", "spring", value=0.5)
     document = load_project(pack(tmp_path / "a", newer))
     save_project(tmp_path / "b", document)
-    figures = json.loads(read_members(tmp_path / "b")["project.json"])["figures"]
-    assert figures[0]["attachment"]["spring"] == 0.5
+    layers = json.loads(read_members(tmp_path / "b")["project.json"])["layers"]
+    assert layers[0]["attachment"]["spring"] == 0.5
     save_project(tmp_path / "b", layer_commands.detach(0, 1.0, 0j)(document))
-    assert load_project(tmp_path / "b").figures[0].joints == ()
+    assert load_project(tmp_path / "b").layers[0].joints == ()
 
 
 def test_unknown_members_are_handed_on_and_never_unpacked(tmp_path, members):
@@ -438,25 +455,25 @@ def test_unknown_members_are_handed_on_and_never_unpacked(tmp_path, members):
 
 
 def test_unknown_members_never_take_a_known_one_s_place(tmp_path, members):
-    stale = {"figures/0/keys/00003.phi.npy": b"stale", "figures/0/keys/00003.psi.npy": b"stale"}
+    stale = {"layers/0/keys/00003.phi.npy": b"stale", "layers/0/keys/00003.psi.npy": b"stale"}
     document = load_project(pack(tmp_path / "a", members | stale))
-    pose = document.figures[0].keys[0].pose
+    pose = document.layers[0].keys[0].pose
     save_project(tmp_path / "b", key_commands.insert_key(0, 50, pose)(document))
     loaded = load_project(tmp_path / "b")
     assert loaded.attachments == {}
-    assert loaded.figures[0].keys[3].pose.phi.tobytes() == pose.phi.tobytes()
+    assert loaded.layers[0].keys[3].pose.phi.tobytes() == pose.phi.tobytes()
 
 
 def test_what_a_map_is_said_to_keep_is_not_believed(tmp_path, members):
     said = {"k": 0.1, "sigma_a": 1.0, "sigma_b": 1.0, "winding": 0, "certified": True}
-    forged = with_json(members, "figures", 0, "keys", 1, "certificate", value=said)
-    figure = load_project(pack(tmp_path / "a", forged)).figures[0]
-    boundary = Boundary.sample(figure.domain.outline, figure.domain.cage)
-    assert [key.pose.certificate.certified for key in figure.keys] == [True, False, True]
-    for key in figure.keys:
-        proven = certify(figure.map_of(key.pose), boundary, figure.bounds)
+    forged = with_json(members, "layers", 0, "keys", 1, "certificate", value=said)
+    layer = load_project(pack(tmp_path / "a", forged)).layers[0]
+    boundary = Boundary.sample(layer.domain.outline, layer.domain.cage)
+    assert [key.pose.certificate.certified for key in layer.keys] == [True, False, True]
+    for key in layer.keys:
+        proven = certify(layer.map_of(key.pose), boundary, layer.bounds)
         assert astuple(key.pose.certificate)[:3] == pytest.approx(astuple(proven)[:3], rel=1e-9)
-        assert key.pose.certificate.limits == figure.bounds
+        assert key.pose.certificate.limits == layer.bounds
 
 
 def test_there_may_be_no_thumbnail(tmp_path):
@@ -468,8 +485,8 @@ def test_there_may_be_no_thumbnail(tmp_path):
 
 
 def test_a_newer_schema_is_refused_by_its_version(tmp_path, members):
-    newer = with_json(with_json(members, "schema", value=3), "app_version", value="9.1")
-    with pytest.raises(LissomError, match=says(NEWER_LISSOM, version="9.1", schema=3)):
+    newer = with_json(with_json(members, "schema", value=4), "app_version", value="9.1")
+    with pytest.raises(LissomError, match=says(NEWER_LISSOM, version="9.1", schema=4)):
         load_project(pack(tmp_path / "a", newer))
 
 
@@ -498,66 +515,66 @@ def test_a_newer_schema_need_have_nothing_else_in_common(tmp_path):
         (["markers", 0, "frame"], 700, "Two markers are at frame 700"),
         (["markers", 0, "frame"], 701, "mixed up"),
         (["markers", 1, "frame"], 10**30, "marker is at a frame"),
-        (["figures", 0, "mirror"], 1e9, "axis of mirroring"),
-        (["figures", 0, "library", 0, "name"], "über\n", "Two poses have the name"),
-        (["figures", 0, "library", 0, "targets"], [], "one target for each handle"),
-        (["figures", 0, "anchor"], [0], says(NOT_POINT, where="anchor")),
-        (["figures", 0, "anchor"], [0, 0], "anchor at"),
-        (["figures", 0, "variant"], "arap", "variant"),
-        (["figures", 0, "bounds", "k"], 1.5, says(IMPOSSIBLE_BOUND, name="k")),
-        (["figures", 0, "bounds"], [], says(NOT_OBJECT, where="bounds")),
+        (["layers", 0, "mirror"], 1e9, "axis of mirroring"),
+        (["layers", 0, "library", 0, "name"], "über\n", "Two poses have the name"),
+        (["layers", 0, "library", 0, "targets"], [], "one target for each handle"),
+        (["layers", 0, "anchor"], [0], says(NOT_POINT, where="anchor")),
+        (["layers", 0, "anchor"], [0, 0], "anchor at"),
+        (["layers", 0, "variant"], "arap", "variant"),
+        (["layers", 0, "bounds", "k"], 1.5, says(IMPOSSIBLE_BOUND, name="k")),
+        (["layers", 0, "bounds"], [], says(NOT_OBJECT, where="bounds")),
         (["export", "format"], "bmp", "export format"),
         (["export", "size"], [1, 2, 3], "export.size must be two whole numbers"),
-        (["figures", 0, "domain", "detail"], "best", "detail"),
+        (["layers", 0, "domain", "detail"], "best", "detail"),
         (
-            ["figures", 0, "domain", "triangles"],
+            ["layers", 0, "domain", "triangles"],
             1.5,
             says(NOT_WHOLE, where="domain.triangles"),
         ),
-        (["figures", 0, "picture", "sha256"], "0" * 64, says(OTHER_CHECKSUM)),
-        (["figures", 0, "picture", "suffix"], ".jpg", "lacks figures/0/source.jpg"),
-        (["figures", 0, "picture", "suffix"], "/../../x", "lacks figures/0/source"),
-        (["figures", 0, "picture", "size"], [0, 5], "size of the picture"),
-        (["figures", 0, "picture", "size"], [200, 201], "200 × 200 pixels, not 200 × 201"),
-        (["figures", 0, "picture", "size"], [10**30, 200], "size of the picture"),
-        (["figures", 0, "id"], -1, "lacks figures/-1"),
-        (["figures", 0, "handles"], {}, says(NOT_LIST, where="handles")),
-        (["figures", 0, "handles", 0, "name"], 5, says(NOT_TEXT, where="handles[0].name")),
-        (["figures", 0, "handles", 0, "id"], 4, "Two handles have the id 4"),
-        (["figures", 0, "handles", 0, "position"], [0, 0], "outside the shape"),
-        (["figures", 0, "handles", 0, "weight"], 10**400, "finite"),
-        (["figures", 0, "next_handle"], 2, "is taken"),
-        (["figures", 0, "keys"], [], "at least one key"),
-        (["figures", 0, "keys", 1, "frame"], 3, "Two keys are at frame 3"),
-        (["figures", 0, "keys", 1, "frame"], 2, "mixed up"),
-        (["figures", 0, "keys", 1, "turns"], 0.5, says(NOT_WHOLE, where="turns")),
-        (["figures", 0, "keys", 1, "turns"], 10**30, "whole turns"),
-        (["figures", 0, "keys", 1, "easing"], "bounce", "no easing 'bounce'"),
-        (["figures", 0, "keys", 1, "easing"], [0, 0, 2, 0], "easing curve"),
-        (["figures", 0, "keys", 1, "targets"], [], "one target for each handle"),
-        (["figures", 0, "keys", 1, "targets", 0, "handle"], 4, "two targets for one handle"),
+        (["layers", 0, "picture", "sha256"], "0" * 64, says(OTHER_CHECKSUM)),
+        (["layers", 0, "picture", "suffix"], ".jpg", "lacks layers/0/source.jpg"),
+        (["layers", 0, "picture", "suffix"], "/../../x", "lacks layers/0/source"),
+        (["layers", 0, "picture", "size"], [0, 5], "size of the picture"),
+        (["layers", 0, "picture", "size"], [200, 201], "200 × 200 pixels, not 200 × 201"),
+        (["layers", 0, "picture", "size"], [10**30, 200], "size of the picture"),
+        (["layers", 0, "id"], -1, "lacks layers/-1"),
+        (["layers", 0, "handles"], {}, says(NOT_LIST, where="handles")),
+        (["layers", 0, "handles", 0, "name"], 5, says(NOT_TEXT, where="handles[0].name")),
+        (["layers", 0, "handles", 0, "id"], 4, "Two handles have the id 4"),
+        (["layers", 0, "handles", 0, "position"], [0, 0], "outside the shape"),
+        (["layers", 0, "handles", 0, "weight"], 10**400, "finite"),
+        (["layers", 0, "next_handle"], 2, "is taken"),
+        (["layers", 0, "keys"], [], "at least one key"),
+        (["layers", 0, "keys", 1, "frame"], 3, "Two keys are at frame 3"),
+        (["layers", 0, "keys", 1, "frame"], 2, "mixed up"),
+        (["layers", 0, "keys", 1, "turns"], 0.5, says(NOT_WHOLE, where="turns")),
+        (["layers", 0, "keys", 1, "turns"], 10**30, "whole turns"),
+        (["layers", 0, "keys", 1, "easing"], "bounce", "no easing 'bounce'"),
+        (["layers", 0, "keys", 1, "easing"], [0, 0, 2, 0], "easing curve"),
+        (["layers", 0, "keys", 1, "targets"], [], "one target for each handle"),
+        (["layers", 0, "keys", 1, "targets", 0, "handle"], 4, "two targets for one handle"),
         (
-            ["figures", 0, "keys", 1, "targets", 0, "rotation"],
+            ["layers", 0, "keys", 1, "targets", 0, "rotation"],
             "x",
             says(NOT_NUMBER, where="rotation"),
         ),
-        (["figures", 0, "keys", 1], 7, says(NOT_OBJECT, where="keys[1]")),
-        (["figures", 0, "keys", 2, "fronts"], [[4]], r"fronts\[0\] must be a handle and a number"),
-        (["figures", 0, "keys", 2, "fronts"], [[4, 7]], "between −1, behind, and 1, in front"),
-        (["figures", 0, "keys", 2, "fronts"], [[9, 0.5]], "in front that is not there"),
-        (["figures", 0, "handles", 0, "front"], 2, "between −1, behind, and 1, in front"),
-        (["figures", 0, "handles", 0, "extent"], 0, "extent of handle 'nose'"),
-        (["figures", 0, "name"], " ", "needs a name"),
-        (["figures", 0, "name"], "parent", "Two figures are called 'parent'"),
-        (["figures", 0, "corner"], [1e9, 0], "corner of 'Körper'"),
-        (["figures", 0, "still"], True, "still picture"),
-        (["figures", 0, "opacity"], 1.5, "Opacity is between 0 and 1"),
-        (["figures", 0, "switches"], [[12, True], [12, False]], "shown or hidden at frame 12"),
-        (["figures", 0, "switches"], [[12]], "a frame and true or false"),
-        (["figures", 0, "attachment", "to"], 7, says(NO_FIGURE, identity=7)),
-        (["figures", 0, "attachment", "to"], 0, says(HANGS_ON_ITSELF)),
-        (["figures", 0, "attachment", "at"], [1e9, 0], "A joint must be within"),
-        (["figures", 0, "anchor"], None, "attached, but has no anchor"),
+        (["layers", 0, "keys", 1], 7, says(NOT_OBJECT, where="keys[1]")),
+        (["layers", 0, "keys", 2, "fronts"], [[4]], r"fronts\[0\] must be a handle and a number"),
+        (["layers", 0, "keys", 2, "fronts"], [[4, 7]], "between −1, behind, and 1, in front"),
+        (["layers", 0, "keys", 2, "fronts"], [[9, 0.5]], "in front that is not there"),
+        (["layers", 0, "handles", 0, "front"], 2, "between −1, behind, and 1, in front"),
+        (["layers", 0, "handles", 0, "extent"], 0, "extent of handle 'nose'"),
+        (["layers", 0, "name"], " ", "needs a name"),
+        (["layers", 0, "name"], "parent", "Two layers are called 'parent'"),
+        (["layers", 0, "corner"], [1e9, 0], "corner of 'Körper'"),
+        (["layers", 0, "still"], True, "still picture"),
+        (["layers", 0, "opacity"], 1.5, "Opacity is between 0 and 1"),
+        (["layers", 0, "switches"], [[12, True], [12, False]], "shown or hidden at frame 12"),
+        (["layers", 0, "switches"], [[12]], "a frame and true or false"),
+        (["layers", 0, "attachment", "to"], 7, says(NO_LAYER, identity=7)),
+        (["layers", 0, "attachment", "to"], 0, says(HANGS_ON_ITSELF)),
+        (["layers", 0, "attachment", "at"], [1e9, 0], "A joint must be within"),
+        (["layers", 0, "anchor"], None, "attached, but has no anchor"),
         (["size"], [0, 5], "size of the canvas"),
     ],
 )
@@ -640,54 +657,54 @@ def test_what_could_not_be_written_again_is_refused(tmp_path, members, field, me
 @pytest.mark.parametrize(
     ("name", "content", "message"),
     [
-        ("figures/0/source.png", b"other", says(OTHER_CHECKSUM)),
-        ("figures/0/cage.npy", npy(CAGE[::-1]), says(CAGE_ORDER)),
-        ("figures/0/cage.npy", npy(100 + 100j + 0.5 * (CAGE - 100 - 100j)), says(CAGE_TOUCHES)),
-        ("figures/0/triangles.npy", npy(MESH.triangles[:, ::-1].copy()), says(MESH_FLAT)),
-        ("figures/0/triangles.npy", npy(MESH.triangles[:-1].copy()), says(MESH_UNUSED)),
-        ("figures/0/vertices.npy", npy(MESH.vertices + 500), says(MESH_UNFILLED)),
-        ("figures/0/vertices.npy", npy(np.full(12, 1e200 + 0j)), says(TOO_FAR)),
-        ("figures/0/cage.npy", npy(np.zeros(600, complex)), says(MEMBER_TOO_LARGE)),
-        ("figures/0/cage.npy", b"", says(NOT_ARRAY)),
-        ("figures/0/cage.npy", npy(np.zeros(12)), says(NOT_ARRAY, dtype="complex128", shape=",")),
-        ("figures/0/cage.npy", npy(np.zeros((12, 1), complex)), says(NOT_ARRAY)),
-        ("figures/0/cage.npy", npy(np.zeros(12, ">c16")), says(NOT_ARRAY)),
-        ("figures/0/cage.npy", npy(np.zeros(12, complex))[:-1], "cut short"),
-        ("figures/0/cage.npy", npy(np.zeros(12, complex)) + b"x", "cut short"),
-        ("figures/0/cage.npy", npy(np.ones(2, complex)), says(FEW_ENTRIES, at_least=3)),
-        ("figures/0/cage.npy", npy(np.ones(11, complex)), says(CAGE_REPEATS)),
-        ("figures/0/cage.npy", npy(np.full(12, complex("nan"))), says(NOT_FINITE, name="cage")),
-        ("figures/0/outline.npy", npy(np.ones(12, complex)), "outline repeats a vertex"),
-        ("figures/0/outline.npy", npy(np.array([0, 2, 2j, 1 + 2j, 0.5])), "crosses"),
+        ("layers/0/source.png", b"other", says(OTHER_CHECKSUM)),
+        ("layers/0/cage.npy", npy(CAGE[::-1]), says(CAGE_ORDER)),
+        ("layers/0/cage.npy", npy(100 + 100j + 0.5 * (CAGE - 100 - 100j)), says(CAGE_TOUCHES)),
+        ("layers/0/triangles.npy", npy(MESH.triangles[:, ::-1].copy()), says(MESH_FLAT)),
+        ("layers/0/triangles.npy", npy(MESH.triangles[:-1].copy()), says(MESH_UNUSED)),
+        ("layers/0/vertices.npy", npy(MESH.vertices + 500), says(MESH_UNFILLED)),
+        ("layers/0/vertices.npy", npy(np.full(12, 1e200 + 0j)), says(TOO_FAR)),
+        ("layers/0/cage.npy", npy(np.zeros(600, complex)), says(MEMBER_TOO_LARGE)),
+        ("layers/0/cage.npy", b"", says(NOT_ARRAY)),
+        ("layers/0/cage.npy", npy(np.zeros(12)), says(NOT_ARRAY, dtype="complex128", shape=",")),
+        ("layers/0/cage.npy", npy(np.zeros((12, 1), complex)), says(NOT_ARRAY)),
+        ("layers/0/cage.npy", npy(np.zeros(12, ">c16")), says(NOT_ARRAY)),
+        ("layers/0/cage.npy", npy(np.zeros(12, complex))[:-1], "cut short"),
+        ("layers/0/cage.npy", npy(np.zeros(12, complex)) + b"x", "cut short"),
+        ("layers/0/cage.npy", npy(np.ones(2, complex)), says(FEW_ENTRIES, at_least=3)),
+        ("layers/0/cage.npy", npy(np.ones(11, complex)), says(CAGE_REPEATS)),
+        ("layers/0/cage.npy", npy(np.full(12, complex("nan"))), says(NOT_FINITE, name="cage")),
+        ("layers/0/outline.npy", npy(np.ones(12, complex)), "outline repeats a vertex"),
+        ("layers/0/outline.npy", npy(np.array([0, 2, 2j, 1 + 2j, 0.5])), "crosses"),
         (
-            "figures/0/vertices.npy",
+            "layers/0/vertices.npy",
             npy(np.full(12, complex("inf"))),
             says(NOT_FINITE, name="vertices"),
         ),
         (
-            "figures/0/triangles.npy",
+            "layers/0/triangles.npy",
             npy(np.zeros((1, 2), np.int32)),
             says(NOT_ARRAY, dtype="int32", shape=", 3"),
         ),
-        ("figures/0/triangles.npy", npy(np.zeros((1, 3), np.int64)), says(NOT_ARRAY)),
-        ("figures/0/triangles.npy", npy(np.zeros((0, 3), np.int32)), says(MESH_SIZE)),
+        ("layers/0/triangles.npy", npy(np.zeros((1, 3), np.int64)), says(NOT_ARRAY)),
+        ("layers/0/triangles.npy", npy(np.zeros((0, 3), np.int32)), says(MESH_SIZE)),
         (
-            "figures/0/triangles.npy",
+            "layers/0/triangles.npy",
             npy(np.array([[0, 1, 12]], np.int32)),
             says(MESH_CORNERS),
         ),
         (
-            "figures/0/triangles.npy",
+            "layers/0/triangles.npy",
             npy(np.array([[0, 1, -1]], np.int32)),
             says(MESH_CORNERS),
         ),
-        ("figures/0/keys/00002.psi.npy", npy(np.ones(11, complex)), "as many coefficients|cage of"),
+        ("layers/0/keys/00002.psi.npy", npy(np.ones(11, complex)), "as many coefficients|cage of"),
         (
-            "figures/0/keys/00002.psi.npy",
+            "layers/0/keys/00002.psi.npy",
             npy(np.full(12, complex("nan"))),
             says(NOT_FINITE, name="psi"),
         ),
-        ("figures/0/keys/00002.phi.npy", npy(np.array([{}], dtype=object)), says(NOT_ARRAY)),
+        ("layers/0/keys/00002.phi.npy", npy(np.array([{}], dtype=object)), says(NOT_ARRAY)),
         ("mimetype", b"application/zip", NO_PROJECT),
         ("mimetype", b"application/epub+zip and more", says(MEMBER_TOO_LARGE)),
     ],
@@ -714,7 +731,7 @@ def test_a_header_that_claims_a_huge_array_allocates_nothing(tmp_path, members):
     assert b"(9000000000000,)" in header
     tracemalloc.start()
     with pytest.raises(LissomError, match="cut short"):
-        load_project(pack(tmp_path / "a", members | {"figures/0/cage.npy": header}))
+        load_project(pack(tmp_path / "a", members | {"layers/0/cage.npy": header}))
     assert tracemalloc.get_traced_memory()[1] < 10_000_000
     tracemalloc.stop()
 
@@ -813,7 +830,7 @@ def test_no_damage_gets_through(tmp_path, count):
 
 def test_a_domain_that_was_parted_comes_back_so_and_needs_what_closes_it(tmp_path):
     whole = full_document()
-    (first, second) = whole.figures
+    (first, second) = whole.layers
     loops = np.concatenate(first.domain.loops)
     slits = (Slit(points=np.array([-5 + 20j, 1 / 3])), Slit(points=np.array([3.0 + 199j, 4, 5])))
     parted = replace(
@@ -821,12 +838,12 @@ def test_a_domain_that_was_parted_comes_back_so_and_needs_what_closes_it(tmp_pat
         cut_out=replace(first.cut_out, slits=slits),
         domain=replace(first.domain, closed=loops + 0.01),
     )
-    document = replace(whole, figures=(parted, second))
+    document = replace(whole, layers=(parted, second))
     path = tmp_path / "a.lissom"
     save_project(path, document)
     assert not differences(load_project(path), document)
     members = read_members(path)
-    name = "figures/0/closed.npy"
+    name = "layers/0/closed.npy"
     for content, message in (
         (npy(loops[1:]), "closed beside"),
         (npy(loops + 1000.0), "closed beside"),
@@ -835,10 +852,10 @@ def test_a_domain_that_was_parted_comes_back_so_and_needs_what_closes_it(tmp_pat
         with pytest.raises(LissomError, match=message):
             load_project(pack(tmp_path / "b", members | {name: content}))
     for counts, message in (([2, 2], "slits of a cut-out"), ([4, 1], "at least 2"), (3, "a list")):
-        broken = with_json(members, "figures", 0, "domain", "slits", value=counts)
+        broken = with_json(members, "layers", 0, "domain", "slits", value=counts)
         with pytest.raises(LissomError, match=message):
             load_project(pack(tmp_path / "b", broken))
-    for lost in (name, "figures/0/slits.npy"):
+    for lost in (name, "layers/0/slits.npy"):
         fewer = {other: content for other, content in members.items() if other != lost}
         with pytest.raises(LissomError, match=f"lacks {lost}"):
             load_project(pack(tmp_path / "b", fewer))

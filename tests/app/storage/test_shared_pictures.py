@@ -28,7 +28,7 @@ def drawing(tmp_path):
 
 def test_what_is_empty_around_a_layer_is_cut_off(drawing):
     opened = open_layered(drawing, Meshing(triangles=4_000))
-    full, right, left = opened.document.figures
+    full, right, left = opened.document.layers
     # But for one row and column each way, so that a plain box is none that stands still.
     assert right.picture.size == (62, 92)
     assert (left.corner, right.corner) == (109 + 139j, 169 + 139j)
@@ -43,12 +43,12 @@ def test_what_is_empty_around_a_layer_is_cut_off(drawing):
 
 def test_layers_that_share_a_picture_share_it_once_it_is_saved_too(drawing, tmp_path):
     opened = open_layered(drawing, Meshing(triangles=4_000))
-    full, right, left = opened.document.figures
+    full, right, left = opened.document.layers
     assert left.picture is right.picture is not full.picture
     assert opened.pictures[left.id] is opened.pictures[right.id]
     save_project(tmp_path / "a.lissom", opened.document)
     again = load_project(tmp_path / "a.lissom")
-    full, right, left = again.figures
+    full, right, left = again.layers
     assert left.picture is right.picture is not full.picture
     shown = files.decoded(again, "a")
     assert shown.puppets[left.id].picture is shown.puppets[right.id].picture
@@ -59,5 +59,5 @@ def test_a_box_on_an_empty_canvas_can_be_posed(tmp_path):
     box.paste((200, 60, 30, 255), (150, 100, 220, 180))
     path = tmp_path / "box.ora"
     path.write_bytes(openraster(SIZE, '<layer name="box" src="data/0.png"/>', [box]))
-    (figure,) = open_layered(path, Meshing(triangles=4_000)).document.figures
-    assert (figure.still, figure.picture.size) == (False, (72, 82))
+    (layer,) = open_layered(path, Meshing(triangles=4_000)).document.layers
+    assert (layer.still, layer.picture.size) == (False, (72, 82))

@@ -31,12 +31,12 @@ def come(monkeypatch, window, bent):
     """What lets the workers' results come; until then a key stands in at the playhead."""
     deliver = window.session.jobs.deliver
     monkeypatch.setattr(window.session.jobs, "deliver", lambda: None)
-    pose = bent.figure.key(LAST).pose
+    pose = bent.layer.key(LAST).pose
     turned = replace(pose, phi=TURN * pose.phi, psi=pose.psi / TURN)
     editing.edit(window.session, key_commands.pose_key(bent.active, LAST, turned))
     playback.scrub(window.session, FRAME)
     window.frames(2)
-    assert bent.puppet.shown.stand_in in [key.pose for key in bent.figure.keys]
+    assert bent.puppet.shown.stand_in in [key.pose for key in bent.layer.keys]
 
     def let_come(*, settles=True):
         monkeypatch.setattr(window.session.jobs, "deliver", deliver)
@@ -48,7 +48,7 @@ def come(monkeypatch, window, bent):
 
 def in_between(project):
     """Return where the handles are in the in-between that is awaited."""
-    rest = np.array([handle.position for handle in project.figure.handles])
+    rest = np.array([handle.position for handle in project.layer.handles])
     return Animation(project.clip, points=rest).positions(FRAME)
 
 
@@ -87,7 +87,7 @@ def test_a_handle_moves_as_far_as_the_pointer_did_meanwhile(window, bent, come):
 
     window.run(play)
     come()
-    targets = bent.figure.key(FRAME).pose.targets
+    targets = bent.layer.key(FRAME).pose.targets
     editing.undo(window.session)
     assert bent.document is before
     window.settle()
@@ -106,10 +106,10 @@ def test_neither_a_drag_that_is_over_nor_steps_are_lost(window, bent, come):
     bent.selected = frozenset({1})
     for _ in range(3):
         window.act(posing.nudge, 5j)
-    assert FRAME not in bent.figure.key_frames
+    assert FRAME not in bent.layer.key_frames
     come()
-    target = bent.figure.key(FRAME).pose.targets[1]
-    while FRAME in bent.figure.key_frames:
+    target = bent.layer.key(FRAME).pose.targets[1]
+    while FRAME in bent.layer.key_frames:
         editing.undo(window.session)
     window.settle()
     assert abs(target.position - in_between(bent)[1] - WAY - 15j) < pixel(window, bent)
@@ -130,7 +130,7 @@ def test_a_turn_goes_on_from_the_in_between(window, bent, come):
 
     window.run(turn)
     come()
-    target = bent.figure.key(FRAME).pose.targets[1]
+    target = bent.layer.key(FRAME).pose.targets[1]
     editing.undo(window.session)
     window.settle()
     turned = bent.puppet.shown.handle_turns[1]
@@ -174,8 +174,8 @@ def test_it_is_not_lost_where_something_else_follows(window, bent, come, leave):
     come()
     window.until(lambda: not bent.pulls)
     playback.halt(window.session)
-    target = bent.figure.key(FRAME).pose.targets[1]
-    assert bent.figure.lags(bent.figure.key(FRAME).pose)[1] < 1.0
+    target = bent.layer.key(FRAME).pose.targets[1]
+    assert bent.layer.lags(bent.layer.key(FRAME).pose)[1] < 1.0
     while bent.document is not before:
         editing.undo(window.session)
     playback.scrub(window.session, FRAME)
@@ -187,7 +187,7 @@ def test_it_is_not_lost_where_something_else_follows(window, bent, come, leave):
 def test_undo_and_redo_need_not_wait(window, bent):
     playback.scrub(window.session, FRAME)
     for turn in (TURN, TURN**2):
-        pose = bent.figure.key(LAST).pose
+        pose = bent.layer.key(LAST).pose
         turned = replace(pose, phi=turn * pose.phi, psi=pose.psi / turn)
         editing.edit(window.session, key_commands.pose_key(bent.active, LAST, turned))
         window.settle()

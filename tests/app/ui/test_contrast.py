@@ -123,8 +123,8 @@ def test_all_tabs_of_a_pose_that_falls_short(window, loose, check):
     for tab in TABS:
         window.show_tab(tab)
         check(tab)
-    solved = loose.figure.poses[:-1]
-    renewal = Renewal(before=loose.figure, bounds=loose.figure.bounds, poses=solved)
+    solved = loose.layer.poses[:-1]
+    renewal = Renewal(before=loose.layer, bounds=loose.layer.bounds, poses=solved)
     loose.pending.append(Promise(label="Solving the keys", renewal=renewal))
     window.show_tab("Deform")
     check("progress")
@@ -171,7 +171,7 @@ def test_layers_that_are_chosen_hidden_and_switched(window, tmp_path, check):
     path.write_bytes(openraster((240, 200), stack, [picture] * 3))
     project = window.open(path)
     session = window.session
-    (wall, _, arm) = (figure.id for figure in project.document.figures)
+    (wall, _, arm) = (layer.id for layer in project.document.layers)
     layering.fade(session, arm, 0.5)
     layering.show(session, arm)
     layering.switch_here(session, wall)

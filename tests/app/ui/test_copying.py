@@ -61,7 +61,7 @@ def play(window, loose):
 
 
 def poses_of(project):
-    return {key.frame: key.pose for key in project.figure.keys}
+    return {key.frame: key.pose for key in project.layer.keys}
 
 
 @pytest.mark.parametrize("frame", [0, 12])
@@ -77,11 +77,11 @@ def test_over_the_drawing_the_pose_at_the_playhead_is_copied(window, loose, play
     assert told == [f"Pose at frame {frame} copied."]
     (copied,) = window.session.copied
     (key,) = copied.keys
-    f = loose.figure.map_of(key.pose)
-    places = np.array([handle.position for handle in loose.figure.handles])
+    f = loose.layer.map_of(key.pose)
+    places = np.array([handle.position for handle in loose.layer.handles])
     np.testing.assert_allclose(f(places), loose.puppet.shown.handle_places, rtol=0, atol=0.5)
     if frame == 0:
-        assert key.pose is loose.figure.key(0).pose
+        assert key.pose is loose.layer.key(0).pose
 
 
 def test_a_pose_that_is_copied_as_the_playhead_leaves_another_is_the_one_that_it_comes_to(
@@ -95,7 +95,7 @@ def test_a_pose_that_is_copied_as_the_playhead_leaves_another_is_the_one_that_it
         hand.press(COPY)
 
     play(copy)
-    assert window.session.copied[0].keys[0].pose is loose.figure.key(0).pose
+    assert window.session.copied[0].keys[0].pose is loose.layer.key(0).pose
 
 
 def test_in_the_timeline_the_chosen_keys_are_copied(window, loose, play):
@@ -108,7 +108,7 @@ def test_in_the_timeline_the_chosen_keys_are_copied(window, loose, play):
     assert play(copy) == [KEYS_COPIED.format(count=2)]
     assert loose.chosen == {0, 24}
     (copied,) = window.session.copied
-    assert copied.keys == loose.figure.keys
+    assert copied.keys == loose.layer.keys
 
     def one(hand):
         hand.click_key(0)
@@ -116,7 +116,7 @@ def test_in_the_timeline_the_chosen_keys_are_copied(window, loose, play):
         hand.press(COPY)
 
     assert play(one) == ["Pose at frame 0 copied."]
-    assert window.session.copied[0].keys == (loose.figure.key(0),)
+    assert window.session.copied[0].keys == (loose.layer.key(0),)
 
 
 def test_where_the_pointer_is_in_neither_the_focus_tells(window, play):
@@ -174,7 +174,7 @@ def test_all_keys_of_all_layers_that_are_posed_are_chosen(window, loose, play):
     layering.stand_still(window.session, still)
     window.settle()
     layering.choose(window.session, 0)
-    posed = {figure.id for figure in loose.document.figures} - {still}
+    posed = {layer.id for layer in loose.document.layers} - {still}
     assert play(lambda hand: (hand.to_timeline(), hand.press(ALL, COPY))) == [
         KEYS_COPIED.format(count=4)
     ]
@@ -210,7 +210,7 @@ def test_a_click_on_the_ruler_or_the_empty_timeline_clears_the_choice_of_keys(
 
 
 def test_the_menu_of_a_key_copies_and_pastes_there(window, loose, play):
-    editing.edit_figure(window.session, key_commands.set_easing, {24}, HOLD)
+    editing.edit_layer(window.session, key_commands.set_easing, {24}, HOLD)
     before = loose.document
 
     def use(frame, *path):

@@ -10,8 +10,8 @@ from projects import project_of
 from scenes import PICTURE, drawn
 
 from app.document import layer_commands
-from app.document.figure import Handle
 from app.document.keyframe import Target
+from app.document.layer import Handle
 from app.editor.actions import editing, saving, upkeep
 from app.editor.layering import arranging
 from app.editor.timeline_view import Strip
@@ -47,25 +47,23 @@ def test_timeline_draws_no_more_for_more_keys(window, kind):
 
 
 def many_layers():
-    (figure,) = drawn().figures
-    figures = tuple(replace(figure, id=number, name=f"layer {number}") for number in range(LAYERS))
-    return replace(drawn(), figures=figures)
+    (layer,) = drawn().layers
+    layers = tuple(replace(layer, id=number, name=f"layer {number}") for number in range(LAYERS))
+    return replace(drawn(), layers=layers)
 
 
 def many_handles():
     document = drawn()
-    (figure,) = document.figures
-    places = figure.domain.mesh.vertices[:60].tolist()
+    (layer,) = document.layers
+    places = layer.domain.mesh.vertices[:60].tolist()
     handles = tuple(
         Handle(id=number, name=f"handle {number}", position=complex(place))
         for number, place in enumerate(places)
     )
-    (key,) = figure.keys
+    (key,) = layer.keys
     targets = {handle.id: Target(position=handle.position) for handle in handles}
     key = replace(key, pose=replace(key.pose, targets=targets))
-    return replace(
-        document, figures=(replace(figure, handles=handles, next_handle=60, keys=(key,)),)
-    )
+    return replace(document, layers=(replace(layer, handles=handles, next_handle=60, keys=(key,)),))
 
 
 @pytest.mark.parametrize(
@@ -104,9 +102,9 @@ def test_layer_under_the_pointer_is_sought_among_those_there(window, monkeypatch
     with window.session.jobs.held():
         show(window, many_layers())
         project = window.session.project
-        assert arranging.figure_at(project, -1000 - 1000j) is None
+        assert arranging.layer_at(project, -1000 - 1000j) is None
         assert not asked
-        arranging.figure_at(project, 60 + 47j)
+        arranging.layer_at(project, 60 + 47j)
         assert len(asked) == LAYERS
         saving.put_project(window.session, None)
 
@@ -124,7 +122,7 @@ def test_layers_are_settled_only_when_something_changed(window, monkeypatch):
         monkeypatch.setattr(upkeep, "show", counted)
         window.frames(3)
         assert not asked
-        editing.edit(window.session, layer_commands.rename_figure(1, "arm"))
+        editing.edit(window.session, layer_commands.rename_layer(1, "arm"))
         window.frames(1)
         assert len(asked) == LAYERS
         saving.put_project(window.session, None)

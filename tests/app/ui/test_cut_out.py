@@ -104,21 +104,21 @@ def test_each_stroke_is_a_step_and_the_mesh_follows_when_the_brush_rests(window,
     window.act(cutting.set_brush, 12.0)
     stroke(window, MIDDLE - 10, MIDDLE + 10)
     stroke(window, MIDDLE)
-    figure = drawing.figure
-    assert [len(s.points) > 1 for s in figure.cut_out.strokes] == [True, False]
-    assert figure.is_stale
-    assert figure.domain is first.figures[0].domain
+    layer = drawing.layer
+    assert [len(s.points) > 1 for s in layer.cut_out.strokes] == [True, False]
+    assert layer.is_stale
+    assert layer.domain is first.layers[0].domain
     rest(window)
-    figure = drawing.figure
-    assert not figure.is_stale
-    assert figure.domain is not first.figures[0].domain
-    assert len(figure.handles) == 1
+    layer = drawing.layer
+    assert not layer.is_stale
+    assert layer.domain is not first.layers[0].domain
+    assert len(layer.handles) == 1
     assert not kept(drawing)[SIZE // 2, SIZE // 2]
     assert drawing.puppet.cut.value.texture[SIZE // 2, SIZE // 2, 3] == 0
     assert drawing.history.undo_label == "Brush"
     last = drawing.document
     window.act(editing.undo)
-    assert len(drawing.figure.cut_out.strokes) == 1
+    assert len(drawing.layer.cut_out.strokes) == 1
     window.act(editing.undo)
     assert drawing.document is with_handle
     window.act(editing.redo)
@@ -134,10 +134,10 @@ def test_a_step_between_two_strokes_gets_a_mesh_of_its_own(window, drawing):
     rest(window)
     last = drawing.document
     window.act(editing.undo)
-    assert drawing.figure.is_stale
+    assert drawing.layer.is_stale
     rest(window)
-    assert not drawing.figure.is_stale
-    assert len(drawing.figure.cut_out.strokes) == 1
+    assert not drawing.layer.is_stale
+    assert len(drawing.layer.cut_out.strokes) == 1
     window.act(editing.redo)
     assert drawing.document is last
 
@@ -166,7 +166,7 @@ def test_alt_and_x_swap_the_brush_and_brackets_change_its_size(window, drawing):
         robot.mouse_up()
 
     window.run(play)
-    assert [stroke.keeps for stroke in drawing.figure.cut_out.strokes] == [False, True]
+    assert [stroke.keeps for stroke in drawing.layer.cut_out.strokes] == [False, True]
 
     def leave(robot):
         robot.key_press(keys.escape)
@@ -208,7 +208,7 @@ def test_a_stroke_that_is_cancelled_is_none(window, drawing):
 def test_the_pipette_takes_the_background_s_colour(window, drawing):
     window.act(cutting.take_up, "pick")
     click(window, complex(4, 4))
-    assert drawing.figure.cut_out.background == PAPER
+    assert drawing.layer.cut_out.background == PAPER
     window.act(cutting.set_background, "none")
     rest(window)
     assert kept(drawing).all()
@@ -216,7 +216,7 @@ def test_the_pipette_takes_the_background_s_colour(window, drawing):
     window.act(cutting.set_background, "auto")
     rest(window)
     assert not kept(drawing).all()
-    assert drawing.figure.cut_out.tolerance == 3
+    assert drawing.layer.cut_out.tolerance == 3
 
 
 def test_a_mask_is_saved_and_loaded_again(window, drawing, tmp_path):
@@ -235,9 +235,9 @@ def test_a_mask_is_saved_and_loaded_again(window, drawing, tmp_path):
     assert not np.array_equal(kept(drawing), by_hand)
     window.act(cutting.load_mask, path)
     rest(window)
-    assert drawing.figure.cut_out.mask is not None
+    assert drawing.layer.cut_out.mask is not None
     assert np.array_equal(kept(drawing), by_hand)
-    assert not drawing.figure.is_stale
+    assert not drawing.layer.is_stale
 
 
 def test_a_mask_of_another_size_is_refused(window, drawing, tmp_path):
@@ -252,17 +252,17 @@ def test_a_mask_of_another_size_is_refused(window, drawing, tmp_path):
 def test_what_cannot_be_is_told_and_undone(window, drawing):
     posing.add_handle(window.session, complex(0.1 * SIZE, SIZE / 2))
     window.settle()
-    domain = drawing.figure.domain
+    domain = drawing.layer.domain
     window.act(cutting.take_up, "remove")
     window.act(cutting.set_brush, 300.0)
     stroke(window, MIDDLE)
     rest(window)
-    assert drawing.figure.is_stale
-    assert drawing.figure.domain is domain
+    assert drawing.layer.is_stale
+    assert drawing.layer.domain is domain
     assert any(ALL_REMOVED in toast.text for toast in window.session.toasts)
     window.act(editing.undo)
     rest(window)
-    assert not drawing.figure.is_stale
+    assert not drawing.layer.is_stale
 
 
 def test_it_is_saved_and_survives_a_crash(window, drawing, tmp_path):
@@ -271,12 +271,12 @@ def test_it_is_saved_and_survives_a_crash(window, drawing, tmp_path):
     path = tmp_path / "stale.lissom"
     save_project(path, drawing.document)
     assert not differences(drawing.document, load_project(path))
-    assert load_project(path).figures[0].is_stale
+    assert load_project(path).layers[0].is_stale
     again = window.open(path)
-    assert again.figure.is_stale
+    assert again.layer.is_stale
     rest(window)
-    assert not again.figure.is_stale
-    assert len(again.figure.cut_out.strokes) == 1
+    assert not again.layer.is_stale
+    assert len(again.layer.cut_out.strokes) == 1
     assert not kept(again)[SIZE // 2, SIZE // 2]
 
 
@@ -286,24 +286,24 @@ def test_a_click_keeps_a_hole_or_fills_it(window, tmp_path):
     posing.add_handle(window.session, complex(0.1 * SIZE, SIZE / 2))
     window.settle()
     before = project.document
-    first = len(project.figure.domain.holes)
+    first = len(project.layer.domain.holes)
     window.act(cutting.take_up, "holes")
     click(window, complex(0.1 * SIZE, SIZE / 2))
     assert project.document is before  # no hole there
     click(window, MIDDLE + 4)
-    assert len(project.figure.cut_out.swapped) == 1
+    assert len(project.layer.cut_out.swapped) == 1
     rest(window)
-    assert len(project.figure.domain.holes) == 1 - first
-    assert len(project.figure.handles) == 1
+    assert len(project.layer.domain.holes) == 1 - first
+    assert len(project.layer.handles) == 1
     path = tmp_path / "ring.lissom"
     save_project(path, project.document)
     assert not differences(project.document, load_project(path))
     click(window, MIDDLE - 9j)
-    assert project.figure.cut_out.swapped == ()
+    assert project.layer.cut_out.swapped == ()
     rest(window)
-    assert len(project.figure.domain.holes) == first
+    assert len(project.layer.domain.holes) == first
     window.act(editing.undo)
-    assert len(project.figure.domain.holes) == 1 - first
+    assert len(project.layer.domain.holes) == 1 - first
     window.act(editing.undo)
     assert project.document is before
 
@@ -313,7 +313,7 @@ def test_a_click_opens_what_the_background_shows_through(window, tmp_path, colou
     opaque = pictures.on_plain(pictures.ring(SIZE), colour)
     Image.fromarray(opaque).save(tmp_path / "ring.png")
     project = window.open(tmp_path / "ring.png")
-    assert len(project.figure.domain.holes) == first
+    assert len(project.layer.domain.holes) == first
     offers = [toast for toast in window.session.toasts if toast.label]
     assert len(offers) == 1 - first
     for offer in offers:
@@ -326,11 +326,11 @@ def test_a_click_opens_what_the_background_shows_through(window, tmp_path, colou
     for holes in (1 - first, first):
         click(window, MIDDLE + 4)
         rest(window)
-        assert len(project.figure.domain.holes) == holes
+        assert len(project.layer.domain.holes) == holes
         assert (project.puppet.cut.value.texture[SIZE // 2, SIZE // 2, 3] == 0) == bool(holes)
     window.act(cutting.set_enclosed, "keep" if first else "remove")
     rest(window)
-    assert len(project.figure.domain.holes) == 1 - first
+    assert len(project.layer.domain.holes) == 1 - first
     path = tmp_path / "ring.lissom"
     save_project(path, project.document)
     assert not differences(project.document, load_project(path))
@@ -358,12 +358,12 @@ POCKET = complex(SIZE / 2, SIZE - 17)
 def test_a_click_opens_a_pocket_that_is_too_small_for_a_hole_of_the_mesh(window, line_art):
     window.act(cutting.take_up, "holes")
     click(window, POCKET + 0.5)
-    assert len(line_art.figure.cut_out.swapped) == 1
+    assert len(line_art.layer.cut_out.swapped) == 1
     rest(window)
     at = SIZE - 1 - int(POCKET.imag), int(POCKET.real)
     assert not kept(line_art)[at]
     assert kept(line_art)[SIZE // 2, SIZE // 2]
-    assert not line_art.figure.domain.holes
+    assert not line_art.layer.domain.holes
     click(window, POCKET - 0.5)
     rest(window)
     assert kept(line_art)[at]
@@ -416,31 +416,31 @@ FROM_BELOW = (complex(60, 3), complex(60, 40), complex(60, 70))
 
 
 def test_a_knife_parts_what_touches_and_nothing_is_seen_of_it_at_rest(window, boots):
-    document, outline = boots.document, len(boots.figure.domain.outline)
+    document, outline = boots.document, len(boots.layer.domain.outline)
     before = pixel(window, 60 + 40j)
     window.act(cutting.take_up, "knife")
     stroke(window, *FROM_BELOW)
-    (slit,) = boots.figure.cut_out.slits
+    (slit,) = boots.layer.cut_out.slits
     assert slit.points[0] == pytest.approx(FROM_BELOW[0], abs=1)
     assert boots.history.undo_label == "Cut by the knife"
     rest(window)
-    figure = boots.figure
-    assert not figure.is_stale
-    assert len(figure.domain.outline) > outline + 8
-    assert len(figure.handles) == 3
+    layer = boots.layer
+    assert not layer.is_stale
+    assert len(layer.domain.outline) > outline + 8
+    assert len(layer.handles) == 3
     window.act(cutting.take_up, None)
     for place in (60 + 40j, 60 + 12j, 60 + 66j):
         assert tuple(pixel(window, place)) == tuple(before)
     # Both sides can be pulled apart.
-    targets = figure.keys[0].pose.targets
+    targets = layer.keys[0].pose.targets
     wishes = {0: Target(position=15 + 30j), 1: Target(position=105 + 30j), 2: targets[2]}
     posing.wish(window.session, wishes)
     window.settle()
     reached = boots.puppet.shown.handle_places
     assert abs(reached[1] - reached[0]) == pytest.approx(90, abs=0.5)
-    assert boots.figure.keys[0].pose.certificate.certified
-    sides = boots.puppet.shown.mesh.posed(boots.puppet.shown.pose)[: len(figure.domain.outline)]
-    beside = np.abs(figure.domain.outline - (60 + 20j)) < 8
+    assert boots.layer.keys[0].pose.certificate.certified
+    sides = boots.puppet.shown.mesh.posed(boots.puppet.shown.pose)[: len(layer.domain.outline)]
+    beside = np.abs(layer.domain.outline - (60 + 20j)) < 8
     assert np.ptp(sides[beside].real) > 10
     assert pixel(window, 60 + 15j).min() > 200  # the canvas
     window.act(editing.undo)
@@ -455,18 +455,18 @@ def test_a_line_of_the_knife_is_saved_taken_away_and_refused(window, boots, tmp_
     path = tmp_path / "boots.lissom"
     save_project(path, boots.document)
     assert not differences(boots.document, load_project(path))
-    (read,) = load_project(path).figures
+    (read,) = load_project(path).layers
     assert len(read.cut_out.slits) == 1
     assert read.domain.closed is not None
     stroke(window, 40 + 3j)  # a click is no line
-    assert len(boots.figure.cut_out.slits) == 1
+    assert len(boots.layer.cut_out.slits) == 1
     stroke(window, 3 + 60j, 117 + 62j)
     rest(window)
     assert any(re.search(says(CUTS_OFF), toast.text) for toast in window.session.toasts)
-    assert boots.figure.is_stale
+    assert boots.layer.is_stale
     window.act(editing.undo)
     rest(window)
-    assert not boots.figure.is_stale
+    assert not boots.layer.is_stale
 
     def alt_click(robot):
         robot.mouse_move_to_pos(window.point(61 + 50j))
@@ -476,9 +476,9 @@ def test_a_line_of_the_knife_is_saved_taken_away_and_refused(window, boots, tmp_
         robot.key_up(imgui.Key.mod_alt)
 
     window.run(alt_click)
-    assert boots.figure.cut_out.slits == ()
+    assert boots.layer.cut_out.slits == ()
     rest(window)
-    assert boots.figure.domain.closed is None
+    assert boots.layer.domain.closed is None
 
 
 def test_a_line_of_the_knife_through_a_handle_is_refused_at_once(window, boots):
@@ -486,11 +486,11 @@ def test_a_line_of_the_knife_through_a_handle_is_refused_at_once(window, boots):
     window.act(cutting.take_up, "knife")
     stroke(window, 30 + 3j, 30 + 60j)
     assert boots.document is document
-    name = boots.figure.handles[0].name
+    name = boots.layer.handles[0].name
     assert any(f"goes through {name}" in toast.text for toast in window.session.toasts)
     stroke(window, 33 + 3j, 33 + 60j)
     rest(window)
-    assert boots.figure.domain.closed is not None
+    assert boots.layer.domain.closed is not None
 
 
 def test_a_line_of_the_knife_is_shown_while_it_is_drawn_and_can_be_cancelled(window, boots):

@@ -52,7 +52,7 @@ def repeat_swings(window):
 
 
 def frames_of(project):
-    return [key.frame for key in project.figure.keys]
+    return [key.frame for key in project.layer.keys]
 
 
 class Row:
@@ -99,7 +99,7 @@ def test_the_menu_of_chosen_keys_lets_them_repeat(window, swinging):
     first = swinging.document
     window.run(repeat)
     window.settle()
-    assert swinging.figure.cycles == (Cycle(first=0, last=48),)
+    assert swinging.layer.cycles == (Cycle(first=0, last=48),)
     assert frames_of(swinging) == [0, 24]
     editing.undo(window.session)
     assert swinging.document is first
@@ -110,7 +110,7 @@ def test_the_end_of_the_repeats_is_dragged(window, cycling):
     # It snaps to where a key is shown.
     window.run(lambda robot: Row(robot).drag("repeats of 0", 120, 101))
     window.settle()
-    assert cycling.figure.cycles == (Cycle(first=0, last=48, until=96),)
+    assert cycling.layer.cycles == (Cycle(first=0, last=48, until=96),)
     editing.undo(window.session)
     assert cycling.document is first
 
@@ -119,22 +119,22 @@ def test_the_end_of_the_stretch_is_dragged_and_it_repeats_as_often(window, cycli
     window.run(lambda robot: Row(robot).drag("repeats of 0", 120, 95))
     window.run(lambda robot: Row(robot).drag("stretch of 0", 44, 40))
     window.settle()
-    assert cycling.figure.cycles == (Cycle(first=0, last=40, until=80),)
+    assert cycling.layer.cycles == (Cycle(first=0, last=40, until=80),)
     # Its keys stay in it.
     window.run(lambda robot: Row(robot).drag("stretch of 0", 30, 10))
     window.settle()
-    assert cycling.figure.cycles == (Cycle(first=0, last=25, until=50),)
+    assert cycling.layer.cycles == (Cycle(first=0, last=25, until=50),)
 
 
 def test_a_drag_in_a_repeat_poses_the_key_that_is_shown_there(window, cycling):
-    before = cycling.figure.key(24).pose
+    before = cycling.layer.key(24).pose
     playback.seek(window.session, 72)
     window.settle()
     shown = complex(cycling.puppet.shown.handle_places[RIGHT])
     drag_end_of_bar(window, cycling, 10 - 40j)
     assert playback.current_frame(window.session, cycling) == 72
     assert frames_of(cycling) == [0, 24]
-    after = cycling.figure.key(24).pose
+    after = cycling.layer.key(24).pose
     assert after is not before
     there = complex(cycling.puppet.shown.handle_places[RIGHT])
     assert abs(there - shown - (10 - 40j)) < 3
@@ -142,7 +142,7 @@ def test_a_drag_in_a_repeat_poses_the_key_that_is_shown_there(window, cycling):
     window.settle()
     assert cycling.puppet.shown.pose is after
     editing.undo(window.session)
-    assert cycling.figure.key(24).pose is before
+    assert cycling.layer.key(24).pose is before
 
 
 def test_a_drag_between_keys_of_a_repeat_makes_one_where_it_repeats(window, cycling):
@@ -166,12 +166,12 @@ def test_repeats_are_made_into_keys_or_stop(window, cycling):
     playback.seek(window.session, 100)
     window.act(cycles.make_keys)
     assert frames_of(cycling) == [0, 24, 48, 72, 96, 120]
-    assert cycling.figure.cycles == (Cycle(first=96, last=144),)
+    assert cycling.layer.cycles == (Cycle(first=96, last=144),)
     window.act(editing.undo)
     assert cycling.document is first
     window.act(cycles.stop)
     assert frames_of(cycling) == [0, 24, 48]
-    assert not cycling.figure.cycles
+    assert not cycling.layer.cycles
 
 
 def test_keys_wait_before_what_repeats(window, cycling):
@@ -185,15 +185,15 @@ def test_keys_wait_before_what_repeats(window, cycling):
     window.run(lambda robot: Row(robot, 44).drag("key 44", 50, 54))
     window.settle()
     assert frames_of(cycling) == [10, 54]
-    assert cycling.figure.cycles == (Cycle(first=10, last=58),)
+    assert cycling.layer.cycles == (Cycle(first=10, last=58),)
 
 
 def test_chosen_layers_repeat_together_in_one_step(window, cycling):
     arm, body = cycling.active, cycling.active + 1
-    editing.edit(window.session, layer_commands.duplicate_figure(arm))
+    editing.edit(window.session, layer_commands.duplicate_layer(arm))
     editing.edit(window.session, cycle_commands.stop(arm, 0))
-    for figure in cycling.document.figures:
-        editing.edit(window.session, key_commands.move_keys(figure.id, {24}, figure.id))
+    for layer in cycling.document.layers:
+        editing.edit(window.session, key_commands.move_keys(layer.id, {24}, layer.id))
     editing.edit(window.session, cycle_commands.stop(body, 0))
     window.settle()
     layering.choose_all(window.session, arm, body)
@@ -201,11 +201,11 @@ def test_chosen_layers_repeat_together_in_one_step(window, cycling):
     before = cycling.document
     window.act(cycles.repeat)
     cycle = (Cycle(first=0, last=48),)
-    assert [figure.cycles for figure in cycling.document.figures] == [cycle, cycle]
+    assert [layer.cycles for layer in cycling.document.layers] == [cycle, cycle]
     editing.undo(window.session)
     assert cycling.document is before
     # What one of them refuses, none does.
-    other = key_commands.put_pose(body, 48, cycling.document.figure(body).key(25).pose, LINEAR)
+    other = key_commands.put_pose(body, 48, cycling.document.layer(body).key(25).pose, LINEAR)
     editing.edit(window.session, other)
     before = cycling.document
     with pytest.raises(LissomError, match="bar copy: " + says(TWO_POSES_SHOWN, first=0, last=48)):
@@ -215,21 +215,21 @@ def test_chosen_layers_repeat_together_in_one_step(window, cycling):
 
 def test_a_still_picture_repeats_with_others_what_it_does_beside_its_pose(window, swinging):
     bar, copy = swinging.active, swinging.active + 1
-    editing.edit(window.session, layer_commands.duplicate_figure(bar))
+    editing.edit(window.session, layer_commands.duplicate_layer(bar))
     window.settle()
     layering.stand_still(window.session, copy)
     window.settle()
     layering.choose_all(window.session, bar, copy)
     editing.choose_keys_of(window.session, {})
     window.act(cycles.repeat)
-    assert [each.cycles for each in swinging.document.figures] == [(Cycle(first=0, last=48),), ()]
+    assert [each.cycles for each in swinging.document.layers] == [(Cycle(first=0, last=48),), ()]
     editing.undo(window.session)
     for frame, opacity in ((0, 1.0), (10, 0.2)):
         editing.edit(window.session, filming_commands.key_opacity(copy, frame, opacity))
     window.act(cycles.repeat)
     cycle = (Cycle(first=0, last=48),)
-    assert [each.cycles for each in swinging.document.figures] == [cycle, cycle]
-    faded = opacity_at(swinging.document, swinging.document.figure(copy), 58)
+    assert [each.cycles for each in swinging.document.layers] == [cycle, cycle]
+    faded = opacity_at(swinging.document, swinging.document.layer(copy), 58)
     assert abs(faded - 0.2) < 1e-9
 
 
@@ -242,13 +242,13 @@ def test_a_drag_on_a_track_in_a_repeat_keys_it_where_it_repeats(window, cycling)
     window.settle()
     shown = complex(cycling.puppet.shown.handle_places[RIGHT])
     drag_end_of_bar(window, cycling, 4 - 10j)
-    track = cycling.figure.track_of(RIGHT)
+    track = cycling.layer.track_of(RIGHT)
     assert [key.frame for key in track.keys] == [0, 8, 16]
     assert track.keys[1].place != 12 + 6j
     assert abs(complex(cycling.puppet.shown.handle_places[RIGHT]) - shown - (4 - 10j)) < 3
     playback.seek(window.session, 60)
     window.settle()
     drag_end_of_bar(window, cycling, 2 - 5j)
-    track = cycling.figure.track_of(RIGHT)
+    track = cycling.layer.track_of(RIGHT)
     assert [key.frame for key in track.keys] == [0, 8, 12, 16]
     assert frames_of(cycling) == [0, 24]

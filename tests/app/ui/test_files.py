@@ -47,7 +47,7 @@ def texts(window):
 def change(window, project):
     """Make a change that is not saved."""
     place = complex(*project.document.canvas) / 2
-    shift = 0.1 * len(project.figure.handles) * project.document.canvas[0]
+    shift = 0.1 * len(project.layer.handles) * project.document.canvas[0]
     window.act(posing.add_handle, place + shift)
     window.settle()
     assert not project.history.is_saved
@@ -72,9 +72,9 @@ def test_a_dropped_project_opens(window, project, drop, tmp_path):
 
 def test_a_motion_that_is_not_known_here_is_told(window, project, tmp_path):
     unread = UnreadMotion(index=0, content={"motion": "nosuch"}, reason="it is not known")
-    figure = replace(project.figure, unread_motions=(unread,))
+    layer = replace(project.layer, unread_motions=(unread,))
     path = tmp_path / "later.lissom"
-    save_project(path, project.document.with_figure(figure))
+    save_project(path, project.document.with_layer(layer))
     window.act(files.open_file, path)
     window.settle()
     assert any("motion that this version cannot show" in text for text in texts(window))
@@ -88,8 +88,8 @@ def test_several_dropped_pictures_become_layers(window, drop, tmp_path):
     notes.write_bytes(b"")
     drop(notes, RING, BAR)
     project = window.session.project
-    assert [figure.name for figure in project.document.figures] == ["ring", "bar"]
-    assert project.figure.name == "bar"
+    assert [layer.name for layer in project.document.layers] == ["ring", "bar"]
+    assert project.layer.name == "bar"
 
 
 def test_of_other_dropped_files_the_first_that_can_be_opened_opens(window, drop, tmp_path):
@@ -106,15 +106,15 @@ def test_a_picture_dropped_on_a_scene_may_become_a_layer(window, project, drop):
     window.run(lambda robot: robot.item_click("//###dialog/New layer"))
     window.settle()
     assert window.session.project is project
-    assert [figure.name for figure in project.document.figures] == ["bar", "ring"]
-    assert project.figure.name == "ring"
+    assert [layer.name for layer in project.document.layers] == ["bar", "ring"]
+    assert project.layer.name == "ring"
     window.act(editing.undo)
     window.settle()
-    assert len(project.document.figures) == 1
-    assert project.figure.name == "bar"
+    assert len(project.document.layers) == 1
+    assert project.layer.name == "bar"
     window.act(editing.redo)
     window.settle()
-    assert set(project.puppets) == {figure.id for figure in project.document.figures}
+    assert set(project.puppets) == {layer.id for layer in project.document.layers}
 
 
 def test_a_layer_beyond_memory_is_refused(window, project, drop, monkeypatch):
@@ -125,7 +125,7 @@ def test_a_layer_beyond_memory_is_refused(window, project, drop, monkeypatch):
     window.run(lambda robot: robot.item_click("//###dialog/New layer"))
     window.settle()
     assert "decoded it takes" in texts(window)[-1]
-    assert len(project.document.figures) == 1
+    assert len(project.document.layers) == 1
 
 
 def test_a_dropped_thing_that_cannot_be_opened_is_named(window, project, drop, tmp_path):
@@ -163,7 +163,7 @@ def test_changes_made_while_a_file_is_read_are_asked_about(window, project):
         window.act(posing.add_handle, complex(*project.document.canvas) / 2)
     window.settle()
     assert window.session.project is project
-    assert len(project.figure.handles) == 1
+    assert len(project.layer.handles) == 1
     assert isinstance(window.session.dialog, Question)
     window.run(lambda robot: robot.item_click("//###dialog/Don't save"))
     assert window.session.project.name == "ring"
@@ -194,11 +194,11 @@ def test_changes_made_while_the_project_is_saved_are_asked_about(window, project
     window.settle()
     assert window.session.project is project
     assert not window.session.quitting
-    assert len(project.figure.handles) == 2
+    assert len(project.layer.handles) == 2
     assert isinstance(window.session.dialog, Question)
     window.run(lambda robot: robot.item_click("//###dialog/Save"))
     window.settle()
-    assert len(load_project(tmp_path / "bar.lissom").figures[0].handles) == 2
+    assert len(load_project(tmp_path / "bar.lissom").layers[0].handles) == 2
     assert window.session.quitting or window.session.project is None
     window.session.quitting = False
 
@@ -211,7 +211,7 @@ def kept(window):
         window.settle()
         found = list(window.folder.glob("unsaved-*.lissom"))
         assert len(found) <= 1
-        return len(load_project(found[0]).figures[0].handles) if found else None
+        return len(load_project(found[0]).layers[0].handles) if found else None
 
     return read
 
@@ -294,7 +294,7 @@ def test_what_is_saved_stays_so_though_a_pose_had_not_settled(window, project, t
     window.settle()
     assert project.pull is None
     assert project.history.is_saved
-    (saved,), (now,) = load_project(path).figures[0].keys, project.figure.keys
+    (saved,), (now,) = load_project(path).layers[0].keys, project.layer.keys
     assert saved.pose.targets == now.pose.targets
     assert (saved.pose.psi == now.pose.psi).all()
     window.act(saving.quit_lissom)
@@ -364,22 +364,22 @@ def test_a_saved_project_is_known_by_its_picture_in_the_welcome_view(window, pro
 def test_a_drag_keeps_what_a_later_version_wrote_about_its_target(window, project, tmp_path):
     change(window, project)
     path = tmp_path / "bar.lissom"
-    (key,) = project.figure.keys
+    (key,) = project.layer.keys
     told = MappingProxyType({"from the future": 1})
     targets = {i: replace(target, unknown=told) for i, target in key.pose.targets.items()}
     key = replace(key, pose=replace(key.pose, targets=targets))
-    figure = replace(project.figure, keys=(key,))
-    save_project(path, replace(project.document, figures=(figure,)))
+    layer = replace(project.layer, keys=(key,))
+    save_project(path, replace(project.document, layers=(layer,)))
     opened = window.open(path)
-    place = opened.figure.handles[0].position
+    place = opened.layer.handles[0].position
     posing.pull(window.session, {0: Target(position=place + 20j)})
     window.act(posing.let_go)
     window.settle()
-    target = opened.figure.keys[0].pose.targets[0]
+    target = opened.layer.keys[0].pose.targets[0]
     assert target.position == place + 20j
     assert target.unknown == told
     window.act(editing.edit, handle_commands.move_handle(opened.active, 0, place - 5))
-    assert opened.figure.keys[0].pose.targets[0].unknown == told
+    assert opened.layer.keys[0].pose.targets[0].unknown == told
 
 
 def test_preferences_are_kept_as_soon_as_they_change(window):

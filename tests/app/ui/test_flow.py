@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from app.document.commands.figure_commands import set_anchor
+from app.document.commands.shape_commands import set_anchor
 from app.document.keyframe import Target
 from app.document.settings import ExportSettings, Meshing
 from app.editor.action import do
@@ -35,7 +35,7 @@ def handle_places(project):
     return {
         handle.id: complex(place)
         for handle, place in zip(
-            project.puppet.shown.clip.figure.handles,
+            project.puppet.shown.clip.layer.handles,
             project.puppet.shown.handle_places,
             strict=True,
         )
@@ -64,7 +64,7 @@ def test_a_person_makes_an_animation_and_takes_it_back(window, tmp_path):
             robot.mouse_click(0)
 
     window.run(add_handles)
-    assert len(project.figure.handles) == 2
+    assert len(project.layer.handles) == 2
     places = list(handle_places(project).values())
     np.testing.assert_allclose(places, [left, right], rtol=0, atol=2)
 
@@ -72,9 +72,9 @@ def test_a_person_makes_an_animation_and_takes_it_back(window, tmp_path):
     window.settle()
     window.run(lambda robot: drag(robot, window, right, right + 0.5j * width))
     window.settle()
-    assert [key.frame for key in project.figure.keys] == [0, 24]
+    assert [key.frame for key in project.layer.keys] == [0, 24]
     assert handle_places(project)[1].imag > height
-    assert all(key.pose.certificate.certified for key in project.figure.keys)
+    assert all(key.pose.certificate.certified for key in project.layer.keys)
     assert project.history.undo_label == "Pose"
 
     playback.seek(session, 0)
@@ -109,8 +109,8 @@ def test_a_person_makes_an_animation_and_takes_it_back(window, tmp_path):
         window.run(lambda robot: robot.key_press(int(window.Key.mod_ctrl) | int(window.Key.z)))
     assert project.document is first
     reopened = window.open(path)
-    assert [key.frame for key in reopened.document.figures[0].keys] == [0, 24]
-    assert len(reopened.document.figures[0].handles) == 2
+    assert [key.frame for key in reopened.document.layers[0].keys] == [0, 24]
+    assert len(reopened.document.layers[0].handles) == 2
 
 
 def test_dragging_follows_and_is_one_step(window, bar, monkeypatch):
@@ -122,7 +122,7 @@ def test_dragging_follows_and_is_one_step(window, bar, monkeypatch):
     window.run(lambda robot: drag(robot, window, start, start + 150j, steps=12))
     window.settle()
     assert bar.pull is None
-    lag = bar.document.figures[0].lags(bar.document.figures[0].keys[0].pose)[1]
+    lag = bar.document.layers[0].lags(bar.document.layers[0].keys[0].pose)[1]
     assert lag < 0.05 * abs(150j)
     # It is looked at before the steps and after.
     assert session.solver_seconds >= 0.999 * window.clock.cost
@@ -141,9 +141,9 @@ def test_a_pose_that_the_playhead_leaves_comes_to_rest(window, bar, leave):
     assert bar.pulls
     window.settle()
     assert not bar.pulls
-    (key,) = bar.document.figures[0].keys
+    (key,) = bar.document.layers[0].keys
     assert key.frame == 0
-    assert bar.document.figures[0].lags(key.pose)[1] < 5
+    assert bar.document.layers[0].lags(key.pose)[1] < 5
     assert bar.history.undo_label == "Pose"
 
 
@@ -274,7 +274,7 @@ def test_a_key_between_keys_starts_from_what_is_shown(window, bar):
     between = bar.puppet.shown.positions
     posing.insert_key(session)
     window.settle()
-    assert [key.frame for key in bar.document.figures[0].keys] == [0, 10, 20]
+    assert [key.frame for key in bar.document.layers[0].keys] == [0, 10, 20]
     np.testing.assert_allclose(bar.puppet.shown.positions, between, rtol=0, atol=1.0)
 
 
@@ -286,12 +286,12 @@ def test_without_auto_key_a_pose_is_loose_until_it_is_inserted(window, bar):
     start = handle_places(bar)[1]
     window.run(lambda robot: drag(robot, window, start, start + 100j))
     window.settle()
-    assert [key.frame for key in bar.document.figures[0].keys] == [0]
+    assert [key.frame for key in bar.document.layers[0].keys] == [0]
     assert bar.unkeyed is not None
     window.run(lambda robot: robot.key_press(int(window.Key.i)))
     window.settle()
     assert bar.unkeyed is None
-    assert [key.frame for key in bar.document.figures[0].keys] == [0, 12]
+    assert [key.frame for key in bar.document.layers[0].keys] == [0, 12]
 
 
 def test_inserting_a_key_where_there_is_one_says_so(window, bar):
@@ -312,7 +312,7 @@ def test_keys_of_the_pointer(window, bar):
         robot.key_up(int(window.Key.mod_ctrl))
 
     window.run(play)
-    assert bar.document.figures[0].anchor == bar.document.figures[0].handle(0).position
+    assert bar.document.layers[0].anchor == bar.document.layers[0].handle(0).position
 
     def select_both(robot):
         robot.mouse_move_to_pos(window.point(places[0]))
@@ -326,7 +326,7 @@ def test_keys_of_the_pointer(window, bar):
     assert bar.selected == {0, 1}
     window.run(lambda robot: robot.key_press(int(window.Key.up_arrow)))
     window.settle()
-    assert bar.document.figures[0].keys[0].pose.targets[0].position.imag > places[0].imag
+    assert bar.document.layers[0].keys[0].pose.targets[0].position.imag > places[0].imag
 
     def alt_click(robot):
         robot.mouse_move_to_pos(window.point(handle_places(bar)[1]))
@@ -335,7 +335,7 @@ def test_keys_of_the_pointer(window, bar):
         robot.key_up(int(window.Key.mod_alt))
 
     window.run(alt_click)
-    assert [handle.id for handle in bar.document.figures[0].handles] == [0]
+    assert [handle.id for handle in bar.document.layers[0].handles] == [0]
 
 
 def test_a_box_selects_the_handles_in_it(window, bar):
@@ -358,12 +358,12 @@ def test_a_box_selects_the_handles_in_it(window, bar):
     span(left - side + above, right + side - above)
     assert bar.selected == {0, 1}
     assert session.pointer is None
-    assert len(bar.figure.handles) == 2
+    assert len(bar.layer.handles) == 2
 
 
 def turned(bar, identity=1):
     """Return the turn that the pose wishes at a handle, in degrees."""
-    return np.degrees(bar.figure.keys[0].pose.targets[identity].rotation)
+    return np.degrees(bar.layer.keys[0].pose.targets[identity].rotation)
 
 
 @pytest.mark.parametrize(("press", "angle"), [(0.0, 40.0), (0.5, -25.0), (-0.5j, 40.0)])
@@ -406,7 +406,7 @@ def test_the_ring_turns_the_shape_around_the_selected_handle(window, bar):
     window.run(turn)
     window.settle()
     assert turned(bar) == pytest.approx(30, abs=2)
-    assert len(bar.figure.handles) == 2
+    assert len(bar.layer.handles) == 2
 
 
 def test_a_click_on_the_ring_changes_nothing(window, bar):
@@ -466,22 +466,22 @@ def test_a_press_on_the_shape_that_is_dragged_is_one_step(window, bar):
     middle = (left + right) / 2
     window.run(lambda robot: drag(robot, window, middle, middle + 60j))
     window.settle()
-    assert len(bar.figure.handles) == 3
+    assert len(bar.layer.handles) == 3
     assert handle_places(bar)[2].imag > middle.imag + 30
     window.run(lambda robot: robot.key_press(int(window.Key.mod_ctrl) | int(window.Key.z)))
     assert bar.document is before
 
 
 def test_a_pose_is_copied_and_pasted_by_keys(window, bent):
-    pose = bent.figure.key(24).pose
+    pose = bent.layer.key(24).pose
     ctrl = int(window.Key.mod_ctrl)
     window.run(lambda robot: robot.key_press(ctrl | int(window.Key.c)))
     playback.scrub(window.session, 40)
     window.settle()
     window.run(lambda robot: robot.key_press(ctrl | int(window.Key.v)))
     window.settle()
-    assert bent.figure.key_frames == {0, 24, 40}
-    assert bent.figure.key(40).pose.phi is pose.phi
+    assert bent.layer.key_frames == {0, 24, 40}
+    assert bent.layer.key(40).pose.phi is pose.phi
     assert bent.puppet.shown.is_current
 
 
@@ -592,7 +592,7 @@ def test_unsaved_changes_are_asked_about(window, bar, tmp_path):
 
 def test_ctrl_click_on_the_shape_puts_the_anchor_there(window, bent):
     before, wanted = (
-        len(bent.document.figures[0].handles),
+        len(bent.document.layers[0].handles),
         complex(bent.puppet.shown.positions.mean()),
     )
 
@@ -604,10 +604,10 @@ def test_ctrl_click_on_the_shape_puts_the_anchor_there(window, bent):
 
     window.run(play)
     window.settle()
-    assert len(bent.document.figures[0].handles) == before
-    assert bent.document.figures[0].anchor is not None
-    moved = bent.document.figures[0].map_of(bent.document.figures[0].keys[1].pose)(
-        np.array([bent.document.figures[0].anchor])
+    assert len(bent.document.layers[0].handles) == before
+    assert bent.document.layers[0].anchor is not None
+    moved = bent.document.layers[0].map_of(bent.document.layers[0].keys[1].pose)(
+        np.array([bent.document.layers[0].anchor])
     )
     assert abs(moved[0] - wanted) < 3
     assert abs(marks.find_anchor(bent, bent.puppet.shown) - wanted) < 3
@@ -618,15 +618,13 @@ def test_ctrl_click_on_the_shape_puts_the_anchor_there(window, bent):
 
 @pytest.mark.usefixtures("everything")
 def test_an_anchor_that_was_chosen_for_the_person_is_shown(window, bent):
-    assert bent.document.figures[0].anchor is None
+    assert bent.document.layers[0].anchor is None
     place = marks.find_anchor(bent, bent.puppet.shown)
     rest = bent.puppet.store.sampler.sites.anchor
-    moved = bent.document.figures[0].map_of(bent.document.figures[0].keys[1].pose)(np.array([rest]))
+    moved = bent.document.layers[0].map_of(bent.document.layers[0].keys[1].pose)(np.array([rest]))
     assert abs(place - moved[0]) < 3
     shown = window.picture()
-    editing.edit(
-        window.session, set_anchor(0, complex(bent.document.figures[0].handle(0).position))
-    )
+    editing.edit(window.session, set_anchor(0, complex(bent.document.layers[0].handle(0).position)))
     window.settle()
     assert window.picture() != shown
 

@@ -151,7 +151,7 @@ def test_failing_panel_is_asked_again_when_its_state_changes(window, parts, bar)
     draw = parts[name].draw
     changes = (
         partial(editing.edit, command=scene_commands.add_marker(3, "beat")),
-        partial(editing.select, handles=frozenset({bar.figure.handles[0].id})),
+        partial(editing.select, handles=frozenset({bar.layer.handles[0].id})),
         partial(playback.scrub, frame=2),
     )
     parts[name].draw = broken = Broken()
@@ -199,7 +199,7 @@ def test_failing_viewport_still_shows_the_drawing(window, parts, bar):
     parts["The panel Viewport"].draw = Broken()
     window.frames(3)
     after = window.picture()
-    at = window.point(bar.figure.domain.outline.mean())
+    at = window.point(bar.layer.domain.outline.mean())
     place = round(at.x), round(at.y)
     assert after.getpixel(place) == before.getpixel(place)
 

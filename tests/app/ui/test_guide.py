@@ -119,7 +119,7 @@ def test_the_giraffe_bows(window):
     pupil.reach("handle")
     session, project = window.session, window.session.project
     assert project.path is None
-    assert [len(project.figure.keys), len(project.figure.handles)] == [1, 7]
+    assert [len(project.layer.keys), len(project.layer.handles)] == [1, 7]
     export = project.document.export
     assert (export.format, export.size) == (guiding.FORMAT, guiding.SIZE)
     window.frames(3)
@@ -183,7 +183,7 @@ def test_whoever_does_something_else_first_is_led_from_there(window, led):
     window.act(posing.add_handle, second)
     led.reach("pose")  # the playhead was moved before
     window.act(keys.insert)
-    window.until(lambda: len(session.project.figure.keys) == 2)
+    window.until(lambda: len(session.project.layer.keys) == 2)
     window.frames(2)
     assert led.step == "pose", "two keys with one pose do not move"
     window.act(playback.scrub, 0)

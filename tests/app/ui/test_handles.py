@@ -30,7 +30,7 @@ def play(window):
 def places(project):
     return dict(
         zip(
-            (handle.id for handle in project.figure.handles),
+            (handle.id for handle in project.layer.handles),
             map(complex, project.puppet.shown.handle_places),
             strict=True,
         )
@@ -71,10 +71,10 @@ def test_handles_are_suggested_and_taken_back_by_a_click(window, bar, play):
     before = bar.document
     play(lambda robot: robot.item_click("**/###Suggest handles"))
     width, height = bar.document.canvas
-    found = sorted(handle.position.real / width for handle in bar.figure.handles)
+    found = sorted(handle.position.real / width for handle in bar.layer.handles)
     assert_allclose(found, [0.06, 0.5, 0.94], rtol=0, atol=0.06)
     assert_allclose(
-        [handle.position.imag for handle in bar.figure.handles], height / 2, rtol=0, atol=20
+        [handle.position.imag for handle in bar.layer.handles], height / 2, rtol=0, atol=20
     )
     assert bar.history.undo_label == "Add handles"
     window.run(lambda robot: robot.item_click("**/Take back"))
@@ -83,18 +83,18 @@ def test_handles_are_suggested_and_taken_back_by_a_click(window, bar, play):
 
 def test_suggestions_are_taken_back_after_other_steps(window, bar, play):
     play(lambda robot: robot.item_click("**/###Suggest handles"))
-    suggested = {handle.id for handle in bar.figure.handles} - {0, 1}
+    suggested = {handle.id for handle in bar.layer.handles} - {0, 1}
     assert len(suggested) == 1, "there are handles at both ends already"
     editing.select(window.session, frozenset({0}))
     editing.lock(window.session)
     window.run(lambda robot: robot.item_click("**/Take back"))
-    assert [(handle.id, handle.locked) for handle in bar.figure.handles] == [(0, True), (1, False)]
+    assert [(handle.id, handle.locked) for handle in bar.layer.handles] == [(0, True), (1, False)]
 
 
 def test_a_locked_handle_is_not_dragged_and_holds_its_place(window, bar, play):
     editing.select(window.session, frozenset({0}))
     play(lambda robot: robot.item_click("**/###lock"))
-    assert bar.figure.handle(0).locked
+    assert bar.layer.handle(0).locked
     playback.seek(window.session, 24)
     window.settle()
     before = bar.document
@@ -110,19 +110,19 @@ def test_a_locked_handle_is_not_dragged_and_holds_its_place(window, bar, play):
     drag(window, other, other + 0.4 * bar.document.canvas[0])
     posing.wish(window.session, {1: Target(position=4 * other)})
     window.settle()
-    figure = bar.figure
-    lags = figure.lags(figure.key(24).pose)
+    layer = bar.layer
+    lags = layer.lags(layer.key(24).pose)
     assert lags[0] < 0.5
     assert lags[1] > 50
     play(lambda robot: robot.item_click("**/###handle 0"))
     play(lambda robot: robot.item_click("**/###lock"))
-    assert not bar.figure.handle(0).locked
+    assert not bar.layer.handle(0).locked
 
 
 def test_a_group_is_taken_together(window, bar, play):
     editing.select_all(window.session)
     play(lambda robot: robot.item_click("**/###group"))
-    assert {handle.group for handle in bar.figure.handles} == {"group 1"}
+    assert {handle.group for handle in bar.layer.handles} == {"group 1"}
     editing.select(window.session, frozenset())
     playback.seek(window.session, 24)
     window.settle()
@@ -136,7 +136,7 @@ def test_a_group_is_taken_together(window, bar, play):
     click(window, moved[1])
     assert bar.selected == {0, 1}
     play(lambda robot: robot.item_click("**/###ungroup"))
-    assert {handle.group for handle in bar.figure.handles} == {""}
+    assert {handle.group for handle in bar.layer.handles} == {""}
     click(window, moved[1])
     assert bar.selected == {1}
 
@@ -144,23 +144,23 @@ def test_a_group_is_taken_together(window, bar, play):
 def test_how_firmly_handles_hold_is_said_in_words(window, bar, play):
     editing.select_all(window.session)
     play(lambda robot: robot.item_click("**/hold/###Firm"))
-    assert {handle.weight for handle in bar.figure.handles} == {10.0}
+    assert {handle.weight for handle in bar.layer.handles} == {10.0}
     editing.select(window.session, frozenset({1}))
     play(lambda robot: robot.item_click("**/hold/###Soft"))
-    assert [handle.weight for handle in bar.figure.handles] == [10.0, 0.1]
+    assert [handle.weight for handle in bar.layer.handles] == [10.0, 0.1]
 
 
 def test_pinned_handles_are_wanted_where_they_are(window, loose, play):
     width, height = loose.document.canvas
     posing.wish(window.session, {1: Target(position=complex(3 * width, 0.5 * height))})
     window.settle()
-    figure = loose.figure
-    assert max(figure.lags(figure.key(24).pose).values()) > 20
+    layer = loose.layer
+    assert max(layer.lags(layer.key(24).pose).values()) > 20
     before = places(loose)
     editing.select_all(window.session)
     play(lambda robot: robot.item_click("**/###pin here"))
-    figure = loose.figure
-    assert max(figure.lags(figure.key(24).pose).values()) < 1.0
+    layer = loose.layer
+    assert max(layer.lags(layer.key(24).pose).values()) < 1.0
     after = places(loose)
     assert_allclose([after[i] for i in (0, 1)], [before[i] for i in (0, 1)], rtol=0, atol=1.0)
 
@@ -170,17 +170,17 @@ def test_partners_are_made_and_found_by_their_names(window, bar, play):
     editing.select(window.session, frozenset({0}))
     window.frames(2)
     play(lambda robot: robot.item_click("**/###mirror"))
-    one, other = bar.figure.handles
+    one, other = bar.layer.handles
     assert (one.name, other.name) == ("handle 1.L", "handle 1.R")
     axis = bar.document.canvas[0] / 2
     assert_allclose(other.position, 2 * axis - one.position.conjugate(), rtol=0, atol=6)
     editing.undo(window.session)
-    assert [handle.name for handle in bar.figure.handles] == ["handle 1"], "one step"
+    assert [handle.name for handle in bar.layer.handles] == ["handle 1"], "one step"
     editing.redo(window.session)
     editing.select(window.session, frozenset({one.id}))
     play(lambda robot: robot.item_click("**/###mirrored"))
     assert bar.selected == {other.id}
-    np.testing.assert_equal(len(bar.figure.handles), 2)
+    np.testing.assert_equal(len(bar.layer.handles), 2)
 
 
 def test_a_click_on_one_of_several_selected_leaves_it_alone_selected(window, loose):
@@ -203,7 +203,7 @@ def test_a_click_on_one_of_several_selected_leaves_it_alone_selected(window, loo
     start = places(loose)
     drag(window, start[1], start[1] + 20 + 10j)
     assert loose.selected == {0, 1}
-    targets = loose.figure.key(24).pose.targets
+    targets = loose.layer.key(24).pose.targets
     for identity in (0, 1):
         assert abs(targets[identity].position - start[identity] - 20 - 10j) < 1.5
 
@@ -218,7 +218,7 @@ def test_a_click_on_one_of_several_selected_selects_its_group(window, loose):
 @pytest.fixture
 def short(window, loose):
     """The bar with a handle that is wanted elsewhere, and has not arrived."""
-    place, pose = places(loose)[1], loose.figure.key(24).pose
+    place, pose = places(loose)[1], loose.layer.key(24).pose
     targets = {**pose.targets, 1: Target(position=place - 120 + 80j)}
     wished = key_commands.pose_key(0, 24, replace(pose, targets=targets))
     editing.edit(window.session, wished)
@@ -232,22 +232,22 @@ WAY = -15 + 12j
 
 @pytest.mark.parametrize("at_target", [True, False])
 def test_a_handle_that_has_not_arrived_is_taken_where_it_is_wanted_too(window, short, at_target):
-    place, target = places(short)[1], short.figure.key(24).pose.targets[1].position
+    place, target = places(short)[1], short.layer.key(24).pose.targets[1].position
     begin = target if at_target else place
     drag(window, begin, begin + WAY)
     assert short.selected == {1}
     assert (
-        abs(short.figure.key(24).pose.targets[1].position - begin - WAY)
+        abs(short.layer.key(24).pose.targets[1].position - begin - WAY)
         < 2 / short.view(window.session.screen).scale
     )
     editing.undo(window.session)
-    assert short.figure.key(24).pose.targets[1].position == target
+    assert short.layer.key(24).pose.targets[1].position == target
 
 
 def test_where_a_handle_is_wanted_it_is_selected_and_has_its_menu(window, short):
     before = short.document
     editing.select(window.session, frozenset({0}))
-    target = short.figure.key(24).pose.targets[1].position
+    target = short.layer.key(24).pose.targets[1].position
     click(window, target)
     assert short.selected == {1}
     assert short.document is before
@@ -258,11 +258,11 @@ def test_where_a_handle_is_wanted_it_is_selected_and_has_its_menu(window, short)
         robot.item_click("//$FOCUSED/Lock")
 
     window.run(lock)
-    assert short.figure.handle(1).locked
+    assert short.layer.handle(1).locked
 
 
 def test_a_handle_is_taken_only_where_something_is_seen_of_it(window, short):
-    target = short.figure.key(24).pose.targets[1].position
+    target = short.layer.key(24).pose.targets[1].position
     editing.select(window.session, frozenset({1}))
     posing.pin_here(window.session)
     window.settle()

@@ -17,7 +17,7 @@ def bar(window):
     project = window.again(open_bar, 0.9, 0.5, 0.1)
     editing.select(window.session, frozenset())
     window.settle()
-    assert project.figure.bounds == NATURAL.bounds
+    assert project.layer.bounds == NATURAL.bounds
     return project
 
 
@@ -57,13 +57,13 @@ def test_the_rest_stays_and_loosen_lets_it_come_nearer(window, bar):
     assert np.abs(reached[1:] - start[1:]).max() < 3
     short = abs(asked - reached[HAND])
     assert short > 50
-    wanted = bar.figure.keys[0].pose.targets[HAND].position
+    wanted = bar.layer.keys[0].pose.targets[HAND].position
     assert abs(wanted - reached[HAND]) < 2
     (text,) = told(window)
-    assert text == STOPPED_AT_LIMIT.format(who=bar.figure.handles[HAND].name, its="its")
+    assert text == STOPPED_AT_LIMIT.format(who=bar.layer.handles[HAND].name, its="its")
     window.run(lambda robot: robot.item_click("**/Loosen"))
     window.settle()
-    assert bar.figure.bounds == RUBBERY.bounds
+    assert bar.layer.bounds == RUBBERY.bounds
     assert abs(asked - places(bar)[HAND]) < 0.7 * short
     # Looser limits and what comes of them are one step, and so was the drag.
     editing.undo(window.session)
@@ -77,6 +77,6 @@ def test_the_rest_stays_and_loosen_lets_it_come_nearer(window, bar):
 def test_alt_while_releasing_keeps_the_wish(window, bar):
     start = places(bar)
     asked = drag(window, bar, OUT, key=window.Key.mod_alt)
-    assert bar.figure.keys[0].pose.targets[HAND].position == pytest.approx(asked, abs=3)
+    assert bar.layer.keys[0].pose.targets[HAND].position == pytest.approx(asked, abs=3)
     assert np.abs(places(bar)[1:] - start[1:]).max() > 3
     assert not told(window)

@@ -16,19 +16,19 @@ from app.document import (
     FrameRange,
     MoveKey,
     clip_of,
-    figure_commands,
     fronts_at,
     key_commands,
     layer_commands,
     movement_at,
     scene_commands,
+    shape_commands,
 )
 from app.editor import layering
 from app.editor.actions import editing, files, playback, posing, viewing
 from app.editor.layering.hanging import HANGS_IN_CIRCLE
 from app.motion import Joints
 from app.motion.joints import animation_at
-from app.storage import Autosave, Origin, still_figure
+from app.storage import Autosave, Origin, still_layer
 from app.ui.style import PALETTES
 from app.ui.viewport.marks import find_anchor, mark_all
 from engine.geometry import HERE
@@ -67,7 +67,7 @@ def open_with_arm(window, drawing):
 
 
 def identity(project, name):
-    return next(figure.id for figure in project.document.figures if figure.name == name)
+    return next(layer.id for layer in project.document.layers if layer.name == name)
 
 
 def on_scene(project, name):
@@ -111,9 +111,9 @@ def drag(window, scene):
 def test_the_anchor_is_dragged_onto_another_layer(window, scene, drag):
     arm, body = identity(scene, "arm"), identity(scene, "body")
     # In the middle of a motion.
-    figure = scene.document.figure(arm)
-    pose = figure.keys[0].pose
-    cage = figure.domain.cage - 140
+    layer = scene.document.layer(arm)
+    pose = layer.keys[0].pose
+    cage = layer.domain.cage - 140
     turned = replace(pose, phi=140 + cage * np.exp(0.3j))
     scene.history.do(key_commands.insert_key(arm, 24, turned), gesture=None)
     window.act(playback.seek, 10)
@@ -123,7 +123,7 @@ def test_the_anchor_is_dragged_onto_another_layer(window, scene, drag):
     assert "drag to hang it on another layer" in told[0].lower()
     assert "over the layer to hang it on" in told[1]
     assert "to hang arm on body" in told[2]
-    joint = scene.document.figure(arm).joints[0]
+    joint = scene.document.layer(arm).joints[0]
     assert (joint.to, joint.turns) == (body, True)
     assert abs(joint.at - SHOULDER) < 1
     assert np.abs(on_scene(scene, "arm") - was).max() < 1e-6 * WIDTH
@@ -131,12 +131,12 @@ def test_the_anchor_is_dragged_onto_another_layer(window, scene, drag):
     window.act(editing.undo)
     assert scene.document is before
     window.act(editing.redo)
-    assert scene.document.figure(arm).joints[0].to == body
+    assert scene.document.layer(arm).joints[0].to == body
 
 
 def test_off_the_layer_itself_the_joint_is_where_both_are(scene, drag):
     drag(HIP)
-    arm = scene.document.figure(identity(scene, "arm"))
+    arm = scene.document.layer(identity(scene, "arm"))
     assert arm.joints[0].to == identity(scene, "body")
     assert 85 < arm.joints[0].at.real < 112
     assert 100 < arm.joints[0].at.imag < 132
@@ -185,7 +185,7 @@ def test_a_circle_is_refused_in_words(window, scene, drag):
     window.act(layering.choose, hand)
     window.settle()
     drag(170 + 118j)
-    assert scene.document.figure(hand).joints[0].to == arm
+    assert scene.document.layer(hand).joints[0].to == arm
     before = scene.document
     window.act(layering.choose, body)
     window.settle()
@@ -208,23 +208,23 @@ def test_a_click_on_the_anchor_adds_a_handle_there_as_ever(window, scene):
 
     window.run(click)
     window.settle()
-    (handle,) = scene.figure.handles
+    (handle,) = scene.layer.handles
     assert abs(handle.position - place) < 1
 
 
 def test_a_handle_that_is_the_anchor_is_dragged_onto_another_layer_with_ctrl(window, scene, drag):
     window.act(posing.add_handle, SHOULDER)
     window.settle()
-    window.act(editing.edit_figure, figure_commands.set_anchor, scene.figure.handles[0].position)
+    window.act(editing.edit_layer, shape_commands.set_anchor, scene.layer.handles[0].position)
     window.settle()
     drag(SHOULDER + 6, HIP, key=window.Key.mod_ctrl)
-    arm = scene.document.figure(identity(scene, "arm"))
+    arm = scene.document.layer(identity(scene, "arm"))
     assert arm.joints[0].to == identity(scene, "body")
     assert abs(arm.joints[0].at - SHOULDER) < 1
     # A click with it takes the anchor back, as ever.
     window.act(editing.undo)
     drag(key=window.Key.mod_ctrl)
-    assert scene.figure.anchor is None
+    assert scene.layer.anchor is None
 
 
 def test_unsaved_work_comes_back_with_its_joints_and_depths(window, scene, drag, tmp_path):
@@ -232,13 +232,13 @@ def test_unsaved_work_comes_back_with_its_joints_and_depths(window, scene, drag,
     drag(SHOULDER)
     window.act(posing.add_handle, PALM)
     window.settle()
-    hand = scene.figure.handles[0].id
+    hand = scene.layer.handles[0].id
     window.act(editing.edit, layer_commands.set_front(arm, hand, -0.5, 70.0))
-    figure = scene.document.figure(body)
-    pose = figure.keys[0].pose
-    turned = replace(pose, phi=90 + (figure.domain.cage - 90) * np.exp(-0.4j))
+    layer = scene.document.layer(body)
+    pose = layer.keys[0].pose
+    turned = replace(pose, phi=90 + (layer.domain.cage - 90) * np.exp(-0.4j))
     window.act(editing.edit, key_commands.insert_key(body, 12, turned))
-    window.act(editing.edit, key_commands.insert_key(arm, 12, scene.figure.keys[0].pose))
+    window.act(editing.edit, key_commands.insert_key(arm, 12, scene.layer.keys[0].pose))
     window.act(editing.edit, layer_commands.key_front(arm, 12, hand, 1.0))
     window.act(playback.seek, 6)
     window.settle()
@@ -263,9 +263,9 @@ def test_unsaved_work_comes_back_with_its_joints_and_depths(window, scene, drag,
 def swung(window, scene):
     """The arm hangs on the body, which turns; a handle's way is shown, and ghosts."""
     arm, body = identity(scene, "arm"), identity(scene, "body")
-    figure = scene.document.figure(body)
-    pose = figure.keys[0].pose
-    turned = replace(pose, phi=100 + (figure.domain.cage - 100) * np.exp(0.3j))
+    layer = scene.document.layer(body)
+    pose = layer.keys[0].pose
+    turned = replace(pose, phi=100 + (layer.domain.cage - 100) * np.exp(0.3j))
     scene.history.do(key_commands.insert_key(body, 24, turned), gesture=None)
     joint = layer_commands.attach(arm, SHOULDER, Attachment(to=body, at=SHOULDER))
     window.act(editing.edit, joint)
@@ -298,8 +298,8 @@ def test_a_layer_that_is_let_go_leaves_its_way_on_the_other_one(window, swung):
 def test_a_layer_that_is_let_go_stays_where_it_is_though_it_moves_by_itself(window, swung):
     arm = identity(swung, "arm")
     moves = (MoveKey(frame=0), MoveKey(frame=12, shift=20 + 5j, turn=0.4))
-    moved = replace(swung.document.figure(arm), movement=moves)
-    window.act(editing.edit, Command("Move", lambda document: document.with_figure(moved)))
+    moved = replace(swung.document.layer(arm), movement=moves)
+    window.act(editing.edit, Command("Move", lambda document: document.with_layer(moved)))
     window.act(playback.seek, 6)
     window.settle()
     shown = swung.puppets[arm].shown
@@ -307,8 +307,8 @@ def test_a_layer_that_is_let_go_stays_where_it_is_though_it_moves_by_itself(wind
     window.act(layering.let_hang, arm)
     window.settle()
     after = swung.puppets[arm].shown
-    assert not swung.document.figure(arm).hangs
-    assert after.placement == movement_at(swung.document, swung.document.figure(arm), 6)
+    assert not swung.document.layer(arm).hangs
+    assert after.placement == movement_at(swung.document, swung.document.layer(arm), 6)
     np.testing.assert_allclose(after.placement.on(after.positions), before, rtol=0, atol=0.01)
 
 
@@ -316,9 +316,9 @@ def test_a_layer_that_is_let_go_stays_where_it_is_though_it_moves_by_itself(wind
 def test_where_layers_hang_is_not_told_by_joints_of_an_earlier_document(window, swung):
     (way,) = ways(window, swung)
     joints = swung.joints.value
-    figure = swung.document.figure(identity(swung, "body"))
-    pose = replace(figure.keys[0].pose, phi=figure.domain.cage + 50)
-    editing.edit(window.session, key_commands.pose_key(figure.id, 0, pose))
+    layer = swung.document.layer(identity(swung, "body"))
+    pose = replace(layer.keys[0].pose, phi=layer.domain.cage + 50)
+    editing.edit(window.session, key_commands.pose_key(layer.id, 0, pose))
     assert swung.joints.value is joints
     assert swung.placements([0], HERE) == [HERE]
     assert swung.placed_at(swung.active, [0]) is None
@@ -333,7 +333,7 @@ def test_a_layer_that_comes_to_a_scene_with_joints_has_its_own_way(window, swung
     Image.new("RGBA", (40, 40), (90, 200, 90, 255)).save(path)
     window.act(layering.add, [path])
     window.settle()
-    assert swung.figure.name == "ball"
+    assert swung.layer.name == "ball"
     shown = swung.puppet.shown
     window.act(posing.add_handle, complex(shown.positions.mean()))
     window.act(posing.nudge, 12)
@@ -362,16 +362,16 @@ def around(window, picture, place):
 def nodding(window, swung):
     """The same before a wall that stands still, at frame 12, with one ghost at either end."""
     wall = replace(
-        swung.document.figures[0],
+        swung.document.layers[0],
         id=layer_commands.free_identity(swung.document),
         name="wall",
         handles=(),
-        keys=swung.document.figures[0].keys[:1],
+        keys=swung.document.layers[0].keys[:1],
         joints=(),
     )
-    wall = still_figure(wall)
-    swung.history.do(layer_commands.add_figure(wall), gesture=None)
-    editing.follow_figures(swung)
+    wall = still_layer(wall)
+    swung.history.do(layer_commands.add_layer(wall), gesture=None)
+    editing.follow_layers(swung)
     window.act(layering.move, wall.id, 0)
     window.act(viewing.set_ghosts, 1, 1, 12)
     window.act(playback.seek, 12)
@@ -383,11 +383,11 @@ def nodding(window, swung):
 
 def placed(project, name, frame, place):
     """Return where a point of a layer at rest is in the scene at a frame, by its joints."""
-    figure = project.document.figure(identity(project, name))
+    layer = project.document.layer(identity(project, name))
     joints = Joints(project.document, project.samplers)
-    animation = animation_at(project.document, figure.id, np.array([place]), project.samplers, None)
+    animation = animation_at(project.document, layer.id, np.array([place]), project.samplers, None)
     own = animation.frame(frame).positions
-    return complex(joints.placement(figure.id, frame).on(own)[0])
+    return complex(joints.placement(layer.id, frame).on(own)[0])
 
 
 def test_ghosts_are_of_all_layers_where_their_joints_have_them_then(window, nodding):
@@ -428,11 +428,11 @@ def test_what_hangs_on_something_moved_just_now_has_no_ghost_until_it_is_known_w
     window, nodding
 ):
     ghosts_of(window)
-    figure = nodding.document.figure(identity(nodding, "body"))
-    pose = replace(figure.keys[0].pose, phi=figure.domain.cage + 40j)
-    editing.edit(window.session, key_commands.pose_key(figure.id, 0, pose))
+    layer = nodding.document.layer(identity(nodding, "body"))
+    pose = replace(layer.keys[0].pose, phi=layer.domain.cage + 40j)
+    editing.edit(window.session, key_commands.pose_key(layer.id, 0, pose))
     assert nodding.placed_at(identity(nodding, "arm"), [0]) is None
-    assert nodding.placed_at(figure.id, [0]) == [HERE]
+    assert nodding.placed_at(layer.id, [0]) == [HERE]
     window.settle()
     (there,) = nodding.placed_at(identity(nodding, "arm"), [0])
     assert there.on(np.array([SHOULDER]))[0] == pytest.approx(SHOULDER + 40j, abs=1e-6)
@@ -442,10 +442,10 @@ def test_while_a_layer_is_posed_itself_its_way_stays_where_it_hangs(window, swun
     window.act(playback.seek, 24)
     window.settle()
     (way,) = ways(window, swung)
-    (handle,) = swung.figure.handles
-    figure = swung.document.figure(swung.active)
-    other = replace(figure, handles=(replace(handle, weight=2.0),))
-    swung.history.do(Command("Weigh", lambda document: document.with_figure(other)), gesture=None)
+    (handle,) = swung.layer.handles
+    layer = swung.document.layer(swung.active)
+    other = replace(layer, handles=(replace(handle, weight=2.0),))
+    swung.history.do(Command("Weigh", lambda document: document.with_layer(other)), gesture=None)
     assert swung.hung is None
     np.testing.assert_allclose(ways(window, swung), [way], rtol=0, atol=1e-9)
 
@@ -478,4 +478,4 @@ def test_the_cage_is_drawn_where_its_layer_hangs(window, swung):
     assert abs(shown.placement.factor - 1) > 0.1
     lines, _ = mark_all(window.session, swung, shown, PALETTES["dark"])
     (cage,) = [line.points for line in lines if line.dash]
-    np.testing.assert_allclose(cage, shown.placement.on(swung.figure.domain.cage))
+    np.testing.assert_allclose(cage, shown.placement.on(swung.layer.domain.cage))

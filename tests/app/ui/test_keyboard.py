@@ -70,7 +70,7 @@ def test_after_a_question_arrows_nudge_again(window, asked):
     place = complex(*project.puppet.picture.size) / 2
     press(window, imgui.Key.up_arrow)
     window.settle()
-    target = project.figure.keys[0].pose.targets[0].position
+    target = project.layer.keys[0].pose.targets[0].position
     assert target == pytest.approx(place + 1j, abs=1e-9)
 
 
@@ -92,7 +92,7 @@ def test_escape_closes_a_menu_and_the_next_click_counts(window):
         robot.mouse_click(0)
 
     window.run(play)
-    assert len(project.figure.handles) == 1
+    assert len(project.layer.handles) == 1
 
 
 def test_escape_closes_a_menu_with_those_that_lead_to_it(window):

@@ -15,7 +15,7 @@ from app.motion.inbetweens import AutoPins, pair_of
 
 def pull(window, bar, by):
     """Pull a handle, and let the solver be as quick as can be."""
-    wish = Target(position=bar.document.figures[0].handle(1).position + by)
+    wish = Target(position=bar.document.layers[0].handle(1).position + by)
     assert window.session.jobs.settle()
     window.act(posing.pull, {1: wish})
     assert window.session.jobs.settle()
@@ -95,12 +95,12 @@ def test_in_betweens_are_exact_while_the_pose_that_was_left_comes_to_rest(window
     assert exact.index(True) <= 2
     assert all(exact[exact.index(True) :])
     assert len(exact) > 4
-    pose = bent.figure.key(24).pose
+    pose = bent.layer.key(24).pose
     assert pose.targets[1] == wish
-    place = bent.figure.map_of(pose)(np.array([bent.figure.handle(1).position]))[0]
+    place = bent.layer.map_of(pose)(np.array([bent.layer.handle(1).position]))[0]
     assert abs(place - wish.position) < 2
     window.act(editing.undo)
-    assert bent.figure.key(24).pose.targets[1] != wish
+    assert bent.layer.key(24).pose.targets[1] != wish
 
 
 @pytest.fixture
@@ -116,7 +116,7 @@ def check(bent):
             if shown.stand_in is not None:
                 assert shown.stand_in.pair == pair_of(clip, moment.interval)
                 moment = moment._replace(weight=shown.stand_in.weight)
-            pins = AutoPins(clip, clip.figure.variant, sampler)
+            pins = AutoPins(clip, clip.layer.variant, sampler)
             exact = pins.inbetweens(moment.interval, sampler)
             expected = exact.frame(moment.weight).positions
             if shown.correction is not None:
@@ -144,7 +144,7 @@ def test_in_betweens_are_there_when_the_playhead_leaves_a_pose_on_its_way(window
     assert newest is not prepared
     window.act(playback.scrub, 12)
     assert bent.puppet.shown.stand_in is None
-    assert bent.figure.key(24).pose is prepared
+    assert bent.layer.key(24).pose is prepared
     check()
     # Back at the key nothing is lost of what the solver found.
     window.act(playback.scrub, 24)
@@ -154,7 +154,7 @@ def test_in_betweens_are_there_when_the_playhead_leaves_a_pose_on_its_way(window
     window.act(playback.scrub, 12)
     (moving,) = bent.pulls
     posing.bring_all(window.session, bent)
-    assert bent.figure.key(24).pose is moving.newest
+    assert bent.layer.key(24).pose is moving.newest
 
 
 @pytest.mark.parametrize(

@@ -14,10 +14,10 @@ from app.document import (
     Placing,
     clip_of,
     cycle_commands,
-    figure_commands,
     filming_commands,
     key_commands,
     layer_commands,
+    shape_commands,
 )
 from app.document.keyframe import Target
 from app.editor import do, layering
@@ -72,11 +72,11 @@ def scene(window, drawing):
 
 
 def identity(project, name):
-    return next(figure.id for figure in project.document.figures if figure.name == name)
+    return next(layer.id for layer in project.document.layers if layer.name == name)
 
 
 def test_a_click_chooses_the_layer_that_is_seen(window, scene):
-    assert scene.figure.name == "arm"
+    assert scene.layer.name == "arm"
 
     def click(place, key=None):
         def run(robot):
@@ -91,23 +91,23 @@ def test_a_click_chooses_the_layer_that_is_seen(window, scene):
         window.settle()
 
     click(80 + 60j)
-    assert scene.figure.name == "body"
-    assert not scene.figure.handles
+    assert scene.layer.name == "body"
+    assert not scene.layer.handles
     # The arm lies over the body here.
     click(100 + 118j)
-    assert scene.figure.name == "arm"
+    assert scene.layer.name == "arm"
     click(100 + 118j, window.Key.mod_alt)
-    assert scene.figure.name == "body"
+    assert scene.layer.name == "body"
     # On the layer that is chosen a click adds a handle.
     click(80 + 60j)
-    assert len(scene.figure.handles) == 1
+    assert len(scene.layer.handles) == 1
 
 
 def test_the_list_of_layers(window, scene):
     arm, body = identity(scene, "arm"), identity(scene, "body")
 
     def names():
-        return [figure.name for figure in scene.document.figures]
+        return [layer.name for layer in scene.document.layers]
 
     def click(*items):
         for item in items:
@@ -122,19 +122,19 @@ def test_the_list_of_layers(window, scene):
     assert names() == ["wall", "arm", "body"]
     click("lower", "copy layer")
     assert names() == ["wall", "body", "body copy", "arm"]
-    assert scene.figure.name == "body copy"
+    assert scene.layer.name == "body copy"
     click("delete layer")
     assert names() == ["wall", "body", "arm"]
     click(f"eye {arm}", f"lock {body}")
-    assert scene.document.figure(arm).hidden
-    assert scene.document.figure(body).locked
+    assert scene.document.layer(arm).hidden
+    assert scene.document.layer(body).locked
     # What is hidden or locked is passed through.
-    assert layering.figure_at(scene, 100 + 118j) is None
+    assert layering.layer_at(scene, 100 + 118j) is None
     for _ in range(6):
         window.act(editing.undo)
     window.settle()
     assert names() == ["wall", "body", "arm"]
-    assert not scene.document.figure(arm).hidden
+    assert not scene.document.layer(arm).hidden
 
 
 class LayerList:
@@ -179,10 +179,10 @@ def listed(window, scene):
 
 
 def test_a_row_is_dragged_between_two_others(window, scene, listed):
-    wall, body, arm = (figure.id for figure in scene.document.figures)
+    wall, body, arm = (layer.id for layer in scene.document.layers)
 
     def order():
-        return [figure.id for figure in scene.document.figures]
+        return [layer.id for layer in scene.document.layers]
 
     listed(lambda rows: rows.drag(arm, body, 0.8))
     assert order() == [wall, arm, body]
@@ -220,7 +220,7 @@ def test_a_layer_is_named_by_a_double_click_by_f2_and_from_its_menu(window, scen
         enter(rows, "trunk")
 
     listed(twice)
-    assert scene.figure.name == "trunk"
+    assert scene.layer.name == "trunk"
 
     def by_key(rows):
         rows.robot.key_press(int(window.Key.f2))
@@ -229,7 +229,7 @@ def test_a_layer_is_named_by_a_double_click_by_f2_and_from_its_menu(window, scen
     # From another tab, too.
     window.show_tab("Export")
     listed(by_key)
-    assert scene.document.figure(body).name == "torso"
+    assert scene.document.layer(body).name == "torso"
     window.act(layering.choose, arm)
     window.show_tab("Layers")
 
@@ -240,12 +240,12 @@ def test_a_layer_is_named_by_a_double_click_by_f2_and_from_its_menu(window, scen
         rows.robot.key_press(int(window.Key.escape))
 
     listed(by_menu)
-    assert scene.document.figure(body).name == "torso"
+    assert scene.document.layer(body).name == "torso"
     assert scene.active == arm
     assert window.session.named_layer is None
     for _ in range(2):
         window.act(editing.undo)
-    assert scene.document.figure(body).name == "body"
+    assert scene.document.layer(body).name == "body"
 
 
 def test_the_menu_of_a_layer(window, scene, listed):
@@ -253,13 +253,13 @@ def test_the_menu_of_a_layer(window, scene, listed):
     before = scene.document
     for item in ("Hide", "Lock", "Reference only", "Duplicate"):
         listed(lambda rows, item=item: rows.menu(body, item))
-    figure = scene.document.figure(body)
-    assert (figure.hidden, figure.locked, figure.reference) == (True, True, True)
-    assert [each.name for each in scene.document.figures] == ["wall", "body", "body copy", "arm"]
+    layer = scene.document.layer(body)
+    assert (layer.hidden, layer.locked, layer.reference) == (True, True, True)
+    assert [each.name for each in scene.document.layers] == ["wall", "body", "body copy", "arm"]
     for item in ("Show", "Unlock", "Take into exports"):
         listed(lambda rows, item=item: rows.menu(body, item))
-    figure = scene.document.figure(body)
-    assert (figure.hidden, figure.locked, figure.reference) == (False, False, False)
+    layer = scene.document.layer(body)
+    assert (layer.hidden, layer.locked, layer.reference) == (False, False, False)
     listed(lambda rows: rows.menu(arm, "Replace picture…"))
     assert window.session.dialog.title == "Replace the picture of arm"
     window.act(close_dialog)
@@ -270,8 +270,8 @@ def test_the_menu_of_a_layer(window, scene, listed):
     joined = scene.document
     listed(lambda rows: rows.menu(body, "Delete"))
     window.settle()
-    assert scene.document.figure(arm).joints == ()
-    assert scene.figure.name == "wall"
+    assert scene.document.layer(arm).joints == ()
+    assert scene.layer.name == "wall"
     window.act(editing.undo)
     assert scene.document is joined
     for _ in range(8):
@@ -287,7 +287,7 @@ def test_a_layer_is_seen_at_once_where_its_in_betweens_are_not_there_yet(window,
     window.act(layering.duplicate, arm)
     assert not window.session.toasts
     assert keyed.puppet.shown is not None
-    assert keyed.figure.name == "arm copy"
+    assert keyed.layer.name == "arm copy"
     window.act(layering.remove, keyed.active)
     window.act(editing.undo)
     assert all(puppet.shown is not None for puppet in keyed.puppets.values())
@@ -334,8 +334,8 @@ def test_pictures_that_are_dropped_on_a_scene(window, scene, listed, tmp_path, d
     window.frames(3)
     window.run(enter)
     window.settle()
-    assert scene.figure.name == "hat"
-    assert scene.document.figures[-1] is scene.figure
+    assert scene.layer.name == "hat"
+    assert scene.document.layers[-1] is scene.layer
     # On the row of a layer, that one is meant.
 
     def over(rows):
@@ -350,7 +350,7 @@ def test_pictures_that_are_dropped_on_a_scene(window, scene, listed, tmp_path, d
     window.run(enter)
     window.settle()
     assert scene.history.undo_label == "Replace picture"
-    assert scene.document.figure(body).picture.size == (80, 50)
+    assert scene.document.layer(body).picture.size == (80, 50)
     for _ in range(2):
         window.act(editing.undo)
     assert scene.document is before
@@ -360,7 +360,7 @@ def test_pictures_that_are_dropped_on_a_scene(window, scene, listed, tmp_path, d
     assert texts == ["New layers", "New scene"]
     window.run(enter)
     window.settle()
-    names = [figure.name for figure in scene.document.figures]
+    names = [layer.name for layer in scene.document.layers]
     assert names == ["wall", "body", "arm", "hat", "cap", "wall 2", "body 2", "arm 2"]
     window.act(editing.undo)
     assert scene.document is before
@@ -369,7 +369,7 @@ def test_pictures_that_are_dropped_on_a_scene(window, scene, listed, tmp_path, d
 
 def test_a_layer_that_hangs_follows_live_and_is_posed_around_its_joint(window, scene):
     arm, body = identity(scene, "arm"), identity(scene, "body")
-    window.act(editing.edit_figure, figure_commands.set_anchor, 95 + 118j)
+    window.act(editing.edit_layer, shape_commands.set_anchor, 95 + 118j)
     window.act(layering.hang, arm, body)
     window.settle()
     window.act(layering.choose, body)
@@ -377,11 +377,11 @@ def test_a_layer_that_hangs_follows_live_and_is_posed_around_its_joint(window, s
         window.act(posing.add_handle, place)
         window.settle()
     window.act(playback.seek, 24)
-    top = scene.figure.handles[1].id
+    top = scene.layer.handles[1].id
     window.act(posing.wish, {top: Target(position=110 + 155j)})
     window.settle()
     hung, carrier = scene.puppets[arm].shown, scene.puppets[body].shown
-    joint = scene.document.figure(arm).joints[0]
+    joint = scene.document.layer(arm).joints[0]
     at = carrier.hinge(joint.at)
     place = hung.placement.on(np.array([hung.hinge(95 + 118j).place]))[0]
     assert abs(place - at.place) < 1e-6 * WIDTH
@@ -390,7 +390,7 @@ def test_a_layer_that_hangs_follows_live_and_is_posed_around_its_joint(window, s
     window.act(layering.choose, arm)
     window.act(posing.add_handle, 190 + 118j)
     window.settle()
-    hand = scene.figure.handles[0].id
+    hand = scene.layer.handles[0].id
     window.act(posing.wish, {hand: Target(position=170 + 170j)})
     window.settle()
     after = scene.puppets[arm].shown
@@ -407,16 +407,16 @@ def test_a_layer_stands_still_and_is_posed_again(window, scene):
     arm = identity(scene, "arm")
     window.act(layering.stand_still, arm)
     window.settle()
-    assert scene.document.figure(arm).still
-    assert len(scene.document.figure(arm).domain.mesh.triangles) == 2
+    assert scene.document.layer(arm).still
+    assert len(scene.document.layer(arm).domain.mesh.triangles) == 2
     window.run(lambda robot: robot.item_click("Layers/Let it be posed"))
     window.settle()
-    assert not scene.document.figure(arm).still
-    assert scene.figure.name == "arm"
+    assert not scene.document.layer(arm).still
+    assert scene.layer.name == "arm"
     for _ in range(2):
         window.act(editing.undo)
     window.settle()
-    assert not scene.document.figure(arm).still
+    assert not scene.document.layer(arm).still
 
 
 def test_what_stands_still_hangs_moves_and_fades_as_before(window, scene):
@@ -433,11 +433,11 @@ def test_what_stands_still_hangs_moves_and_fades_as_before(window, scene):
     for command in commands:
         window.act(editing.edit, command)
     window.settle()
-    before = scene.document.figure(arm)
+    before = scene.document.layer(arm)
     there = Joints(scene.document).placement(arm, 12)
 
     def as_layer():
-        now = scene.document.figure(arm)
+        now = scene.document.layer(arm)
         assert abs(Joints(scene.document).placement(arm, 12).shift - there.shift) < 1e-6
         names = ("joints", "opacities", "placings", "cycles", "group", "blend", "hidden", "corner")
         for name in names:
@@ -462,7 +462,7 @@ def test_layers_take_turns(window, scene):
     window.act(playback.seek, 11)
     window.settle()
     assert np.abs(np.asarray(window.picture()).astype(int) - with_arm).max() > 100
-    assert [s.visible for s in scene.document.figure(arm).switches] == [True, False]
+    assert [s.visible for s in scene.document.layer(arm).switches] == [True, False]
 
 
 def test_depth_is_set_at_a_handle_and_shown_as_a_tint(window, scene):
@@ -481,7 +481,7 @@ def test_depth_is_set_at_a_handle_and_shown_as_a_tint(window, scene):
     assert tinted == [True, False]
     window.run(lambda robot: robot.item_input_value("Handle/##depth", 0.5))
     window.settle()
-    assert scene.figure.handles[0].front == 0.5
+    assert scene.layer.handles[0].front == 0.5
 
 
 ARM, BODY = (0, 12, 24), (0, 18)
@@ -491,15 +491,15 @@ ARM, BODY = (0, 12, 24), (0, 18)
 def keyed(scene):
     """The scene with some keys: of the arm, which is the active layer, and of the body."""
     for name, frames in (("arm", ARM), ("body", BODY)):
-        figure = scene.document.figure(identity(scene, name))
+        layer = scene.document.layer(identity(scene, name))
         for frame in frames[1:]:
-            pose = figure.keys[0].pose
-            scene.history.do(key_commands.insert_key(figure.id, frame, pose), gesture=None)
+            pose = layer.keys[0].pose
+            scene.history.do(key_commands.insert_key(layer.id, frame, pose), gesture=None)
     return scene
 
 
 def frames_of(project, name):
-    return tuple(key.frame for key in project.document.figure(identity(project, name)).keys)
+    return tuple(key.frame for key in project.document.layer(identity(project, name)).keys)
 
 
 class Rows:
@@ -625,7 +625,7 @@ def test_where_a_layer_is_hidden_is_marked_on_its_row(window, keyed, play):
     window.act(playback.seek, 6)
     window.act(layering.switch_here, body)
     window.settle()
-    assert [switch.frame for switch in keyed.document.figure(body).switches] == [0, 6]
+    assert [switch.frame for switch in keyed.document.layer(body).switches] == [0, 6]
     window.act(playback.seek, 20)
     play(lambda rows: rows.click("body", "switch 6"))
     assert playback.current_frame(window.session, keyed) == 6
@@ -637,7 +637,7 @@ def test_where_a_layer_is_hidden_is_marked_on_its_row(window, keyed, play):
         rows.robot.item_click("//$FOCUSED/Delete")
 
     play(delete)
-    assert [switch.frame for switch in keyed.document.figure(body).switches] == [0]
+    assert [switch.frame for switch in keyed.document.layer(body).switches] == [0]
 
 
 def test_what_is_done_to_a_key_is_done_to_all_chosen_ones_of_other_rows(window, keyed, play):
@@ -656,9 +656,9 @@ def test_what_is_done_to_a_key_is_done_to_all_chosen_ones_of_other_rows(window, 
 
     def told(what):
         return {
-            figure.name: [what(key) for key in figure.keys]
-            for figure in keyed.document.figures
-            if not figure.still
+            layer.name: [what(key) for key in layer.keys]
+            for layer in keyed.document.layers
+            if not layer.still
         }
 
     eased = told(lambda key: key.easing == PRESETS["in-out"])
@@ -699,7 +699,7 @@ def test_keys_of_several_rows_are_copied_and_pasted_each_on_its_own(window, keye
     window.run(lambda robot: robot.key_press(int(window.Key.mod_ctrl) | int(window.Key.v)))
     window.settle()
     assert (frames_of(keyed, "arm"), frames_of(keyed, "body")) == ((0, 12, 24, 42), (0, 18, 30, 48))
-    assert keyed.document.figure(arm).key(42).turns == 1
+    assert keyed.document.layer(arm).key(42).turns == 1
     assert keyed.chosen_of == {arm: {42}, body: {30, 48}}
     window.act(editing.undo)
     assert keyed.document is before
@@ -717,18 +717,18 @@ def test_where_a_layer_comes_to_be_seen_is_dragged_in_time(window, keyed, play):
     before = keyed.document
 
     def frames():
-        return [switch.frame for switch in keyed.document.figure(body).switches]
+        return [switch.frame for switch in keyed.document.layer(body).switches]
 
     assert frames() == [0, 6, 20]
     play(lambda rows: rows.drag("body", "switch 6", 11))
     assert frames() == [0, 11, 20]
-    assert keyed.document.figure(body).key_frames == {0, 18}
+    assert keyed.document.layer(body).key_frames == {0, 18}
     # It is not put where there is another one, but beyond.
     play(lambda rows: rows.drag("body", "switch 11", 20))
     assert frames() == [0, 19, 20]
     play(lambda rows: rows.drag("body", "switch 19", 26))
     assert frames() == [0, 20, 26]
-    assert [switch.visible for switch in keyed.document.figure(body).switches] == [
+    assert [switch.visible for switch in keyed.document.layer(body).switches] == [
         True,
         True,
         False,
@@ -761,8 +761,8 @@ def test_the_overview_shows_the_keys_of_all_layers(window, keyed):
     window.run(find)
     strip = np.s_[int(found[0].min.y) + 1 : int(found[0].max.y) - 1]
     before = np.asarray(window.picture()).astype(int)[strip]
-    figure = keyed.document.figure(identity(keyed, "body"))
-    window.act(editing.edit, key_commands.insert_key(figure.id, 33, figure.keys[0].pose))
+    layer = keyed.document.layer(identity(keyed, "body"))
+    window.act(editing.edit, key_commands.insert_key(layer.id, 33, layer.keys[0].pose))
     window.frames(2)
     changed = np.abs(np.asarray(window.picture()).astype(int)[strip] - before).max(axis=(0, 2)) > 20
     # A dot of a few pixels.
@@ -771,7 +771,7 @@ def test_the_overview_shows_the_keys_of_all_layers(window, keyed):
 
 def test_rows_scroll_where_there_are_many(window, keyed):
     for _ in range(8):
-        window.act(editing.edit, layer_commands.duplicate_figure(identity(keyed, "wall")))
+        window.act(editing.edit, layer_commands.duplicate_layer(identity(keyed, "wall")))
     window.act(layering.choose, identity(keyed, "arm"))
     window.frames(3)
     assert keyed.timing.scrolled == 0
@@ -827,7 +827,7 @@ def posed(window, scene):
     window.act(playback.seek, 24)
     window.act(posing.wish, {0: Target(position=170 + 160j)})
     window.settle()
-    assert len(scene.figure.keys) == 2
+    assert len(scene.layer.keys) == 2
     return scene
 
 
@@ -842,18 +842,18 @@ def test_another_picture_keeps_handles_keys_and_joints(window, posed, tmp_path):
     window.act(layering.replace_picture, arm, green)
     window.settle()
     assert posed.active == arm
-    figure, old = posed.document.figure(arm), before.figure(arm)
+    layer, old = posed.document.layer(arm), before.layer(arm)
     assert posed.history.undo_label == "Replace picture"
-    assert figure.picture is not old.picture
-    assert (figure.name, figure.opacity, figure.handles) == ("limb", 0.75, old.handles)
-    assert posed.document.figures.index(figure) == 1
-    assert (figure.anchor, figure.joints) == (old.anchor, old.joints)
-    assert [key.frame for key in figure.keys] == [0, 24]
-    for key, earlier in zip(figure.keys, old.keys, strict=True):
+    assert layer.picture is not old.picture
+    assert (layer.name, layer.opacity, layer.handles) == ("limb", 0.75, old.handles)
+    assert posed.document.layers.index(layer) == 1
+    assert (layer.anchor, layer.joints) == (old.anchor, old.joints)
+    assert [key.frame for key in layer.keys] == [0, 24]
+    for key, earlier in zip(layer.keys, old.keys, strict=True):
         assert key.pose.certificate.certified
         assert key.pose.targets == earlier.pose.targets
         places = [
-            f.map_of(k.pose)(np.array([190 + 118j]))[0] for f, k in ((figure, key), (old, earlier))
+            f.map_of(k.pose)(np.array([190 + 118j]))[0] for f, k in ((layer, key), (old, earlier))
         ]
         assert abs(places[0] - places[1]) < 4
     window.act(playback.seek, 0)
@@ -869,9 +869,9 @@ def test_another_picture_keeps_handles_keys_and_joints(window, posed, tmp_path):
     path = tmp_path / "man.lissom"
     window.act(saving.write, path, None)
     window.settle()
-    again = load_project(path).figure(arm)
-    assert again.picture.sha256 == figure.picture.sha256
-    assert (again.corner, again.joints) == (figure.corner, figure.joints)
+    again = load_project(path).layer(arm)
+    assert again.picture.sha256 == layer.picture.sha256
+    assert (again.corner, again.joints) == (layer.corner, layer.joints)
 
 
 def test_what_is_outside_of_another_picture_comes_into_it(window, posed, tmp_path):
@@ -882,21 +882,21 @@ def test_what_is_outside_of_another_picture_comes_into_it(window, posed, tmp_pat
     short = saved(tmp_path / "short.png", blob(76, 24))
     window.act(layering.replace_picture, arm, short)
     window.settle()
-    figure = posed.document.figure(arm)
-    assert abs(figure.domain.outline.mean() - (142 + 117j)) < 3
-    points = np.array([figure.anchor, *(handle.position for handle in figure.handles)])
-    assert figure.domain.contains(points).all()
-    assert figure.handles[0].position.real < 182
-    rest, raised = figure.keys
-    assert abs(rest.pose.targets[0].position - figure.handles[0].position) < 1e-9
-    assert raised.pose.targets[0].position != before.figure(arm).keys[1].pose.targets[0].position
-    assert figure.joints == before.figure(arm).joints
+    layer = posed.document.layer(arm)
+    assert abs(layer.domain.outline.mean() - (142 + 117j)) < 3
+    points = np.array([layer.anchor, *(handle.position for handle in layer.handles)])
+    assert layer.domain.contains(points).all()
+    assert layer.handles[0].position.real < 182
+    rest, raised = layer.keys
+    assert abs(rest.pose.targets[0].position - layer.handles[0].position) < 1e-9
+    assert raised.pose.targets[0].position != before.layer(arm).keys[1].pose.targets[0].position
+    assert layer.joints == before.layer(arm).joints
     # The body without the place where the arm hangs.
     legs = saved(tmp_path / "legs.png", painted((60, 120, 110, 180), (40, 40, 200, 255)))
     window.act(layering.replace_picture, body, legs)
     window.settle()
-    joint = posed.document.figure(arm).joints[0]
-    assert posed.document.figure(body).domain.contains(np.array([joint.at])).all()
+    joint = posed.document.layer(arm).joints[0]
+    assert posed.document.layer(body).domain.contains(np.array([joint.at])).all()
     assert joint.at.imag < 82
     assert not posed.joints.has_failed(posed.joints.source)
     assert posed.joints.value is not None
@@ -921,19 +921,19 @@ def test_a_picture_that_cannot_take_the_place_of_a_layers_changes_nothing(window
     path = saved(tmp_path / "sky.png", Image.new("RGBA", (240, 200), (90, 160, 250, 255)))
     window.act(layering.replace_picture, wall, path)
     window.settle()
-    assert scene.document.figure(wall).still
+    assert scene.document.layer(wall).still
     assert pixel(window, 20 + 20j) == (90, 160, 250)
     window.session.toasts = []
 
 
 def test_a_layer_that_comes_after_one_is_gone_shows_its_own_picture(window, scene, tmp_path):
-    gone = max(figure.id for figure in scene.document.figures)
+    gone = max(layer.id for layer in scene.document.layers)
     window.act(layering.remove, gone)
     window.settle()
     path = saved(tmp_path / "dot.png", blob(60, 40, (250, 220, 0)))
     window.act(layering.add, [path])
     window.settle()
-    added = scene.document.figures[-1]
+    added = scene.document.layers[-1]
     assert (added.id, added.name, added.corner) == (gone, "dot", 90 + 80j)
     assert scene.active == added.id
     assert pixel(window, 138 + 100j) == (250, 220, 0)
@@ -1025,18 +1025,18 @@ def test_blends_clipping_and_groups_are_set_in_the_panel(window, stranger):
 
     window.run(play)
     window.frames(3)
-    figure = project.document.figure(arm)
-    assert (figure.blend, figure.clipped, figure.group) == ("multiply", True, "limbs")
+    layer = project.document.layer(arm)
+    assert (layer.blend, layer.clipped, layer.group) == ("multiply", True, "limbs")
     (group,) = project.document.groups
     assert (group.opacity, group.hidden) == (0.5, True)
     for _ in range(3):
         window.act(editing.undo)
     assert not project.document.groups[0].hidden
-    assert project.document.figure(arm).blend == "normal"
+    assert project.document.layer(arm).blend == "normal"
 
 
 @pytest.mark.usefixtures("painted")
-def test_figures_of_one_picture_share_it_on_the_graphics_card_until_one_is_cut(window, stranger):
+def test_layers_of_one_picture_share_it_on_the_graphics_card_until_one_is_cut(window, stranger):
     project = window.again(Harness.open, stranger)
     window.settle()
     drawing = window.program.canvas.drawing
@@ -1046,7 +1046,7 @@ def test_figures_of_one_picture_share_it_on_the_graphics_card_until_one_is_cut(w
     # Behind it are others with the same picture.
     project.solo = frozenset({glow})
     before = window.picture()
-    window.act(editing.edit, figure_commands.brush(glow, brush_at(project, glow)))
+    window.act(editing.edit, shape_commands.brush(glow, brush_at(project, glow)))
     window.settle()
     assert drawing.picture(arm) is drawing.picture(shine) is not drawing.picture(glow)
     cut = window.picture()
@@ -1057,9 +1057,9 @@ def test_figures_of_one_picture_share_it_on_the_graphics_card_until_one_is_cut(w
     assert drawing.picture_count == 3
 
 
-def brush_at(project, figure):
-    domain = project.document.figure(figure).domain
-    middle = domain.outline.mean() - project.document.figure(figure).corner
+def brush_at(project, layer):
+    domain = project.document.layer(layer).domain
+    middle = domain.outline.mean() - project.document.layer(layer).corner
     return Stroke(points=np.array([middle, middle + 5]), radius=8, keeps=False)
 
 

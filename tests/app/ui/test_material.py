@@ -38,7 +38,7 @@ def drag(window, places, *, button_up=True):
 
 
 def place_of(project, handle):
-    index = [each.id for each in project.figure.handles].index(handle)
+    index = [each.id for each in project.layer.handles].index(handle)
     return complex(project.puppet.shown.handle_places[index])
 
 
@@ -50,14 +50,14 @@ def test_a_stroke_makes_what_it_covers_stiff_and_undo_takes_it_back(window, tab)
     before = tab.document
     material.take_up(window.session, "stiff")
     drag(window, [middle(tab) - 10, middle(tab), middle(tab) + 10])
-    stiffness = tab.figure.stiffness
-    along = np.concatenate(tab.figure.domain.loops)
+    stiffness = tab.layer.stiffness
+    along = np.concatenate(tab.layer.domain.loops)
     near = np.abs(along.real - middle(tab).real) < 10
     assert stiffness[near].max() == pytest.approx(window.session.strength)
     assert stiffness[np.abs(along.real - middle(tab).real) > 0.4 * np.ptp(along.real)] == (
         pytest.approx(1.0)
     )
-    assert tab.figure.keys == before.figures[0].keys, "poses stay"
+    assert tab.layer.keys == before.layers[0].keys, "poses stay"
     editing.undo(window.session)
     assert tab.document is before
 
@@ -66,32 +66,32 @@ def test_on_a_posed_drawing_the_brush_reaches_what_is_shown_there(window, tab):
     playback.scrub(window.session, BENT)
     window.settle()
     end = place_of(tab, ENDS[1])
-    rest = tab.figure.handle(ENDS[1]).position
+    rest = tab.layer.handle(ENDS[1]).position
     assert abs(end - rest) > 20
     material.take_up(window.session, "soft")
     drag(window, [end, end - 2])
-    along = np.concatenate(tab.figure.domain.loops)
-    softest = along[tab.figure.stiffness.argmin()]
+    along = np.concatenate(tab.layer.domain.loops)
+    softest = along[tab.layer.stiffness.argmin()]
     assert abs(softest - rest) < abs(softest - end)
-    assert tab.figure.stiffness.min() == pytest.approx(1 / window.session.strength, rel=0.3)
+    assert tab.layer.stiffness.min() == pytest.approx(1 / window.session.strength, rel=0.3)
 
 
 def test_a_brush_that_reaches_no_outline_says_so(window, tab):
     window.session.material = "stiff"
     tab.brush = 1.0
     material.paint(window.session, [middle(tab)])
-    assert tab.figure.stiffness is None
+    assert tab.layer.stiffness is None
     assert "reaches no outline" in window.session.toasts[-1].text
 
 
 def test_a_bone_is_drawn_from_handle_to_handle(window, tab):
     material.take_up(window.session, "bone")
     drag(window, [place_of(tab, ENDS[0]), middle(tab), place_of(tab, ENDS[1])])
-    assert [set(bone.ends) for bone in tab.figure.bones] == [set(ENDS)]
+    assert [set(bone.ends) for bone in tab.layer.bones] == [set(ENDS)]
     drag(window, [place_of(tab, ENDS[0]), middle(tab) + 40j])
-    assert len(tab.figure.bones) == 1, "it ends at no handle"
+    assert len(tab.layer.bones) == 1, "it ends at no handle"
     drag(window, [place_of(tab, ENDS[1]), place_of(tab, ENDS[0])])
-    assert len(tab.figure.bones) == 1
+    assert len(tab.layer.bones) == 1
     assert "already" in window.session.toasts[-1].text
     assert window.session.poses is False
     moving.pose(window.session)
@@ -131,7 +131,7 @@ def test_the_drawing_is_tinted_as_long_as_the_tab_is_in_front(window, tab):
     assert window.session.tint == "stiffness"
     material.take_up(window.session, "stiff")
     drag(window, [middle(tab) - 10, middle(tab) + 10])
-    values = tint_of(tab.figure, tab.puppet.shown.mesh)
+    values = tint_of(tab.layer, tab.puppet.shown.mesh)
     vertices = tab.puppet.shown.mesh.domain.mesh.vertices
     assert values[np.abs(vertices - middle(tab)).argmin()] > 0.2
     assert abs(values[np.abs(vertices - vertices.real.min()).argmin()]) < 0.05
@@ -146,28 +146,28 @@ def test_the_drawing_is_tinted_as_long_as_the_tab_is_in_front(window, tab):
 def test_a_key_follows_the_new_material_when_it_is_posed_again(window, tab):
     playback.scrub(window.session, BENT)
     window.settle()
-    before = tab.figure.key(BENT).pose
+    before = tab.layer.key(BENT).pose
     material.add_bone(window.session, ENDS)
     window.settle()
-    assert tab.figure.key(BENT).pose is before
+    assert tab.layer.key(BENT).pose is before
     material.pose_again(window.session)
     window.settle()
-    after = tab.figure.key(BENT).pose
+    after = tab.layer.key(BENT).pose
     assert after.phi is not before.phi
     assert after.targets == before.targets
     editing.undo(window.session)
-    assert tab.figure.key(BENT).pose is before
+    assert tab.layer.key(BENT).pose is before
 
 
 def test_names_suggest_what_is_stiff_and_what_is_soft(window, tab):
     material.suggest(window.session)
     assert "No handle is called" in window.session.toasts[-1].text
-    editing.edit_figure(window.session, handle_commands.rename_handle, ENDS[0], "Left Hand")
-    editing.edit_figure(window.session, handle_commands.rename_handle, ENDS[1], "tail tip")
+    editing.edit_layer(window.session, handle_commands.rename_handle, ENDS[0], "Left Hand")
+    editing.edit_layer(window.session, handle_commands.rename_handle, ENDS[1], "tail tip")
     before = tab.document
     material.suggest(window.session)
-    assert tab.figure.stiffness.max() > 5
-    assert tab.figure.stiffness.min() < 0.3
+    assert tab.layer.stiffness.max() > 5
+    assert tab.layer.stiffness.min() < 0.3
     editing.undo(window.session)
     assert tab.document is before, "one step"
 
@@ -175,12 +175,12 @@ def test_names_suggest_what_is_stiff_and_what_is_soft(window, tab):
 def test_hidden_bones_act_and_a_handle_that_goes_takes_its_bones_along(window, tab):
     material.add_bone(window.session, ENDS)
     material.show_bones(window.session, shown=False)
-    assert tab.figure.bones == (Bone(ends=ENDS, is_shown=False),)
+    assert tab.layer.bones == (Bone(ends=ENDS, is_shown=False),)
     posing.remove_handles(window.session, frozenset({ENDS[1]}))
     window.settle()
-    assert tab.figure.bones == ()
+    assert tab.layer.bones == ()
     editing.undo(window.session)
-    assert len(tab.figure.bones) == 1
+    assert len(tab.layer.bones) == 1
 
 
 def test_dragging_goes_on_where_a_part_is_stiff(window, tab):
@@ -192,7 +192,7 @@ def test_dragging_goes_on_where_a_part_is_stiff(window, tab):
     posing.let_go(window.session)
     window.settle()
     assert abs(place_of(tab, ENDS[1]) - place - 12j) < 2
-    assert tab.figure.key(BENT).pose.certificate.certified
+    assert tab.layer.key(BENT).pose.certificate.certified
 
 
 @pytest.mark.usefixtures("tab", "painted")

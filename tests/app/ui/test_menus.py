@@ -39,7 +39,7 @@ def test_a_handle_is_pinned_by_its_menu(window, loose):
     place = complex(loose.puppet.shown.handle_places[0])
     on_handle(window, loose, "Pin here")
     assert loose.selected == {0}, "what the menu is of is selected"
-    assert loose.figure.key(BENT).pose.targets[0].position == pytest.approx(place, abs=0.1)
+    assert loose.layer.key(BENT).pose.targets[0].position == pytest.approx(place, abs=0.1)
 
 
 def test_menu_of_a_handle_closes_when_the_layer_changes(window, loose):
@@ -48,32 +48,32 @@ def test_menu_of_a_handle_closes_when_the_layer_changes(window, loose):
     window.run(lambda robot: open_menu(robot, place))
     with window.session.jobs.held():
         fewer = handle_commands.remove_handles(loose.active, {1})(loose.document)
-        (figure,) = fewer.figures
-        other = replace(fewer, figures=(replace(figure, domain=replace(figure.domain)),))
+        (layer,) = fewer.layers
+        other = replace(fewer, layers=(replace(layer, domain=replace(layer.domain)),))
         editing.edit(window.session, Command("Change the outline", lambda _: other))
         window.frames(2)
-        assert len(loose.puppet.shown.clip.figure.handles) > len(loose.figure.handles)
+        assert len(loose.puppet.shown.clip.layer.handles) > len(loose.layer.handles)
     assert not [part for part in window.program.shell.parts.values() if part.failure]
 
 
 def test_how_firmly_a_handle_holds_is_in_its_menu(window, loose):
     editing.select(window.session, frozenset({0, 1}))
     on_handle(window, loose, "Hold", "Firm")
-    assert [handle.weight for handle in loose.figure.handles] == [10.0, 10.0]
+    assert [handle.weight for handle in loose.layer.handles] == [10.0, 10.0]
 
 
 def test_the_depth_of_a_handle_is_in_its_menu(window, loose):
     on_handle(window, loose, "Depth", "Behind")
-    assert [handle.front for handle in loose.figure.handles] == [-1.0, 0.0]
-    window.act(editing.edit_figure, editing.layer_commands.key_front, BENT, 0, 0.0)
+    assert [handle.front for handle in loose.layer.handles] == [-1.0, 0.0]
+    window.act(editing.edit_layer, editing.layer_commands.key_front, BENT, 0, 0.0)
     on_handle(window, loose, "Depth", "In front")
-    assert dict(loose.figure.key(BENT).fronts) == {0: 1.0}
-    assert loose.figure.handle(0).front == -1.0
+    assert dict(loose.layer.key(BENT).fronts) == {0: 1.0}
+    assert loose.layer.handle(0).front == -1.0
 
 
 def test_a_handle_is_locked_by_its_menu(window, loose):
     on_handle(window, loose, "Lock")
-    assert [handle.locked for handle in loose.figure.handles] == [True, False]
+    assert [handle.locked for handle in loose.layer.handles] == [True, False]
 
 
 def test_the_canvas_has_a_menu(window, loose):
@@ -137,7 +137,7 @@ def test_a_number_between_keys_makes_a_key_as_a_drag_does(window, loose):
 
     window.run(play)
     window.settle()
-    assert loose.figure.key(BENT // 2).pose.targets[1].position.real == pytest.approx(321.0)
+    assert loose.layer.key(BENT // 2).pose.targets[1].position.real == pytest.approx(321.0)
 
 
 def tooltip_at(window, place, seconds=0.5):

@@ -88,15 +88,15 @@ def test_a_dropped_picture_walks_after_few_clicks_and_drags(window, tmp_path):
     assert project.document is before, "nothing is done to it yet"
     click(window, "//Motion/**/###give")
     arrive(window, project)
-    assert project.figure.motions, [toast.text for toast in window.session.toasts]
+    assert project.layer.motions, [toast.text for toast in window.session.toasts]
     assert project.playhead.since is not None, "it plays"
     assert project.document.loop
-    (given,) = project.figure.motions
+    (given,) = project.layer.motions
     assert given.motion == "walk"
-    assert project.document.frames.last == given.last == project.figure.keys[-1].frame
-    handles = {handle.name for handle in project.figure.handles}
+    assert project.document.frames.last == given.last == project.layer.keys[-1].frame
+    handles = {handle.name for handle in project.layer.handles}
     assert handles == set(given.joints)
-    places = [each.pose.targets[given.joints["foot.L"]].position for each in project.figure.keys]
+    places = [each.pose.targets[given.joints["foot.L"]].position for each in project.layer.keys]
     assert np.ptp(np.real(places)) > 4
     editing.undo(window.session)
     assert project.document is before, "one step"
@@ -153,7 +153,7 @@ def test_what_a_motion_needs_is_told(window, child):
 def test_handles_that_are_there_are_joints(window):
     project = window.open(paint(window.folder, "child"))
     posing.suggest_handles(window.session)
-    head = next(each for each in project.figure.handles if each.name == "head")
+    head = next(each for each in project.layer.handles if each.name == "head")
     drafting.begin(window.session)
     assert project.draft.joints["head"] == head.position
 
@@ -162,7 +162,7 @@ def test_a_motion_is_given_again_in_another_way_as_one_step_and_a_save_waits_for
     window, ghost, tmp_path
 ):
     before = ghost.document
-    (given,) = ghost.figure.motions
+    (given,) = ghost.layer.motions
     drafting.begin(window.session)
     assert ghost.draft.given is given
     drafting.set_parameters(window.session, speed=4.0)
@@ -171,11 +171,11 @@ def test_a_motion_is_given_again_in_another_way_as_one_step_and_a_save_waits_for
     saving.save(window.session)
     arrive(window, ghost)
     window.until(lambda: ghost.path.exists() and not ghost.pending)
-    (again,) = ghost.figure.motions
+    (again,) = ghost.layer.motions
     assert again.last < given.last
-    assert ghost.document.frames.last == again.last == ghost.figure.keys[-1].frame
-    assert is_as_given(ghost.figure, again)
-    assert load_project(ghost.path).figures[0].motions == (again,)
+    assert ghost.document.frames.last == again.last == ghost.layer.keys[-1].frame
+    assert is_as_given(ghost.layer, again)
+    assert load_project(ghost.path).layers[0].motions == (again,)
     editing.undo(window.session)
     assert ghost.document is before
 
@@ -187,19 +187,19 @@ def test_given_again_its_handles_go_where_joints_were_dragged(window):
     giving.give(window.session)
     arrive(window, project)
     playback.halt(window.session)
-    handles = {handle.name: handle.id for handle in project.figure.handles}
+    handles = {handle.name: handle.id for handle in project.layer.handles}
     playback.scrub(window.session, 0)
     drafting.begin(window.session)
     place = project.draft.joints["joint.2"] + 6
     placing.put(window.session, "joint.2", place)
     giving.give(window.session)
     arrive(window, project)
-    assert {handle.name: handle.id for handle in project.figure.handles} == handles
-    assert abs(project.figure.handle(handles["joint.2"]).position - place) < 2
+    assert {handle.name: handle.id for handle in project.layer.handles} == handles
+    assert abs(project.layer.handle(handles["joint.2"]).position - place) < 2
 
 
 def test_what_was_edited_by_hand_is_replaced_only_on_request(window, ghost):
-    key = ghost.figure.keys[2]
+    key = ghost.layer.keys[2]
     playback.scrub(window.session, key.frame)
     window.settle()
     identity, target = next(iter(key.pose.targets.items()))
@@ -216,14 +216,14 @@ def test_what_was_edited_by_hand_is_replaced_only_on_request(window, ghost):
 
 
 def test_another_motion_follows(window, ghost):
-    (given,) = ghost.figure.motions
+    (given,) = ghost.layer.motions
     drafting.begin_after(window.session, given)
     drafting.set_parameters(window.session, size=0.3, speed=4.0)
     giving.give(window.session)
     arrive(window, ghost)
-    first, second = ghost.figure.motions
+    first, second = ghost.layer.motions
     assert first is given
-    assert is_as_given(ghost.figure, first)
+    assert is_as_given(ghost.layer, first)
     assert second.first == given.last < second.start
     assert ghost.document.frames.last == second.last
 
@@ -247,7 +247,7 @@ def test_on_its_way_it_is_given_up_and_drafted_again(window, child, how):
 def test_a_change_meanwhile_refuses_it(window, ghost):
     drafting.begin(window.session)
     giving.give(window.session)
-    posing.remove_handles(window.session, frozenset({ghost.figure.handles[0].id}))
+    posing.remove_handles(window.session, frozenset({ghost.layer.handles[0].id}))
     changed = ghost.document
     arrive(window, ghost)
     assert ghost.document is changed

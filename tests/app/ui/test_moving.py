@@ -1,4 +1,4 @@
-"""Moving the whole figure, by the window's own keys and pointer."""
+"""Moving the whole layer, by the window's own keys and pointer."""
 
 import pytest
 from bars import BENT, open_bar
@@ -10,7 +10,7 @@ CTRL, SHIFT = int(imgui.Key.mod_ctrl), int(imgui.Key.mod_shift)
 
 
 def wanted(project, frame=BENT):
-    return {i: each.position for i, each in project.figure.key(frame).pose.targets.items()}
+    return {i: each.position for i, each in project.layer.key(frame).pose.targets.items()}
 
 
 def moved(project, before, way):
@@ -49,14 +49,14 @@ def drag(window, start, way, *, keys=0):
 
 
 def test_v_and_a_drag_and_escape(window, loose):
-    before, document, first = wanted(loose), loose.document, loose.figure.key(0)
+    before, document, first = wanted(loose), loose.document, loose.layer.key(0)
     press(window, imgui.Key.v)
     hint = drag(window, loose.puppet.shown.handle_places[1], 40 - 25j)
-    assert hint.startswith(f"Drag to move all of {loose.figure.name}")
+    assert hint.startswith(f"Drag to move all of {loose.layer.name}")
     way = wanted(loose)[0] - before[0]
     assert abs(way - (40 - 25j)) < 2, "pixels of the screen are whole"
     assert moved(loose, before, way)
-    assert loose.figure.key(0) is first
+    assert loose.layer.key(0) is first
     press(window, imgui.Key.escape)
     assert not window.session.moves
     assert loose.selected, "Escape puts one thing away at a time"

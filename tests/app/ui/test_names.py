@@ -51,7 +51,7 @@ def press(window, *names):
 
 
 def test_a_picture_is_opened_under_a_name_that_can_be_shown(window, opened):
-    assert opened.name == opened.figure.name == SHOWN
+    assert opened.name == opened.layer.name == SHOWN
     window.show_tab("Layers")
     assert told(window) == []
 
@@ -62,7 +62,7 @@ def test_a_project_is_saved_and_found_among_the_recent_files(window, folder):
     window.act(saving.write, path, None)
     window.settle()
     assert told(window) == [f"Saved {SHOWN}.lissom."]
-    assert load_project(path).figures[0].name == SHOWN
+    assert load_project(path).layers[0].name == SHOWN
     window.act(saving.close)
     assert told(window) == [f"Saved {SHOWN}.lissom."]
     window.settle()

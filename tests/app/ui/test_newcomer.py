@@ -16,13 +16,13 @@ def test_a_loop_takes_few_clicks_and_drags(window, tmp_path):
     person.show_tab("Handle")
     person.click("//Handle/**/###Suggest handles")
     first = project.document
-    assert len(project.figure.handles) >= 3
+    assert len(project.layer.handles) >= 3
     person.drag_playhead(0.5)
     assert project.playhead.frame > 5
     handle = max(project.puppet.shown.handle_places, key=lambda place: place.real)
     person.drag(complex(handle), complex(handle) + 0.3j * project.document.canvas[1])
-    assert [key.frame for key in project.figure.keys] == [0, project.playhead.frame]
-    assert project.figure.keys[1].pose is not first.figures[0].keys[0].pose
+    assert [key.frame for key in project.layer.keys] == [0, project.playhead.frame]
+    assert project.layer.keys[1].pose is not first.layers[0].keys[0].pose
     person.click("//Timeline/**/Loop")
     assert project.document.loop
     person.click("//Timeline/**/Play")

@@ -55,7 +55,7 @@ def pose(window, frame, way):
 
 
 def targets(project, frame):
-    return {i: t.position for i, t in project.figure.key(frame).pose.targets.items()}
+    return {i: t.position for i, t in project.layer.key(frame).pose.targets.items()}
 
 
 def press(window, chord):
@@ -78,7 +78,7 @@ def test_a_pose_is_pasted_flipped_and_again_where_its_axis_is_moved(window, proj
     now = targets(project, 24)
     assert now[RIGHT] == pytest.approx(HANDLES["arm.R"] - way.conjugate(), abs=1e-6)
     assert now[LEFT] == pytest.approx(HANDLES["arm.L"], abs=1e-6)
-    assert project.figure.key(24).pose.certificate.certified
+    assert project.layer.key(24).pose.certificate.certified
     # While that is what is chosen, the axis is there to be moved.
     assert flipping.shows_axis(window.session, window.session.project)
     pasted = project.document
@@ -98,10 +98,10 @@ def test_a_pose_is_pasted_flipped_and_again_where_its_axis_is_moved(window, proj
     assert project.document is pasted
     window.run(drag)
     window.settle()
-    moved = project.figure.axis - before.figures[0].axis
+    moved = project.layer.axis - before.layers[0].axis
     assert moved > 5
     # Where the axis is not in the middle, a turned arm lands elsewhere.
-    assert project.figure.key(24).pose is not pasted.figures[0].key(24).pose
+    assert project.layer.key(24).pose is not pasted.layers[0].key(24).pose
     assert flipping.shows_axis(window.session, window.session.project)
     editing.undo(window.session)
     assert project.document is pasted
@@ -135,9 +135,9 @@ def test_poses_are_kept_clicked_named_and_deleted(window, project, tmp_path):
         robot.key_chars_replace_enter("arm up")
 
     window.run(name)
-    (kept,) = project.figure.library
+    (kept,) = project.layer.library
     assert kept.name == "arm up"
-    assert kept.pose is project.figure.key(12).pose
+    assert kept.pose is project.layer.key(12).pose
     go(window, 30)
 
     def click(robot):
@@ -145,9 +145,9 @@ def test_poses_are_kept_clicked_named_and_deleted(window, project, tmp_path):
         robot.item_click("**/pose arm up")
 
     window.run(click)
-    assert project.figure.key(30).pose is kept.pose
+    assert project.layer.key(30).pose is kept.pose
     save_project(tmp_path / "a.lissom", project.document)
-    (again,) = load_project(tmp_path / "a.lissom").figures[0].library
+    (again,) = load_project(tmp_path / "a.lissom").layers[0].library
     assert (again.name, again.pose.targets) == (kept.name, kept.pose.targets)
 
     def delete(robot):
@@ -156,7 +156,7 @@ def test_poses_are_kept_clicked_named_and_deleted(window, project, tmp_path):
         robot.item_click("//$FOCUSED/Delete")
 
     window.run(delete)
-    assert project.figure.library == ()
+    assert project.layer.library == ()
     assert [step(window) for _ in range(4)] == [
         "Delete pose",
         "Use pose",
@@ -175,7 +175,7 @@ def step(window):
 
 def test_a_pose_is_dragged_onto_the_timeline(window, project):
     press(window, SHIFT | int(window.Key.k))
-    kept = project.figure.library[0]
+    kept = project.layer.library[0]
     window.show_tab("Poses")
 
     def drag(robot, key=None):
@@ -194,10 +194,10 @@ def test_a_pose_is_dragged_onto_the_timeline(window, project):
         robot.mouse_up(0)
 
     window.run(lambda robot: drag(robot, window.Key.escape))
-    assert project.figure.key_frames == {0, 12}
+    assert project.layer.key_frames == {0, 12}
     window.run(drag)
     window.settle()
-    assert project.figure.key(20).pose is kept.pose
+    assert project.layer.key(20).pose is kept.pose
     assert playback.current_frame(window.session, project) == 20
 
 
@@ -221,13 +221,13 @@ def test_a_pose_is_blended_in_by_its_bar_as_one_step(window, project):
     window.settle()
     rest, up = HANDLES["arm.L"], targets(project, 12)[LEFT]
     assert targets(project, 0)[LEFT] == pytest.approx((rest + up) / 2, abs=1.0)
-    assert project.figure.key(0).pose.certificate.certified
+    assert project.layer.key(0).pose.certificate.certified
     assert project.blend is None
     editing.undo(window.session)
     assert project.document is before
     window.run(lambda robot: drag(robot, 1.2))
     window.settle()
-    assert project.figure.key(0).pose is project.figure.library[0].pose
+    assert project.layer.key(0).pose is project.layer.library[0].pose
     editing.undo(window.session)
     assert project.document is before
 
@@ -242,19 +242,19 @@ def test_the_axis_is_entered_shown_and_put_back(window, project):
         robot.key_chars_replace_enter("70")
 
     window.run(enter)
-    assert project.figure.axis == 70
+    assert project.layer.axis == 70
     assert flipping.shows_axis(window.session, window.session.project)
     window.run(lambda robot: robot.item_click("//###Poses/Middle"))
-    assert project.figure.mirror is None
+    assert project.layer.mirror is None
     press(window, BINDINGS["mirror axis"].chords()[0])
     assert not flipping.shows_axis(window.session, window.session.project)
 
 
 def test_poses_of_the_library_are_solved_for_other_limits_with_the_keys(window, project):
     press(window, SHIFT | int(window.Key.k))
-    tighter = replace(project.figure.bounds, k=0.2, sigma_a=1.2)
+    tighter = replace(project.layer.bounds, k=0.2, sigma_a=1.2)
     rebuilding.choose_bounds(window.session, tighter)
     window.settle()
-    assert project.figure.bounds == tighter
-    assert all(project.figure.is_proven(pose) for pose in project.figure.poses)
-    assert len(project.figure.poses) == 3
+    assert project.layer.bounds == tighter
+    assert all(project.layer.is_proven(pose) for pose in project.layer.poses)
+    assert len(project.layer.poses) == 3

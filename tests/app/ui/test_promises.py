@@ -38,7 +38,7 @@ def loosened(bounds):
 FOLLOWS = {
     "variant": lambda session: keys.set_variant(session, "nu"),
     "limits": lambda session: rebuilding.choose_bounds(
-        session, loosened(session.project.figure.bounds)
+        session, loosened(session.project.layer.bounds)
     ),
     "solve again": rebuilding.solve_again,
     "another drag elsewhere": lambda session: (
@@ -74,7 +74,7 @@ def test_drag_goes_on_while_rough_frames_play(window, loose):
     assert not is_there(session, loose)
     loose.playhead = loose.playhead.play(loose.document, session.clock())
     assert is_there(session, loose)
-    loose.puppet.shown = replace(loose.puppet.shown, stand_in=loose.figure.domain)
+    loose.puppet.shown = replace(loose.puppet.shown, stand_in=loose.layer.domain)
     assert not is_there(session, loose)
 
 
@@ -100,7 +100,7 @@ def test_moved_and_copied_keys_come_to_rest_too(window, loose, is_seen):
     window.settle()
     for frame in (30, 48):
         check_at_rest(loose.document, goal, frame=frame)
-    assert loose.figure.key(30).pose.phi is loose.figure.key(48).pose.phi
+    assert loose.layer.key(30).pose.phi is loose.layer.key(48).pose.phi
 
 
 @pytest.mark.parametrize("auto_key", [True, False])
@@ -122,10 +122,10 @@ def test_a_handle_that_comes_or_goes_meanwhile_keeps_its_place(window, loose):
     (added,) = loose.selected
     posing.remove_handles(window.session, frozenset({0}))
     window.settle()
-    figure, pose = loose.figure, loose.figure.key(24).pose
+    layer, pose = loose.layer, loose.layer.key(24).pose
     assert pose.targets.keys() == {1, added}
     check_at_rest(loose.document, goal)
-    assert figure.lags(pose)[added] < 1e-6
+    assert layer.lags(pose)[added] < 1e-6
 
 
 def test_layers_are_chosen_at_once_and_both_drags_come_to_rest(window, loose):
@@ -140,7 +140,7 @@ def test_layers_are_chosen_at_once_and_both_drags_come_to_rest(window, loose):
     assert len(loose.pulls) == 2
     window.settle()
     for identity, goal in goals.items():
-        check_at_rest(loose.document, goal, figure=identity)
+        check_at_rest(loose.document, goal, layer=identity)
 
 
 def test_a_save_has_a_drag_on_each_of_many_layers(window, loose, tmp_path):
@@ -149,16 +149,16 @@ def test_a_save_has_a_drag_on_each_of_many_layers(window, loose, tmp_path):
         window.frames()
     path, goals = tmp_path / "a.lissom", {}
     with window.session.jobs.held(posing.POSING):
-        for figure in loose.document.figures:
-            layering.choose(window.session, figure.id)
-            goals[figure.id] = drag_bar(window, loose)
+        for layer in loose.document.layers:
+            layering.choose(window.session, layer.id)
+            goals[layer.id] = drag_bar(window, loose)
         assert len(loose.pulls) == len(goals) == 4
         saving.write(window.session, path, None)
         assert not path.exists()
     window.until(lambda: not loose.pending)
     saved = load_project(path)
     for identity, goal in goals.items():
-        check_at_rest(saved, goal, figure=identity)
+        check_at_rest(saved, goal, layer=identity)
 
 
 def test_a_picture_is_exported_as_it_comes_to_rest(window, loose, tmp_path):
@@ -269,9 +269,9 @@ def test_closing_asks_about_what_is_on_its_way(window, loose, tmp_path, what):
     answer(window)
     window.until(lambda: window.session.project is None)
     saved = load_project(path)
-    assert len(saved.figures) == len(loose.document.figures)
-    assert [len(f.keys) for f in saved.figures] == [len(f.keys) for f in loose.document.figures]
-    assert len(saved.figures[0].library) == len(loose.document.figures[0].library)
+    assert len(saved.layers) == len(loose.document.layers)
+    assert [len(f.keys) for f in saved.layers] == [len(f.keys) for f in loose.document.layers]
+    assert len(saved.layers[0].library) == len(loose.document.layers[0].library)
 
 
 def test_whoever_insists_is_asked_at_once(window, loose, tmp_path):
@@ -304,13 +304,13 @@ def test_a_pose_without_a_key_is_asked_about_and_kept(window, loose, tmp_path):
     window.clock.now += 60
     window.settle()
     (kept,) = window.folder.glob("unsaved-*.lissom")
-    assert load_project(kept).figures[0].key_frames == {0, 7, 24}
+    assert load_project(kept).layers[0].key_frames == {0, 7, 24}
     saving.close(window.session)
     window.frames(2)
     assert "The pose at frame 7 is in no key" in question(window).text
     answer(window)
     window.until(lambda: window.session.project is None)
-    assert load_project(path).figures[0].key_frames == {0, 7, 24}
+    assert load_project(path).layers[0].key_frames == {0, 7, 24}
 
 
 def test_two_keys_that_are_inserted_at_once_both_come(window, loose):
@@ -322,7 +322,7 @@ def test_two_keys_that_are_inserted_at_once_both_come(window, loose):
             posing.insert_key(window.session)
     window.settle()
     told = [toast.text for toast in window.session.toasts]
-    assert loose.figure.key_frames == {0, 7, 14, 24}, told
+    assert loose.layer.key_frames == {0, 7, 14, 24}, told
 
 
 def test_decoded_pictures_go_with_the_steps_that_have_them(window, loose, tmp_path):
@@ -364,14 +364,14 @@ def test_mirroring_handles_is_one_step_also_while_a_pose_is_on_its_way(window, l
     before = loose.document
     loose.selected = frozenset({added})
     posing.mirror_handles(window.session)
-    assert len(loose.figure.handles) == 4, [toast.text for toast in window.session.toasts]
+    assert len(loose.layer.handles) == 4, [toast.text for toast in window.session.toasts]
     editing.undo(window.session)
     assert loose.document is before
 
 
 def test_undo_takes_back_first_what_was_done_since_a_drag_that_is_not_seen_yet(window, loose):
     added = beside_the_axis(window, loose)
-    before, handles = loose.document, loose.figure.handles
+    before, handles = loose.document, loose.layer.handles
     with window.session.jobs.held(posing.POSING):
         drag_bar(window, loose)
         loose.selected = frozenset({added})
@@ -379,7 +379,7 @@ def test_undo_takes_back_first_what_was_done_since_a_drag_that_is_not_seen_yet(w
         (pull,) = loose.pulls
         assert pull.kept is None
         editing.undo(window.session)
-        assert loose.figure.handles == handles
+        assert loose.layer.handles == handles
         assert loose.pulls == [pull]
         assert loose.document is before
         posing.mirror_handles(window.session)
@@ -418,7 +418,7 @@ def test_undo_takes_back_first_a_paste_that_still_waits_and_nothing_is_lost(wind
         assert loose.pulls, "the drag goes on"
     window.settle()
     check_at_rest(loose.document, goal)
-    assert loose.figure.key_frames == {0, 24}
+    assert loose.layer.key_frames == {0, 24}
     rested = loose.document
     editing.undo(window.session)
     assert loose.document is before
@@ -452,7 +452,7 @@ def test_handles_that_come_before_a_drag_knows_where_it_begins_are_held_by_it(wi
         (pull,) = loose.pulls
         assert pull.start is None
     window.settle()
-    assert loose.figure.key(12).pose.targets.keys() == {0, 1, added}
+    assert loose.layer.key(12).pose.targets.keys() == {0, 1, added}
 
 
 def test_a_drag_of_a_layer_that_stands_still_since_comes_to_rest(window, loose):

@@ -41,7 +41,7 @@ def press(window, project, share):
 
 def test_it_leaves_a_handle_for_the_canvas(window, project):
     press(window, project, 0.9)
-    assert len(project.figure.handles) == 2
+    assert len(project.layer.handles) == 2
 
 
 def test_it_leaves_the_canvas_for_a_handle(window, project):
@@ -50,7 +50,7 @@ def test_it_leaves_the_canvas_for_a_handle(window, project):
     window.frames(3)
     press(window, project, 0.1)
     assert project.selected == {0}
-    assert len(project.figure.handles) == 2
+    assert len(project.layer.handles) == 2
 
 
 def test_it_takes_the_upper_one_of_two_handles(window, project):
@@ -74,7 +74,7 @@ def test_two_drags_in_adjacent_frames_are_two_steps(window, project):
     window.settle()
     places = []
     while project.document is not before:
-        places.append(project.figure.keys[0].pose.targets[0].position)
+        places.append(project.layer.keys[0].pose.targets[0].position)
         editing.undo(window.session)
         window.settle()
     np.testing.assert_allclose(places, [place_of(project, at) for at in (0.12, 0.15)], atol=2)
@@ -89,5 +89,5 @@ def test_a_drag_goes_to_where_the_button_is_let_go(window, project):
         point(window, project, share)
     hold(is_down=False)
     window.settle()
-    target = project.figure.keys[0].pose.targets[1]
+    target = project.layer.keys[0].pose.targets[1]
     assert abs(target.position - place_of(project, 0.85)) < 2

@@ -47,7 +47,7 @@ def answer(window, text):
 
 
 def wish_of(document):
-    return document.figures[0].key(0).pose.targets[1].position
+    return document.layers[0].key(0).pose.targets[1].position
 
 
 def test_a_pose_that_the_solver_still_looks_for_is_not_lost(window, bar, saved):
@@ -72,7 +72,7 @@ def test_two_saves_at_a_time_are_one_after_the_other_and_nobody_elses(window, ba
     window.settle()
     assert question(window) is None
     assert bar.history.is_saved
-    assert len(load_project(saved).figures[0].handles) == len(bar.figure.handles)
+    assert len(load_project(saved).layers[0].handles) == len(bar.layer.handles)
 
 
 def test_quitting_waits_for_a_save_that_is_under_way_unless_the_person_insists(
@@ -90,7 +90,7 @@ def test_quitting_waits_for_a_save_that_is_under_way_unless_the_person_insists(
     gate.close()
     window.settle()
     assert window.session.quitting
-    assert len(load_project(saved).figures[0].handles) == len(bar.figure.handles)
+    assert len(load_project(saved).layers[0].handles) == len(bar.layer.handles)
 
 
 @pytest.mark.usefixtures("bar")

@@ -14,12 +14,12 @@ from layered import openraster
 from PIL import Image, ImageDraw
 from unrest import is_shown, unrest
 
-from app.document import Document, Figure
+from app.document import Document, Layer
 from app.document.commands import (
-    figure_commands,
     handle_commands,
     key_commands,
     layer_commands,
+    shape_commands,
     track_commands,
 )
 from app.document.keyframe import Target
@@ -63,7 +63,7 @@ LOOKED_AT, SAVED, RESTED = 10, 100, 500
 USUAL, SMALL = (1280, 800), (800, 560)
 MOST_HANDLES, MOST_KEYS, MOST_LAYERS = 4, 5, 3
 LAST = 16  # frame beyond which the walk does not go
-NEW_DOCUMENT, NEW_FIGURE = Document.__init__.__kwdefaults__, Figure.__init__.__kwdefaults__
+NEW_DOCUMENT, NEW_LAYER = Document.__init__.__kwdefaults__, Layer.__init__.__kwdefaults__
 # What makes drawings cheap to pose: few edges of outlines, few samples on them, few frames, a
 # variant that costs little, rough auto-pins, and few Newton steps, many of them at once.
 CHEAP = (
@@ -74,7 +74,7 @@ CHEAP = (
     (pinning, "TOLERANCE", 1e-3),
     (pinning, "LEFT_OUT", 2e-4),
     (Document.__init__, "__kwdefaults__", {**NEW_DOCUMENT, "frames": FrameRange(0, LAST)}),
-    (Figure.__init__, "__kwdefaults__", {**NEW_FIGURE, "variant": "nu"}),
+    (Layer.__init__, "__kwdefaults__", {**NEW_LAYER, "variant": "nu"}),
     (pinning, "DEGREES", (4, 8, 16, 32)),
     (pull, "MOST_STEPS", 60),
     (harness, "STEP", 0.001),
@@ -358,14 +358,14 @@ class Walk:
 
     def add_handle(self) -> None:
         shown = self.project.puppet.shown
-        if len(self.project.figure.handles) < MOST_HANDLES:
+        if len(self.project.layer.handles) < MOST_HANDLES:
             self.act(posing.add_handle, complex(self.choice(shown.positions)))
 
     def pull(self) -> None:
         shown = self.project.puppet.shown
         wishes = {}
-        for handle, place in zip(shown.clip.figure.handles, shown.handle_places, strict=True):
-            if handle in self.project.figure.handles and self.chance(0.4):
+        for handle, place in zip(shown.clip.layer.handles, shown.handle_places, strict=True):
+            if handle in self.project.layer.handles and self.chance(0.4):
                 far = 1.0 if self.chance(0.05) else 0.05
                 offset = complex(*self.rng.normal(0, far * self.size, 2))
                 turn = float(self.rng.normal()) if self.chance(0.2) else None
@@ -374,7 +374,7 @@ class Walk:
             self.act(posing.wish, wishes)
 
     def change_handle(self) -> None:
-        handles = self.project.figure.handles
+        handles = self.project.layer.handles
         if not handles:
             return
         handle = self.choice(handles)
@@ -392,7 +392,7 @@ class Walk:
                 weight = float(10 ** self.rng.uniform(-2, 2))
                 self.edit(handle_commands.weigh_handles(self.project.active, {handle.id}, weight))
             case 2:
-                outline = self.project.figure.domain.mesh.vertices
+                outline = self.project.layer.domain.mesh.vertices
                 self.edit(
                     handle_commands.move_handle(
                         self.project.active, handle.id, complex(self.choice(outline))
@@ -404,13 +404,13 @@ class Walk:
                 self.act(posing.anchor_at, handle.id)
 
     def set_anchor(self) -> None:
-        inside = complex(self.choice(self.project.figure.domain.mesh.vertices))
+        inside = complex(self.choice(self.project.layer.domain.mesh.vertices))
         self.edit(
-            figure_commands.set_anchor(self.project.active, None if self.chance(0.5) else inside)
+            shape_commands.set_anchor(self.project.active, None if self.chance(0.5) else inside)
         )
 
     def select(self) -> None:
-        chosen = [handle.id for handle in self.project.figure.handles if self.chance(0.5)]
+        chosen = [handle.id for handle in self.project.layer.handles if self.chance(0.5)]
         self.act(editing.select, frozenset(chosen))
 
     def choose_keys(self) -> None:
@@ -420,7 +420,7 @@ class Walk:
         self.act(editing.delete)
 
     def insert_key(self) -> None:
-        if len(self.project.figure.keys) < MOST_KEYS:
+        if len(self.project.layer.keys) < MOST_KEYS:
             self.act(keys.insert_at, int(self.rng.integers(LAST)))
 
     def seek(self) -> None:
@@ -430,7 +430,7 @@ class Walk:
         frames = self.some_keys()
         by = int(self.rng.integers(-9, 10))
         if frames and max(frames) + by < LAST:
-            copies = self.chance(0.3) and len(self.project.figure.keys) + len(frames) <= MOST_KEYS
+            copies = self.chance(0.3) and len(self.project.layer.keys) + len(frames) <= MOST_KEYS
             verb = key_commands.copy_keys if copies else key_commands.move_keys
             self.edit(verb(self.project.active, frames, by))
 
@@ -476,22 +476,22 @@ class Walk:
         self.act(rebuilding.cancel)
 
     def copy_and_paste(self) -> None:
-        if len(self.project.figure.keys) < MOST_KEYS:
+        if len(self.project.layer.keys) < MOST_KEYS:
             way = self.choice(("as it is", "swapped", "flipped"))
             pastes = ((pasting.paste, way), (pasting.paste_on_selected, way))
             self.act(*self.choice(((copying.copy,), (copying.copy_all,), *pastes)))
 
     def use_library(self) -> None:
-        figure = self.project.figure
-        if len(figure.library) < 3:
+        layer = self.project.layer
+        if len(layer.library) < 3:
             self.act(library.keep)
         elif self.chance(0.2):
-            self.act(library.delete, self.choice(figure.library).name)
-        for kept in self.project.figure.library[:1]:
+            self.act(library.delete, self.choice(layer.library).name)
+        for kept in self.project.layer.library[:1]:
             match self.rng.integers(4):
                 case 0:
                     self.act(library.rename, kept.name, f"pose {self.rng.integers(99)}")
-                case 1 if len(figure.keys) < MOST_KEYS:
+                case 1 if len(layer.keys) < MOST_KEYS:
                     self.act(library.apply_at, kept.name, int(self.rng.integers(LAST)))
                 case 2:
                     self.act(library.blend, kept.name, float(self.rng.random() * 1.2))
@@ -543,19 +543,19 @@ class Walk:
             self.act(viewing.toggle, "onion")
 
     def change_layers(self) -> None:
-        figures = self.document.figures
-        layer = self.choice(figures)
+        layers = self.document.layers
+        layer = self.choice(layers)
         match self.rng.integers(9):
             case 0:
                 self.act(layering.choose, layer.id)
-            case 1 if len(figures) < MOST_LAYERS:
+            case 1 if len(layers) < MOST_LAYERS:
                 self.act(layering.add, [self.picture])
-            case 2 if len(figures) < MOST_LAYERS:
+            case 2 if len(layers) < MOST_LAYERS:
                 self.act(layering.duplicate, layer.id)
-            case 3 | 1 | 2 if len(figures) > 1:
+            case 3 | 1 | 2 if len(layers) > 1:
                 self.act(layering.remove, layer.id)
             case 4:
-                self.act(layering.move, layer.id, int(self.rng.integers(len(figures))))
+                self.act(layering.move, layer.id, int(self.rng.integers(len(layers))))
             case 5:
                 verb = self.choice((layering.show, layering.lock, layering.refer))
                 self.act(verb, layer.id)
@@ -568,7 +568,7 @@ class Walk:
                 self.act(self.choice((layering.stand_still, layering.stand_up)), layer.id)
 
     def change_joints(self) -> None:
-        child, parent = self.choice(self.document.figures), self.choice(self.document.figures)
+        child, parent = self.choice(self.document.layers), self.choice(self.document.layers)
         match self.rng.integers(4):
             case 0:
                 self.act(layering.let_hang, child.id)
@@ -579,10 +579,10 @@ class Walk:
 
     def change_tracks(self) -> None:
         """Move a handle by a track of its own, or by a spring."""
-        figure = self.project.figure
-        if not figure.handles:
+        layer = self.project.layer
+        if not layer.handles:
             return
-        handle = self.choice(figure.handles).id
+        handle = self.choice(layer.handles).id
         place = complex(*self.rng.normal(0, 0.05 * self.size, 2))
         match self.rng.integers(8):
             case 0:
@@ -594,19 +594,19 @@ class Walk:
             case 4:
                 frequency, damping = self.rng.uniform((0.5, 0), (4, 1))
                 spring = Spring(handle=handle, frequency=float(frequency), damping=float(damping))
-                self.act(editing.edit_figure, track_commands.put_spring, spring)
+                self.act(editing.edit_layer, track_commands.put_spring, spring)
             case 5:
                 self.act(springs.make_keys, handle)
             case 6:
                 remove = self.choice((track_commands.remove_tracks, track_commands.remove_springs))
-                self.act(editing.edit_figure, remove, (handle,))
+                self.act(editing.edit_layer, remove, (handle,))
             case 7:
                 self.act(tracks.choose, self.choice((handle, None)))
 
     def change_staging(self) -> None:
         """Let layers fade, move, take turns, or be painted in another order; and the camera."""
-        figures = self.document.figures
-        layer, other = self.choice(figures).id, self.choice(figures).id
+        layers = self.document.layers
+        layer, other = self.choice(layers).id, self.choice(layers).id
         match self.rng.integers(7):
             case 0:
                 self.act(layering.fade_here, layer, float(self.rng.random()))
@@ -626,33 +626,33 @@ class Walk:
                 self.act(layering.dissolve, self.choice(self.document.choices).name)
 
     def change_depth(self) -> None:
-        figure = self.project.figure
-        if not figure.handles:
+        layer = self.project.layer
+        if not layer.handles:
             return
-        handle = self.choice(figure.handles)
+        handle = self.choice(layer.handles)
         depth = float(self.choice((-1, -0.3, 0, 0.5, 1)))
         if self.chance(0.5):
             extent = self.choice((None, float(self.rng.uniform(2, 200))))
-            self.edit(layer_commands.set_front(figure.id, handle.id, depth, extent))
+            self.edit(layer_commands.set_front(layer.id, handle.id, depth, extent))
         else:
-            frame = self.choice(figure.keys).frame
+            frame = self.choice(layer.keys).frame
             front = self.choice((None, depth))
-            self.edit(layer_commands.key_front(figure.id, frame, handle.id, front))
+            self.edit(layer_commands.key_front(layer.id, frame, handle.id, front))
         self.act(viewing.tint, "depth" if self.chance(0.3) else None)
 
     def change_material(self) -> None:
-        figure = self.project.figure
+        layer = self.project.layer
         match self.choice(("tool", "paint", "bone", "amount", "clear", "mirror", "names", "again")):
             case "tool":
                 self.act(material.take_up, self.choice(("stiff", "soft", "normal", "bone", None)))
             case "paint" if self.session.material is not None:
                 start = complex(*self.rng.uniform(0, self.size, 2))
                 self.act(material.paint, [start, start + self.rng.uniform(0, 30)])
-            case "bone" if len(figure.handles) > 1:
-                first, second = self.rng.choice([h.id for h in figure.handles], 2, replace=False)
+            case "bone" if len(layer.handles) > 1:
+                first, second = self.rng.choice([h.id for h in layer.handles], 2, replace=False)
                 self.act(material.add_bone, (int(first), int(second)))
-            case "amount" if figure.bones:
-                bone = self.choice(figure.bones)
+            case "amount" if layer.bones:
+                bone = self.choice(layer.bones)
                 self.act(material.set_bone, bone.ends, float(self.rng.uniform(0.1, 100)))
             case "clear":
                 self.act(material.clear)
@@ -710,7 +710,7 @@ class Walk:
             self.act(editing.redo)
 
     def some_keys(self) -> frozenset[int]:
-        return frozenset(key.frame for key in self.project.figure.keys if self.chance(0.5))
+        return frozenset(key.frame for key in self.project.layer.keys if self.chance(0.5))
 
     @property
     def document(self):

@@ -195,7 +195,7 @@ def test_a_gesture_is_as_far_on_a_finer_screen(window, fine_screen, bar):
 
     window.run(drag)
     window.settle()
-    target = bar.document.figures[0].keys[0].pose.targets[1]
+    target = bar.document.layers[0].keys[0].pose.targets[1]
     assert abs(target.position - (start + 100j)) < 2
 
 

@@ -81,7 +81,7 @@ def test_the_divider_is_dragged_and_the_methods_change_sides_there(window, betwe
     assert session.split.place == pytest.approx(before - 150 / width, abs=3 / width)
     assert divider(window)[0] == pytest.approx(x - 150, abs=3)
     assert session.pointer is None
-    assert len(between.figure.handles) == 2
+    assert len(between.layer.handles) == 2
 
 
 @pytest.mark.parametrize("baseline", [Baseline.ARAP, Baseline.SIG13])
@@ -153,7 +153,7 @@ def test_both_are_measured_and_the_linear_one_leaves_the_bounds(window, between)
     own, other = between.curves.value, between.twin_curves.value
     assert own.k_share.max() <= 1 + 1e-6
     assert own.tau_share.max() <= 1 + 1e-6
-    assert other.clip.figure.variant is Variant.LINEAR
+    assert other.clip.layer.variant is Variant.LINEAR
     assert other.tau_share.max() > 1.05
 
 
@@ -169,7 +169,7 @@ def test_a_key_looks_the_same_by_every_method_and_posing_goes_on(window, between
     nearest = np.abs(between.puppet.shown.mesh.domain.mesh.vertices - middle).argmin()
     posing.add_handle(session, complex(between.puppet.shown.positions[nearest]))
     window.settle()
-    assert between.puppet.twin.figure.handles == between.figure.handles
+    assert between.puppet.twin.layer.handles == between.layer.handles
 
 
 def test_nothing_is_compared_where_the_panel_says_so(window):

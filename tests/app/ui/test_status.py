@@ -39,8 +39,8 @@ def test_without_a_project_there_is_nothing_to_tell(window):
 def test_a_pose_shows_its_distortion_the_handles_and_the_solver(window, loose):
     window.session.solver_seconds = 0.0064  # the clock of the tests stands still in a job
     shown, handles, solver = facts(window)
-    proven = loose.document.figures[0].keys[1].pose.certificate
-    uses = Extremes(proven.k, proven.sigma_a, proven.sigma_b).uses(loose.document.figures[0].bounds)
+    proven = loose.document.layers[0].keys[1].pose.certificate
+    uses = Extremes(proven.k, proven.sigma_a, proven.sigma_b).uses(loose.document.layers[0].bounds)
     most = max(uses, key=lambda use: use.share)
     word = {"k": "Shear", "σa": "Stretch", "σb": "Squeeze"}[most.name]
     assert shown == f"{word} {most.value:.2f}, limit {most.bound:.2f}"
@@ -80,8 +80,8 @@ def test_a_pull_that_is_held_back_is_told_with_its_remedy(window, loose):
     width, height = loose.document.canvas
     posing.wish(window.session, {1: Target(position=complex(2.4 * width, 0.5 * height))})
     window.settle()
-    figure = loose.figure
-    lag = figure.lags(figure.key(24).pose)[1]
+    layer = loose.layer
+    lag = layer.lags(layer.key(24).pose)[1]
     told = bars.limit_of_pose(window.session)
     assert re.fullmatch(
         r"Stretch limit reached – handle \d is \d+ px short(, 1 more too)?", told
@@ -93,11 +93,11 @@ def test_a_pull_that_is_held_back_is_told_with_its_remedy(window, loose):
 
     window.run(loosen)
     window.settle()
-    assert loose.figure.bounds == RUBBERY.bounds
-    assert loose.figure.lags(loose.figure.key(24).pose)[1] < 0.5 * lag
-    assert loose.figure.is_proven(loose.figure.key(24).pose)
+    assert loose.layer.bounds == RUBBERY.bounds
+    assert loose.layer.lags(loose.layer.key(24).pose)[1] < 0.5 * lag
+    assert loose.layer.is_proven(loose.layer.key(24).pose)
     editing.undo(window.session)
-    assert loose.figure is figure, "looser limits and the pose within them are one step"
+    assert loose.layer is layer, "looser limits and the pose within them are one step"
     assert loose.history.undo_label == steps
 
 
@@ -112,11 +112,11 @@ def test_extremes_between_the_times_that_were_measured(loose):
     assert (low <= middle).all()
     assert (middle <= high).all()
     # In a loop the way back follows the last key, and leads up to the first.
-    last = loose.document.figures[0].keys[-1]
+    last = loose.document.layers[0].keys[-1]
     looped = altered(
         loose.document,
         loop=True,
-        keys=(replace(loose.document.figures[0].keys[0], frame=10), last),
+        keys=(replace(loose.document.layers[0].keys[0], frame=10), last),
         frames=replace(loose.document.frames, last=48),
     )
     looped = clip_of(looped, 0)

@@ -26,7 +26,7 @@ STRETCH = 0.3
 @pytest.fixture(scope="module")
 def _stretched():
     """A disc with two handles: at rest at frame 0, stretched sideways at frame 24."""
-    (empty,) = disc_document().figures
+    (empty,) = disc_document().layers
     domain, rest = empty.domain, empty.keys[0].pose
     boundary = Boundary.sample(domain.outline, domain.cage)
     handles = (
@@ -80,7 +80,7 @@ def tab(window):
 
 
 def largest(project, field):
-    return max(getattr(key.pose.certificate, field) for key in project.figure.keys)
+    return max(getattr(key.pose.certificate, field) for key in project.layer.keys)
 
 
 def test_handle_is_chosen_renamed_weighed_and_deleted(project, tab):
@@ -92,16 +92,16 @@ def test_handle_is_chosen_renamed_weighed_and_deleted(project, tab):
         robot.item_input_value("**/##weight", 2.5)
 
     tab("Handle", change)
-    handle = project.figure.handle(0)
+    handle = project.layer.handle(0)
     assert (handle.name, handle.weight) == ("paw", 2.5)
     tab("Handle", lambda robot: robot.item_click("**/###delete handles"))
-    assert [handle.id for handle in project.figure.handles] == [1]
+    assert [handle.id for handle in project.layer.handles] == [1]
     assert project.history.undo_label == "Delete handle"
 
 
 def test_target_typed_in_poses_the_shape(window, project, tab):
     editing.select(window.session, frozenset({1}))
-    before = project.figure.key(24).pose
+    before = project.layer.key(24).pose
     wish = before.targets[1].position
     tab(
         "Handle",
@@ -109,9 +109,9 @@ def test_target_typed_in_poses_the_shape(window, project, tab):
             "**/##target y", project.document.canvas[1] - wish.imag + 20.0
         ),
     )
-    after = project.figure.key(24).pose
+    after = project.layer.key(24).pose
     assert after.targets[1].position == pytest.approx(wish - 20j, abs=0.01)
-    place = project.figure.map_of(after)(np.array([project.figure.handle(1).position]))
+    place = project.layer.map_of(after)(np.array([project.layer.handle(1).position]))
     np.testing.assert_allclose(place, wish - 20j, rtol=0, atol=2)
 
 
@@ -119,20 +119,20 @@ def test_turn_is_taken_from_the_shape_then_typed_then_freed(window, project, tab
     editing.select(window.session, frozenset({1}))
     turn = project.puppet.shown.handle_turns[1]
     tab("Handle", lambda robot: robot.item_click("**/##turns"))
-    assert project.figure.key(24).pose.targets[1].rotation == pytest.approx(turn, abs=1e-6)
+    assert project.layer.key(24).pose.targets[1].rotation == pytest.approx(turn, abs=1e-6)
     tab("Handle", lambda robot: robot.item_input_value("**/##angle", 10.0))
-    rotation = project.figure.key(24).pose.targets[1].rotation
+    rotation = project.layer.key(24).pose.targets[1].rotation
     assert rotation == pytest.approx(np.radians(10.0), abs=1e-4)
     tab("Handle", lambda robot: robot.item_click("**/##turns"))
-    assert project.figure.key(24).pose.targets[1].rotation is None
+    assert project.layer.key(24).pose.targets[1].rotation is None
 
 
 def test_anchor_goes_to_the_handle_and_back(window, project, tab):
     editing.select(window.session, frozenset({0}))
     tab("Handle", lambda robot: robot.item_click("**/###anchor here"))
-    assert project.figure.anchor == project.figure.handle(0).position
+    assert project.layer.anchor == project.layer.handle(0).position
     tab("Handle", lambda robot: robot.item_click("**/###clear anchor"))
-    assert project.figure.anchor is None
+    assert project.layer.anchor is None
 
 
 def enter_bound(robot, name, value):
@@ -142,16 +142,16 @@ def enter_bound(robot, name, value):
 
 
 def test_one_word_sets_all_three_bounds(window, project, tab):
-    assert project.figure.bounds == NATURAL.bounds, "new drawings are natural"
+    assert project.layer.bounds == NATURAL.bounds, "new drawings are natural"
     before = project.document
     tab("Deform", lambda robot: robot.item_click("**/stretch/###Rubbery"))
-    assert project.figure.bounds == RUBBERY.bounds
+    assert project.layer.bounds == RUBBERY.bounds
     assert project.history.undo_label == "Set bounds"
     editing.undo(window.session)
     assert project.document is before
     tab("Deform", lambda robot: robot.item_click("**/stretch/###Stiff"))
-    assert project.figure.bounds == STIFF.bounds
-    assert all(project.figure.is_proven(key.pose) for key in project.figure.keys)
+    assert project.layer.bounds == STIFF.bounds
+    assert all(project.layer.is_proven(key.pose) for key in project.layer.keys)
 
 
 def test_tighter_bounds_bring_keys_in_as_one_step(window, project, tab):
@@ -159,10 +159,10 @@ def test_tighter_bounds_bring_keys_in_as_one_step(window, project, tab):
     reached = largest(project, "k")
     bound = round(0.6 * reached, 2)
     tab("Deform", lambda robot: enter_bound(robot, "k", bound))
-    assert project.figure.bounds.k == pytest.approx(bound, abs=1e-6)
+    assert project.layer.bounds.k == pytest.approx(bound, abs=1e-6)
     assert largest(project, "k") <= bound
-    assert all(key.pose.certificate.certified for key in project.figure.keys)
-    assert project.figure.key(0).pose is before.figures[0].key(0).pose
+    assert all(key.pose.certificate.certified for key in project.layer.keys)
+    assert project.layer.key(0).pose is before.layers[0].key(0).pose
     assert project.history.undo_label == "Set bounds"
     editing.undo(window.session)
     assert project.document is before
@@ -183,20 +183,20 @@ def test_knob_that_is_dragged_sets_the_bound_once(window, project, tab):
         robot.mouse_up(0)
 
     tab("Deform", drag)
-    assert project.figure.bounds.sigma_a > NATURAL.bounds.sigma_a
+    assert project.layer.bounds.sigma_a > NATURAL.bounds.sigma_a
     assert project.drafted_bounds is None
     editing.undo(window.session)
     assert project.document is before
     editing.redo(window.session)
     tab("Deform", lambda robot: robot.item_click("**/stretch/###Natural"))
-    assert project.figure.bounds == NATURAL.bounds
+    assert project.layer.bounds == NATURAL.bounds
 
 
 def test_pose_that_no_handle_holds_is_brought_within_the_bounds(window, project, tab):
     posing.remove_handles(window.session, frozenset({0, 1}))
     bound = round(0.5 * largest(project, "k"), 2)
     tab("Deform", lambda robot: enter_bound(robot, "k", bound))
-    certificate = project.figure.key(24).pose.certificate
+    certificate = project.layer.key(24).pose.certificate
     assert certificate.certified
     assert certificate.k <= bound + 1e-6
 
@@ -291,21 +291,21 @@ def test_rebuilt_domain_keeps_handles_and_poses_as_one_step(window, project, tab
 
     tab("Mesh", act)
     after = project.document
-    assert after.figures[0].meshing == Meshing(triangles=4_000, detail="normal")
-    counts = [len(document.figures[0].domain.mesh.triangles) for document in (before, after)]
+    assert after.layers[0].meshing == Meshing(triangles=4_000, detail="normal")
+    counts = [len(document.layers[0].domain.mesh.triangles) for document in (before, after)]
     assert counts[1] > 1.5 * counts[0]
-    assert after.figures[0].handles == before.figures[0].handles
+    assert after.layers[0].handles == before.layers[0].handles
     for frame in (0, 24):
-        old, new = before.figures[0].key(frame).pose, after.figures[0].key(frame).pose
+        old, new = before.layers[0].key(frame).pose, after.layers[0].key(frame).pose
         assert new.certificate.certified
-        places = np.array([handle.position for handle in after.figures[0].handles])
+        places = np.array([handle.position for handle in after.layers[0].handles])
         np.testing.assert_allclose(
-            after.figures[0].map_of(new)(places),
-            before.figures[0].map_of(old)(places),
+            after.layers[0].map_of(new)(places),
+            before.layers[0].map_of(old)(places),
             rtol=0,
             atol=3,
         )
-    assert after.figures[0].key(0).pose.certificate.k < 1e-6
+    assert after.layers[0].key(0).pose.certificate.k < 1e-6
     assert project.history.undo_label == "Rebuild domain"
     editing.undo(window.session)
     assert project.document is before
@@ -319,8 +319,8 @@ def test_rebuilt_domain_keeps_a_pose_that_no_handle_holds(window, project, tab):
         robot.item_click("**/###rebuild")
 
     tab("Mesh", act)
-    assert project.figure.meshing.triangles == 4_000
-    certificate = project.figure.key(24).pose.certificate
+    assert project.layer.meshing.triangles == 4_000
+    certificate = project.layer.key(24).pose.certificate
     assert certificate.k == pytest.approx(STRETCH, rel=0.01)
 
 
@@ -433,7 +433,7 @@ def test_extent_follows_undo_and_redo_at_once(window, project, tab):
     assert project.extent.value == second
     editing.undo(window.session)
     tab("Handle", lambda _: None)
-    editing.edit_figure(window.session, key_commands.move_keys, {24}, 3)
+    editing.edit_layer(window.session, key_commands.move_keys, {24}, 3)
     window.settle()
     assert project.extent.follows(extent_source(project.document)), "where the tab is hidden, too"
 
@@ -498,8 +498,8 @@ def test_each_widget_makes_a_step_of_its_own(window, project, tab):
 
     before = project.document
     tab("Handle", change)
-    assert project.figure.handle(0).name == "paw"
-    assert project.figure.handle(0).weight > 10
+    assert project.layer.handle(0).name == "paw"
+    assert project.layer.handle(0).weight > 10
     while project.history.undo_label is not None and project.document is not before:
         steps.append(project.history.undo_label)
         editing.undo(window.session)
@@ -510,8 +510,8 @@ def test_a_handle_that_is_outweighed_is_not_said_to_be_held_back_by_limits(
     window, project, monkeypatch
 ):
     """Pulled weakly, far from every limit: all places that tell of it say so, and the same."""
-    figure = project.figure
-    key = figure.key(24)
+    layer = project.layer
+    key = layer.key(24)
     wish = Target(position=key.pose.targets[1].position + 12j)
     pose = replace(key.pose, targets={**key.pose.targets, 1: wish})
     editing.edit(window.session, key_commands.pose_key(project.active, 24, pose))
@@ -539,7 +539,7 @@ def test_the_canvas_has_a_size_of_its_own(window, project, tab):
     width, height = before.canvas
     tab("Export", lambda robot: robot.item_input_value("**/##canvas width", width + 40))
     assert project.document.canvas == (width + 40, height)
-    assert project.document.figures == before.figures
+    assert project.document.layers == before.layers
     tab("Export", lambda robot: robot.item_click("**/###canvas size"))
     assert project.document.canvas == (width, height)
     editing.undo(window.session)

@@ -59,7 +59,7 @@ def until_all_is_taken(window):
 @pytest.fixture
 def ruler(window, bent):
     """Where each frame is on the ruler; the pointer is elsewhere."""
-    first, last = (place_of(window, f"key {key.frame}").get_center() for key in bent.figure.keys)
+    first, last = (place_of(window, f"key {key.frame}").get_center() for key in bent.layer.keys)
     middle = place_of(window, "ruler").get_center().y
     imgui.get_io().add_mouse_pos_event(first.x, first.y - 300)
     window.frames(3)

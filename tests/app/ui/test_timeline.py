@@ -10,9 +10,9 @@ from projects import project_of
 from app.document import (
     camera_at,
     exported_frames,
-    figure_commands,
     filming_commands,
     key_commands,
+    shape_commands,
 )
 from app.document.keyframe import Handle, Keyframe, Passing, Target
 from app.document.settings import FrameRange
@@ -31,7 +31,7 @@ FRAMES = (0, 12, 24, 48)
 
 def waving_document():
     """A disc that turns to and fro: four keys, two handles, of which one lags at frame 24."""
-    (empty,) = disc_document().figures
+    (empty,) = disc_document().layers
     rest = empty.keys[0].pose
     handles = (
         Handle(id=0, name="left", position=CENTRE - RADIUS / 2),
@@ -103,7 +103,7 @@ def play(window, project):
     """Let the robot play with the timeline."""
 
     def play(what):
-        window.run(lambda robot: what(Hand(robot, project.figure.keys)))
+        window.run(lambda robot: what(Hand(robot, project.layer.keys)))
         window.settle()
         return project.document
 
@@ -111,7 +111,7 @@ def play(window, project):
 
 
 def frames_of(document):
-    return tuple(key.frame for key in document.figures[0].keys)
+    return tuple(key.frame for key in document.layers[0].keys)
 
 
 def undo_all(window):
@@ -144,7 +144,7 @@ def test_drag_moves_keys_by_whole_frames_in_one_step(window, project, play):
     moved = play(lambda hand: hand.drag("key 24", 26.4, 29.7))
     assert frames_of(moved) == (0, 12, 30, 48)
     assert project.chosen == {30}
-    assert moved.figures[0].keys[2].pose is first.figures[0].keys[2].pose
+    assert moved.layers[0].keys[2].pose is first.layers[0].keys[2].pose
     editing.undo(window.session)
     assert project.document is first
 
@@ -233,7 +233,7 @@ def test_ctrl_drag_copies_and_del_deletes(window, project, play):
 
     copied = play(copy)
     assert frames_of(copied) == (0, 12, 24, 36, 48)
-    assert copied.figures[0].keys[3].pose is first.figures[0].keys[1].pose
+    assert copied.layers[0].keys[3].pose is first.layers[0].keys[1].pose
     assert project.chosen == {36}
     deleted = play(lambda hand: hand.robot.key_press(int(window.Key.delete)))
     assert frames_of(deleted) == FRAMES
@@ -272,10 +272,10 @@ def test_easing_is_chosen_and_drawn_by_hand(window, project, play):
     def choose(hand):
         hand.click("interval 12")
         hand.robot.item_click("//$FOCUSED/in-out")
-        seen.append([key.easing for key in project.figure.keys])
+        seen.append([key.easing for key in project.layer.keys])
         hand.robot.item_drag_with_delta("//$FOCUSED/control 1", ImVec2(30, -400))
 
-    curve = play(choose).figures[0].keys[1].easing.curve
+    curve = play(choose).layers[0].keys[1].easing.curve
     assert seen == [[LINEAR, PRESETS["in-out"], LINEAR, LINEAR]]
     assert curve[0] == pytest.approx(0.42 + 30 / 150, abs=0.05)
     assert curve[1:] == (1.0, *PRESETS["in-out"].curve[2:])
@@ -290,7 +290,7 @@ def test_easing_of_all_chosen_keys_is_changed_together(window, play):
         hand.click("interval 24")
         hand.robot.item_click("//$FOCUSED/hold")
 
-    easings = [key.easing for key in play(choose).figures[0].keys]
+    easings = [key.easing for key in play(choose).layers[0].keys]
     assert easings == [HOLD, LINEAR, HOLD, LINEAR]
     assert undo_all(window) == 1
 
@@ -303,19 +303,19 @@ def test_how_keys_are_passed_is_chosen_in_their_menu_and_by_a_key(window, projec
         hand.robot.item_click("//$FOCUSED/Passing")
         hand.robot.item_click("//**/###stop")
 
-    passings = [key.shown_passing for key in play(choose).figures[0].keys]
+    passings = [key.shown_passing for key in play(choose).layers[0].keys]
     assert passings == ["through", "stop", "stop", "through"]
     for expected in ("hold", "through", "corner"):
         window.run(lambda robot: robot.key_press(int(window.Key.t)))
         window.settle()
-        passings = [key.shown_passing for key in project.figure.keys]
+        passings = [key.shown_passing for key in project.layer.keys]
         assert passings == ["through", expected, expected, "through"]
     assert undo_all(window) == 4
 
 
 def test_the_paths_of_selected_handles_are_shown_and_follow_the_keys(window, project):
     # The motion from key to key: one handle that stays would hide it.
-    project.history.do(figure_commands.set_stillness(0, stillness=False))
+    project.history.do(shape_commands.set_stillness(0, stillness=False))
     window.run(lambda robot: robot.key_press(int(window.Key.j)))
     window.settle()
     assert project.paths.value is None  # nothing is selected
@@ -343,10 +343,10 @@ def test_the_paths_of_selected_handles_are_shown_and_follow_the_keys(window, pro
 def test_keys_that_the_limits_slow_down_are_told_with_a_remedy(window, project):
     assert limit_of_motion(window.session) == ""
     tight = Bounds(k=0.01, sigma_a=1.001, sigma_b=0.999)
-    command = figure_commands.set_bounds(0, tight)
-    project.history.do(figure_commands.set_variant(0, "nu"))
-    squeezed = project.figure.key(12).pose
-    squeezed = replace(squeezed, psi=0.3 * (project.figure.domain.cage - CENTRE).conj())
+    command = shape_commands.set_bounds(0, tight)
+    project.history.do(shape_commands.set_variant(0, "nu"))
+    squeezed = project.layer.key(12).pose
+    squeezed = replace(squeezed, psi=0.3 * (project.layer.domain.cage - CENTRE).conj())
     project.history.do(key_commands.pose_key(0, 12, squeezed))
     project.history.do(command)
     window.settle()
@@ -355,8 +355,8 @@ def test_keys_that_the_limits_slow_down_are_told_with_a_remedy(window, project):
     )
     rebuilding.loosen_bounds(window.session)
     window.settle()
-    assert project.figure.bounds != tight
-    assert project.figure.key(12).pose is squeezed
+    assert project.layer.bounds != tight
+    assert project.layer.key(12).pose is squeezed
 
 
 def test_playhead_is_dragged_and_stops_at_the_ends(window, project, play):
@@ -393,7 +393,7 @@ def test_preview_range_and_end_are_dragged(window, project, play):
 
 def test_menu_reverses_and_scales(window, project, play):
     first = project.document
-    poses = [key.pose for key in first.figures[0].keys]
+    poses = [key.pose for key in first.layers[0].keys]
 
     def choose(path):
         def through(hand):
@@ -405,8 +405,8 @@ def test_menu_reverses_and_scales(window, project, play):
 
     backwards = choose("###Reverse")
     assert frames_of(backwards) == (0, 24, 36, 48)
-    assert [key.pose for key in backwards.figures[0].keys] == poses[::-1]
-    assert choose("Copy first pose to last key").figures[0].keys[-1].pose is poses[-1]
+    assert [key.pose for key in backwards.layers[0].keys] == poses[::-1]
+    assert choose("Copy first pose to last key").layers[0].keys[-1].pose is poses[-1]
     assert frames_of(choose("###Scale time/Half as long")) == (0, 12, 18, 24)
     editing.choose_keys(window.session, frozenset({18, 24}))
     assert frames_of(choose("###Scale time/Twice as long")) == (0, 12, 18, 30)
@@ -497,7 +497,7 @@ def test_speed_is_changed_while_playing(window, project):
 )
 def test_keys_go_to_the_nearest_place_that_is_free(frames, subset, wanted, copies):
     document = disc_document()
-    poses = [replace(document.figures[0].keys[0], frame=frame) for frame in sorted(frames)]
+    poses = [replace(document.layers[0].keys[0], frame=frame) for frame in sorted(frames)]
     document = altered(document, keys=tuple(poses), frames=FrameRange(0, 100))
     dragged = frozenset(f for i, f in enumerate(sorted(frames)) if subset >> i & 1) or frozenset(
         {min(frames)}
@@ -508,7 +508,7 @@ def test_keys_go_to_the_nearest_place_that_is_free(frames, subset, wanted, copie
         return by == 0 or (min(there) >= 0 and not there & (frames if copies else frames - dragged))
 
     by = timeline_pointing.shift_of(
-        document, {document.figures[0].id: dragged}, wanted, copies=copies
+        document, {document.layers[0].id: dragged}, wanted, copies=copies
     )
     assert is_possible(by)
     nearest = max(wanted, -min(dragged))
@@ -516,7 +516,7 @@ def test_keys_go_to_the_nearest_place_that_is_free(frames, subset, wanted, copie
 
 
 def test_keys_that_fall_short_are_known(project):
-    lags = [project.timing.shortfalls.value[key.pose] for key in project.figure.keys]
+    lags = [project.timing.shortfalls.value[key.pose] for key in project.layer.keys]
     assert [set(lag) for lag in lags] == [set(), set(), {1}, set()]
 
 
@@ -651,7 +651,7 @@ def test_the_preview_range_is_cleared_in_one_click_and_never_exported(window, pr
 
 def test_chosen_keys_are_eased_at_once(window, project, play):
     def easings():
-        return [key.easing.name for key in project.figure.keys]
+        return [key.easing.name for key in project.layer.keys]
 
     editing.choose_keys(window.session, frozenset({0, 12, 24}))
     play(lambda hand: hand.robot.key_press(int(window.Key.f9)))
@@ -684,11 +684,11 @@ def test_new_keys_get_the_easing_that_was_chosen_for_them(window, project, play)
     play(choose)
     keys.insert_at(window.session, 60)
     window.settle()
-    assert [key.easing.name for key in project.figure.keys][2:] == ["out", "out", "out"]
+    assert [key.easing.name for key in project.layer.keys][2:] == ["out", "out", "out"]
     # A key that divides a way keeps how time runs there.
     keys.insert_at(window.session, 6)
     window.settle()
-    assert project.figure.key(6).easing == LINEAR
+    assert project.layer.key(6).easing == LINEAR
 
 
 def test_undo_and_redo_name_their_step_and_show_where_it_was(window, project):
@@ -698,7 +698,7 @@ def test_undo_and_redo_name_their_step_and_show_where_it_was(window, project):
         return playback.current_frame(session, project)
 
     keys.set_easing(session, {0: frozenset({24})}, HOLD)
-    editing.edit_figure(session, key_commands.move_keys, frozenset({12}), -2)
+    editing.edit_layer(session, key_commands.move_keys, frozenset({12}), -2)
     keys.set_fps(session, 12.0)
     playback.scrub(session, 60)
     for text, frame in (

@@ -6,9 +6,9 @@ from imgui_bundle import ImVec2, imgui
 
 from app.document import (
     clip_of,
-    figure_commands,
     handle_commands,
     key_commands,
+    shape_commands,
     track_at,
     track_commands,
 )
@@ -34,7 +34,7 @@ def with_track(window, project, keys=WAVE, handle=RIGHT, **settings):
     timeline_pointing.unfold(window.session, project.active)
     tracks.choose(window.session, handle)
     window.settle()
-    return project.figure.track_of(handle)
+    return project.layer.track_of(handle)
 
 
 def row(project, handle=RIGHT):
@@ -54,7 +54,7 @@ def place_of(project, handle, frame):
 def places_of(project, handle, frames):
     """Where a handle is at some frames, exactly."""
     clip = clip_of(project.document, project.active)
-    animation = Animation(clip, points=np.array([project.figure.handle(handle).position]))
+    animation = Animation(clip, points=np.array([project.layer.handle(handle).position]))
     return [complex(animation.positions(frame)[0]) for frame in frames]
 
 
@@ -64,7 +64,7 @@ class Rows:
     def __init__(self, robot, project):
         self.robot, self.project = robot, project
         robot.set_ref("###Timeline")
-        first, last = project.figure.keys[0].frame, project.figure.keys[-1].frame
+        first, last = project.layer.keys[0].frame, project.layer.keys[-1].frame
         begin, end = (self.place(f"row {project.active}", f"key {f}") for f in (first, last))
         self._step = (end.x - begin.x) / (last - first)
         self._origin = begin.x - first * self._step
@@ -127,10 +127,10 @@ def test_a_handle_is_keyed_alone_by_one_click(window, bent, press):
     window.act(playback.seek, 12)
     window.act(editing.select, frozenset({RIGHT}))
     press("###key handle")
-    track = bent.figure.track_of(RIGHT)
+    track = bent.layer.track_of(RIGHT)
     assert [(key.frame, key.place) for key in track.keys] == [(12, 0)]
     assert bent.chosen_track == RIGHT
-    assert bent.figure.keys == before.figures[0].keys
+    assert bent.layer.keys == before.layers[0].keys
     assert abs(place_of(bent, RIGHT, 12) - there) < 1e-6, "nothing moves"
     # Once more at the same frame there is nothing to do, and at another one there is.
     press("###key handle")
@@ -156,7 +156,7 @@ def test_a_key_between_two_others_keeps_what_the_track_does(window, bent, play):
     play(double_click)
     assert playback.current_frame(window.session, bent) == 7
     assert frames_of(bent) == (0, 5, 8, 16)
-    (key,) = (key for key in bent.figure.track_of(RIGHT).keys if key.frame == 5)
+    (key,) = (key for key in bent.layer.track_of(RIGHT).keys if key.frame == 5)
     assert key.place == wanted
 
 
@@ -164,7 +164,7 @@ def test_handles_of_a_selection_are_keyed_together_and_others_on_their_own(windo
     window.act(playback.seek, 6)
     window.act(editing.select, frozenset({LEFT, RIGHT}))
     window.act(tracks.key_selected)
-    assert [track.handles for track in bent.figure.tracks] == [(LEFT, RIGHT)]
+    assert [track.handles for track in bent.layer.tracks] == [(LEFT, RIGHT)]
     window.act(editing.undo)
     with_track(window, bent)
     before = bent.document
@@ -220,13 +220,13 @@ def test_chosen_keys_of_poses_and_of_a_track_are_scaled_and_reversed_together(wi
         window.session, {bent.active: frozenset({0, 24}), row(bent): frozenset({2, 12, 22})}
     )
     window.act(keys.scale, 0.5)
-    assert bent.figure.key_frames == {0, 12}
+    assert bent.layer.key_frames == {0, 12}
     # Around the first of all, each in its own time: the track is as late as it was.
     assert frames_of(bent) == (1, 6, 11)
-    assert bent.figure.track_of(RIGHT).delay == 6
+    assert bent.layer.track_of(RIGHT).delay == 6
     window.act(keys.reverse)
     assert frames_of(bent) == (1, 6, 11)
-    assert [key.place for key in bent.figure.track_of(RIGHT).keys] == [0, 5j, 0]
+    assert [key.place for key in bent.layer.track_of(RIGHT).keys] == [0, 5j, 0]
     window.act(editing.undo)
     window.act(editing.undo)
     assert bent.document is before
@@ -234,7 +234,7 @@ def test_chosen_keys_of_poses_and_of_a_track_are_scaled_and_reversed_together(wi
     editing.choose_keys_of(window.session, {bent.active: frozenset({0, 24})})
     window.act(keys.scale, 0.5)
     assert frames_of(bent) == (2, 12, 22)
-    assert bent.figure.key_frames == {0, 12}
+    assert bent.layer.key_frames == {0, 12}
 
 
 def test_a_drag_of_a_track_key_is_given_up_with_esc(window, bent, play):
@@ -268,7 +268,7 @@ def test_a_track_that_goes_in_the_middle_of_a_drag_ends_it(window, bent, play):
         rows.robot.mouse_up(0)
 
     play(lose)
-    assert not bent.figure.tracks
+    assert not bent.layer.tracks
     assert bent.chosen_track is None
     assert not bent.chosen_of
 
@@ -288,7 +288,7 @@ def test_a_box_takes_keys_of_poses_and_of_tracks_which_move_together(window, ben
     assert bent.chosen_of == {bent.active: {24}, row(bent): {8, 16}}
     play(lambda rows: rows.drag("key 8", 14, 15))
     assert frames_of(bent) == (0, 11, 19)
-    assert [key.frame for key in bent.figure.keys] == [0, 27]
+    assert [key.frame for key in bent.layer.keys] == [0, 27]
     window.act(editing.undo)
     assert bent.document is before
 
@@ -302,16 +302,16 @@ def test_keys_of_a_track_are_eased_and_passed_by_their_menu(window, bent, play):
         rows.robot.menu_click("Easing/In-out")
 
     play(ease)
-    key = bent.figure.track_of(RIGHT).keys[1]
+    key = bent.layer.track_of(RIGHT).keys[1]
     assert key.easing == PRESETS["in-out"]
     window.act(keys.pass_otherwise)
-    assert bent.figure.track_of(RIGHT).keys[1].passing is Passing.CORNER
+    assert bent.layer.track_of(RIGHT).keys[1].passing is Passing.CORNER
     # Without a chosen key, that of the chosen row at the playhead or before it is meant.
     window.act(editing.deselect_keys)
     window.act(playback.seek, 20)
     window.act(keys.ease, PRESETS["out"])
-    assert bent.figure.track_of(RIGHT).keys[2].easing == PRESETS["out"]
-    assert all(key.easing != PRESETS["out"] for key in bent.figure.keys)
+    assert bent.layer.track_of(RIGHT).keys[2].easing == PRESETS["out"]
+    assert all(key.easing != PRESETS["out"] for key in bent.layer.keys)
 
 
 def test_a_key_in_the_pose_ends_a_track_without_a_jump(window, bent, play):
@@ -324,18 +324,18 @@ def test_a_key_in_the_pose_ends_a_track_without_a_jump(window, bent, play):
         rows.robot.item_click("**/###Insert in pose")
 
     play(insert)
-    key = bent.figure.track_of(RIGHT).keys[-1]
+    key = bent.layer.track_of(RIGHT).keys[-1]
     assert (key.frame, key.place) == (18, 0)
 
 
 def test_what_is_chosen_is_where_keys_come_and_go(window, bent, play):
     with_track(window, bent, delay=1)
-    poses = bent.figure.keys
+    poses = bent.layer.keys
     window.act(playback.seek, 5)
     window.run(lambda robot: robot.key_press(int(window.Key.i)))
     window.settle()
     assert frames_of(bent) == (0, 4, 8, 16)
-    assert bent.figure.keys is poses
+    assert bent.layer.keys is poses
     seen = []
     for _ in range(3):
         window.act(playback.to_key, 1)
@@ -349,7 +349,7 @@ def test_what_is_chosen_is_where_keys_come_and_go(window, bent, play):
     assert bent.chosen_track is None
     window.act(keys.insert_at, 12)
     window.settle()
-    assert [key.frame for key in bent.figure.keys] == [0, 12, 24]
+    assert [key.frame for key in bent.layer.keys] == [0, 12, 24]
 
 
 def test_a_chosen_track_is_deleted_in_the_timeline_and_its_handle_stays(window, bent, play):
@@ -361,8 +361,8 @@ def test_a_chosen_track_is_deleted_in_the_timeline_and_its_handle_stays(window, 
         rows.robot.key_press(int(window.Key.delete))
 
     play(delete)
-    assert not bent.figure.tracks
-    assert len(bent.figure.handles) == 2
+    assert not bent.layer.tracks
+    assert len(bent.layer.handles) == 2
     window.act(editing.undo)
     assert bent.document is before
     # Folded away, it is not what is meant any more.
@@ -377,13 +377,13 @@ def test_rows_are_scrolled_to_a_track_that_is_chosen(window, bent):
         command = handle_commands.add_handles(bent.active, [handle])
         editing.edit(window.session, command)
     own = (TrackKey(frame=3, place=0j), TrackKey(frame=9, place=0j))
-    for handle in bent.figure.handles:
+    for handle in bent.layer.handles:
         track = Track(handles=(handle.id,), keys=own)
         editing.edit(window.session, track_commands.put_track(bent.active, track))
     timeline_pointing.unfold(window.session, bent.active)
     window.settle()
     assert bent.timing.scrolled == 0, "the row of the poses is to be seen"
-    tracks.choose(window.session, bent.figure.handles[-1].id)
+    tracks.choose(window.session, bent.layer.handles[-1].id)
     window.frames(3)
     assert bent.timing.scrolled > 0
     tracks.choose(window.session, None)
@@ -394,8 +394,8 @@ def test_rows_are_scrolled_to_a_track_that_is_chosen(window, bent):
 def test_a_row_switches_its_track_off(window, bent, play):
     with_track(window, bent)
     play(lambda rows: rows.robot.item_click(rows.of("switch")))
-    assert not bent.figure.track_of(RIGHT).enabled
-    assert bent.figure.track_of(RIGHT).keys
+    assert not bent.layer.track_of(RIGHT).enabled
+    assert bent.layer.track_of(RIGHT).keys
 
 
 def test_keys_of_a_track_are_copied_and_pasted(window, bent):
@@ -425,18 +425,18 @@ def test_planting_moves_nothing_at_the_keys_and_leads_back(window, bent, press):
     window.act(editing.select, frozenset({RIGHT}))
     before = places_of(bent, RIGHT, [key.frame + 1 for key in track.keys])
     press("kind/###picture")
-    planted = bent.figure.track_of(RIGHT)
+    planted = bent.layer.track_of(RIGHT)
     assert planted.planted
     places = [key.place for key in planted.keys]
     np.testing.assert_allclose(places, before, rtol=0, atol=0.1)
     press("kind/###pose")
-    again = bent.figure.track_of(RIGHT)
+    again = bent.layer.track_of(RIGHT)
     assert not again.planted
     wanted = [key.place for key in track.keys]
     np.testing.assert_allclose([key.place for key in again.keys], wanted, rtol=0, atol=1e-6)
     window.act(editing.undo)
     window.act(editing.undo)
-    assert bent.figure.track_of(RIGHT) == track
+    assert bent.layer.track_of(RIGHT) == track
 
 
 def test_planting_keeps_the_motion_around_keys_that_have_velocities(window, bent, press):
@@ -457,13 +457,13 @@ def test_planting_keeps_the_motion_around_keys_that_have_velocities(window, bent
 
     beside = passing()
     press("kind/###picture")
-    planted = bent.figure.track_of(RIGHT)
+    planted = bent.layer.track_of(RIGHT)
     assert planted.keys[2].velocity is None
     np.testing.assert_allclose(planted.keys[1].velocity, beside, rtol=0, atol=0.1)
     np.testing.assert_allclose(passing(), beside, rtol=0, atol=0.1)
     assert abs(beside - (3 + 1j)) > 1, "the base moves, too"
     press("kind/###pose")
-    again = bent.figure.track_of(RIGHT)
+    again = bent.layer.track_of(RIGHT)
     velocities = [key.velocity for key in again.keys[:2]]
     np.testing.assert_allclose(velocities, [0, 3 + 1j], rtol=0, atol=0.01)
 
@@ -481,7 +481,7 @@ def test_a_new_key_on_a_way_with_velocities_leaves_the_way_as_it_is(window, bent
         at = track_at(track, bent.clip, frame).place
         insert(window.session, *(((RIGHT,),) if insert is tracks.key_here else (RIGHT, at)))
     window.settle()
-    more = bent.figure.track_of(RIGHT)
+    more = bent.layer.track_of(RIGHT)
     assert len(more.keys) == 5
     ways = [
         [track_at(t, bent.clip, f).place for f in np.arange(4, 28.1, 0.5)] for t in (track, more)
@@ -495,7 +495,7 @@ def test_a_new_key_of_a_planted_track_is_where_the_handle_is(window, bent):
     there = place_of(bent, RIGHT, 16)
     window.act(tracks.key_here, (RIGHT,))
     window.settle()
-    key = bent.figure.track_of(RIGHT).keys[-1]
+    key = bent.layer.track_of(RIGHT).keys[-1]
     assert key.frame == 16
     assert abs(key.place - there) < 1e-6
 
@@ -504,9 +504,9 @@ def test_the_panel_sets_what_a_track_has(window, bent, press):
     with_track(window, bent)
     window.act(editing.select, frozenset({RIGHT}))
     press("on##track")
-    assert not bent.figure.track_of(RIGHT).enabled
+    assert not bent.layer.track_of(RIGHT).enabled
     press("Keys turn it, too")
-    assert bent.figure.track_of(RIGHT).turns
+    assert bent.layer.track_of(RIGHT).turns
 
     def enter(name, value):
         window.run(
@@ -520,44 +520,44 @@ def test_the_panel_sets_what_a_track_has(window, bent, press):
     window.act(playback.seek, 12)
     enter("track x", 9.0)
     enter("track y", 4.0)
-    (key,) = (key for key in bent.figure.track_of(RIGHT).keys if key.frame == 12)
+    (key,) = (key for key in bent.layer.track_of(RIGHT).keys if key.frame == 12)
     assert key.place == 9 - 4j, "y goes down for people"
     enter("track turn", 90.0)
-    (key,) = (key for key in bent.figure.track_of(RIGHT).keys if key.frame == 12)
+    (key,) = (key for key in bent.layer.track_of(RIGHT).keys if key.frame == 12)
     assert abs(key.turn - np.pi / 2) < 1e-6
     enter("delay", 5.0)
     enter("reach", 0.4)
-    track = bent.figure.track_of(RIGHT)
+    track = bent.layer.track_of(RIGHT)
     assert (track.delay, track.reach) == (5, 0.4)
     press("delete track")
-    assert bent.figure.track_of(RIGHT) is None
+    assert bent.layer.track_of(RIGHT) is None
 
 
 def test_a_handle_follows_like_a_tail(window, bent, press):
     before = bent.document
     window.act(editing.select, frozenset({RIGHT}))
     press("preset/###tail")
-    assert bent.figure.spring_of(RIGHT) == Spring(handle=RIGHT, frequency=1.6, damping=0.18)
+    assert bent.layer.spring_of(RIGHT) == Spring(handle=RIGHT, frequency=1.6, damping=0.18)
     press("preset/###jelly")
-    assert bent.figure.spring_of(RIGHT) == Spring(handle=RIGHT, frequency=4.5, damping=0.12)
+    assert bent.layer.spring_of(RIGHT) == Spring(handle=RIGHT, frequency=4.5, damping=0.12)
     press("on##spring")
-    assert not bent.figure.spring_of(RIGHT).enabled
+    assert not bent.layer.spring_of(RIGHT).enabled
     window.run(
         lambda robot: (
             robot.set_ref("//Handle"),
             robot.combo_click(f"##root/###about {LEFT}"),
         )
     )
-    assert bent.figure.spring_of(RIGHT).root == LEFT
+    assert bent.layer.spring_of(RIGHT).root == LEFT
     window.run(
         lambda robot: (
             robot.set_ref("//Handle"),
             robot.item_input_value("**/##stretch", 0.5),
         )
     )
-    assert bent.figure.spring_of(RIGHT).stretch == 0.5
+    assert bent.layer.spring_of(RIGHT).stretch == 0.5
     press("delete spring")
-    assert bent.figure.spring_of(RIGHT) is None
+    assert bent.layer.spring_of(RIGHT) is None
     for _ in range(6):
         window.act(editing.undo)
     assert bent.document is before
@@ -571,8 +571,8 @@ def test_a_spring_becomes_keys_that_swing_as_it_did(window, bent, press):
     before, frames = bent.document, range(0, 49, 4)
     swung = np.array(places_of(bent, RIGHT, frames))
     press("Make keys of it")
-    track = bent.figure.track_of(RIGHT)
-    assert bent.figure.spring_of(RIGHT) is None
+    track = bent.layer.track_of(RIGHT)
+    assert bent.layer.spring_of(RIGHT) is None
     assert bent.chosen_track == RIGHT
     assert len(track.keys) < 20
     keyed = np.array(places_of(bent, RIGHT, frames))
@@ -582,7 +582,7 @@ def test_a_spring_becomes_keys_that_swing_as_it_did(window, bent, press):
 
 
 def test_a_spring_that_nothing_moves_stays_a_spring(window, bent):
-    editing.edit(window.session, figure_commands.set_stillness(bent.active, stillness=False))
+    editing.edit(window.session, shape_commands.set_stillness(bent.active, stillness=False))
     editing.edit(window.session, key_commands.delete_keys(bent.active, {24}))
     spring = Spring(handle=RIGHT, frequency=2.0, damping=0.3)
     editing.edit(window.session, track_commands.put_spring(bent.active, spring))
@@ -599,13 +599,13 @@ def test_what_the_limits_hold_back_is_told_with_its_pixels(window, bent):
     hold = Track(handles=(LEFT,), keys=tuple(TrackKey(frame=f, place=0j) for f in (4, 16)))
     editing.edit(window.session, track_commands.put_track(bent.active, hold))
     track = with_track(window, bent, keys=((4, 0), (10, FAR), (16, 0)))
-    misses = misses_of(bent, bent.figure, track)
+    misses = misses_of(bent, bent.layer, track)
     assert 10 in misses
     assert not {4, 16, 20} & misses.keys()
-    text = told(bent, bent.figure, track, 10)
+    text = told(bent, bent.layer, track, 10)
     assert f"{misses[10]:.0f} px" in text
     assert "limit of stretch holds" in text or "limits of stretch and" in text
-    assert told(bent, bent.figure, track, 4) == ""
+    assert told(bent, bent.layer, track, 4) == ""
     # In the viewport a dashed line leads from where it is to where it is wanted.
     window.act(playback.seek, 10)
     window.settle()
@@ -618,7 +618,7 @@ def test_what_the_limits_hold_back_is_told_with_its_pixels(window, bent):
     # Switched off, it misses nothing.
     window.act(editing.edit, track_commands.enable_track(bent.active, RIGHT, enabled=False))
     window.settle()
-    assert not misses_of(bent, bent.figure, bent.figure.track_of(RIGHT))
+    assert not misses_of(bent, bent.layer, bent.layer.track_of(RIGHT))
 
 
 @pytest.mark.usefixtures("everything")
@@ -663,7 +663,7 @@ def test_handles_that_stay_have_a_mark_and_can_be_freed(window, bent, press):
     marked = lines()
     window.act(editing.select, frozenset({LEFT}))
     press("Free between keys")
-    assert bent.figure.handle(LEFT).free
+    assert bent.layer.handle(LEFT).free
     assert not staying(bent.puppet.shown)
     assert len(lines()) < len(marked)
     press("Free between keys")
@@ -693,15 +693,15 @@ def test_handles_stay_or_not_as_the_menu_of_interpolation_says(window, bent, is_
         window.settle()
         return np.array(bent.puppet.shown.handle_places)
 
-    target = bent.figure.key(24).pose.targets[LEFT].position
+    target = bent.layer.key(24).pose.targets[LEFT].position
     still = np.array(bent.puppet.shown.handle_places)
     assert abs(still[LEFT] - target) < 0.3
     free = switch()
-    assert not bent.figure.stillness
+    assert not bent.layer.stillness
     assert not staying(bent.puppet.shown)
     assert np.abs(free - still).max() > 0.5
     np.testing.assert_allclose(switch(), still, rtol=0, atol=1e-6)
-    assert bent.figure.stillness
+    assert bent.layer.stillness
     window.act(editing.undo)
     window.act(editing.undo)
     assert bent.document is before
@@ -714,6 +714,6 @@ def test_a_track_of_several_handles_is_set_with_all_of_them_selected(window, ben
     for chosen in ({LEFT, RIGHT}, {RIGHT}):
         window.act(editing.select, frozenset(chosen))
         window.settle()
-        was = bent.figure.track_of(LEFT).turns
+        was = bent.layer.track_of(LEFT).turns
         press("Keys turn it, too")
-        assert bent.figure.track_of(LEFT).turns != was
+        assert bent.layer.track_of(LEFT).turns != was

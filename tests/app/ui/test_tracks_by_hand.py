@@ -27,12 +27,12 @@ PIXEL = 2.0  # of the picture: where it is pressed and let go, to whole ones of 
 
 def place_of(project, handle=END):
     """Return where a handle is shown."""
-    index = [each.id for each in project.figure.handles].index(handle)
+    index = [each.id for each in project.layer.handles].index(handle)
     return complex(project.puppet.shown.handle_places[index])
 
 
 def ground(project, frame, handle=END):
-    index = [each.id for each in project.figure.handles].index(handle)
+    index = [each.id for each in project.layer.handles].index(handle)
     found = project.puppet.corrected.ground(frame)
     return complex(found.places[index]), complex(found.turns[index])
 
@@ -77,17 +77,17 @@ def keyed(window):
 
 
 def test_a_drag_keys_the_handle_of_a_chosen_row_alone(window, keyed):
-    before, poses, known = keyed.document, keyed.figure.keys, keyed.puppet.corrected.ground(0)
+    before, poses, known = keyed.document, keyed.layer.keys, keyed.puppet.corrected.ground(0)
     start, way = place_of(keyed), 20 + 30j
     drag(window, start, start + way)
-    (track,) = keyed.figure.tracks
+    (track,) = keyed.layer.tracks
     assert [key.frame for key in track.keys] == [HALF]
     still, turn = ground(keyed, HALF)
     # The offset is in the frame that turns with the shape.
     assert_allclose(track.keys[0].place, (start + way - still) * np.conj(turn), atol=PIXEL)
     assert abs(turn - 1) > 0.05
     assert abs(place_of(keyed) - (start + way)) < PIXEL
-    assert keyed.figure.keys == poses, "the pose stays"
+    assert keyed.layer.keys == poses, "the pose stays"
     assert keyed.puppet.corrected.ground(0) is known, "and what is known of it"
     assert keyed.puppet.shown.is_current
     keyed.history.undo()
@@ -99,7 +99,7 @@ def test_a_drag_at_another_frame_inserts_a_key(window, keyed):
     window.settle()
     start = place_of(keyed)
     drag(window, start, start - 25j)
-    (track,) = keyed.figure.tracks
+    (track,) = keyed.layer.tracks
     assert [key.frame for key in track.keys] == [HALF, LATER]
     assert track.keys[0].place == 0
     assert abs(place_of(keyed) - (start - 25j)) < PIXEL
@@ -129,7 +129,7 @@ def test_a_planted_track_has_places_of_the_picture(window, keyed):
     window.settle()
     start = place_of(keyed)
     drag(window, start, start + 15 + 10j)
-    (track,) = keyed.figure.tracks
+    (track,) = keyed.layer.tracks
     assert_allclose(track.keys[0].place, start + 15 + 10j, atol=PIXEL)
 
 
@@ -164,7 +164,7 @@ def turn_by(window, project, angle, *, then=lambda robot: robot.mouse_up(0)):
 
 
 def turned(project):
-    index = [each.id for each in project.figure.handles].index(END)
+    index = [each.id for each in project.layer.handles].index(END)
     return project.puppet.shown.handle_turns[index]
 
 
@@ -172,10 +172,10 @@ def test_the_ring_turns_the_track_of_a_chosen_row_and_not_the_pose(window, keyed
     keys = tuple(TrackKey(frame=f, place=p) for f, p in ((EARLIER, 0), (HALF, 8j), (LATER, 0)))
     keyed.history.do(track_commands.put_track(keyed.active, Track(handles=(END,), keys=keys)))
     window.settle()
-    before, poses, shown_before = keyed.document, keyed.figure.keys, turned(keyed)
+    before, poses, shown_before = keyed.document, keyed.layer.keys, turned(keyed)
     turn_by(window, keyed, 0.5)
-    (track,) = keyed.figure.tracks
-    assert keyed.figure.keys == poses, "the pose stays"
+    (track,) = keyed.layer.tracks
+    assert keyed.layer.keys == poses, "the pose stays"
     assert track.turns, "what turned nothing does from now on"
     assert any(toast.topic == "turning" for toast in window.session.toasts)
     assert [(key.frame, key.place) for key in track.keys] == [(EARLIER, 0), (HALF, 8j), (LATER, 0)]
@@ -194,7 +194,7 @@ def test_the_ring_inserts_a_key_that_moves_nothing_and_turns_on_from_there(windo
     window.settle()
     at = track_at(track, keyed.clip, HALF)
     turn_by(window, keyed, -0.4)
-    (track,) = keyed.figure.tracks
+    (track,) = keyed.layer.tracks
     assert [key.frame for key in track.keys] == [EARLIER, HALF, LATER]
     assert track.keys[1].place == at.place
     # The pointer goes by whole pixels.
@@ -217,12 +217,12 @@ def test_escape_takes_a_turn_of_a_track_back(window, keyed):
 def test_the_ring_turns_the_pose_where_no_row_of_a_track_is_chosen(window, keyed):
     tracks.choose(window.session, None)
     window.settle()
-    tracked, poses = keyed.figure.tracks, keyed.figure.keys
+    tracked, poses = keyed.layer.tracks, keyed.layer.keys
     playback.scrub(window.session, LAST)
     window.settle()
     turn_by(window, keyed, 0.4)
-    assert keyed.figure.tracks == tracked
-    assert keyed.figure.keys != poses
+    assert keyed.layer.tracks == tracked
+    assert keyed.layer.keys != poses
 
 
 def offset_by(window, project, offset, frames):
@@ -254,10 +254,10 @@ def test_a_pose_has_what_a_track_adds_on_it_and_not_in_it(window, brief, auto_ke
 
     drag(window, other, other + 12j, then=then)
     assert max(abs(place - shown_at) for place in seen) < 4, "nothing pops"
-    pose = brief.unkeyed or brief.figure.key(HALF).pose
+    pose = brief.unkeyed or brief.layer.key(HALF).pose
     assert (brief.unkeyed is None) == auto_key
-    position = brief.figure.handle(END).position
-    own = complex(brief.figure.map_of(pose)(np.array([position]))[0])
+    position = brief.layer.handle(END).position
+    own = complex(brief.layer.map_of(pose)(np.array([position]))[0])
     assert abs(own - still) < 6, "the pose is where the body has the handle"
     assert abs(place_of(brief) - shown_at) < 6
 
@@ -268,7 +268,7 @@ def test_a_key_of_a_path_is_dragged_where_it_is_seen(window, keyed):
     still, turn = ground(keyed, HALF)
     before, way = keyed.document, 40j
     drag(window, still, still + way)
-    (track,) = keyed.figure.tracks
+    (track,) = keyed.layer.tracks
     assert [key.frame for key in track.keys] == [HALF]
     assert_allclose(track.keys[0].place, way * np.conj(turn), atol=PIXEL)
     assert playback.current_frame(window.session, keyed) == HALF
@@ -307,7 +307,7 @@ def test_a_drag_is_recorded_while_it_plays_and_fitted_by_few_keys(window, bent):
     assert take.is_over
     assert bent.playhead.since is None
     assert playback.current_frame(window.session, bent) == 0, "the playhead is where that began"
-    (track,) = bent.figure.tracks
+    (track,) = bent.layer.tracks
     frames = [key.frame for key in track.keys]
     assert frames[0] == 0
     assert frames[-1] == int(take.samples[-1].time + 1e-6) > 10
@@ -319,9 +319,9 @@ def test_a_drag_is_recorded_while_it_plays_and_fitted_by_few_keys(window, bent):
             assert abs(wished - sample.place) < 4
     few = len(frames)
     tracking.smooth(window.session, 0.0)
-    many = len(bent.figure.tracks[0].keys)
+    many = len(bent.layer.tracks[0].keys)
     tracking.smooth(window.session, 1.0)
-    fewest = len(bent.figure.tracks[0].keys)
+    fewest = len(bent.layer.tracks[0].keys)
     assert many > few >= fewest
     window.run(lambda robot: robot.item_click("**/Keep"))
     assert bent.take is None
@@ -341,7 +341,7 @@ def test_a_recording_is_as_smooth_as_the_hand_was_on_the_screen(window, bent):
     for factor in (0.1, 1.0, 10.0):
         take.scale = factor * scale
         tracking.smooth(window.session, 0.5)
-        keys[factor] = len(bent.figure.track_of(END).keys)
+        keys[factor] = len(bent.layer.track_of(END).keys)
     assert keys[0.1] < keys[1.0] < keys[10.0]
 
 
@@ -350,14 +350,14 @@ def test_a_take_is_done_again_or_given_up(window, brief):
     window.settle()
     before = brief.document
     record(window, brief, ARC)
-    assert brief.figure.tracks
+    assert brief.layer.tracks
     window.run(lambda robot: robot.item_click("**/Again"))
     assert brief.document is before
     assert window.session.records
     window.run(lambda robot: robot.key_press(int(window.Key.escape)))
     assert not window.session.records
     record(window, brief, ARC)
-    assert brief.figure.tracks
+    assert brief.layer.tracks
     window.run(lambda robot: robot.key_press(int(window.Key.escape)))
     assert brief.document is before
 
@@ -383,10 +383,10 @@ def test_the_end_of_the_range_ends_a_recording_and_other_keys_stay(window, brief
     last = brief.document.frames.last
     playback.scrub(window.session, last - 4)
     window.settle()
-    taken = [key for key in brief.figure.tracks[0].keys if key.frame == 1]
+    taken = [key for key in brief.layer.tracks[0].keys if key.frame == 1]
     record(window, brief, CIRCLE)
     assert brief.take.is_over
-    (track,) = brief.figure.tracks
+    (track,) = brief.layer.tracks
     frames = [key.frame for key in track.keys]
     assert track.keys[0] == taken[0]
     assert frames[-1] == last
@@ -402,7 +402,7 @@ def test_in_a_loop_a_recording_goes_on_over_the_seam_at_most_once_round(window, 
     take = brief.take
     assert take.is_over
     assert take.samples[-1].time == 5 + LAST
-    (track,) = brief.figure.tracks
+    (track,) = brief.layer.tracks
     frames = [key.frame for key in track.keys]
     assert frames[0] == 0
     assert frames[-1] == LAST
@@ -421,7 +421,7 @@ def test_deleting_a_handle_ends_its_recording(window, brief, is_over):
         window.act(posing.remove_handles, frozenset({END}))
         window.frames(2)
         assert brief.take is None
-        assert END not in [handle.id for handle in brief.figure.handles]
+        assert END not in [handle.id for handle in brief.layer.handles]
         assert not [toast for toast in session.toasts if toast.details]
 
 
@@ -438,14 +438,14 @@ HOP = 30j  # by how much the body goes up
 
 def hop_by_keys(project):
     """Let the whole body hop by the keys of its poses."""
-    figure = project.figure
-    rest = figure.keys[0].pose
+    layer = project.layer
+    rest = layer.keys[0].pose
     targets = {i: replace(each, position=each.position + HOP) for i, each in rest.targets.items()}
     up = replace(rest, phi=rest.phi + HOP, targets=targets)
     keys = tuple(
         Keyframe(frame=frame, pose=pose) for frame, pose in ((0, rest), (HALF, up), (LAST, rest))
     )
-    project.history.do(key_commands.put_keys(figure.id, keys))
+    project.history.do(key_commands.put_keys(layer.id, keys))
 
 
 def hop_as_a_layer(project):
@@ -479,7 +479,7 @@ def test_a_still_pointer_over_a_hopping_body_records_a_still_handle(window, brie
 
     record(window, brief, [], until=until)
     tracking.smooth(window.session, 0.0)
-    assert brief.figure.track_of(END).keys[-1].frame == LATER
+    assert brief.layer.track_of(END).keys[-1].frame == LATER
     places = in_scene(window, brief, range(1, LATER))
     assert np.abs(places - start).max() < 2
     assert abs(places[HALF - 1] - start) < 1
@@ -491,13 +491,13 @@ def test_a_pointer_that_goes_with_the_body_changes_no_shape(window, brief, hop):
     playback.scrub(window.session, 0)
     window.settle()
     session, document = window.session, brief.document
-    point = np.array([brief.figure.handle(END).position])
+    point = np.array([brief.layer.handle(END).position])
     body = Animation(clip_of(document, brief.active), points=point)
 
     def place():
         """Return where in the scene the body has the handle, when the next picture is drawn."""
         frame = min((session.clock() + FRAME - begun) * document.fps, LAST)
-        placement = movement_at(document, document.figures[0], frame)
+        placement = movement_at(document, document.layers[0], frame)
         return complex(placement.on(body.positions(frame))[0])
 
     begun = session.clock()
@@ -507,7 +507,7 @@ def test_a_pointer_that_goes_with_the_body_changes_no_shape(window, brief, hop):
         window.frames()
     window.settle()
     tracking.smooth(session, 0.0)
-    (track,) = brief.figure.tracks
+    (track,) = brief.layer.tracks
     assert np.abs([key.place for key in track.keys]).max() < 1.0, "it speeds up between frames"
 
 
@@ -515,15 +515,15 @@ def test_passes_add_up_and_undo_takes_back_the_last(window, brief):
     playback.scrub(window.session, 0)
     window.settle()
     record(window, brief, ARC)
-    (first,) = brief.figure.tracks
+    (first,) = brief.layer.tracks
     # Without a word the first one is kept.
     record(window, brief, ARC / 5, handle=0)
-    assert {track.handles for track in brief.figure.tracks} == {(END,), (0,)}
-    assert brief.figure.track_of(END) == first
+    assert {track.handles for track in brief.layer.tracks} == {(END,), (0,)}
+    assert brief.layer.track_of(END) == first
     assert brief.take is not None
     editing.undo(window.session)
     window.settle()
-    assert brief.figure.tracks == (first,)
+    assert brief.layer.tracks == (first,)
     assert brief.take is None, "there is nothing to be kept"
 
 
@@ -534,7 +534,7 @@ def test_a_planted_track_is_recorded_in_places_of_the_picture(window, brief):
     brief.history.do(track_commands.put_track(brief.active, planted))
     window.settle()
     record(window, brief, ARC)
-    (track,) = brief.figure.tracks
+    (track,) = brief.layer.tracks
     assert track.planted
     places = {sample.time: sample.place for sample in brief.take.samples}
     for key in track.keys:
@@ -557,7 +557,7 @@ def test_a_hand_sees_its_track_while_a_pose_elsewhere_waits_for_what_is_shown(wi
     start, track = place_of(keyed), keyed.chosen_track
     playback.scrub(window.session, LAST)
     keyed.chosen_track = None
-    place = complex(keyed.figure.key(LAST).pose.targets[END].position)
+    place = complex(keyed.layer.key(LAST).pose.targets[END].position)
     posing.wish(window.session, {END: Target(position=place - 15j)})
     posing.let_go(window.session)
     playback.scrub(window.session, HALF)
@@ -588,7 +588,7 @@ def test_a_pose_elsewhere_comes_to_rest_where_frames_cannot_be_corrected(
     monkeypatch.setattr("app.motion.corrected_frames._find", broken)
     keyed.chosen_track = None
     playback.scrub(window.session, LAST)
-    place = complex(keyed.figure.key(LAST).pose.targets[END].position)
+    place = complex(keyed.layer.key(LAST).pose.targets[END].position)
     posing.wish(window.session, {END: Target(position=place - 15j)})
     posing.let_go(window.session)
     playback.scrub(window.session, EARLIER)

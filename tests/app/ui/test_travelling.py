@@ -48,13 +48,13 @@ def project(window, folder):
     return window.again(open_walker, folder)
 
 
-def figure(window, name):
-    figures = window.session.project.document.figures
-    return next(each for each in figures if each.name == name)
+def layer(window, name):
+    layers = window.session.project.document.layers
+    return next(each for each in layers if each.name == name)
 
 
 def choose(window, name):
-    layering.choose(window.session, figure(window, name).id)
+    layering.choose(window.session, layer(window, name).id)
     window.settle()
 
 
@@ -70,7 +70,7 @@ def press(window, *chords):
 
 
 def ways(window, name, frame):
-    one = figure(window, name)
+    one = layer(window, name)
     targets = one.key(frame).pose.targets
     return [targets[each.id].position - each.position for each in one.handles]
 
@@ -95,7 +95,7 @@ def test_the_opposite_step_is_two_keys_away(window, project):
 
 
 def test_keys_that_are_chosen_in_the_timeline_are_swapped(window):
-    ids = [figure(window, name).id for name in ("near leg", "far leg")]
+    ids = [layer(window, name).id for name in ("near leg", "far leg")]
     editing.choose_keys_of(window.session, dict.fromkeys(ids, frozenset({0})))
 
     def copy(robot):
@@ -108,7 +108,7 @@ def test_keys_that_are_chosen_in_the_timeline_are_swapped(window):
     press(window, SWAP)
     near = ways(window, "near leg", 0)
     np.testing.assert_allclose(ways(window, "far leg", 8), near, rtol=0, atol=1e-6)
-    assert figure(window, "body").key_frames == {0}
+    assert layer(window, "body").key_frames == {0}
 
 
 def test_a_pose_is_pasted_onto_the_layer_that_is_chosen_then(window):
@@ -172,7 +172,7 @@ def test_the_library_offers_poses_of_layers_with_the_same_names(window):
 def test_pairs_are_edited_where_poses_are_flipped(window, project):
     window.show_tab("Poses")
     for name, to in (("near leg", "one"), ("far leg", "two")):
-        editing.edit(window.session, layer_commands.rename_figure(figure(window, name).id, to))
+        editing.edit(window.session, layer_commands.rename_layer(layer(window, name).id, to))
 
     def enter(robot, text):
         robot.set_ref("###Poses")

@@ -54,7 +54,7 @@ def scene(window, drawing):
 
 @pytest.fixture
 def ids(scene):
-    return {figure.name: figure.id for figure in scene.document.figures}
+    return {layer.name: layer.id for layer in scene.document.layers}
 
 
 @pytest.fixture
@@ -90,13 +90,13 @@ def drop(robot, dragged, onto, share=0.5):
 
 def seen(project, frame):
     document = project.document
-    return {each.name for each in document.figures if is_visible(document, each, frame)}
+    return {each.name for each in document.layers if is_visible(document, each, frame)}
 
 
 def place(project, name, window):
     """Where the middle of a layer's outline is drawn in the scene."""
     window.settle()
-    shown = project.puppets[next(f.id for f in project.document.figures if f.name == name)].shown
+    shown = project.puppets[next(f.id for f in project.document.layers if f.name == name)].shown
     return complex(shown.placement.on(shown.positions).mean())
 
 
@@ -116,8 +116,8 @@ def test_layers_take_turns_by_one_click(window, scene, ids, use):
 
     use(let_take_turns)
     (choice,) = scene.document.choices
-    assert set(choice.figures) == {ids["ah"], ids["oh"]}
-    first = scene.document.figure(choice.at(0)).name
+    assert set(choice.layers) == {ids["ah"], ids["oh"]}
+    first = scene.document.layer(choice.at(0)).name
     other = ({"ah", "oh"} - {first}).pop()
     assert {"ah", "oh"} & seen(scene, 0) == {first}
     window.act(playback.seek, 12)
@@ -151,7 +151,7 @@ def test_only_the_layer_that_is_seen_has_a_full_circle(window, scene, ids, use):
         around = picture[y - half : y + half, x - half : x + half]
         return np.count_nonzero(np.abs(around - around[0, 0]).sum(axis=2) > 90)
 
-    on = scene.document.figure(scene.document.choices[0].at(0)).name
+    on = scene.document.layer(scene.document.choices[0].at(0)).name
     (off,) = {"ah", "oh"} - {on}
     assert 0 < inked(boxes[off]) < inked(boxes[on])
 
@@ -219,9 +219,9 @@ def test_what_is_listed_stays_below_the_pointer_until_that_goes_back_to_the_draw
 
     use(click)
     assert tops[0] == tops[1]
-    assert ids["ah"] in {row.figures[0] for row in scene.tree if row.figure}
+    assert ids["ah"] in {row.layers[0] for row in scene.tree if row.layer}
     window.run(lambda robot: robot.mouse_move_to_pos(window.point(20 + 20j)))
-    assert ids["ah"] not in {row.figures[0] for row in scene.tree if row.figure}
+    assert ids["ah"] not in {row.layers[0] for row in scene.tree if row.layer}
 
 
 def test_layers_are_grouped_folded_hidden_and_locked_together(window, scene, ids, use):
@@ -233,28 +233,28 @@ def test_layers_are_grouped_folded_hidden_and_locked_together(window, scene, ids
     assert not {"hat", "head"} & seen(scene, 0)
     use(lambda robot: robot.item_click(f"**/###eye {key}"))
     use(lambda robot: robot.item_click(f"**/###lock {key}"))
-    assert all(scene.document.figure(ids[each]).locked for each in ("hat", "head"))
+    assert all(scene.document.layer(ids[each]).locked for each in ("hat", "head"))
     use(lambda robot: robot.item_click(f"**/fold {key}"))
-    listed = [row.figure.name for row in scene.tree if row.figure]
+    listed = [row.layer.name for row in scene.tree if row.layer]
     # What is posed is listed all the same.
-    assert {"hat", "head"} & set(listed) <= {scene.figure.name}
+    assert {"hat", "head"} & set(listed) <= {scene.layer.name}
     # Dropped onto its row, another layer is in it, too.
     use(lambda robot: drop(robot, ids["stick"], key))
-    assert scene.document.figure(ids["stick"]).group == "group"
+    assert scene.document.layer(ids["stick"]).group == "group"
 
 
 def test_a_row_that_is_dropped_on_another_one_hangs_there(window, scene, ids, use):
     before = place(scene, "hat", window)
     use(lambda robot: drop(robot, ids["hat"], ids["head"]))
     window.settle()
-    (joint,) = scene.document.figure(ids["hat"]).joints
+    (joint,) = scene.document.layer(ids["hat"]).joints
     assert joint.to == ids["head"]
     assert abs(place(scene, "hat", window) - before) < 0.1
     # Beside what it does not touch, it hangs as well, and nothing moves.
     before = place(scene, "stick", window)
     use(lambda robot: drop(robot, ids["stick"], ids["head"]))
     window.settle()
-    (joint,) = scene.document.figure(ids["stick"]).joints
+    (joint,) = scene.document.layer(ids["stick"]).joints
     assert abs(joint.offset) > 10
     assert abs(place(scene, "stick", window) - before) < 0.1
     # In a circle nothing can hang, which is told, and nothing moves.
@@ -281,14 +281,14 @@ def test_chosen_layers_are_dropped_together(window, scene, ids, use):
     window.act(layering.choose_all, *both)
     use(lambda robot: drop(robot, ids["stick"], ids["head"]))
     window.settle()
-    assert [scene.document.figure(each).joints[0].to for each in both] == [ids["head"]] * 2
+    assert [scene.document.layer(each).joints[0].to for each in both] == [ids["head"]] * 2
     for name, there in zip(("hat", "stick"), places, strict=True):
         assert abs(place(scene, name, window) - there) < 0.1
     assert scene.history.undo_label == "Attach 2 layers"
     window.act(editing.undo)
     assert scene.document is before
     use(lambda robot: drop(robot, ids["stick"], ids["oh"], 0.1))
-    order = [each.name for each in reversed(scene.document.figures)]
+    order = [each.name for each in reversed(scene.document.layers)]
     assert order == ["hat", "stick", "oh", "ah", "head"]
     window.act(editing.undo)
     assert scene.document is before
@@ -302,7 +302,7 @@ def test_chosen_layers_are_dropped_on_a_choice_together(window, scene, ids, use)
     window.act(layering.choose_all, ids["hat"], ids["stick"])
     use(lambda robot: drop(robot, ids["stick"], row.key))
     (joined,) = scene.document.choices
-    assert set(joined.figures) == {*choice.figures, ids["hat"], ids["stick"]}
+    assert set(joined.layers) == {*choice.layers, ids["hat"], ids["stick"]}
     window.act(editing.undo)
     assert scene.document is before
 
@@ -318,7 +318,7 @@ def test_what_hung_on_a_layer_that_is_deleted_hangs_on_what_that_hung_on(window,
     there = place(scene, "ah", window)
     window.act(layering.remove, ids["hat"])
     window.settle()
-    assert scene.document.figure(ids["ah"]).joints[0].to == ids["head"]
+    assert scene.document.layer(ids["ah"]).joints[0].to == ids["head"]
     assert abs(place(scene, "ah", window) - there) < 0.1
     assert scene.history.undo_label == "Delete layer"
     window.act(editing.undo)
@@ -333,7 +333,7 @@ def test_what_hung_on_a_layer_that_is_deleted_hangs_on_what_that_hung_on(window,
     window.act(playback.seek, 0)
     window.act(layering.remove, ids["hat"])
     window.settle()
-    joints = scene.document.figure(ids["ah"]).joints
+    joints = scene.document.layer(ids["ah"]).joints
     assert [(each.frame, each.to) for each in joints] == [(0, ids["stick"]), (10, ids["head"])]
     window.act(playback.seek, 10)
     assert abs(place(scene, "ah", window) - there) < 0.1
@@ -354,15 +354,15 @@ def test_a_layer_is_handed_over_and_let_go_without_a_jump(window, scene, ids, us
 
         use(hand_over)
         window.settle()
-        assert scene.document.figure(ids["stick"]).joints[-1].frame == frame
+        assert scene.document.layer(ids["stick"]).joints[-1].frame == frame
         assert abs(place(scene, "stick", window) - before) < 0.5
-    assert [each.to for each in scene.document.figure(ids["stick"]).joints] == [
+    assert [each.to for each in scene.document.layer(ids["stick"]).joints] == [
         ids["head"],
         ids["hat"],
         None,
     ]
     window.act(layering.take_back_joint, ids["stick"], 20)
-    assert len(scene.document.figure(ids["stick"]).joints) == 2
+    assert len(scene.document.layer(ids["stick"]).joints) == 2
 
 
 def test_what_is_handed_over_in_a_repeat_is_handed_over_in_all(window, scene, ids, use):
@@ -375,12 +375,12 @@ def test_what_is_handed_over_in_a_repeat_is_handed_over_in_all(window, scene, id
     before, document = place(scene, "stick", window), scene.document
     window.act(layering.hand_over, ids["stick"], ids["hat"])
     window.settle()
-    assert [joint.frame for joint in scene.document.figure(ids["stick"]).joints] == [0, 6]
+    assert [joint.frame for joint in scene.document.layer(ids["stick"]).joints] == [0, 6]
     assert abs(place(scene, "stick", window) - before) < 0.5
     parents = [scene.document.carriers(ids["stick"], frame)[1].id for frame in (5, 7, 14, 19, 30)]
     assert parents == [ids[name] for name in ("head", "hat", "head", "hat", "hat")]
     use(lambda robot: robot.item_click("**/No change at frame 6###joint"))
-    assert scene.document.figure(ids["stick"]).joints == document.figure(ids["stick"]).joints
+    assert scene.document.layer(ids["stick"]).joints == document.layer(ids["stick"]).joints
 
 
 def test_a_layer_is_looked_at_alone_while_exports_have_all(window, scene, ids):
@@ -392,7 +392,7 @@ def test_a_layer_is_looked_at_alone_while_exports_have_all(window, scene, ids):
     window.act(layering.look_at_alone, ids["stick"])
     window.settle()
     assert blue() < whole / 2
-    assert layering.figure_at(scene, 120 + 100j) is None
+    assert layering.layer_at(scene, 120 + 100j) is None
     assert len(scene.document.exported) == 5
     window.act(layering.look_at_alone, ids["stick"])
     window.settle()
@@ -406,8 +406,8 @@ def test_a_layer_is_looked_at_alone_while_exports_have_all(window, scene, ids):
 
 def test_several_layers_get_keys_together_and_go_together(window, scene, ids):
     for name in ("hat", "head"):
-        figure = scene.document.figure(ids[name])
-        command = key_commands.insert_key(figure.id, 24, figure.keys[0].pose)
+        layer = scene.document.layer(ids[name])
+        command = key_commands.insert_key(layer.id, 24, layer.keys[0].pose)
         window.act(editing.edit, command)
     before = scene.document
     window.act(layering.choose_all, ids["hat"], ids["head"])
@@ -415,13 +415,13 @@ def test_several_layers_get_keys_together_and_go_together(window, scene, ids):
     window.act(posing.insert_key)
     window.settle()
     for name in ("hat", "head"):
-        assert 12 in scene.document.figure(ids[name]).key_frames
+        assert 12 in scene.document.layer(ids[name]).key_frames
     window.act(editing.undo)
     assert scene.document is before
     window.act(layering.remove, *scene.selected_layers)
     window.settle()
-    assert {figure.name for figure in scene.document.figures} == {"stick", "ah", "oh"}
-    window.act(layering.remove, *(figure.id for figure in scene.document.figures))
+    assert {layer.name for layer in scene.document.layers} == {"stick", "ah", "oh"}
+    window.act(layering.remove, *(layer.id for layer in scene.document.layers))
     assert "at least one layer" in window.session.toasts[-1].text
 
 
@@ -433,7 +433,7 @@ def test_what_is_hidden_at_all_times_is_switched_instead(window, scene, ids, use
     use(lambda robot: robot.item_click("**/Show from frame 8 on"))
     assert "hat" not in seen(scene, 7)
     assert "hat" in seen(scene, 8)
-    assert not scene.document.figure(ids["hat"]).hidden
+    assert not scene.document.layer(ids["hat"]).hidden
 
 
 def test_a_group_of_mouths_is_offered_as_a_choice(window, scene, ids, use):
@@ -442,7 +442,7 @@ def test_a_group_of_mouths_is_offered_as_a_choice(window, scene, ids, use):
     window.frames(3)
     use(lambda robot: robot.item_click("**/Let them take turns"))
     (choice,) = scene.document.choices
-    assert (choice.name, set(choice.figures)) == ("mouth", {ids["ah"], ids["oh"]})
+    assert (choice.name, set(choice.layers)) == ("mouth", {ids["ah"], ids["oh"]})
     window.act(editing.undo)
     window.frames(3)
     use(lambda robot: robot.item_click("**/No"))
@@ -459,13 +459,13 @@ def test_a_group_is_dragged_by_its_row(window, scene, ids, use):
         return next(row.key for row in scene.tree if row.group and row.name == name)
 
     def inside(path):
-        return {each.name for each in scene.document.figures if each.group == path}
+        return {each.name for each in scene.document.layers if each.group == path}
 
     # Onto a layer, all of it hangs there.
     before = scene.document
     use(lambda robot: drop(robot, key("mouth"), ids["hat"]))
     window.settle()
-    assert [scene.document.figure(ids[name]).hangs for name in ("ah", "oh")] == [True, True]
+    assert [scene.document.layer(ids[name]).hangs for name in ("ah", "oh")] == [True, True]
     assert scene.history.undo_label == "Attach 2 layers"
     window.act(editing.undo)
     assert scene.document is before
@@ -477,7 +477,7 @@ def test_a_group_is_dragged_by_its_row(window, scene, ids, use):
     # Beside a layer, it lies there.
     use(lambda robot: drop(robot, key("body"), ids["hat"], 0.1))
     assert inside("body") == {"head", "stick"}
-    assert [each.name for each in scene.document.figures].index("hat") == 0
+    assert [each.name for each in scene.document.layers].index("hat") == 0
     window.act(editing.undo)
     assert scene.document is before
 
@@ -500,7 +500,7 @@ def test_a_group_in_a_group_of_mouths_is_not_taken_apart(window, scene, ids, use
     # The layers that are by themselves are offered, and the group stays as it is.
     use(lambda robot: robot.item_click("**/Let them take turns"))
     (choice,) = scene.document.choices
-    assert set(choice.figures) == {ids["ah"], ids["oh"]}
+    assert set(choice.layers) == {ids["ah"], ids["oh"]}
 
 
 def test_a_layer_is_moved_and_ordered_in_time_by_the_tab(window, scene, ids, use):
@@ -510,13 +510,13 @@ def test_a_layer_is_moved_and_ordered_in_time_by_the_tab(window, scene, ids, use
     before = place(scene, "stick", window)
     use(lambda robot: robot.item_input_value("**/##moved right", 25.0))
     assert abs(place(scene, "stick", window) - before - 25) < 0.5
-    assert [key.frame for key in scene.document.figure(ids["stick"]).movement] == [12]
+    assert [key.frame for key in scene.document.layer(ids["stick"]).movement] == [12]
     window.act(playback.seek, 3)
     window.run(lambda robot: robot.item_click(f"###Timeline/**/row {ids['stick']}/change 12"))
     assert playback.current_frame(window.session, scene) == 12
     window.frames(3)
     use(lambda robot: robot.item_click("**/No movement key at frame 12"))
-    assert scene.document.figure(ids["stick"]).movement == ()
+    assert scene.document.layer(ids["stick"]).movement == ()
 
     def paint_in_front(robot):
         robot.item_click("##painted")
@@ -526,4 +526,4 @@ def test_a_layer_is_moved_and_ordered_in_time_by_the_tab(window, scene, ids, use
     assert [each.id for each in in_order(scene.document, 11)][-1] == ids["oh"]
     assert [each.id for each in in_order(scene.document, 12)][-1] == ids["stick"]
     use(lambda robot: robot.item_click("**/No change of order at frame 12"))
-    assert scene.document.figure(ids["stick"]).placings == ()
+    assert scene.document.layer(ids["stick"]).placings == ()

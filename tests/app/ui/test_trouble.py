@@ -151,7 +151,7 @@ def test_recovered_work_has_its_name_and_goes_back_to_its_file_once_that_was_sho
     recovered = window.session.project
     assert window_title(window.session) == "posed.lissom* – Lissom"
     assert (recovered.name, recovered.path) == ("posed", path)
-    assert len(recovered.figure.handles) == 1
+    assert len(recovered.layer.handles) == 1
     assert any("posed.lissom" in text for text in texts(window))
     assert path.read_bytes() == saved
     # A second crash finds it again.
@@ -170,7 +170,7 @@ def test_recovered_work_has_its_name_and_goes_back_to_its_file_once_that_was_sho
     window.session.dialog = None
     window.settle()
     assert window_title(window.session) == "posed.lissom – Lissom"
-    assert len(load_project(path).figures[0].handles) == 1
+    assert len(load_project(path).layers[0].handles) == 1
     assert find_leftovers(window.folder) == []
 
     window.act(posing.add_handle, place / 2)
@@ -178,7 +178,7 @@ def test_recovered_work_has_its_name_and_goes_back_to_its_file_once_that_was_sho
     window.act(saving.save)
     window.settle()
     assert window.session.dialog is None
-    assert len(load_project(path).figures[0].handles) == 2
+    assert len(load_project(path).layers[0].handles) == 2
 
 
 def test_recovered_work_on_a_picture_has_its_name_and_no_file(window, project):
@@ -285,13 +285,13 @@ def test_what_somebody_else_saved_meanwhile_is_replaced_only_after_a_question(
     window.act(saving.save)
     window.settle()
     answer(window, "Replace it")
-    assert len(load_project(saved).figures[0].handles) == 1
+    assert len(load_project(saved).layers[0].handles) == 1
     window.act(posing.add_handle, complex(*project.document.canvas) / 3)
     window.settle()
     window.act(saving.save)
     window.settle()
     assert window.session.dialog is None
-    assert len(load_project(saved).figures[0].handles) == 2
+    assert len(load_project(saved).layers[0].handles) == 2
 
 
 def test_a_file_that_was_only_copied_or_touched_is_no_other_one(window, project, saved):
@@ -304,7 +304,7 @@ def test_a_file_that_was_only_copied_or_touched_is_no_other_one(window, project,
     window.act(saving.save)
     window.settle()
     assert window.session.dialog is None
-    assert len(load_project(saved).figures[0].handles) == 1
+    assert len(load_project(saved).layers[0].handles) == 1
 
 
 def test_a_folder_that_was_removed_is_told_and_the_work_stays(window, project, saved):
@@ -367,7 +367,7 @@ def test_older_work_that_waits_to_be_kept_does_not_replace_what_was_kept_at_once
     end.set()
     window.settle()
     (kept,) = window.folder.glob("unsaved-*.lissom")
-    assert len(load_leftover(kept)[0].figures[0].handles) == 2
+    assert len(load_leftover(kept)[0].layers[0].handles) == 2
 
 
 def test_every_unsaved_work_is_offered_whenever_it_was_kept(window, project):
@@ -468,6 +468,6 @@ def test_a_graphics_driver_that_fails_is_told_and_the_work_is_kept(
     window.session.toasts = []
     kept = list(window.folder.glob("unsaved-*.lissom"))
     assert len(kept) == has_room
-    assert all(len(load_leftover(each)[0].figures[0].handles) == 1 for each in kept)
+    assert all(len(load_leftover(each)[0].layers[0].handles) == 1 for each in kept)
     window.frames(3)
     assert texts(window) == []

@@ -15,7 +15,7 @@ def bar(window):
 
 def target(window, project):
     window.settle()
-    return project.figure.keys[0].pose.targets[0]
+    return project.layer.keys[0].pose.targets[0]
 
 
 def begin(robot, window, start, *places):
@@ -26,7 +26,7 @@ def begin(robot, window, start, *places):
 
 
 def test_forty_and_enter_move_a_handle_by_forty_pixels(window, bar):
-    start = bar.figure.handles[0].position
+    start = bar.layer.handles[0].position
     before = bar.document
 
     def play(robot):
@@ -48,7 +48,7 @@ def test_forty_and_enter_move_a_handle_by_forty_pixels(window, bar):
 
 
 def test_x_and_y_keep_a_drag_to_an_axis(window, bar):
-    start = bar.figure.handles[0].position
+    start = bar.layer.handles[0].position
 
     def play(robot, *, keys):
         begin(robot, window, start, start + 9, start + 20 + 30j)
@@ -66,7 +66,7 @@ def test_x_and_y_keep_a_drag_to_an_axis(window, bar):
 
 
 def test_backspace_takes_a_digit_back_and_escape_everything(window, bar):
-    start, before = bar.figure.handles[0].position, bar.document
+    start, before = bar.layer.handles[0].position, bar.document
 
     def play(robot, key):
         begin(robot, window, start, start + 9)
@@ -83,11 +83,11 @@ def test_backspace_takes_a_digit_back_and_escape_everything(window, bar):
     window.run(lambda robot: play(robot, window.Key.escape))
     window.settle()
     assert bar.document is before
-    assert len(bar.figure.handles) == 1
+    assert len(bar.layer.handles) == 1
 
 
 def test_turning_by_steps_and_by_degrees(window, bar):
-    centre = bar.figure.handles[0].position
+    centre = bar.layer.handles[0].position
     arm = window.ring(bar)
 
     def around(degrees):

@@ -42,7 +42,7 @@ TABS = ("Handle", "Deform", "Distortion", "Mesh", "Export")
 
 def place_of(project, identity):
     shown = project.puppet.shown
-    index = [handle.id for handle in shown.clip.figure.handles].index(identity)
+    index = [handle.id for handle in shown.clip.layer.handles].index(identity)
     return complex(shown.handle_places[index])
 
 
@@ -56,7 +56,7 @@ def details(window):
 
 
 def frames_of(project):
-    return [key.frame for key in project.figure.keys]
+    return [key.frame for key in project.layer.keys]
 
 
 def press(robot, *chord):
@@ -137,7 +137,7 @@ def test_undo_and_redo_go_through_loose_poses_one_by_one(window, loose):
     assert loose.puppet.shown.pose is poses[-1]
     posing.insert_key(session)
     assert loose.unkeyed is None
-    assert loose.figure.key(24).pose is poses[-1]
+    assert loose.layer.key(24).pose is poses[-1]
     editing.undo(session)
     assert (loose.document, loose.unkeyed) == (before, poses[-1])
 
@@ -176,7 +176,7 @@ def test_deleting_a_handle_while_it_is_dragged(window, loose):
 
     window.run(play)
     window.settle()
-    assert [handle.id for handle in loose.document.figures[0].handles] == [0]
+    assert [handle.id for handle in loose.document.layers[0].handles] == [0]
     assert loose.selected == frozenset()
     assert loose.pull is None
 
@@ -224,11 +224,11 @@ def test_other_changes_leave_the_solver_at_work(window, loose):
     keys.set_fps(window.session, 12.0)
     assert loose.pull is not None
     window.settle()
-    assert loose.document.figures[0].lags(loose.document.figures[0].key(24).pose)[1] < 10
+    assert loose.document.layers[0].lags(loose.document.layers[0].key(24).pose)[1] < 10
 
 
 def test_weights_and_places_that_change_leave_the_solver_at_work(window, loose):
-    rest = loose.figure.handle(1).position
+    rest = loose.layer.handle(1).position
     for command in (
         handle_commands.weigh_handles(0, {1}, 3.0),
         handle_commands.move_handle(0, 1, rest - 30),
@@ -237,10 +237,10 @@ def test_weights_and_places_that_change_leave_the_solver_at_work(window, loose):
         posing.wish(window.session, {1: Target(position=wish)})
         editing.edit(window.session, command)
         window.settle()
-        pose = loose.figure.key(24).pose
-        assert abs(loose.figure.map_of(pose)(np.array([rest]))[0] - wish) < 2
+        pose = loose.layer.key(24).pose
+        assert abs(loose.layer.map_of(pose)(np.array([rest]))[0] - wish) < 2
     # Of the point that the handle was put on nothing was wished.
-    assert loose.figure.lags(pose)[1] < 1e-6
+    assert loose.layer.lags(pose)[1] < 1e-6
 
 
 def test_playhead_that_goes_elsewhere_ends_the_pull(window, loose):
@@ -293,7 +293,7 @@ def test_loose_pose_stays_when_a_handle_is_deleted_by_its_key(window, loose):
     editing.select(window.session, frozenset({0}))
     window.run(lambda robot: press(robot, window.Key.delete))
     window.settle()
-    assert [handle.id for handle in loose.document.figures[0].handles] == [1]
+    assert [handle.id for handle in loose.document.layers[0].handles] == [1]
     assert loose.unkeyed is not None
     np.testing.assert_allclose(loose.puppet.shown.positions, before, rtol=0, atol=1e-9)
 
@@ -303,11 +303,11 @@ def test_loose_pose_over_a_cage_that_is_rebuilt_is_given_up(window, loose):
     window.act(viewing.toggle_auto_key)
     posing.wish(session, {1: Target(position=place_of(loose, 1) - 80j)})
     window.settle()
-    cage = loose.document.figures[0].domain.cage
+    cage = loose.document.layers[0].domain.cage
     viewing.draft_meshing(session, Meshing(triangles=1_500, detail="fine"))
     rebuilding.rebuild(session)
     window.settle()
-    assert len(loose.document.figures[0].domain.cage) != len(cage)
+    assert len(loose.document.layers[0].domain.cage) != len(cage)
     assert loose.unkeyed is None
     assert loose.meshing is None
     assert loose.puppet.shown.is_current
@@ -341,13 +341,13 @@ def test_handle_out_of_reach_is_told_and_freed_again(window, loose, monkeypatch)
     window.frames(2)
     window.run(lambda robot: pull(robot, far))
     window.settle()
-    pose = loose.document.figures[0].key(0).pose
+    pose = loose.document.layers[0].key(0).pose
     assert pose.certificate.certified
-    assert loose.document.figures[0].bounds.allow(
+    assert loose.document.layers[0].bounds.allow(
         k=pose.certificate.k, sigma_a=pose.certificate.sigma_a, sigma_b=pose.certificate.sigma_b
     )
     np.testing.assert_allclose(pose.targets[1].position, far, rtol=0, atol=10)
-    assert find_shortfall(loose.figure, loose.puppet.shown.pose).lags[1] > 100
+    assert find_shortfall(loose.layer, loose.puppet.shown.pose).lags[1] > 100
 
     wishes, written = [], []
     mark, text = marks.mark_handles, imgui.text_colored
@@ -373,8 +373,8 @@ def test_handle_out_of_reach_is_told_and_freed_again(window, loose, monkeypatch)
 
     window.run(lambda robot: pull(robot, start))
     window.settle()
-    assert not find_shortfall(loose.figure, loose.puppet.shown.pose).lags
-    assert loose.document.figures[0].key(0).pose.certificate.certified
+    assert not find_shortfall(loose.layer, loose.puppet.shown.pose).lags
+    assert loose.document.layers[0].key(0).pose.certificate.certified
 
 
 def test_bound_that_bounds_nothing_is_refused_in_words(window, loose):
@@ -506,7 +506,7 @@ def test_job_that_raises_is_told_once_and_the_window_lives_on(
     window.session.toasts = []
     undo_all(window)
     assert frames_of(loose) == [0]
-    assert loose.document.figures[0].handles == ()
+    assert loose.document.layers[0].handles == ()
     playback.seek(window.session, 5)
     posing.add_handle(window.session, complex(*loose.puppet.picture.size) / 2)
     window.settle()
@@ -557,7 +557,7 @@ def test_a_new_key_stands_in_for_in_betweens_that_are_not_prepared(window, loose
         width, height = loose.document.canvas
         posing.wish(window.session, {1: Target(position=complex(0.85 * width, 0.1 * height))})
         window.until(lambda: posing.POSING not in window.session.jobs.kinds)
-        mesh, (first, last) = loose.puppet.shown.mesh, loose.figure.keys
+        mesh, (first, last) = loose.puppet.shown.mesh, loose.layer.keys
         for frame, key in ((18, last), (6, first)):
             playback.seek(window.session, frame)
             window.frames(1)
@@ -590,13 +590,13 @@ def test_results_for_a_closed_project_go_nowhere(window, loose, kind):
     window.settle()
     other = window.session.project
     assert other.name == "s"
-    assert len(other.document.figures[0].keys) == 1
+    assert len(other.document.layers[0].keys) == 1
     assert other.history.undo_label is None
     assert other.extent.source in (None, extent_source(other.document))
     assert (other.pull, other.renewal, other.unkeyed) == (None, None, None)
     assert other.puppet.shown.is_current
     assert loose.document is closed
-    assert closed.figures[0].handles == before.figures[0].handles
+    assert closed.layers[0].handles == before.layers[0].handles
     assert [toast for toast in window.session.toasts if toast.tone == "error"] == []
 
 

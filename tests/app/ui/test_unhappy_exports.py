@@ -540,7 +540,7 @@ def test_picture_may_go_once_it_is_open(window, tmp_path):
     finish(window)
     assert len(list((tmp_path / "frames").iterdir())) == 3
     reopened = window.open(path)
-    assert reopened.document.figures[0].picture.data == BAR.read_bytes()
+    assert reopened.document.layers[0].picture.data == BAR.read_bytes()
 
 
 @pytest.mark.usefixtures("project")
@@ -582,9 +582,9 @@ def test_the_pose_that_is_shown_is_exported_and_copied(window, project, tmp_path
     exporting.set_export(session, ExportSettings(format="picture", size=SIZE, framing="canvas"))
     playback.seek(session, 4)
     window.settle()
-    rest = project.figure.keys[0].pose
+    rest = project.layer.keys[0].pose
     moved = replace(rest, phi=rest.phi + 20)
-    project.history.pose(UnkeyedPose(figure=project.active, frame=4, pose=moved))
+    project.history.pose(UnkeyedPose(layer=project.active, frame=4, pose=moved))
     assert project.unkeyed is moved
     out = tmp_path / "pose.png"
 

@@ -273,11 +273,11 @@ def test_a_person_animates_a_drawing_and_finds_it_again(window, bar, person, tmp
         person.tell("windowmove", "--sync", person.window, 90, 60)
         person.quit(process)
     document = load_project(path)
-    assert len(document.figures[0].handles) == 2
-    assert [key.frame for key in document.figures[0].keys] == [0, document.frames.last]
-    assert all(key.pose.certificate.certified for key in document.figures[0].keys)
-    first, last = (key.pose.targets[1].position for key in document.figures[0].keys)
-    height = document.figures[0].picture.size[1]
+    assert len(document.layers[0].handles) == 2
+    assert [key.frame for key in document.layers[0].keys] == [0, document.frames.last]
+    assert all(key.pose.certificate.certified for key in document.layers[0].keys)
+    first, last = (key.pose.targets[1].position for key in document.layers[0].keys)
+    height = document.layers[0].picture.size[1]
     assert first.imag < 0.2 * height
     assert last.imag > 1.2 * height
     menu = 90 + NEAR, 60 + NEAR

@@ -40,13 +40,13 @@ def table(stage: Driver, folder: Path, count: int, frames: int) -> Table:
 def _documents(sample: Document, count: int) -> dict[str, Document]:
     """Return a sample as it is, and with many of each kind, by what they have."""
     document = replace(sample, frames=FrameRange(0, max(count, sample.frames.last)))
-    figure = document.figures[0]
-    bare = replace(figure, cycles=(), tracks=(), motions=())
-    pose = figure.keys[0].pose
+    layer = document.layers[0]
+    bare = replace(layer, cycles=(), tracks=(), motions=())
+    pose = layer.keys[0].pose
     layers, handles = min(count, LAYERS), min(count, MOST_HANDLES)
     keys = tuple(Keyframe(frame=at, pose=pose) for at in range(count))
     turns = tuple(Turn(at, at % 2) for at in range(count))
-    vertices = figure.domain.mesh.vertices.tolist()
+    vertices = layer.domain.mesh.vertices.tolist()
     spread = [
         Handle(id=each, name=f"handle {each}", position=vertices[each % len(vertices)])
         for each in range(handles)
@@ -58,8 +58,8 @@ def _documents(sample: Document, count: int) -> dict[str, Document]:
         next_handle=handles,
         keys=(Keyframe(frame=0, pose=replace(pose, targets=targets)),),
     )
-    mesh = mesh_inside(*figure.domain.loops, triangles=TRIANGLES)
-    small = replace(bare, domain=replace(figure.domain, mesh=mesh))
+    mesh = mesh_inside(*layer.domain.loops, triangles=TRIANGLES)
+    small = replace(bare, domain=replace(layer.domain, mesh=mesh))
     copies = [replace(small, id=each, name=f"layer {each}", joints=()) for each in range(layers)]
     return {
         "as it is": document,
@@ -67,24 +67,24 @@ def _documents(sample: Document, count: int) -> dict[str, Document]:
             document, markers=tuple(Marker(frame=at, name=f"marker {at}") for at in range(count))
         ),
         f"{count:,} keys of poses": replace(
-            document, figures=(replace(bare, keys=keys), *document.figures[1:])
+            document, layers=(replace(bare, keys=keys), *document.layers[1:])
         ),
         f"{count:,} turns of a switch": replace(
             document,
-            figures=tuple(copies[:2]),
-            choices=(Choice(name="mouth", figures=(0, 1), turns=turns),),
+            layers=tuple(copies[:2]),
+            choices=(Choice(name="mouth", layers=(0, 1), turns=turns),),
         ),
-        f"{handles:,} handles": replace(document, figures=(posed, *document.figures[1:])),
-        f"{layers:,} layers": replace(document, figures=tuple(copies)),
+        f"{handles:,} handles": replace(document, layers=(posed, *document.layers[1:])),
+        f"{layers:,} layers": replace(document, layers=tuple(copies)),
     }
 
 
 def _opened(document: Document) -> files.Opened:
     """Return a document as files are opened; layers with the same domain share what is known."""
     made: dict[Domain, Puppet] = {}
-    for figure in document.figures:
-        if figure.domain not in made:
-            picture = decode_picture(figure.picture.data, figure.name)
-            made[figure.domain] = Puppet.of(clip_of(document, figure.id), picture)
-    puppets = {figure.id: copy(made[figure.domain]) for figure in document.figures}
+    for layer in document.layers:
+        if layer.domain not in made:
+            picture = decode_picture(layer.picture.data, layer.name)
+            made[layer.domain] = Puppet.of(clip_of(document, layer.id), picture)
+    puppets = {layer.id: copy(made[layer.domain]) for layer in document.layers}
     return files.Opened(document, puppets, ())

@@ -181,9 +181,9 @@ class HandleDrag:
         self._stage = stage
         self._reach = reach
         self._project = stage.project
-        stage.ask(playback.scrub, self._project.figure.keys[0].frame)
+        stage.ask(playback.scrub, self._project.layer.keys[0].frame)
         stage.settle()
-        self.handle = self._project.figure.handles[0].id
+        self.handle = self._project.layer.handles[0].id
         self._start = self._point = stage.point(handle_place(self._project))
         stage.mouse(self._start)
         stage.refresh()

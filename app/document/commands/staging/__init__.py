@@ -1,6 +1,6 @@
-"""Commands on figures as layers: their order, groups and joints, and when each is seen.
+"""Commands on layers as layers: their order, groups and joints, and when each is seen.
 
-In: a document, and ids of its figures.
+In: a document, and ids of its layers.
 Out: the changed document.
 Imports: the values of `app.document`, commands on handles and keys.
 """

@@ -1,4 +1,4 @@
-"""Commands on choices: figures of one place that take turns, such as mouths."""
+"""Commands on choices: layers of one place that take turns, such as mouths."""
 
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
@@ -12,36 +12,36 @@ from app.errors import LissomError
 
 
 @command("Let layers take turns")
-def form_choice(document: Document, name: str, figures: Sequence[int]) -> Document:
-    """Let figures take turns, which are not in another choice.
+def form_choice(document: Document, name: str, layers: Sequence[int]) -> Document:
+    """Let layers take turns, which are not in another choice.
 
     Where they were shown and hidden at frames of their own, the one in front of those that were
     seen is seen; where none was, the last one still is.
     """
-    members = [document.figure(identity) for identity in figures]
-    starts = {switch.frame for figure in members for switch in figure.switches}
-    front = [figure for figure in reversed(document.figures) if figure in members]
+    members = [document.layer(identity) for identity in layers]
+    starts = {switch.frame for layer in members for switch in layer.switches}
+    front = [layer for layer in reversed(document.layers) if layer in members]
     turns: list[Turn] = []
     for frame in sorted(starts | {document.frames.first}):
         seen = next((each.id for each in front if is_visible(document, each, frame)), None)
-        if seen is not None and (not turns or seen != turns[-1].figure):
+        if seen is not None and (not turns or seen != turns[-1].layer):
             turns.append(Turn(frame, seen))
-    if [turn.figure for turn in turns] == list(figures[:1]):
+    if [turn.layer for turn in turns] == list(layers[:1]):
         turns = []  # the first one, at all times
-    for figure in members:
-        document = _unswitched(document, figure.id)
-    choice = Choice(name=name.strip(), figures=tuple(figures), turns=tuple(turns))
+    for layer in members:
+        document = _unswitched(document, layer.id)
+    choice = Choice(name=name.strip(), layers=tuple(layers), turns=tuple(turns))
     return replace(document, choices=(*document.choices, choice))
 
 
 @command("Choose from here on")
 def choose_at(document: Document, identity: int, frame: int) -> Document:
-    """Let a figure be the one of its choice that is seen from a frame on; in repeats, from all."""
+    """Let a layer be the one of its choice that is seen from a frame on; in repeats, from all."""
     choice = _choice_of(document, identity)
     if with_repeats(document, choice).at(frame) == identity:
         return document
     frame = turn_frame(document, choice, frame)
-    turns = choice.turns or (Turn(min(frame, document.frames.first), choice.figures[0]),)
+    turns = choice.turns or (Turn(min(frame, document.frames.first), choice.layers[0]),)
     changed = replace(choice, turns=_put(turns, Turn(frame, identity)))
     return _exchange(document, choice, changed)
 
@@ -56,7 +56,7 @@ def unchoose_at(document: Document, name: str, frame: int) -> Document:
 
 @command("Move choice in time")
 def move_turn(document: Document, name: str, frame: int, to: int) -> Document:
-    """Move the frame from which on a choice shows a figure, in place of what begins there."""
+    """Move the frame from which on a choice shows a layer, in place of what begins there."""
     choice = document.choice(name)
     moved = next((turn for turn in choice.turns if turn.frame == frame), None)
     if moved is None:
@@ -74,71 +74,71 @@ def rename_choice(document: Document, name: str, new: str) -> Document:
 
 
 @command("Take into the choice")
-def join_choice(document: Document, name: str, figures: Sequence[int]) -> Document:
-    """Take figures into a choice, as the last ones; each is seen where it is chosen only."""
+def join_choice(document: Document, name: str, layers: Sequence[int]) -> Document:
+    """Take layers into a choice, as the last ones; each is seen where it is chosen only."""
     choice = document.choice(name)
-    new = tuple(identity for identity in figures if identity not in choice.figures)
+    new = tuple(identity for identity in layers if identity not in choice.layers)
     if not new:
         return document
     for identity in new:
         document = _unswitched(document, identity)
-    return _exchange(document, choice, replace(choice, figures=(*choice.figures, *new)))
+    return _exchange(document, choice, replace(choice, layers=(*choice.layers, *new)))
 
 
 @command("Take out of the choice")
 def leave_choice(document: Document, identity: int) -> Document:
-    """Take a figure out of its choice; by itself it is seen when it was.
+    """Take a layer out of its choice; by itself it is seen when it was.
 
     Of the others the one before is seen then, too. A choice of one layer is none.
     """
     choice = _choice_of(document, identity)
     rest = _without(choice, identity)
-    return _exchange(document, choice, rest, freed=[identity] if rest else choice.figures)
+    return _exchange(document, choice, rest, freed=[identity] if rest else choice.layers)
 
 
 @command("Let layers take turns no more")
 def dissolve_choice(document: Document, name: str) -> Document:
-    """Let each figure of a choice be seen when it was, by itself."""
+    """Let each layer of a choice be seen when it was, by itself."""
     choice = document.choice(name)
-    return _exchange(document, choice, None, freed=choice.figures)
+    return _exchange(document, choice, None, freed=choice.layers)
 
 
 def let_go(document: Document, identity: int) -> Document:
-    """Return a document in which a figure that is about to be removed is in no choice."""
+    """Return a document in which a layer that is about to be removed is in no choice."""
     choice = document.choice_of(identity)
     if choice is None:
         return document
     rest = _without(choice, identity)
-    return _exchange(document, choice, rest, freed=() if rest else choice.figures)
+    return _exchange(document, choice, rest, freed=() if rest else choice.layers)
 
 
 def _unswitched(document: Document, identity: int) -> Document:
-    """Return a document in which nothing but a choice decides when a figure is seen."""
+    """Return a document in which nothing but a choice decides when a layer is seen."""
     document = revealed(document, identity)
-    figure = document.figure(identity)
-    return document.with_figure(replace(figure, switches=())) if figure.switches else document
+    layer = document.layer(identity)
+    return document.with_layer(replace(layer, switches=())) if layer.switches else document
 
 
 def _without(choice: Choice, identity: int) -> Choice | None:
-    figures = tuple(figure for figure in choice.figures if figure != identity)
-    turns = _plain(turn for turn in choice.turns if turn.figure != identity)
-    return replace(choice, figures=figures, turns=turns) if len(figures) > 1 else None
+    layers = tuple(layer for layer in choice.layers if layer != identity)
+    turns = _plain(turn for turn in choice.turns if turn.layer != identity)
+    return replace(choice, layers=layers, turns=turns) if len(layers) > 1 else None
 
 
 def _exchange(
     document: Document, choice: Choice, changed: Choice | None, freed: Collection[int] = ()
 ) -> Document:
-    """Return a document with another choice, or none, and figures that are seen as it had them."""
+    """Return a document with another choice, or none, and layers that are seen as it had them."""
     if changed == choice:
         return document
     # Whatever groups hide.
     visible = replace(document, groups=tuple(replace(g, hidden=False) for g in document.groups))
-    figures = tuple(
+    layers = tuple(
         replace(each, switches=sights_of(visible, each), hidden=False) if each.id in freed else each
-        for each in document.figures
+        for each in document.layers
     )
     choices = (changed if each is choice else each for each in document.choices)
-    return replace(document, figures=figures, choices=tuple(filter(None, choices)))
+    return replace(document, layers=layers, choices=tuple(filter(None, choices)))
 
 
 def _put(turns: Iterable[Turn], new: Turn) -> tuple[Turn, ...]:
@@ -151,7 +151,7 @@ def _plain(turns: Iterable[Turn]) -> tuple[Turn, ...]:
     """Return turns without those that change nothing."""
     plain: list[Turn] = []
     for turn in turns:
-        if not plain or turn.figure != plain[-1].figure:
+        if not plain or turn.layer != plain[-1].layer:
             plain.append(turn)
     return tuple(plain)
 
@@ -159,6 +159,6 @@ def _plain(turns: Iterable[Turn]) -> tuple[Turn, ...]:
 def _choice_of(document: Document, identity: int) -> Choice:
     choice = document.choice_of(identity)
     if choice is None:
-        name = document.figure(identity).name
+        name = document.layer(identity).name
         raise LissomError(f"The layer {name!r} takes no turns with others.")
     return choice

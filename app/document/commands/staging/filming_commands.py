@@ -1,13 +1,13 @@
-"""Commands on what has keys of its own: the camera, and how figures fade, move and are ordered."""
+"""Commands on what has keys of its own: the camera, and how layers fade, move and are ordered."""
 
 from collections.abc import Collection
 from dataclasses import replace
 from typing import TypeVar
 
 from app.document.commands import keys_in_time
-from app.document.commands.command import command, figure_command
+from app.document.commands.command import command, layer_command
 from app.document.commands.keys_in_time import Row
-from app.document.figure import Figure
+from app.document.layer import Layer
 from app.document.layering import CameraKey, MoveKey, OpacityKey, Placing
 from app.document.model import Document
 from app.document.queries import keyed_frame, repeating
@@ -35,60 +35,60 @@ def delete_camera_key(document: Document, frame: int) -> Document:
     return _filmed(document, keys_in_time.without(document.camera, {frame}))
 
 
-@figure_command("Key opacity")
-def key_opacity(figure: Figure, frame: int, opacity: float) -> Figure:
-    """Let a figure be so opaque at a frame, and fade evenly from key to key."""
-    row = figure.opacities
-    new = OpacityKey(frame=keyed_frame(figure, row, frame), opacity=float(opacity))
-    changed = _with(row, new, _like(figure, row, new.frame))
-    return figure if changed is row else replace(figure, opacities=changed)
+@layer_command("Key opacity")
+def key_opacity(layer: Layer, frame: int, opacity: float) -> Layer:
+    """Let a layer be so opaque at a frame, and fade evenly from key to key."""
+    row = layer.opacities
+    new = OpacityKey(frame=keyed_frame(layer, row, frame), opacity=float(opacity))
+    changed = _with(row, new, _like(layer, row, new.frame))
+    return layer if changed is row else replace(layer, opacities=changed)
 
 
-@figure_command("Delete opacity key")
-def delete_opacity_key(figure: Figure, frame: int) -> Figure:
-    """Delete a key of a figure's opacity; without any it stays as opaque as the last one had it."""
-    row = figure.opacities
-    left = keys_in_time.without(row, {keyed_frame(figure, row, frame)})
+@layer_command("Delete opacity key")
+def delete_opacity_key(layer: Layer, frame: int) -> Layer:
+    """Delete a key of a layer's opacity; without any it stays as opaque as the last one had it."""
+    row = layer.opacities
+    left = keys_in_time.without(row, {keyed_frame(layer, row, frame)})
     if left:
-        return replace(figure, opacities=left)
-    return replace(figure, opacities=(), opacity=row[0].opacity)
+        return replace(layer, opacities=left)
+    return replace(layer, opacities=(), opacity=row[0].opacity)
 
 
-@figure_command("Key movement")
-def key_movement(figure: Figure, frame: int, shift: complex, turn: float) -> Figure:
-    """Let a whole figure be moved and turned so at a frame, beside where its poses have it."""
-    row = figure.movement
-    new = MoveKey(frame=keyed_frame(figure, row, frame), shift=shift, turn=float(turn))
-    changed = _with(row, new, _like(figure, row, new.frame))
-    return figure if changed is row else replace(figure, movement=changed)
+@layer_command("Key movement")
+def key_movement(layer: Layer, frame: int, shift: complex, turn: float) -> Layer:
+    """Let a whole layer be moved and turned so at a frame, beside where its poses have it."""
+    row = layer.movement
+    new = MoveKey(frame=keyed_frame(layer, row, frame), shift=shift, turn=float(turn))
+    changed = _with(row, new, _like(layer, row, new.frame))
+    return layer if changed is row else replace(layer, movement=changed)
 
 
-@figure_command("Delete movement key")
-def delete_movement_key(figure: Figure, frame: int) -> Figure:
-    """Delete a key of a figure's movement; without any it is where its poses have it."""
-    row = figure.movement
-    left = keys_in_time.without(row, {keyed_frame(figure, row, frame)})
-    return replace(figure, movement=left)
+@layer_command("Delete movement key")
+def delete_movement_key(layer: Layer, frame: int) -> Layer:
+    """Delete a key of a layer's movement; without any it is where its poses have it."""
+    row = layer.movement
+    left = keys_in_time.without(row, {keyed_frame(layer, row, frame)})
+    return replace(layer, movement=left)
 
 
-@figure_command("Set order from here on")
-def place_at(figure: Figure, placing: Placing) -> Figure:
-    """Paint a figure right in front of another one, or behind it, from a frame on."""
-    others = [each for each in figure.placings if each.frame != placing.frame]
+@layer_command("Set order from here on")
+def place_at(layer: Layer, placing: Placing) -> Layer:
+    """Paint a layer right in front of another one, or behind it, from a frame on."""
+    others = [each for each in layer.placings if each.frame != placing.frame]
     placings = tuple(sorted([*others, placing], key=lambda each: each.frame))
-    return figure if placings == figure.placings else replace(figure, placings=placings)
+    return layer if placings == layer.placings else replace(layer, placings=placings)
 
 
-@figure_command("Change no order here")
-def unplace_at(figure: Figure, frame: int) -> Figure:
-    """Take back what is said of a figure's order from a frame on."""
-    placings = tuple(each for each in figure.placings if each.frame != frame)
-    return figure if placings == figure.placings else replace(figure, placings=placings)
+@layer_command("Change no order here")
+def unplace_at(layer: Layer, frame: int) -> Layer:
+    """Take back what is said of a layer's order from a frame on."""
+    placings = tuple(each for each in layer.placings if each.frame != frame)
+    return layer if placings == layer.placings else replace(layer, placings=placings)
 
 
-def _like(figure: Figure, row: Row[Moving], frame: int) -> list[int]:
+def _like(layer: Layer, row: Row[Moving], frame: int) -> list[int]:
     """Return a frame, and that of the key which is the one there again: where a cycle ends."""
-    cycle = repeating(figure, row)
+    cycle = repeating(layer, row)
     if cycle is not None and (frame, frame + cycle.period) == (row[0].frame, row[-1].frame):
         return [frame, row[-1].frame]
     return [frame]

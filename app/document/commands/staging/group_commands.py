@@ -1,4 +1,4 @@
-"""Commands on groups of figures: which are in them, and how they are painted as one."""
+"""Commands on groups of layers: which are in them, and how they are painted as one."""
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
@@ -10,7 +10,7 @@ from app.document.commands.staging.layer_commands import (
     numbered_name,
     without_empty_groups,
 )
-from app.document.figure import Figure
+from app.document.layer import Layer
 from app.document.layering import Group, GroupBlend, paths_to, shared_path
 from app.document.model import Document
 from app.errors import LissomError
@@ -18,21 +18,21 @@ from app.errors import LissomError
 
 @command("Group layers")
 def put_in_group(document: Document, identities: Collection[int], path: str) -> Document:
-    """Put figures in a group, or with "" out of all groups; groups that are missing are made.
+    """Put layers in a group, or with "" out of all groups; groups that are missing are made.
 
     They keep their order, and lie in front of those that the group has already, or, where it has
     none, where the foremost of them was.
     """
     missing = _missing_groups(document, path)
-    chosen = [figure for figure in document.figures if figure.id in identities]
-    if all(figure.group == path for figure in chosen):
+    chosen = [layer for layer in document.layers if layer.id in identities]
+    if all(layer.group == path for layer in chosen):
         return document
-    others = [figure for figure in document.figures if figure.id not in identities]
-    place = _place_in_group(document.figures, others, path)
-    others[place:place] = [replace(figure, group=path) for figure in chosen]
+    others = [layer for layer in document.layers if layer.id not in identities]
+    place = _place_in_group(document.layers, others, path)
+    others[place:place] = [replace(layer, group=path) for layer in chosen]
     grouped = replace(
         document,
-        figures=tuple(others),
+        layers=tuple(others),
         groups=(*document.groups, *missing),
         size=document.canvas,
     )
@@ -41,7 +41,7 @@ def put_in_group(document: Document, identities: Collection[int], path: str) -> 
 
 @command("Add groups")
 def add_groups(document: Document, groups: Sequence[Group]) -> Document:
-    """Add those of these groups that are not there, with no figure in them yet."""
+    """Add those of these groups that are not there, with no layer in them yet."""
     known = {group.name for group in document.groups}
     new = tuple(group for group in groups if group.name not in known)
     return replace(document, groups=(*document.groups, *new)) if new else document
@@ -51,17 +51,17 @@ def add_groups(document: Document, groups: Sequence[Group]) -> Document:
 def put_group_in(document: Document, path: str, around: str) -> Document:
     """Put a group as it is in another one, in front of what that has, or with "" in none."""
     _, others = _apart(document, path)
-    return _put_group(document, path, around, _place_in_group(document.figures, others, around))
+    return _put_group(document, path, around, _place_in_group(document.layers, others, around))
 
 
 @command("Move group")
 def put_group_beside(document: Document, path: str, beside: int, *, in_front: bool) -> Document:
-    """Put a group as it is right in front of a figure that is not in it, or behind that.
+    """Put a group as it is right in front of a layer that is not in it, or behind that.
 
-    It joins and leaves other groups as a figure does that is moved there.
+    It joins and leaves other groups as a layer does that is moved there.
     """
     run, others = _apart(document, path)
-    place = others.index(document.figure(beside)) + in_front
+    place = others.index(document.layer(beside)) + in_front
     around = group_at(others, place, replace(run[0], group=path.rpartition("/")[0]))
     return _put_group(document, path, around, place)
 
@@ -78,14 +78,14 @@ def rename_group(document: Document, path: str, name: str) -> Document:
         return document
     if any(group.name == to for group in document.groups):
         raise LissomError(f"There is a group {name!r} already; choose another name.")
-    return _moved(document, document.figures, document.groups, {path: to})
+    return _moved(document, document.layers, document.groups, {path: to})
 
 
 @command("Ungroup layers")
 def ungroup(document: Document, path: str) -> Document:
-    """Let the figures of a group be by themselves, as visible and as opaque as they were.
+    """Let the layers of a group be by themselves, as visible and as opaque as they were.
 
-    Where figures of the group overlap, they shine through each other from now on.
+    Where layers of the group overlap, they shine through each other from now on.
     """
     gone, around = document.group(path), path.rpartition("/")[0]
     taken = {group.name for group in document.groups if path not in paths_to(group.name)}
@@ -96,30 +96,30 @@ def ungroup(document: Document, path: str) -> Document:
             to[group.name] = numbered_name(f"{around}/{name}" if around else name, taken)
             taken.add(to[group.name])
 
-    def freed(each: Figure | Group) -> dict[str, Any]:
+    def freed(each: Layer | Group) -> dict[str, Any]:
         return {"hidden": each.hidden or gone.hidden, "opacity": each.opacity * gone.opacity}
 
-    figures = tuple(
-        replace(figure, **freed(figure)) if figure.group == path else figure
-        for figure in document.figures
+    layers = tuple(
+        replace(layer, **freed(layer)) if layer.group == path else layer
+        for layer in document.layers
     )
     groups = tuple(
         replace(group, **freed(group)) if group.name in to else group
         for group in document.groups
         if group is not gone
     )
-    return _moved(document, figures, groups, to)
+    return _moved(document, layers, groups, to)
 
 
 @command("Set group's opacity")
 def set_group_opacity(document: Document, path: str, opacity: float) -> Document:
-    """Set how opaque the figures of a group are together."""
+    """Set how opaque the layers of a group are together."""
     return _changed(document, path, opacity=float(opacity))
 
 
 @command("Show or hide group")
 def set_group_hidden(document: Document, path: str, *, hidden: bool) -> Document:
-    """Hide all figures of a group at all times, or show them again."""
+    """Hide all layers of a group at all times, or show them again."""
     return _changed(document, path, hidden=hidden)
 
 
@@ -134,49 +134,49 @@ def _missing_groups(document: Document, path: str) -> list[Group]:
     return [Group(name=each) for each in paths_to(path) if each not in known]
 
 
-def _place_in_group(before: Sequence[Figure], others: Sequence[Figure], path: str) -> int:
-    """Return where figures come among the others that join a group, or are the first in it."""
+def _place_in_group(before: Sequence[Layer], others: Sequence[Layer], path: str) -> int:
+    """Return where layers come among the others that join a group, or are the first in it."""
     for around in reversed(paths_to(path)):
         members = [index for index, other in enumerate(others) if around in paths_to(other.group)]
         if members:
             return members[-1] + 1
     kept = {id(other) for other in others}
-    foremost = max(index for index, figure in enumerate(before) if id(figure) not in kept)
-    place = sum(id(figure) in kept for figure in before[:foremost])
+    foremost = max(index for index, layer in enumerate(before) if id(layer) not in kept)
+    place = sum(id(layer) in kept for layer in before[:foremost])
     # Not amid another group.
     while 0 < place < len(others) and shared_path(others[place - 1].group, others[place].group):
         place += 1
     return place
 
 
-def _apart(document: Document, path: str) -> tuple[list[Figure], list[Figure]]:
-    """Return the figures of a group, and all others."""
+def _apart(document: Document, path: str) -> tuple[list[Layer], list[Layer]]:
+    """Return the layers of a group, and all others."""
     document.group(path)
-    run = [figure for figure in document.figures if path in paths_to(figure.group)]
-    return run, [figure for figure in document.figures if figure not in run]
+    run = [layer for layer in document.layers if path in paths_to(layer.group)]
+    return run, [layer for layer in document.layers if layer not in run]
 
 
 def _put_group(document: Document, path: str, around: str, place: int) -> Document:
-    """Return the document with a group in another one, at a place among all other figures."""
+    """Return the document with a group in another one, at a place among all other layers."""
     if path in paths_to(around):
         raise LissomError(f"The group {path!r} cannot be put in itself.")
     run, others = _apart(document, path)
-    figures = (*others[:place], *run, *others[place:])
+    layers = (*others[:place], *run, *others[place:])
     outer, _, name = path.rpartition("/")
-    if around == outer and figures == document.figures:
+    if around == outer and layers == document.layers:
         return document
     inner = [group for group in document.groups if path in paths_to(group.name)]
     rest = [group for group in document.groups if group not in inner]
     to = numbered_name(f"{around}/{name}".removeprefix("/"), {group.name for group in rest})
     whole = replace(document, size=document.canvas)
     # Each group after the one that it is in.
-    return without_empty_groups(_moved(whole, figures, [*rest, *inner], {path: to}))
+    return without_empty_groups(_moved(whole, layers, [*rest, *inner], {path: to}))
 
 
 def _moved(
-    document: Document, figures: Sequence[Figure], groups: Sequence[Group], to: Mapping[str, str]
+    document: Document, layers: Sequence[Layer], groups: Sequence[Group], to: Mapping[str, str]
 ) -> Document:
-    """Return the document with these figures and groups, where some groups have other paths."""
+    """Return the document with these layers and groups, where some groups have other paths."""
 
     def moved(path: str) -> str:
         for outer in reversed(paths_to(path)):
@@ -184,14 +184,12 @@ def _moved(
                 return to[outer] + path[len(outer) :]
         return path
 
-    figures = tuple(
-        figure
-        if moved(figure.group) == figure.group
-        else replace(figure, group=moved(figure.group))
-        for figure in figures
+    layers = tuple(
+        layer if moved(layer.group) == layer.group else replace(layer, group=moved(layer.group))
+        for layer in layers
     )
     groups = tuple(replace(group, name=moved(group.name)) for group in groups)
-    return replace(document, figures=figures, groups=groups)
+    return replace(document, layers=layers, groups=groups)
 
 
 def _changed(document: Document, path: str, **changes: Any) -> Document:

@@ -1,17 +1,17 @@
-"""Commands on the figures as layers: which there are, in what order, seen when, hung on what."""
+"""Commands on the layers as layers: which there are, in what order, seen when, hung on what."""
 
 from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from app.document.commands.command import command, figure_command, numbered
+from app.document.commands.command import command, layer_command, numbered
 from app.document.commands.handle_commands import with_handles
 from app.document.commands.key_commands import exchange
 from app.document.commands.staging import choice_commands
 from app.document.commands.staging.showing import revealed
-from app.document.figure import Figure
 from app.document.keyframe import Pose, Target
+from app.document.layer import Layer
 from app.document.layering import Attachment, BlendMode, Switch, paths_to, shared_path
 from app.document.model import Document
 from app.errors import ImportSummary, LissomError
@@ -20,17 +20,17 @@ LAST_LAYER = "A document has at least one layer; add another one first."
 
 
 @command("Add layer")
-def add_figure(document: Document, figure: Figure, index: int | None = None) -> Document:
-    """Add a figure in front of all others, or at an index in the order from back to front.
+def add_layer(document: Document, layer: Layer, index: int | None = None) -> Document:
+    """Add a layer in front of all others, or at an index in the order from back to front.
 
     Its id must be a free one, as `free_identity` gives it; its name is numbered where it is taken.
     """
-    figures = list(document.figures)
-    place = len(figures) if index is None else index
-    group, name = group_at(figures, place, figure), free_name(document, figure.name)
-    figures.insert(place, replace(figure, name=name, group=group))
+    layers = list(document.layers)
+    place = len(layers) if index is None else index
+    group, name = group_at(layers, place, layer), free_name(document, layer.name)
+    layers.insert(place, replace(layer, name=name, group=group))
     # A canvas that was one picture's stays what it was.
-    return replace(document, figures=tuple(figures), size=document.canvas)
+    return replace(document, layers=tuple(layers), size=document.canvas)
 
 
 @command("Add layers")
@@ -40,21 +40,21 @@ def keep_told(document: Document, summary: ImportSummary) -> Document:
 
 
 @command("Replace layer")
-def replace_figure(document: Document, identity: int, figure: Figure) -> Document:
-    """Put another figure with the same id in a figure's place.
+def replace_layer(document: Document, identity: int, layer: Layer) -> Document:
+    """Put another layer with the same id in a layer's place.
 
     What hangs on it does so as before, or at the nearest points where it is not there any more.
     """
     size = document.canvas
-    changed = keep_joints(identity)(document.with_figure(replace(figure, id=identity)))
+    changed = keep_joints(identity)(document.with_layer(replace(layer, id=identity)))
     return changed if changed.canvas == size else replace(changed, size=size)
 
 
 @command("Keep joints")
 def keep_joints(document: Document, identity: int) -> Document:
-    """Move joints that are beside a figure now to the nearest points of it."""
-    domain = document.figure(identity).domain
-    for child in document.figures:
+    """Move joints that are beside a layer now to the nearest points of it."""
+    domain = document.layer(identity).domain
+    for child in document.layers:
         places = np.array([joint.at for joint in child.joints], dtype=np.complex128)
         nearest = domain.nearest(places) if len(places) else places
         joints = tuple(
@@ -62,119 +62,115 @@ def keep_joints(document: Document, identity: int) -> Document:
             for joint, at in zip(child.joints, nearest, strict=True)
         )
         if joints != child.joints:
-            document = document.with_figure(replace(child, joints=joints))
+            document = document.with_layer(replace(child, joints=joints))
     return document
 
 
 @command("Duplicate layer")
-def duplicate_figure(document: Document, identity: int) -> Document:
-    """Put a copy of a figure in front of it, which takes turns with it where it takes turns."""
-    figure = document.figure(identity)
-    index = document.figures.index(figure)
+def duplicate_layer(document: Document, identity: int) -> Document:
+    """Put a copy of a layer in front of it, which takes turns with it where it takes turns."""
+    layer = document.layer(identity)
+    index = document.layers.index(layer)
     copy = replace(
-        figure, id=free_identity(document), name=free_name(document, f"{figure.name} copy")
+        layer, id=free_identity(document), name=free_name(document, f"{layer.name} copy")
     )
-    figures = (*document.figures[: index + 1], copy, *document.figures[index + 1 :])
+    layers = (*document.layers[: index + 1], copy, *document.layers[index + 1 :])
     choices = tuple(
-        replace(choice, figures=(*choice.figures, copy.id))
-        if identity in choice.figures
-        else choice
+        replace(choice, layers=(*choice.layers, copy.id)) if identity in choice.layers else choice
         for choice in document.choices
     )
-    return replace(document, figures=figures, choices=choices, size=document.canvas)
+    return replace(document, layers=layers, choices=choices, size=document.canvas)
 
 
 @command("Delete layer")
-def remove_figure(document: Document, identity: int) -> Document:
-    """Remove a figure. What hung on it hangs as it did before that, else on nothing."""
-    document.figure(identity)
-    if len(document.figures) == 1:
+def remove_layer(document: Document, identity: int) -> Document:
+    """Remove a layer. What hung on it hangs as it did before that, else on nothing."""
+    document.layer(identity)
+    if len(document.layers) == 1:
         raise LissomError(LAST_LAYER)
     document = choice_commands.let_go(document, identity)
-    figures = tuple(
-        _without_ties(each, identity) for each in document.figures if each.id != identity
-    )
-    return without_empty_groups(replace(document, figures=figures, size=document.canvas))
+    layers = tuple(_without_ties(each, identity) for each in document.layers if each.id != identity)
+    return without_empty_groups(replace(document, layers=layers, size=document.canvas))
 
 
 @command("Move layer")
-def move_figure(document: Document, identity: int, index: int) -> Document:
-    """Put a figure at an index in the order from back to front.
+def move_layer(document: Document, identity: int, index: int) -> Document:
+    """Put a layer at an index in the order from back to front.
 
     It stays in its groups as long as it lies beside others of them, and joins those amid which it
     comes to lie.
     """
-    figure = document.figure(identity)
-    others = [other for other in document.figures if other is not figure]
+    layer = document.layer(identity)
+    others = [other for other in document.layers if other is not layer]
     if not 0 <= index <= len(others):
         raise LissomError(f"There are {len(others) + 1} layers; none can be number {index + 1}.")
-    if document.figures[index] is figure:
+    if document.layers[index] is layer:
         return document
-    group = group_at(others, index, figure)
-    others.insert(index, figure if group == figure.group else replace(figure, group=group))
-    moved = replace(document, figures=tuple(others), size=document.canvas)
+    group = group_at(others, index, layer)
+    others.insert(index, layer if group == layer.group else replace(layer, group=group))
+    moved = replace(document, layers=tuple(others), size=document.canvas)
     return without_empty_groups(moved)
 
 
 @command("Rename layer")
-def rename_figure(document: Document, identity: int, name: str) -> Document:
-    """Give a figure another name, which no other one may have."""
+def rename_layer(document: Document, identity: int, name: str) -> Document:
+    """Give a layer another name, which no other one may have."""
     return _with(document, identity, name=name.strip())
 
 
 @command("Set opacity")
 def set_opacity(document: Document, identity: int, opacity: float) -> Document:
-    """Set how opaque a figure is painted."""
+    """Set how opaque a layer is painted."""
     return _with(document, identity, opacity=float(opacity))
 
 
 @command("Set blend")
 def set_blend(document: Document, identity: int, blend: BlendMode) -> Document:
-    """Set how the colours of a figure meet those behind it."""
+    """Set how the colours of a layer meet those behind it."""
     return _with(document, identity, blend=blend)
 
 
 @command("Clip layer")
 def set_clipped(document: Document, identity: int, *, clipped: bool) -> Document:
-    """Let a figure be seen only where what lies below it in its group is, or everywhere again."""
+    """Let a layer be seen only where what lies below it in its group is, or everywhere again."""
     return _with(document, identity, clipped=clipped)
 
 
 @command("Show or hide layer")
 def set_hidden(document: Document, identity: int, *, hidden: bool) -> Document:
-    """Hide a figure at all times, or show it again."""
+    """Hide a layer at all times, or show it again."""
     return _with(document, identity, hidden=hidden)
 
 
 @command("Show layer")
 def reveal(document: Document, identity: int) -> Document:
-    """Show a figure in whatever groups, and of those that were hidden nothing else."""
+    """Show a layer in whatever groups, and of those that were hidden nothing else."""
     return revealed(document, identity)
 
 
 @command("Lock or unlock layer")
 def set_locked(document: Document, identity: int, *, locked: bool) -> Document:
-    """Let clicks on the drawing pass through a figure, or stop at it again."""
+    """Let clicks on the drawing pass through a layer, or stop at it again."""
     return _with(document, identity, locked=locked)
 
 
 @command("Set reference")
 def set_reference(document: Document, identity: int, *, reference: bool) -> Document:
-    """Leave a figure out of exports, or take it in again."""
+    """Leave a layer out of exports, or take it in again."""
     return _with(document, identity, reference=reference)
 
 
 @command("Show or hide from here on")
 def switch_at(document: Document, identity: int, frame: int, *, visible: bool | None) -> Document:
-    """Show or hide a figure from a frame on; None takes back what was said at that frame.
+    """Show or hide a layer from a frame on; None takes back what was said at that frame.
 
     One that was hidden at all times is shown there, and hidden until then.
     """
-    figure = document.figure(identity)
-    switches = figure.switches
-    if visible and (figure.hidden or document.is_in_hidden(figure)):
+    layer = document.layer(identity)
+    switches = layer.switches
+    if visible and (layer.hidden or document.is_in_hidden(layer)):
         document = revealed(document, identity)
-        figure = document.figure(identity)
+        layer = document.layer(identity)
         switches = switches or (Switch(0, visible=False),)
     others = [switch for switch in switches if switch.frame != frame]
     if visible is not None:
@@ -186,54 +182,54 @@ def switch_at(document: Document, identity: int, frame: int, *, visible: bool | 
     return _with(document, identity, switches=switches)
 
 
-@figure_command("Move visibility")
-def move_switch(figure: Figure, frame: int, to: int) -> Figure:
-    """Move the frame at which a figure is shown or hidden."""
-    moved = [switch for switch in figure.switches if switch.frame == frame]
+@layer_command("Move visibility")
+def move_switch(layer: Layer, frame: int, to: int) -> Layer:
+    """Move the frame at which a layer is shown or hidden."""
+    moved = [switch for switch in layer.switches if switch.frame == frame]
     if not moved:
-        raise LissomError(f"{figure.name!r} is neither shown nor hidden at frame {frame}.")
+        raise LissomError(f"{layer.name!r} is neither shown nor hidden at frame {frame}.")
     if to == frame:
-        return figure
-    others = [switch for switch in figure.switches if switch.frame != frame]
+        return layer
+    others = [switch for switch in layer.switches if switch.frame != frame]
     switches = sorted([*others, replace(moved[0], frame=to)], key=lambda switch: switch.frame)
-    return replace(figure, switches=tuple(switches))
+    return replace(layer, switches=tuple(switches))
 
 
 @command("Attach")
 def attach(document: Document, identity: int, anchor: complex, joint: Attachment) -> Document:
-    """Hang a figure by its anchor on a point of another one from a frame on; circles are refused.
+    """Hang a layer by its anchor on a point of another one from a frame on; circles are refused.
 
     What began to hold at that frame does no longer. `app.motion` finds the point and the turn with
     which nothing moves at a frame.
     """
-    joints = [each for each in document.figure(identity).joints if each.frame != joint.frame]
+    joints = [each for each in document.layer(identity).joints if each.frame != joint.frame]
     joints = sorted([*joints, joint], key=lambda each: each.frame)
     return _with(document, identity, anchor=anchor, joints=tuple(joints))
 
 
-@figure_command("Attach as before")
-def unjoin(figure: Figure, frame: int) -> Figure:
-    """Take back what a figure hangs on from a frame on: what held before it still does."""
-    joints = tuple(joint for joint in figure.joints if joint.frame != frame)
-    return figure if joints == figure.joints else replace(figure, joints=joints)
+@layer_command("Attach as before")
+def unjoin(layer: Layer, frame: int) -> Layer:
+    """Take back what a layer hangs on from a frame on: what held before it still does."""
+    joints = tuple(joint for joint in layer.joints if joint.frame != frame)
+    return layer if joints == layer.joints else replace(layer, joints=joints)
 
 
-@figure_command("Move joint in time")
-def move_joint(figure: Figure, frame: int, to: int) -> Figure:
-    """Let what a figure hangs on from a frame on hold from another frame on."""
-    moved = next((joint for joint in figure.joints if joint.frame == frame), None)
+@layer_command("Move joint in time")
+def move_joint(layer: Layer, frame: int, to: int) -> Layer:
+    """Let what a layer hangs on from a frame on hold from another frame on."""
+    moved = next((joint for joint in layer.joints if joint.frame == frame), None)
     if moved is None:
-        raise LissomError(f"{figure.name!r} is not attached anew at frame {frame}.")
+        raise LissomError(f"{layer.name!r} is not attached anew at frame {frame}.")
     if to == frame:
-        return figure
-    others = [joint for joint in figure.joints if joint is not moved]
+        return layer
+    others = [joint for joint in layer.joints if joint is not moved]
     joints = sorted([*others, replace(moved, frame=to)], key=lambda joint: joint.frame)
-    return replace(figure, joints=tuple(joints))
+    return replace(layer, joints=tuple(joints))
 
 
 @command("Detach")
 def detach(document: Document, identity: int, factor: complex, shift: complex) -> Document:
-    """Let a figure hang on nothing at any time, turned and moved as it was seen at one moment.
+    """Let a layer hang on nothing at any time, turned and moved as it was seen at one moment.
 
     Parameters
     ----------
@@ -243,40 +239,40 @@ def detach(document: Document, identity: int, factor: complex, shift: complex) -
     shift : complex
         By which they are moved then.
     """
-    figure = document.figure(identity)
-    if not figure.joints:
+    layer = document.layer(identity)
+    if not layer.joints:
         return document
-    poses = (_carried(figure, pose, factor, shift) for pose in figure.poses)
-    return document.with_figure(figure.with_poses(poses, joints=()))
+    poses = (_carried(layer, pose, factor, shift) for pose in layer.poses)
+    return document.with_layer(layer.with_poses(poses, joints=()))
 
 
-@figure_command("Set depth")
-def set_front(figure: Figure, identity: int, front: float, extent: float | None) -> Figure:
+@layer_command("Set depth")
+def set_front(layer: Layer, identity: int, front: float, extent: float | None) -> Layer:
     """Set what is in front around a handle, where no key says otherwise, and how far around it."""
-    return with_handles(figure, {identity}, front=float(front), extent=extent)
+    return with_handles(layer, {identity}, front=float(front), extent=extent)
 
 
-@figure_command("Set depth from here on")
-def key_front(figure: Figure, frame: int, identity: int, front: float | None) -> Figure:
+@layer_command("Set depth from here on")
+def key_front(layer: Layer, frame: int, identity: int, front: float | None) -> Layer:
     """Set what is in front around a handle from a key on; None says nothing at that key."""
-    key = figure.key(frame)
-    handle = figure.handle(identity)
+    key = layer.key(frame)
+    handle = layer.handle(identity)
     fronts = {i: depth for i, depth in key.fronts.items() if i != handle.id}
     if front is not None:
         fronts[handle.id] = float(front)
     if fronts == key.fronts:
-        return figure
-    return exchange(figure, {frame: replace(key, fronts=fronts)})
+        return layer
+    return exchange(layer, {frame: replace(key, fronts=fronts)})
 
 
 def free_identity(document: Document) -> int:
-    """Return an id that no figure has."""
-    return 1 + max(figure.id for figure in document.figures)
+    """Return an id that no layer has."""
+    return 1 + max(layer.id for layer in document.layers)
 
 
 def free_name(document: Document, name: str) -> str:
-    """Return a name for a figure that no other one has: this one, or this one with a number."""
-    return numbered_name(name, {figure.name for figure in document.figures})
+    """Return a name for a layer that no other one has: this one, or this one with a number."""
+    return numbered_name(name, {layer.name for layer in document.layers})
 
 
 def numbered_name(name: str, taken: Collection[str]) -> str:
@@ -285,15 +281,15 @@ def numbered_name(name: str, taken: Collection[str]) -> str:
 
 
 def without_empty_groups(document: Document) -> Document:
-    """Return the document without groups that no figure is in any more."""
-    filled = {path for figure in document.figures for path in paths_to(figure.group)}
+    """Return the document without groups that no layer is in any more."""
+    filled = {path for layer in document.layers for path in paths_to(layer.group)}
     groups = tuple(group for group in document.groups if group.name in filled)
     return document if groups == document.groups else replace(document, groups=groups)
 
 
-def group_at(others: Sequence[Figure], index: int, figure: Figure) -> str:
-    """Return the group that a figure is in which is put at an index among others."""
-    own, beside = figure.group, [each.group for each in others[max(index - 1, 0) : index + 1]]
+def group_at(others: Sequence[Layer], index: int, layer: Layer) -> str:
+    """Return the group that a layer is in which is put at an index among others."""
+    own, beside = layer.group, [each.group for each in others[max(index - 1, 0) : index + 1]]
     amid = shared_path(*beside) if len(beside) == 2 else ""
     if amid and amid not in paths_to(own):
         return amid
@@ -303,24 +299,24 @@ def group_at(others: Sequence[Figure], index: int, figure: Figure) -> str:
     return own if stays == shared else stays
 
 
-def _without_ties(figure: Figure, other: int) -> Figure:
-    """Return a figure that neither hangs on another one at any time nor is painted beside it."""
-    joints = tuple(joint for joint in figure.joints if joint.to != other)
-    placings = tuple(placing for placing in figure.placings if placing.beside != other)
-    if (joints, placings) == (figure.joints, figure.placings):
-        return figure
-    return replace(figure, joints=joints, placings=placings)
+def _without_ties(layer: Layer, other: int) -> Layer:
+    """Return a layer that neither hangs on another one at any time nor is painted beside it."""
+    joints = tuple(joint for joint in layer.joints if joint.to != other)
+    placings = tuple(placing for placing in layer.placings if placing.beside != other)
+    if (joints, placings) == (layer.joints, layer.placings):
+        return layer
+    return replace(layer, joints=joints, placings=placings)
 
 
 def _with(document: Document, identity: int, **changes: object) -> Document:
-    figure = document.figure(identity)
-    if all(getattr(figure, name) == value for name, value in changes.items()):
+    layer = document.layer(identity)
+    if all(getattr(layer, name) == value for name, value in changes.items()):
         return document
-    return document.with_figure(replace(figure, **changes))  # type: ignore[arg-type]
+    return document.with_layer(replace(layer, **changes))  # type: ignore[arg-type]
 
 
-def _carried(figure: Figure, pose: Pose, factor: complex, shift: complex) -> Pose:
-    moved = figure.map_of(pose).moved(factor, shift)
+def _carried(layer: Layer, pose: Pose, factor: complex, shift: complex) -> Pose:
+    moved = layer.map_of(pose).moved(factor, shift)
     turn = float(np.angle(factor))
     targets = {
         identity: Target(

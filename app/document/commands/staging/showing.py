@@ -7,25 +7,23 @@ from app.document.model import Document
 
 
 def revealed(document: Document, identity: int) -> Document:
-    """Return a document in which neither a figure nor a group that it is in is hidden.
+    """Return a document in which neither a layer nor a group that it is in is hidden.
 
-    What such a group has in it besides is hidden by itself then: the figure alone comes to be seen.
+    What such a group has in it besides is hidden by itself then: the layer alone comes to be seen.
     """
-    figure = document.figure(identity)
-    around = paths_to(figure.group)
+    layer = document.layer(identity)
+    around = paths_to(layer.group)
     hidden = {path for path in around if document.group(path).hidden}
-    if not (hidden or figure.hidden):
+    if not (hidden or layer.hidden):
         return document
 
     def was_hidden(path: str) -> bool:
-        """Tell whether what lies in a group at a path is hidden no more, but for the figure."""
+        """Tell whether what lies in a group at a path is hidden no more, but for the layer."""
         return path in around and not hidden.isdisjoint(paths_to(path))
 
-    figures = tuple(
-        replace(each, hidden=each is not figure)
-        if each is figure or was_hidden(each.group)
-        else each
-        for each in document.figures
+    layers = tuple(
+        replace(each, hidden=each is not layer) if each is layer or was_hidden(each.group) else each
+        for each in document.layers
     )
     groups = tuple(
         replace(group, hidden=False)
@@ -35,4 +33,4 @@ def revealed(document: Document, identity: int) -> Document:
         else group
         for group in document.groups
     )
-    return replace(document, figures=figures, groups=groups)
+    return replace(document, layers=layers, groups=groups)

@@ -1,4 +1,4 @@
-"""What follows from a document about its figures as layers: what is seen, where, and as one.
+"""What follows from a document about its layers as layers: what is seen, where, and as one.
 
 In: documents.
 Out: answers; nothing is changed.

@@ -3,7 +3,7 @@
 import re
 from collections import Counter
 
-from app.document.figure import Figure
+from app.document.layer import Layer
 from app.document.layering import paths_to
 from app.document.model import Document
 
@@ -19,22 +19,22 @@ def alternates(document: Document) -> tuple[tuple[str, tuple[int, ...]], ...]:
     Layers whose names are as "mouth/ah" count as if they were in such a group. Those of which a
     layer is seen at frames of its own, or takes turns already, are left out.
     """
-    together: dict[str, list[Figure]] = {group.name: [] for group in document.groups}
-    for figure in document.figures:
+    together: dict[str, list[Layer]] = {group.name: [] for group in document.groups}
+    for layer in document.layers:
         # What is painted onto another one, as a tongue onto a mouth, takes no turns with it.
-        if not figure.clipped:
-            together.setdefault(_place(figure), []).append(figure)
+        if not layer.clipped:
+            together.setdefault(_place(layer), []).append(layer)
     found = []
     for path, members in together.items():
         if len(members) < 2:
             continue
         words = re.split(r"[^a-zA-Z]+", path.rpartition("/")[2])
-        shown = sum(not figure.hidden for figure in members)
+        shown = sum(not layer.hidden for layer in members)
         is_mouth = any(MOUTHS.fullmatch(word) for word in words)
         is_one = any(SIDES.fullmatch(word) for word in words) and shown <= 1
-        is_free = all(_is_free(document, figure) for figure in members)
+        is_free = all(_is_free(document, layer) for layer in members)
         if is_free and (is_mouth or is_one):
-            found.append((path, tuple(figure.id for figure in members)))
+            found.append((path, tuple(layer.id for layer in members)))
     return tuple(found)
 
 
@@ -43,18 +43,18 @@ def whole_groups(document: Document, path: str) -> tuple[str, ...]:
 
     These would take turns one by one, as lips and teeth of one mouth: none of them is a whole.
     """
-    inside = Counter(each for figure in document.figures for each in paths_to(figure.group))
+    inside = Counter(each for layer in document.layers for each in paths_to(layer.group))
     found = (group.name.rpartition("/") for group in document.groups if inside[group.name] > 1)
     return tuple(name for around, _, name in found if around == path)
 
 
-def _place(figure: Figure) -> str:
+def _place(layer: Layer) -> str:
     """Return the path of the group that a layer is in, by its name, too."""
     # Where a name was taken, its group's path stands before it.
-    name = figure.name.removeprefix(f"{figure.group}/") if figure.group else figure.name
+    name = layer.name.removeprefix(f"{layer.group}/") if layer.group else layer.name
     around = [part.strip() for part in name.split("/")[:-1]]
-    return "/".join(filter(None, [figure.group, *around]))
+    return "/".join(filter(None, [layer.group, *around]))
 
 
-def _is_free(document: Document, figure: Figure) -> bool:
-    return not figure.switches and document.choice_of(figure.id) is None
+def _is_free(document: Document, layer: Layer) -> bool:
+    return not layer.switches and document.choice_of(layer.id) is None

@@ -1,10 +1,10 @@
-"""Which figures are composited together before they meet what lies behind them."""
+"""Which layers are composited together before they meet what lies behind them."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Generic, NamedTuple, TypeVar
 
-from app.document.figure import Figure
+from app.document.layer import Layer
 from app.document.layering import BlendMode
 from app.document.model import Document
 from app.document.queries.stage.clipping import runs
@@ -44,7 +44,7 @@ class Composite(Generic[Drawn]):
 
 @dataclass(slots=True)
 class _Unit(Generic[Drawn]):
-    """A figure or a run of a group, and what is cut by it."""
+    """A layer or a run of a group, and what is cut by it."""
 
     whole: Composite[Drawn]
     passes: bool = False  # whether its parts meet what lies behind it
@@ -54,22 +54,22 @@ class _Unit(Generic[Drawn]):
 def composed(
     document: Document, drawn: Mapping[int, Drawn], frame: float
 ) -> tuple[Drawn | Composite[Drawn], ...]:
-    """Return how what is drawn of figures is composited at a frame, from back to front.
+    """Return how what is drawn of layers is composited at a frame, from back to front.
 
     Parameters
     ----------
     drawn : mapping of int to Drawn
-        By the ids of the figures that are seen. Of a group's figures each run without others
+        By the ids of the layers that are seen. Of a group's layers each run without others
         between is composited by itself; what is cut by something that is not seen is not, either.
     frame : float
-        It tells the order of the figures, and how opaque they are.
+        It tells the order of the layers, and how opaque they are.
     """
-    opacities = {figure.id: opacity_at(document, figure, frame) for figure in document.figures}
+    opacities = {layer.id: opacity_at(document, layer, frame) for layer in document.layers}
     return _parts(_Painted(document, drawn, opacities), in_order(document, frame), 0)
 
 
 class _Painted(NamedTuple, Generic[Drawn]):
-    """What is drawn of the figures of a document, and how opaque they are, by their ids."""
+    """What is drawn of the layers of a document, and how opaque they are, by their ids."""
 
     document: Document
     drawn: Mapping[int, Drawn]
@@ -77,11 +77,11 @@ class _Painted(NamedTuple, Generic[Drawn]):
 
 
 def _parts(
-    given: _Painted[Drawn], figures: Sequence[Figure], depth: int
+    given: _Painted[Drawn], layers: Sequence[Layer], depth: int
 ) -> tuple[Drawn | Composite[Drawn], ...]:
-    """Return the parts of figures that are in the same groups down to this depth."""
+    """Return the parts of layers that are in the same groups down to this depth."""
     units: list[_Unit[Drawn]] = []
-    for path, run in runs(figures, depth):
+    for path, run in runs(layers, depth):
         unit: _Unit[Drawn]
         if path:
             group, inner = given.document.group(path), _parts(given, run, depth + 1)
@@ -89,10 +89,10 @@ def _parts(
             whole = Composite(inner, group.opacity, blend, group.clipped)
             unit = _Unit(whole, passes=group.blend == "pass-through")
         else:
-            (figure,) = run
-            seen = (given.drawn[figure.id],) if figure.id in given.drawn else ()
-            opacity = given.opacities[figure.id]
-            unit = _Unit(Composite(seen, opacity, figure.blend, figure.clipped))
+            (layer,) = run
+            seen = (given.drawn[layer.id],) if layer.id in given.drawn else ()
+            opacity = given.opacities[layer.id]
+            unit = _Unit(Composite(seen, opacity, layer.blend, layer.clipped))
         if unit.whole.clipped and units and not units[-1].whole.clipped:
             units[-1].cut.append(unit.whole)
         else:

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from app.document.figure import Figure
+from app.document.layer import Layer
 from app.document.queries.clips import Clip
 from engine.geometry import box_diagonal
 
@@ -25,30 +25,30 @@ def fronts_at(clip: Clip, frame: float) -> tuple[Front, ...]:
     handles' own do, or in a loop what the last one left. In a cycle each repeat begins with what
     was in front before the first one.
     """
-    figure = clip.figure
-    depths = {handle.id: handle.front for handle in figure.handles}
+    layer = clip.layer
+    depths = {handle.id: handle.front for handle in layer.handles}
     if clip.loop and clip.period and frame not in clip.frames:
         frame = clip.frames.first + (frame - clip.frames.first) % clip.period
     is_before_all = clip.loop and frame < clip.keys[0].frame
     for key in clip.keys:
-        if key.fronts and (is_before_all or _has_been(figure, key.frame, frame)):
+        if key.fronts and (is_before_all or _has_been(layer, key.frame, frame)):
             depths.update(key.fronts)
     if not any(depths.values()):
         return ()
-    usual = USUAL_EXTENT * box_diagonal(figure.domain.outline)
+    usual = USUAL_EXTENT * box_diagonal(layer.domain.outline)
     return tuple(
         Front(handle.position, depths[handle.id], handle.extent or usual)
-        for handle in figure.handles
+        for handle in layer.handles
         if depths[handle.id]
     )
 
 
-def _has_been(figure: Figure, key: int, frame: float) -> bool:
+def _has_been(layer: Layer, key: int, frame: float) -> bool:
     """Tell whether what a key says holds at a frame, as far as no later one says else.
 
     What those of a cycle say holds until a repeat, or all of them, are over.
     """
-    cycle = figure.cycle_having(key)
+    cycle = layer.cycle_having(key)
     if cycle is None:
         return key <= frame
     end = frame if cycle.until is None else min(frame, cycle.until)

@@ -3,7 +3,7 @@
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 
-from app.document.figure import Figure
+from app.document.layer import Layer
 from app.document.layering import Choice, Group, paths_to
 from app.document.model import Document
 
@@ -14,11 +14,11 @@ class TreeRow:
 
     key: str  # unique in the tree
     depth: int  # in how many rows above it lies
-    figures: tuple[int, ...]  # the ids of the layers in it, from front to back
+    layers: tuple[int, ...]  # the ids of the layers in it, from front to back
     is_open: bool = True  # whether the rows in it are listed
     group: Group | None = None
     choice: Choice | None = None
-    figure: Figure | None = None
+    layer: Layer | None = None
 
     @property
     def toggle(self) -> str:
@@ -32,7 +32,7 @@ class TreeRow:
         """What it is called."""
         if self.group is not None:
             return self.group.name.rpartition("/")[2]
-        named = self.choice or self.figure
+        named = self.choice or self.layer
         return "" if named is None else named.name
 
 
@@ -57,7 +57,7 @@ def layer_tree(
     closed: int | None = None  # the depth of the row around that is closed
     for row in rows:
         if closed is not None and row.depth > closed:
-            if row.figure is not None and row.figure.id in kept:
+            if row.layer is not None and row.layer.id in kept:
                 listed.append(row)
             continue
         closed = None if row.is_open else row.depth
@@ -65,14 +65,14 @@ def layer_tree(
     return tuple(listed)
 
 
-def carried_by(document: Document, figure: Figure, frame: float) -> tuple[int, str]:
-    """Return on how many others a figure hangs at a frame, one on the other, and in words on which.
+def carried_by(document: Document, layer: Layer, frame: float) -> tuple[int, str]:
+    """Return on how many others a layer hangs at a frame, one on the other, and in words on which.
 
     The words are empty where it hangs on nothing at any time; an ellipsis tells of others at other
     times.
     """
-    parents = {joint.to for joint in figure.joints if joint.to is not None}
-    _, *carriers = document.carriers(figure.id, frame)
+    parents = {joint.to for joint in layer.joints if joint.to is not None}
+    _, *carriers = document.carriers(layer.id, frame)
     if not parents:
         return 0, ""
     now = carriers[0].name if carriers else "nothing"
@@ -84,7 +84,7 @@ def _whole_tree(document: Document, toggled: Collection[str]) -> Iterator[TreeRo
     order = _in_order(document)
     path: tuple[str, ...] = ()
     told: Choice | None = None
-    for index, (figure, choice, where) in enumerate(order):
+    for index, (layer, choice, where) in enumerate(order):
         around = paths_to(where)
         shared = sum(1 for one, other in zip(path, around, strict=False) if one == other)
         for depth in range(shared, len(around)):
@@ -93,7 +93,7 @@ def _whole_tree(document: Document, toggled: Collection[str]) -> Iterator[TreeRo
             yield TreeRow(
                 key=f"{key} {run[0]}",
                 depth=depth,
-                figures=run,
+                layers=run,
                 is_open=key not in toggled,
                 group=document.group(around[depth]),
             )
@@ -102,16 +102,16 @@ def _whole_tree(document: Document, toggled: Collection[str]) -> Iterator[TreeRo
             yield TreeRow(
                 key=f"choice {choice.name}",
                 depth=len(around),
-                figures=tuple(each.id for each, other, _ in order if other is choice),
+                layers=tuple(each.id for each, other, _ in order if other is choice),
                 is_open=f"choice {choice.name}" in toggled,
                 choice=choice,
             )
         told = choice
         depth = len(around) + (choice is not None)
-        yield TreeRow(key=f"{figure.id}", depth=depth, figures=(figure.id,), figure=figure)
+        yield TreeRow(key=f"{layer.id}", depth=depth, layers=(layer.id,), layer=layer)
 
 
-_Listed = tuple[Figure, Choice | None, str]
+_Listed = tuple[Layer, Choice | None, str]
 
 
 def _in_order(document: Document) -> list[_Listed]:
@@ -121,22 +121,22 @@ def _in_order(document: Document) -> list[_Listed]:
     """
     order: list[_Listed] = []
     told: set[str] = set()
-    for figure in reversed(document.figures):
-        choice = document.choice_of(figure.id)
+    for layer in reversed(document.layers):
+        choice = document.choice_of(layer.id)
         if choice is None:
-            order.append((figure, None, figure.group))
+            order.append((layer, None, layer.group))
         elif choice.name not in told:
             told.add(choice.name)
-            members = (each for each in reversed(document.figures) if each.id in choice.figures)
-            order += [(each, choice, figure.group) for each in members]
+            members = (each for each in reversed(document.layers) if each.id in choice.layers)
+            order += [(each, choice, layer.group) for each in members]
     return order
 
 
 def _run(order: list[_Listed], first: int, path: str) -> tuple[int, ...]:
     """Return the ids of the layers from one on that are in a group without others between."""
     run = []
-    for figure, _, where in order[first:]:
+    for layer, _, where in order[first:]:
         if path not in paths_to(where):
             break
-        run.append(figure.id)
+        run.append(layer.id)
     return tuple(run)

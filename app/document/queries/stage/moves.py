@@ -1,4 +1,4 @@
-"""What the camera shows at a frame, and where, how opaque and in which order figures are."""
+"""What the camera shows at a frame, and where, how opaque and in which order layers are."""
 
 from bisect import bisect_right
 from collections.abc import Sequence
@@ -7,7 +7,7 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
-from app.document.figure import Figure
+from app.document.layer import Layer
 from app.document.layering import CameraKey, MoveKey, OpacityKey, Placing
 from app.document.model import Document
 from app.document.queries.passages import Leg, Moved, Passages, Value, value_on
@@ -65,28 +65,28 @@ def camera_at(document: Document, frame: float) -> Shot | None:
     )
 
 
-def movement_at(document: Document, figure: Figure, frame: float) -> RigidMotion:
-    """Return by which a figure is moved as a whole at a frame, as the camera is."""
-    keys, cycle = figure.movement, repeating(figure, figure.movement)
+def movement_at(document: Document, layer: Layer, frame: float) -> RigidMotion:
+    """Return by which a layer is moved as a whole at a frame, as the camera is."""
+    keys, cycle = layer.movement, repeating(layer, layer.movement)
     if not keys:
         return HERE
     shift = _value_at(document, keys, SHIFT, frame, cycle)
     turn = _value_at(document, keys, TURN, frame, cycle)
     factor = complex(np.exp(1j * turn))
-    return RigidMotion(factor, figure.pivot + shift - factor * figure.pivot)
+    return RigidMotion(factor, layer.pivot + shift - factor * layer.pivot)
 
 
-def opacity_at(document: Document, figure: Figure, frame: float) -> float:
-    """Return how opaque a figure is at a frame, 0 to 1."""
-    keys = figure.opacities
+def opacity_at(document: Document, layer: Layer, frame: float) -> float:
+    """Return how opaque a layer is at a frame, 0 to 1."""
+    keys = layer.opacities
     if not keys:
-        return figure.opacity
-    found = _value_at(document, keys, OPACITY, frame, repeating(figure, keys))
+        return layer.opacity
+    found = _value_at(document, keys, OPACITY, frame, repeating(layer, keys))
     return min(max(found, 0.0), 1.0)
 
 
-def repeating(figure: Figure, keys: Sequence[MoveKey] | Sequence[OpacityKey]) -> Cycle | None:
-    """Return the cycle of a figure with which its movement or its opacity repeats, if one does.
+def repeating(layer: Layer, keys: Sequence[MoveKey] | Sequence[OpacityKey]) -> Cycle | None:
+    """Return the cycle of a layer with which its movement or its opacity repeats, if one does.
 
     That has all of their keys, and where one is at its end it is as that at its beginning, but for
     whole turns. What goes on elsewhere has its own time.
@@ -94,18 +94,18 @@ def repeating(figure: Figure, keys: Sequence[MoveKey] | Sequence[OpacityKey]) ->
     if len(keys) < 2:
         return None
     first, last = keys[0], keys[-1]
-    for cycle in figure.cycles:
+    for cycle in layer.cycles:
         if cycle.takes(keys) and (last.frame - first.frame < cycle.period or _alike(first, last)):
             return cycle
     return None
 
 
-def keyed_frame(figure: Figure, keys: Sequence[MoveKey] | Sequence[OpacityKey], frame: int) -> int:
-    """Return the frame at which a figure's movement or opacity at a frame is keyed.
+def keyed_frame(layer: Layer, keys: Sequence[MoveKey] | Sequence[OpacityKey], frame: int) -> int:
+    """Return the frame at which a layer's movement or opacity at a frame is keyed.
 
     It is another one where they repeat.
     """
-    cycle = repeating(figure, keys)
+    cycle = repeating(layer, keys)
     return int(cycle.source(frame)) if cycle is not None and cycle.covers(frame) else frame
 
 
@@ -118,28 +118,28 @@ def _alike(first: MoveKey | OpacityKey, last: MoveKey | OpacityKey) -> bool:
     return False
 
 
-def placing_at(document: Document, figure: Figure, frame: float) -> Placing | None:
-    """Return beside what a figure is painted at a frame; None before that is said."""
-    placings = repeated(figure.placings, figure.cycles, document.frames.last, AS_DRAWN)
+def placing_at(document: Document, layer: Layer, frame: float) -> Placing | None:
+    """Return beside what a layer is painted at a frame; None before that is said."""
+    placings = repeated(layer.placings, layer.cycles, document.frames.last, AS_DRAWN)
     count = bisect_right(placings, frame, key=lambda each: each.frame)
     return placings[count - 1] if count else None
 
 
-def in_order(document: Document, frame: float) -> tuple[Figure, ...]:
-    """Return the figures from the one behind all others at a frame to the one in front.
+def in_order(document: Document, frame: float) -> tuple[Layer, ...]:
+    """Return the layers from the one behind all others at a frame to the one in front.
 
     Those that are placed beside another one then come there one after the other, each after that
     other one; in a circle, the one whose place is oldest comes first. What is clipped goes with
     what clips it, unless it is placed itself, and nothing comes between these.
     """
     placed: dict[int, tuple[int, int, bool]] = {}
-    for figure in document.figures:
-        placing = placing_at(document, figure, frame)
+    for layer in document.layers:
+        placing = placing_at(document, layer, frame)
         if placing is not None and placing.beside is not None:
-            placed[figure.id] = placing.frame, placing.beside, placing.in_front
+            placed[layer.id] = placing.frame, placing.beside, placing.in_front
     if not placed:
-        return document.figures
-    order = [figure.id for figure in document.figures]
+        return document.layers
+    order = [layer.id for layer in document.layers]
     own, clipping = frozenset(placed), stacks(document)
     while placed:
         oldest = sorted(placed, key=lambda identity: placed[identity][0])
@@ -151,7 +151,7 @@ def in_order(document: Document, frame: float) -> tuple[Figure, ...]:
             # It is there already: what it clips goes with it.
             continue
         order = [each for each in order if each not in along]
-        # What is clipped by a group's figure is so inside of the group.
+        # What is clipped by a group's layer is so inside of the group.
         around = {beside}
         for stack in clipping:
             whole = {*stack.base, *stack.cut}
@@ -160,7 +160,7 @@ def in_order(document: Document, frame: float) -> tuple[Figure, ...]:
         places = [order.index(each) for each in around]
         at = max(places) + 1 if in_front else min(places)
         order[at:at] = along
-    return tuple(map(document.figure, order))
+    return tuple(map(document.layer, order))
 
 
 def _value_at(

@@ -6,7 +6,7 @@ from functools import lru_cache
 from itertools import pairwise
 from typing import TypeVar
 
-from app.document.figure import Figure
+from app.document.layer import Layer
 from app.document.layering import Choice, Placing, Switch, Turn
 from app.document.model import Document
 from app.document.timing import Cycle, changes_in
@@ -14,33 +14,33 @@ from app.document.timing import Cycle, changes_in
 Change = TypeVar("Change", Switch, Placing, Turn)
 
 
-def is_visible(document: Document, figure: Figure, frame: float) -> bool:
-    """Tell whether a figure of a document is seen at a frame."""
-    switches = sights_of(document, figure)
+def is_visible(document: Document, layer: Layer, frame: float) -> bool:
+    """Tell whether a layer of a document is seen at a frame."""
+    switches = sights_of(document, layer)
     count = bisect_right(switches, frame, key=lambda switch: switch.frame)
     return switches[max(count - 1, 0)].visible if switches else True
 
 
-def sights_of(document: Document, figure: Figure) -> tuple[Switch, ...]:
-    """Return when a figure comes to be seen or hidden; it begins as the first switch says.
+def sights_of(document: Document, layer: Layer) -> tuple[Switch, ...]:
+    """Return when a layer comes to be seen or hidden; it begins as the first switch says.
 
     Always seen without any. In a group that is hidden nothing is. A choice decides alone; other
-    figures are hidden, or shown and hidden by their switches.
+    layers are hidden, or shown and hidden by their switches.
     """
-    if document.is_in_hidden(figure):
+    if document.is_in_hidden(layer):
         return (Switch(0, visible=False),)
-    given = document.choice_of(figure.id)
+    given = document.choice_of(layer.id)
     if given is None:
-        if figure.hidden:
+        if layer.hidden:
             return (Switch(0, visible=False),)
-        rest = figure.switches[:1]
-        return repeated(figure.switches, figure.cycles, document.frames.last, rest)
-    return _sights_in(with_repeats(document, given), figure.id, document.frames.first)
+        rest = layer.switches[:1]
+        return repeated(layer.switches, layer.cycles, document.frames.last, rest)
+    return _sights_in(with_repeats(document, given), layer.id, document.frames.first)
 
 
 @lru_cache(maxsize=256)
 def _sights_in(choice: Choice, identity: int, first: int) -> tuple[Switch, ...]:
-    """Return when a figure of a choice comes to be seen or hidden, from the first frame on."""
+    """Return when a layer of a choice comes to be seen or hidden, from the first frame on."""
     switches: list[Switch] = []
     begun = Turn(first, choice.at(first))
     for frame, seen in (begun, *(turn for turn in choice.turns if turn.frame > first)):
@@ -53,10 +53,10 @@ def _sights_in(choice: Choice, identity: int, first: int) -> tuple[Switch, ...]:
 def turning(document: Document, choice: Choice) -> Cycle | None:
     """Return the cycle with which the turns of a choice repeat, if they do.
 
-    That is one that all of its figures have, in which all of its turns are; at the end the one
+    That is one that all of its layers have, in which all of its turns are; at the end the one
     that is seen at the beginning may be again.
     """
-    shared, *others = (document.figure(each).cycles for each in choice.figures)
+    shared, *others = (document.layer(each).cycles for each in choice.layers)
     for cycle in shared:
         if all(cycle in each for each in others) and turns_in(choice, cycle):
             return cycle
@@ -64,7 +64,7 @@ def turning(document: Document, choice: Choice) -> Cycle | None:
 
 
 def with_repeats(document: Document, choice: Choice, end: int | None = None) -> Choice:
-    """Return a choice with its turns in the repeats of the cycle of its figures, if it has one.
+    """Return a choice with its turns in the repeats of the cycle of its layers, if it has one.
 
     Up to a frame, or the scene's last one.
     """
@@ -81,7 +81,7 @@ def _repeated_choice(choice: Choice, cycle: Cycle, end: int) -> Choice:
     rest = (Turn(cycle.first, choice.at(cycle.first)),)
     turns = repeated(choice.turns, (cycle,), end, rest)
     # A repeat may begin with what was seen at the end of the one before.
-    changes = (turn for before, turn in pairwise(turns) if turn.figure != before.figure)
+    changes = (turn for before, turn in pairwise(turns) if turn.layer != before.layer)
     return replace(choice, turns=(turns[0], *changes))
 
 

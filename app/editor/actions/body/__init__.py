@@ -1,4 +1,4 @@
-"""What a figure is made of, changed: its cut-out, its mesh and limits, its material.
+"""What a layer is made of, changed: its cut-out, its mesh and limits, its material.
 
 In: a session, and the arguments of a verb.
 Out: the session, changed.

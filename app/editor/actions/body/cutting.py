@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from app.document import figure_commands
+from app.document import shape_commands
 from app.editor.action import do
 from app.editor.actions import editing
 from app.editor.failures import ask_worker
@@ -70,14 +70,14 @@ def brush_radius(project: Project) -> float:
     """Return the radius of the brush, in pixels of the picture."""
     if project.brush is not None:
         return project.brush
-    return max(4.0, FIRST_BRUSH * max(project.figure.picture.size))
+    return max(4.0, FIRST_BRUSH * max(project.layer.picture.size))
 
 
 @with_project
 def change(session: Session, project: Project, /, **changes: Any) -> None:
     """Give the cut-out other values of its fields."""
-    cut_out = replace(project.figure.cut_out, **changes)
-    editing.edit_figure(session, figure_commands.set_cut_out, cut_out)
+    cut_out = replace(project.layer.cut_out, **changes)
+    editing.edit_layer(session, shape_commands.set_cut_out, cut_out)
 
 
 def set_tolerance(session: Session, tolerance: int) -> None:
@@ -100,7 +100,7 @@ def pick(session: Session, project: Project, place: complex) -> None:
     """Take the colour of the picture at a place for the background's."""
     rgba = project.puppet.picture.rgba
     height, width = rgba.shape[:2]
-    point = place - project.figure.corner
+    point = place - project.layer.corner
     row, column = int(height - point.imag), int(point.real)
     if not (0 <= row < height and 0 <= column < width):
         return
@@ -113,29 +113,29 @@ def pick(session: Session, project: Project, place: complex) -> None:
 
 def brush(session: Session, stroke: Stroke) -> None:
     """Keep or remove what a stroke covers."""
-    editing.edit_figure(session, figure_commands.brush, stroke)
+    editing.edit_layer(session, shape_commands.brush, stroke)
 
 
 @with_project
 def part(session: Session, project: Project, slit: Slit) -> None:
     """Part what touches along a line of the knife, which may go through no handle."""
-    figure = project.figure
-    width = SLIT_WIDTH * box_diagonal(figure.domain.outline)
-    for handle in figure.handles:
-        if _away_from(slit, handle.position - figure.corner) < BESIDE * width:
+    layer = project.layer
+    width = SLIT_WIDTH * box_diagonal(layer.domain.outline)
+    for handle in layer.handles:
+        if _away_from(slit, handle.position - layer.corner) < BESIDE * width:
             session.tell(
                 f"The knife's line goes through {handle.name}. Draw it beside, or move the handle.",
                 tone="error",
             )
             return
-    editing.edit_figure(session, figure_commands.part, slit)
+    editing.edit_layer(session, shape_commands.part, slit)
 
 
 @with_project
 def join_again(session: Session, project: Project, place: complex, reach: float) -> None:
     """Take away the line of the knife that is nearest to a place, and no farther than `reach`."""
-    slits = project.figure.cut_out.slits
-    away = [_away_from(slit, place - project.figure.corner) for slit in slits]
+    slits = project.layer.cut_out.slits
+    away = [_away_from(slit, place - project.layer.corner) for slit in slits]
     if min(away, default=np.inf) <= reach:
         nearest = away.index(min(away))
         change(session, slits=slits[:nearest] + slits[nearest + 1 :])
@@ -149,11 +149,11 @@ def _away_from(slit: Slit, point: complex) -> float:
 @with_project
 def swap_hole(session: Session, project: Project, place: complex) -> None:
     """Keep the hole at a place that would be filled, or fill one that would be kept."""
-    holes, point = project.puppet.cut.value.holes, place - project.figure.corner
+    holes, point = project.puppet.cut.value.holes, place - project.layer.corner
     number = holes.number_at(point) if holes is not None else 0
     if holes is None or not number:
         return
-    swapped = project.figure.cut_out.swapped
+    swapped = project.layer.cut_out.swapped
     others = tuple(other for other in swapped if holes.number_at(other) != number)
     # Its middle, not the point at its rim where the click may have been.
     named = (*swapped, holes.middles[number])
@@ -193,7 +193,7 @@ def ask_mask_path(session: Session, project: Project) -> None:
 @with_project
 def save_mask(session: Session, project: Project, path: Path) -> None:
     """Write what is kept as a black and white picture."""
-    picture, cut_out = project.puppet.picture, project.figure.cut_out
+    picture, cut_out = project.puppet.picture, project.layer.cut_out
     check_writable(path, sources=project.sources)
 
     def work() -> None:

@@ -1,4 +1,4 @@
-"""Making parts of a figure stiff or soft: a brush, bones, and what handles' names suggest."""
+"""Making parts of a layer stiff or soft: a brush, bones, and what handles' names suggest."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -35,7 +35,7 @@ def take_up(session: Session, project: Project, tool: MaterialTool | None) -> No
         session.material = None if tool == session.material else tool
         session.cutting, session.moves, project.draft = None, False, None
         if project.brush is None:
-            cutting.set_brush(session, FIRST_BRUSH * max(project.figure.picture.size))
+            cutting.set_brush(session, FIRST_BRUSH * max(project.layer.picture.size))
 
 
 def set_strength(session: Session, strength: float) -> None:
@@ -59,7 +59,7 @@ def paint(session: Session, project: Project, places: Sequence[complex]) -> None
     radius = cutting.brush_radius(project)
     amount = {"stiff": session.strength, "soft": 1 / min(session.strength, SOFTEST)}.get(tool, 1.0)
     _, is_reached = brushed_stiffness(
-        project.figure, rest, radius=radius, amount=amount, softness=session.softness
+        project.layer, rest, radius=radius, amount=amount, softness=session.softness
     )
     if not is_reached:
         session.tell(
@@ -75,13 +75,13 @@ def paint(session: Session, project: Project, places: Sequence[complex]) -> None
 
 def clear(session: Session) -> None:
     """Take back all that is painted."""
-    editing.edit_figure(session, material_commands.clear)
+    editing.edit_layer(session, material_commands.clear)
 
 
 @with_project
 def mirror(session: Session, project: Project) -> None:
     """Give both sides of the mirror axis what one of them has."""
-    editing.edit_figure(session, material_commands.mirror, project.document.pairs)
+    editing.edit_layer(session, material_commands.mirror, project.document.pairs)
 
 
 @with_project
@@ -103,24 +103,24 @@ def bone_between(session: Session, project: Project) -> None:
 
 def remove_bone(session: Session, ends: tuple[int, int]) -> None:
     """Take the bone between two handles away."""
-    editing.edit_figure(session, material_commands.remove_bone, ends)
+    editing.edit_layer(session, material_commands.remove_bone, ends)
 
 
 def set_bone(session: Session, ends: tuple[int, int], amount: float) -> None:
     """Set how stiff a bone is."""
-    editing.edit_figure(session, material_commands.set_bone_amount, ends, amount)
+    editing.edit_layer(session, material_commands.set_bone_amount, ends, amount)
 
 
 def show_bones(session: Session, *, shown: bool) -> None:
     """Show the bones, or hide them: they act either way."""
-    editing.edit_figure(session, material_commands.show_bones, shown=shown)
+    editing.edit_layer(session, material_commands.show_bones, shown=shown)
 
 
 def refusal_of_bone(project: Project, ends: tuple[int, int]) -> str:
     """Return why there can be no bone between two handles; empty where there can be one."""
-    figure = project.figure
+    layer = project.layer
     try:
-        limb_of(figure, Bone(ends=ends), figure.domain.outline)
+        limb_of(layer, Bone(ends=ends), layer.domain.outline)
     except (EngineError, LissomError) as error:
         return str(error)
     return ""
@@ -129,13 +129,13 @@ def refusal_of_bone(project: Project, ends: tuple[int, int]) -> str:
 @with_project
 def suggest(session: Session, project: Project) -> None:
     """Make heads, hands and feet stiff and tails and trunks soft, by the names of their handles."""
-    figure, gesture, done = project.figure, object(), list[str]()
-    for handle in figure.handles:
+    layer, gesture, done = project.layer, object(), list[str]()
+    for handle in layer.handles:
         words = set(re.findall("[a-z]+", handle.name.lower()))
         amount = next((by for names, by in SUGGESTED if words & names), None)
         if amount is None:
             continue
-        outline, *holes = figure.domain.loops
+        outline, *holes = layer.domain.loops
         (depth,) = distance_to_boundary(outline, np.array([handle.position]), holes).tolist()
         command = material_commands.paint(
             project.active, [handle.position], radius=AROUND * depth, amount=amount, softness=0.5

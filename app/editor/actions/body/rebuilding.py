@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 
-from app.document import Target, figure_commands, loosened
+from app.document import Target, loosened, shape_commands
 from app.editor import promises
 from app.editor.action import do
 from app.editor.actions import editing, posing
@@ -36,11 +36,11 @@ def choose_bounds(session: Session, project: Project, bounds: Bounds) -> None:
 @with_project
 def _set_bounds(session: Session, project: Project, bounds: Bounds) -> None:
     project.drafted_bounds = None
-    certificates = [pose.certificate for pose in project.figure.poses]
+    certificates = [pose.certificate for pose in project.layer.poses]
     if all(bounds.allow(k=c.k, sigma_a=c.sigma_a, sigma_b=c.sigma_b) for c in certificates):
-        editing.edit_figure(session, figure_commands.set_bounds, bounds)
-    elif bounds != project.figure.bounds:
-        begin(session, Renewal(before=project.figure, bounds=bounds, pulls=False))
+        editing.edit_layer(session, shape_commands.set_bounds, bounds)
+    elif bounds != project.layer.bounds:
+        begin(session, Renewal(before=project.layer, bounds=bounds, pulls=False))
 
 
 @with_project
@@ -49,23 +49,23 @@ def loosen(session: Session, project: Project, asked: Mapping[int, Target] | Non
 
     Handles that a hand could not bring to where they were asked are pulled there once more.
     """
-    bounds = loosened(project.figure.bounds)
+    bounds = loosened(project.layer.bounds)
     if bounds is None:
         return
     cancel(session)
     gesture = object()
     # What was allowed still is, so that no key has to be solved again.
-    project.history.do(figure_commands.set_bounds(project.active, bounds), gesture=gesture)
+    project.history.do(shape_commands.set_bounds(project.active, bounds), gesture=gesture)
     posing.pull_again(session, asked or {}, gesture=gesture)
 
 
 @with_project
 def loosen_bounds(session: Session, project: Project) -> None:
     """Allow the next looser stretch on the way between the keys; poses stay as they are."""
-    bounds = loosened(project.figure.bounds)
+    bounds = loosened(project.layer.bounds)
     if bounds is not None:
         cancel(session)
-        project.history.do(figure_commands.set_bounds(project.active, bounds))
+        project.history.do(shape_commands.set_bounds(project.active, bounds))
 
 
 def enter_bound(session: Session, bounds: Bounds, name: str, value: float) -> None:
@@ -86,7 +86,7 @@ def solve_again(session: Session) -> None:
 
 @with_project
 def _solve_again(session: Session, project: Project) -> None:
-    begin(session, Renewal(before=project.figure, bounds=project.figure.bounds))
+    begin(session, Renewal(before=project.layer, bounds=project.layer.bounds))
 
 
 def rebuild(session: Session) -> None:
@@ -96,14 +96,14 @@ def rebuild(session: Session) -> None:
 
 @with_project
 def _rebuild(session: Session, project: Project) -> None:
-    figure, meshing = project.figure, project.meshing or project.figure.meshing
-    begin(session, Renewal(before=figure, bounds=figure.bounds, meshing=meshing))
+    layer, meshing = project.layer, project.meshing or project.layer.meshing
+    begin(session, Renewal(before=layer, bounds=layer.bounds, meshing=meshing))
 
 
 @with_project
 def maintain(session: Session, project: Project) -> None:
     """Rebuild a domain whose cut-out has changed as soon as the brush rests; once a frame."""
-    stale = project.stale_figure
+    stale = project.stale_layer
     if stale is None:
         project.stale = None
         return
@@ -131,13 +131,13 @@ def cancel(session: Session, project: Project) -> None:
 
 @with_project
 def begin(session: Session, project: Project, renewal: Renewal) -> None:
-    """Begin what replaces a figure's poses, in place of what is under way."""
+    """Begin what replaces a layer's poses, in place of what is under way."""
     cancel(session)
     _go_on(session, project, renewal)
 
 
 def _go_on(session: Session, project: Project, renewal: Renewal) -> None:
-    if renewal.before not in project.document.figures:
+    if renewal.before not in project.document.layers:
         if _follows_cut_out(renewal):
             return  # and begins anew
         session.tell("The keys were not posed again: the project changed meanwhile. Start again.")
@@ -177,7 +177,7 @@ def _accept(session: Session, project: Project, renewal: Renewal) -> None:
             project.history.pose(None, gesture=gesture)
             project.meshing = None
     if renewal.replaces:
-        editing.follow_figures(project)
+        editing.follow_layers(project)
     for number, notice in enumerate(renewal.notices):
         # After every stroke: what was said of the one before is no news any more.
         session.tell(sentence(notice), topic=f"rebuilt {number}")

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from app.document import Command, Figure, Pose, UnkeyedPose, key_commands, retargeted
+from app.document import Command, Layer, Pose, UnkeyedPose, key_commands, retargeted
 from app.editor.failures import report
 from app.editor.project import Project
 from app.editor.session import Session
@@ -55,7 +55,7 @@ def _follow_copies(session: Session, pull: Pull, pose: Pose) -> None:
         replace(
             copied,
             keys=tuple(
-                replace(key, pose=bring(copied.figure, key.pose))
+                replace(key, pose=bring(copied.layer, key.pose))
                 if key.pose.phi is kept.phi
                 else key
                 for key in copied.keys
@@ -67,46 +67,46 @@ def _follow_copies(session: Session, pull: Pull, pose: Pose) -> None:
 
 def _adopt_first(session: Session, project: Project, pull: Pull, pose: Pose) -> bool:
     """Let the document have the first pose of a pull, as one more step; tell whether it can."""
-    if pull.figure not in project.puppets:
+    if pull.layer not in project.puppets:
         return False
-    figure = project.document.figure(pull.figure)
-    if figure.domain is not pull.clip.figure.domain:
+    layer = project.document.layer(pull.layer)
+    if layer.domain is not pull.clip.layer.domain:
         return False
-    frames = _frames_now(figure, pull)
+    frames = _frames_now(layer, pull)
     if not frames:
         return False
     pull.frame = pull.frame if pull.frame in frames else min(frames)
-    pose = pull.brought_to(pose)(figure, retargeted(figure, pose))
+    pose = pull.brought_to(pose)(layer, retargeted(layer, pose))
     if not pull.is_keyed:
-        unkeyed = UnkeyedPose(figure=pull.figure, frame=pull.frame, pose=pose)
+        unkeyed = UnkeyedPose(layer=pull.layer, frame=pull.frame, pose=pose)
         project.history.pose(unkeyed, gesture=pull.gesture)
         return True
     for frame in frames:
-        found = UnkeyedPose(figure=pull.figure, frame=frame, pose=pose)
+        found = UnkeyedPose(layer=pull.layer, frame=frame, pose=pose)
         command = replace(as_key(session, project, found), label="Move" if pull.ways else "Pose")
         project.history.do(command, gesture=pull.gesture)
     left = project.history.unkeyed
-    if left is not None and (left.figure, left.frame) == (pull.figure, pull.frame):
+    if left is not None and (left.layer, left.frame) == (pull.layer, pull.frame):
         project.history.pose(None, gesture=pull.gesture)
     return True
 
 
-def _frames_now(figure: Figure, pull: Pull) -> set[int]:
+def _frames_now(layer: Layer, pull: Pull) -> set[int]:
     """Return at which frames a pull's pose belongs now.
 
     Those are of the key that is pulled, and of its copies since; of a new key it is its own.
     """
-    then = pull.clip.figure
+    then = pull.clip.layer
     if pull.frame not in then.key_frames:
         return {pull.frame}
     was = then.key(pull.frame).pose
-    alike = {key.frame for key in figure.keys if key.pose.phi is was.phi}
-    return (alike - then.key_frames) | ({pull.frame} & figure.key_frames)
+    alike = {key.frame for key in layer.keys if key.pose.phi is was.phi}
+    return (alike - then.key_frames) | ({pull.frame} & layer.key_frames)
 
 
 def as_key(session: Session, project: Project, unkeyed: UnkeyedPose) -> Command:
     """Return the command that gives a pose to the key at its frame, or inserts one with it."""
-    figure, frame, pose = unkeyed.figure, unkeyed.frame, unkeyed.pose
-    if frame in project.document.figure(figure).key_frames:
-        return key_commands.pose_key(figure, frame, pose)
-    return key_commands.insert_key(figure, frame, pose, easing=session.preferences.easing)
+    layer, frame, pose = unkeyed.layer, unkeyed.frame, unkeyed.pose
+    if frame in project.document.layer(layer).key_frames:
+        return key_commands.pose_key(layer, frame, pose)
+    return key_commands.insert_key(layer, frame, pose, easing=session.preferences.easing)

@@ -6,11 +6,11 @@ import numpy as np
 
 from app.document import (
     Handle,
-    figure_commands,
     handle_commands,
     layer_commands,
     mirrored_name,
     pairs_by_name,
+    shape_commands,
 )
 from app.editor.action import do
 from app.editor.actions.posing.pulling import let_go
@@ -32,7 +32,7 @@ def add_handle(
     if project.puppet.shown is None:
         return
     rest = _at_rest(project.puppet.shown, place)
-    identity = project.figure.next_handle
+    identity = project.layer.next_handle
     project.history.do(
         handle_commands.add_handle(project.active, rest), gesture=gesture or object()
     )
@@ -57,22 +57,22 @@ def remove_handles(
 @with_project
 def suggest_handles(session: Session, project: Project) -> None:
     """Put handles on the body, at tips and joints of limbs, where there are none yet."""
-    figure = project.figure
-    suggested = domains.suggest_handles(figure.domain.loops)
-    near = NEAR * box_diagonal(figure.domain.outline)
-    taken = np.array([handle.position for handle in figure.handles], dtype=np.complex128)
+    layer = project.layer
+    suggested = domains.suggest_handles(layer.domain.loops)
+    near = NEAR * box_diagonal(layer.domain.outline)
+    taken = np.array([handle.position for handle in layer.handles], dtype=np.complex128)
     free = [handle for handle in suggested if not (np.abs(taken - handle.place) < near).any()]
     if not free:
         session.tell("There are handles already where Lissom would put them.")
         return
-    names = {handle.name for handle in figure.handles}
+    names = {handle.name for handle in layer.handles}
     handles = [
         Handle(id=0, name=layer_commands.numbered_name(name, names), position=place)
         for place, name in free
     ]
     gesture = object()
     project.history.do(handle_commands.add_handles(project.active, handles), gesture=gesture)
-    added = {handle.id for handle in project.figure.handles} - {h.id for h in figure.handles}
+    added = {handle.id for handle in project.layer.handles} - {h.id for h in layer.handles}
     project.selected = project.chosen = frozenset()
     count = len(added)
     session.tell(
@@ -89,7 +89,7 @@ def _take_suggestions_back(
     if session.project is not project:
         return
     project.history.take_back(gesture)
-    remaining = added & {handle.id for handle in project.figure.handles}
+    remaining = added & {handle.id for handle in project.layer.handles}
     if remaining:
         remove_handles(session, remaining)
     project.selected -= added
@@ -98,19 +98,19 @@ def _take_suggestions_back(
 @with_project
 def mirror_handles(session: Session, project: Project) -> None:
     """Give each selected handle a partner on the other side of the mirror axis, named to match."""
-    figure, words = project.figure, project.document.pairs
-    pairs = pairs_by_name(figure.handles, words)
-    alone = [handle for handle in figure.handles if handle.id in project.selected - pairs.keys()]
+    layer, words = project.layer, project.document.pairs
+    pairs = pairs_by_name(layer.handles, words)
+    alone = [handle for handle in layer.handles if handle.id in project.selected - pairs.keys()]
     gesture, outside = object(), 0
     partners: list[Handle] = []
     for handle in alone:
-        place = complex(2 * figure.axis - handle.position.real, handle.position.imag)
-        if place == handle.position or not _is_inside(figure.domain, place):
+        place = complex(2 * layer.axis - handle.position.real, handle.position.imag)
+        if place == handle.position or not _is_inside(layer.domain, place):
             outside += 1
             continue
         name = handle.name
         if mirrored_name(name, words) is None:
-            name += ".L" if handle.position.real < figure.axis else ".R"
+            name += ".L" if handle.position.real < layer.axis else ".R"
             command = handle_commands.rename_handle(project.active, handle.id, name)
             project.history.do(command, gesture=gesture)
         partners.append(replace(handle, name=mirrored_name(name, words) or name, position=place))
@@ -132,11 +132,9 @@ def anchor_at(
     _: Session, project: Project, identity: int, *, gesture: object | None = None
 ) -> None:
     """Make a handle's point the anchor, or let the engine choose again if it is already."""
-    place = project.figure.handle(identity).position
+    place = project.layer.handle(identity).position
     project.history.do(
-        figure_commands.set_anchor(
-            project.active, None if project.figure.anchor == place else place
-        ),
+        shape_commands.set_anchor(project.active, None if project.layer.anchor == place else place),
         gesture=gesture,
     )
 
@@ -148,7 +146,7 @@ def put_anchor(
     """Make the shape's point at a place of the screen's plane the anchor."""
     if project.puppet.shown:
         rest = _at_rest(project.puppet.shown, place)
-        project.history.do(figure_commands.set_anchor(project.active, rest), gesture=gesture)
+        project.history.do(shape_commands.set_anchor(project.active, rest), gesture=gesture)
 
 
 def _at_rest(shown: Shown, place: complex) -> complex:

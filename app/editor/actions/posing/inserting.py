@@ -22,13 +22,13 @@ def insert_key(session: Session, project: Project) -> None:
     playback.halt(session)
     if project.beside:
         here, gesture = playback.current_frame(session, project), object()
-        chosen = [project.document.figure(each) for each in project.selected_layers]
-        for figure in (each for each in chosen if not each.still):
-            if (at := figure.source_of(here)) not in figure.key_frames:
-                insert_key_at(session, figure.id, at, gesture)
+        chosen = [project.document.layer(each) for each in project.selected_layers]
+        for layer in (each for each in chosen if not each.still):
+            if (at := layer.source_of(here)) not in layer.key_frames:
+                insert_key_at(session, layer.id, at, gesture)
         return
     frame = playback.posed_frame(session, project)
-    if any((pull.figure, pull.frame) == (project.active, frame) for pull in project.pulls):
+    if any((pull.layer, pull.frame) == (project.active, frame) for pull in project.pulls):
         # What is on its way there may be a key itself.
         promises.once_settled(session, do(insert_key_at, project.active, frame), "The key")
     else:
@@ -37,18 +37,18 @@ def insert_key(session: Session, project: Project) -> None:
 
 @with_project
 def insert_key_at(
-    session: Session, project: Project, figure: int, frame: int, gesture: object | None = None
+    session: Session, project: Project, layer: int, frame: int, gesture: object | None = None
 ) -> None:
-    """Insert a key of the pose that a figure has at a frame; those of a gesture are one step."""
-    if figure not in project.puppets:
+    """Insert a key of the pose that a layer has at a frame; those of a gesture are one step."""
+    if layer not in project.puppets:
         return
     unkeyed = project.history.unkeyed
-    if unkeyed is not None and (unkeyed.figure, unkeyed.frame) == (figure, frame):
+    if unkeyed is not None and (unkeyed.layer, unkeyed.frame) == (layer, frame):
         gesture = gesture or object()
         project.history.do(as_key(session, project, unkeyed), gesture=gesture)
         project.history.pose(None, gesture=gesture)
-    elif frame not in project.document.figure(figure).key_frames:
-        clip = clip_of(project.document, figure)
+    elif frame not in project.document.layer(layer).key_frames:
+        clip = clip_of(project.document, layer)
         take = partial(_insert, session, project, clip, frame, gesture)
         fit_pose(session, project, clip, frame, take, kind=INSERTING)
     else:
@@ -65,8 +65,8 @@ def fit_pose(
     kind: Kind,
 ) -> None:
     """Let the worker find the pose that is nearest to what a clip shows at a frame."""
-    puppet = project.puppets[clip.figure.id]
-    rig, sibling = Rig.of(clip.figure, puppet.rig), puppet.store.sampler
+    puppet = project.puppets[clip.layer.id]
+    rig, sibling = Rig.of(clip.layer, puppet.rig), puppet.store.sampler
 
     def work() -> Pose:
         return pose_at(rig, clip, frame, sibling)
@@ -77,12 +77,12 @@ def fit_pose(
 def _insert(
     session: Session, project: Project, clip: Clip, frame: int, gesture: object | None, pose: Pose
 ) -> None:
-    figure = clip.figure.id
-    if figure in project.puppets and clip_of(project.document, figure) == clip:
-        found = UnkeyedPose(figure=figure, frame=frame, pose=pose)
+    layer = clip.layer.id
+    if layer in project.puppets and clip_of(project.document, layer) == clip:
+        found = UnkeyedPose(layer=layer, frame=frame, pose=pose)
         project.history.do(as_key(session, project, found), gesture=gesture)
-        if project.active == figure:
+        if project.active == layer:
             project.chosen = frozenset({frame})
     else:
-        # Other keys came or went meanwhile: the figure is shown otherwise there now.
-        insert_key_at(session, figure, frame, gesture)
+        # Other keys came or went meanwhile: the layer is shown otherwise there now.
+        insert_key_at(session, layer, frame, gesture)

@@ -99,7 +99,7 @@ def pin_here(session: Session, project: Project) -> None:
 @with_project
 def nudge(session: Session, project: Project, step: complex) -> None:
     """Move the selected handles by a few pixels of the picture."""
-    handles = project.figure.handles
+    handles = project.layer.handles
     moved = {h.id for h in handles if h.id in project.selected and not h.locked}
 
     def away(_: Start, targets: Mapping[int, Target]) -> Mapping[int, Target]:
@@ -180,7 +180,7 @@ def _begin(session: Session, project: Project, gesture: object) -> Pull:
             topic="repeat",
         )
     here = (project.active, frame)
-    pulls = [pull for pull in project.pulls if (pull.figure, pull.frame) == here]
+    pulls = [pull for pull in project.pulls if (pull.layer, pull.frame) == here]
     earlier = pulls[-1] if pulls else None
     start = _start(session, project, earlier)
     if earlier is not None and earlier.kept is None:
@@ -209,19 +209,19 @@ def _start(session: Session, project: Project, earlier: Pull | None) -> Start | 
 
     An earlier pull of the same pose, which is not at rest yet, says what was wished last.
     """
-    pose, shown, figure = pose_here(session, project), project.puppet.shown, project.figure
+    pose, shown, layer = pose_here(session, project), project.puppet.shown, project.layer
     if pose is not None:
         if earlier is not None and earlier.kept is not None and earlier.asked is not None:
             is_its_own = earlier.kept.phi is pose.phi
             targets = {**earlier.asked, **earlier.reached} if is_its_own else pose.targets
             pose = replace(pose, targets=targets)
-        return Start.of(figure, pose)
+        return Start.of(layer, pose)
     frame = playback.current_frame(session, project)
     if shown is None or not shown.is_current or shown.frame != frame or shown.clip != project.clip:
         return None
-    if figure.tracks or figure.springs:
+    if layer.tracks or layer.springs:
         return None
-    identities = [handle.id for handle in figure.handles]
+    identities = [handle.id for handle in layer.handles]
     places = shown.handle_places.tolist()
     return Start.at(
         dict(zip(identities, places, strict=True)),
@@ -231,7 +231,7 @@ def _start(session: Session, project: Project, earlier: Pull | None) -> Start | 
 
 
 def pose_here(session: Session, project: Project) -> Pose | None:
-    """Return the pose that the figure rests in at the present frame; None for an in-between."""
+    """Return the pose that the layer rests in at the present frame; None for an in-between."""
     if project.unkeyed is not None:
         return project.unkeyed
     clip = project.clip

@@ -56,8 +56,8 @@ def _bring(session: Session, project: Project, pull: Pull, *, is_here: bool) -> 
     if pull.tried is None and newest not in (pull.ready, pull.kept if not is_here else None):
         pull.tried = newest
     # In-betweens of what stands still are never prepared.
-    figures = project.document.figures
-    is_still = any(figure.id == pull.figure and figure.still for figure in figures)
+    layers = project.document.layers
+    is_still = any(layer.id == pull.layer and layer.still for layer in layers)
     if not is_here and pull.is_at_rest and (is_still or project.afterwards):
         adopt(session, project, pull, newest)
     elif not is_here and pull.ready is not None:
@@ -81,26 +81,26 @@ def bring_all(session: Session, project: Project) -> None:
 
 
 def _tried_clip(project: Project, pull: Pull) -> Clip | None:
-    if pull.tried is None or pull.kept is None or pull.figure not in project.puppets:
+    if pull.tried is None or pull.kept is None or pull.layer not in project.puppets:
         return None
     source = (project.document, pull.kept, pull.tried)
     if not pull.trial.follows(source):
         document = exchanged(project.document, pull.kept, pull.brought_to(pull.tried))
-        pull.trial.set(source, clip_of(document, pull.figure))
+        pull.trial.set(source, clip_of(document, pull.layer))
     return pull.trial.value
 
 
 def _has_inbetweens(project: Project, clip: Clip) -> bool:
     """Tell whether all in-betweens of a clip are there, or never will be."""
-    store = project.puppets[clip.figure.id].store
+    store = project.puppets[clip.layer.id].store
     return store.has(clip) or store.has_failed(clip)
 
 
 def _follow_key(project: Project, pull: Pull) -> None:
     """Let a pull be where its key is now."""
-    if pull.kept is None or pull.figure not in project.puppets:
+    if pull.kept is None or pull.layer not in project.puppets:
         return
-    keys = project.document.figure(pull.figure).keys
+    keys = project.document.layer(pull.layer).keys
     frames = [key.frame for key in keys if key.pose.phi is pull.kept.phi]
     if frames and pull.frame not in frames:
         pull.frame = frames[0]

@@ -44,7 +44,7 @@ def go_on(session: Session, project: Project) -> None:
             project.pending.remove(pull)
             report(session, POSING.complaint, error)
 
-    puppet = project.puppets.get(pull.figure)
+    puppet = project.puppets.get(pull.layer)
     begin = partial(
         _begin,
         pull.clip,
@@ -64,9 +64,9 @@ def go_on(session: Session, project: Project) -> None:
 def is_here(session: Session, project: Project, pull: Pull) -> bool:
     """Tell whether the playhead rests on a pull's frame, where each of its poses is shown."""
     frame = playback.current_frame(session, project)
-    if project.playhead.since is not None or pull.figure not in project.puppets:
+    if project.playhead.since is not None or pull.layer not in project.puppets:
         return False
-    return project.document.figure(pull.figure).source_of(frame) == pull.frame
+    return project.document.layer(pull.layer).source_of(frame) == pull.frame
 
 
 def is_there(session: Session, project: Project) -> bool:
@@ -123,7 +123,7 @@ def _take_steps(
     begun, start = clock(), None
     if not isinstance(drag, Drag):
         drag, pose = drag()
-        start = Start.of(drag.rig.figure, pose)
+        start = Start.of(drag.rig.layer, pose)
     if isinstance(aim, Mapping):
         targets = aim
     elif start is not None:
@@ -143,7 +143,7 @@ def _begin(
     clip: Clip, frame: int, before: Pose | None, rig: Rig | None, sibling: PoseSampler | None
 ) -> tuple[Drag, Pose]:
     """Return the drag that begins with a pose, or with what is shown at a frame; and that pose."""
-    rig = Rig.of(clip.figure, rig)
+    rig = Rig.of(clip.layer, rig)
     pose = before or resting_pose(clip, time_of(clip, frame)) or pose_at(rig, clip, frame, sibling)
     return Drag.begin(rig, pose), pose
 
@@ -153,8 +153,8 @@ def _note(session: Session, project: Project, pull: Pull, steps: _Steps) -> None
     if session.project is not project or pull not in project.pending:
         return
     session.solver_seconds = steps.seconds
-    if pull.figure in project.puppets:
-        project.puppets[pull.figure].rig = steps.drag.rig
+    if pull.layer in project.puppets:
+        project.puppets[pull.layer].rig = steps.drag.rig
     if pull.start is None:
         pull.start = steps.start
         pull.aim()

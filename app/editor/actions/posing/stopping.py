@@ -32,23 +32,23 @@ def _tell(
     loosen: Loosen,
 ) -> None:
     """Tell what stopped handles short of where they were pulled, and offer the remedy."""
-    figure, pose = pull.clip.figure, pull.newest
+    layer, pose = pull.clip.layer, pull.newest
     lacks = {i: abs(place.position - asked[i].position) for i, place in places.items()}
-    short = [i for i, lack in lacks.items() if falls_short(figure, lack)]
+    short = [i for i, lack in lacks.items() if falls_short(layer, lack)]
     if not short or pose is None:
         return
-    name, others = figure.handle(short[0]).name, len(short) - 1
+    name, others = layer.handle(short[0]).name, len(short) - 1
     who, its = (f"{name} and {others} more", "their") if others else (name, "its")
-    if not find_shortfall(figure, pose).at_limits:
+    if not find_shortfall(layer, pose).at_limits:
         session.tell(f"{who} stopped where the other handles hold the shape.", topic="stopped")
-    elif loosened(figure.bounds) is None:
+    elif loosened(layer.bounds) is None:
         session.tell(STOPPED_AT_LIMIT.format(who=who, its=its), topic="stopped")
     else:
         session.tell(
             STOPPED_AT_LIMIT.format(who=who, its=its),
             topic="stopped",
             label="Loosen",
-            action=do(_loosen, pull.figure, pull.frame, asked, loosen),
+            action=do(_loosen, pull.layer, pull.frame, asked, loosen),
         )
 
 
@@ -56,13 +56,13 @@ def _tell(
 def _loosen(
     session: Session,
     project: Project,
-    figure: int,
+    layer: int,
     frame: int,
     asked: Mapping[int, Target],
     loosen: Loosen,
 ) -> None:
-    """Let a figure stretch further, and pull it once more to where the hand went."""
-    if figure != project.active:
+    """Let a layer stretch further, and pull it once more to where the hand went."""
+    if layer != project.active:
         session.tell("Another layer is posed now. Choose the one that was pulled, and pull again.")
         return
     if playback.posed_frame(session, project) != frame:

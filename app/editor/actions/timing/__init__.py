@@ -1,6 +1,6 @@
 """What is done in time: keys of poses and of tracks, and the pointer in the timeline.
 
-In: a session, and keys by their figures, handles and frames.
+In: a session, and keys by their layers, handles and frames.
 Out: the document's keys and clocks, and what is chosen of them.
 Imports: the other `app.editor.actions`.
 """

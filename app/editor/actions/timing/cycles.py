@@ -6,7 +6,7 @@ from app.document import Command, Cycle, Document, cycle_commands
 from app.editor.actions import editing, playback
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.timeline_view import figure_of, frames_in
+from app.editor.timeline_view import frames_in, layer_of
 from app.errors import LissomError
 
 
@@ -23,9 +23,9 @@ def chosen_stretch(project: Project) -> tuple[int, int] | None:
 
 
 def cycle_here(session: Session, project: Project, frame: int | None = None) -> Cycle | None:
-    """Return what repeats at a frame, by default the present one, of the figure that is posed."""
+    """Return what repeats at a frame, by default the present one, of the layer that is posed."""
     here = playback.current_frame(session, project) if frame is None else frame
-    return project.figure.cycle_at(here)
+    return project.layer.cycle_at(here)
 
 
 @with_project
@@ -34,11 +34,11 @@ def repeat(session: Session, project: Project) -> None:
     stretch = chosen_stretch(project)
     if stretch is None:
         return
-    document, figures = project.document, _figures(project)
-    ends = [cycle_commands.end_of_repeats(document.figure(each), *stretch) for each in figures]
+    document, layers = project.document, _layers(project)
+    ends = [cycle_commands.end_of_repeats(document.layer(each), *stretch) for each in layers]
     until = min((end for end in ends if end is not None), default=None)
-    commands = [cycle_commands.repeat(each, *stretch, until) for each in figures]
-    editing.edit(session, Command("Repeat stretch", lambda now: _all_of(commands, figures, now)))
+    commands = [cycle_commands.repeat(each, *stretch, until) for each in layers]
+    editing.edit(session, Command("Repeat stretch", lambda now: _all_of(commands, layers, now)))
 
 
 @with_project
@@ -66,38 +66,38 @@ def _change(
     cycle = cycle_here(session, project, frame)
     if cycle is None:
         return
-    figures = [
+    layers = [
         each
-        for each in {project.active, *_figures(project)}
-        if any(cycle.first == other.first for other in project.document.figure(each).cycles)
+        for each in {project.active, *_layers(project)}
+        if any(cycle.first == other.first for other in project.document.layer(each).cycles)
     ]
-    commands = [command(each, cycle.first) for each in figures]
+    commands = [command(each, cycle.first) for each in layers]
     label = commands[0].label
-    editing.edit(session, Command(label, lambda now: _all_of(commands, figures, now)))
+    editing.edit(session, Command(label, lambda now: _all_of(commands, layers, now)))
 
 
-def _figures(project: Project) -> list[int]:
+def _layers(project: Project) -> list[int]:
     """Return the layers of chosen keys, with those that are chosen together, or the one posed."""
     together = project.selected_layers if len(project.selected_layers) > 1 else ()
-    figures = {*together, *map(figure_of, project.chosen_of)} or {project.active}
-    return sorted(each for each in figures if _may_repeat(project.document, each))
+    layers = {*together, *map(layer_of, project.chosen_of)} or {project.active}
+    return sorted(each for each in layers if _may_repeat(project.document, each))
 
 
 def _may_repeat(document: Document, identity: int) -> bool:
     """Tell whether a layer can have something to repeat: a still picture only beside its pose."""
-    figure = document.figure(identity)
-    beside = (*figure.joints[1:], *figure.movement, *figure.opacities, *figure.placings)
-    in_time = beside or figure.switches or document.choice_of(identity) is not None
-    return not figure.still or bool(in_time)
+    layer = document.layer(identity)
+    beside = (*layer.joints[1:], *layer.movement, *layer.opacities, *layer.placings)
+    in_time = beside or layer.switches or document.choice_of(identity) is not None
+    return not layer.still or bool(in_time)
 
 
-def _all_of(commands: list[Command], figures: list[int], document: Document) -> Document:
-    """Run a command on each of some figures; of more than one, errors name the layer."""
-    for figure, command in zip(figures, commands, strict=True):
+def _all_of(commands: list[Command], layers: list[int], document: Document) -> Document:
+    """Run a command on each of some layers; of more than one, errors name the layer."""
+    for layer, command in zip(layers, commands, strict=True):
         try:
             document = command(document)
         except LissomError as error:
-            if len(figures) == 1:
+            if len(layers) == 1:
                 raise
-            raise LissomError(f"{document.figure(figure).name}: {error}") from error
+            raise LissomError(f"{document.layer(layer).name}: {error}") from error
     return document

@@ -8,9 +8,9 @@ from app.document import (
     FrameRange,
     Passing,
     Variant,
-    figure_commands,
     key_commands,
     scene_commands,
+    shape_commands,
     track_commands,
 )
 from app.editor.actions import editing, playback, posing
@@ -140,7 +140,7 @@ def _rearrange(session: Session, project: Project, command: Command) -> None:
 
 def match_ends(session: Session) -> None:
     """Give the last key the pose of the first one."""
-    editing.edit_figure(session, key_commands.match_ends)
+    editing.edit_layer(session, key_commands.match_ends)
 
 
 @with_project
@@ -213,4 +213,4 @@ def delete_marker(session: Session, frame: int) -> None:
 
 def set_variant(session: Session, variant: Variant) -> None:
     """Set how in-betweens are made."""
-    editing.edit_figure(session, figure_commands.set_variant, variant)
+    editing.edit_layer(session, shape_commands.set_variant, variant)

@@ -18,7 +18,7 @@ from engine.geometry import box_diagonal
 from engine.geometry.kinematics import fit_keys
 
 KEYING = Kind("Making keys of a spring", "The swing could not be made into keys")
-NEAR = 4e-4  # of the figure's diagonal: that the keys' motion may be beside the swing
+NEAR = 4e-4  # of the layer's diagonal: that the keys' motion may be beside the swing
 AT_REST = 0.01  # pixels
 
 
@@ -32,13 +32,13 @@ class _Swing(NamedTuple):
 @with_project
 def make_keys(session: Session, project: Project, handle: int) -> None:
     """Give a handle a track that swings as its spring does, in place of the spring."""
-    figure, spring = project.figure, project.figure.spring_of(handle)
-    if spring is None or not spring.enabled or figure.track_of(handle) is not None:
+    layer, spring = project.layer, project.layer.spring_of(handle)
+    if spring is None or not spring.enabled or layer.track_of(handle) is not None:
         return
-    work = partial(_measure, project.document, figure.id, handle, project.samplers)
+    work = partial(_measure, project.document, layer.id, handle, project.samplers)
 
     def take(swing: _Swing) -> None:
-        _put(session, project, figure.id, spring, swing)
+        _put(session, project, layer.id, spring, swing)
 
     promises.begin(session, project, KEYING, work, take)
 
@@ -48,7 +48,7 @@ def _measure(
 ) -> _Swing:
     """Measure how a handle swings beside the pose that it has without its spring."""
     without = track_commands.remove_springs(identity, (handle,))(document)
-    point = np.array([document.figure(identity).handle(handle).position])
+    point = np.array([document.layer(identity).handle(handle).position])
     swinging, resting = (
         animation_at(each, identity, point, siblings, carried_in(each, identity, siblings))
         for each in (document, without)
@@ -65,9 +65,9 @@ def _measure(
 
 def _put(session: Session, project: Project, identity: int, spring: Spring, swing: _Swing) -> None:
     """Put a swing into a track, in place of its spring, unless this is another one by now."""
-    figures = {figure.id: figure for figure in project.document.figures}
-    figure = figures.get(identity)
-    if figure is None or spring not in figure.springs:
+    layers = {layer.id: layer for layer in project.document.layers}
+    layer = layers.get(identity)
+    if layer is None or spring not in layer.springs:
         return
     moves = np.flatnonzero(np.abs(swing.offsets) > AT_REST)
     if not len(moves):
@@ -76,7 +76,7 @@ def _put(session: Session, project: Project, identity: int, spring: Spring, swin
     # It begins and ends at rest, where there is room for that.
     first, last = max(moves[0] - 1, 0), min(moves[-1] + 1, len(swing.frames) - 1)
     part = slice(first, last + 1)
-    near = NEAR * box_diagonal(figure.domain.outline)
+    near = NEAR * box_diagonal(layer.domain.outline)
     fitted = fit_keys(swing.frames[part], swing.offsets[part], near)
     keys = [
         TrackKey(frame=frame, place=place, velocity=velocity)

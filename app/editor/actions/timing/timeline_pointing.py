@@ -35,9 +35,9 @@ from app.editor.timeline_view import (
     TimeDrag,
     TimeGesture,
     TurnDrag,
-    figure_of,
     frames_in,
     keys_in,
+    layer_of,
     seen_at,
 )
 from app.errors import LissomError
@@ -116,10 +116,10 @@ def cancel(session: Session, project: Project) -> None:
 
 
 @with_project
-def unfold(_: Session, project: Project, figure: int) -> None:
-    """Let the tracks of a figure have rows, or fold them away: then none of them is chosen."""
-    project.timing.unfolded ^= {figure}
-    if figure == project.active and figure not in project.timing.unfolded:
+def unfold(_: Session, project: Project, layer: int) -> None:
+    """Let the tracks of a layer have rows, or fold them away: then none of them is chosen."""
+    project.timing.unfolded ^= {layer}
+    if layer == project.active and layer not in project.timing.unfolded:
         project.chosen_track = None
 
 
@@ -133,8 +133,8 @@ def _inside(project: Project, box: KeyBox, frame: float, row: KeyRow) -> KeysOf:
     first, last = sorted(map(order.index, (box.row, row)))
     inside = dict(box.keeps)
     for each in order[first : last + 1]:
-        figure = document.figure(figure_of(each))
-        if figure.still:
+        layer = document.layer(layer_of(each))
+        if layer.still:
             continue
         track = project.track_in(each)
         keys = [key.frame for key in keys_in(document, each)]
@@ -218,10 +218,10 @@ def _moved(drag: TimeDrag, frame: float) -> tuple[TimeDrag, Command] | None:
             command = filming_commands.move_camera_key(key, at)
         case CycleDrag():
             return drag, _end_cycle(drag, round(frame))
-        case SwitchDrag(figure=figure, switch=switch):
+        case SwitchDrag(layer=layer, switch=switch):
             at = before.frames.clamp(switch + by)
-            others = {each.frame for each in before.figure(figure).switches} - {switch}
-            command = layer_commands.move_switch(figure, switch, at)
+            others = {each.frame for each in before.layer(layer).switches} - {switch}
+            command = layer_commands.move_switch(layer, switch, at)
         case TurnDrag(choice=choice, turn=turn):
             at = before.frames.clamp(turn + by)
             others = {each.frame for each in before.choice(choice).turns} - {turn}
@@ -234,15 +234,15 @@ def _moved(drag: TimeDrag, frame: float) -> tuple[TimeDrag, Command] | None:
 
 def _end_cycle(drag: CycleDrag, frame: int) -> Command:
     """Return the command that puts the dragged end of a cycle where the pointer is, or near."""
-    figure = drag.before.figure(drag.figure)
-    cycle = cycle_commands.cycle_from(figure, drag.first)
+    layer = drag.before.layer(drag.layer)
+    cycle = cycle_commands.cycle_from(layer, drag.first)
     last, until = cycle.last, cycle.until
     if drag.is_stretch:
-        cycle = cycle_commands.stretched_to(figure, cycle, min(frame, drag.before.frames.last))
+        cycle = cycle_commands.stretched_to(layer, cycle, min(frame, drag.before.frames.last))
         last, until = cycle.last, cycle.until
     else:
-        until = cycle_commands.nearest_end(figure, cycle, frame, drag.before.frames.last)
-    return cycle_commands.repeat(drag.figure, drag.first, last, until)
+        until = cycle_commands.nearest_end(layer, cycle, frame, drag.before.frames.last)
+    return cycle_commands.repeat(drag.layer, drag.first, last, until)
 
 
 def _trim(drag: EdgeDrag, pointed: float) -> Command:
@@ -252,7 +252,7 @@ def _trim(drag: EdgeDrag, pointed: float) -> Command:
     frame = frames.clamp(round(pointed))
     match drag.edge:
         case "animation end":
-            last_key = max(figure.ends[1] for figure in document.figures)
+            last_key = max(layer.ends[1] for layer in document.layers)
             least = max(last_key, frames.first + 1)
             last = min(max(round(pointed), least), LAST_FRAME)
             return scene_commands.set_frames(FrameRange(frames.first, last))

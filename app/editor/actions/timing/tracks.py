@@ -10,7 +10,7 @@ import numpy as np
 from app.document import (
     Command,
     Document,
-    Figure,
+    Layer,
     Track,
     TrackKey,
     track_at,
@@ -50,14 +50,14 @@ def key_here(session: Session, project: Project, handles: Sequence[int]) -> None
     """
     playback.halt(session)
     posing.let_go(session)
-    figure, gesture = project.figure, object()
-    new = tuple(identity for identity in handles if figure.track_of(identity) is None)
+    layer, gesture = project.layer, object()
+    new = tuple(identity for identity in handles if layer.track_of(identity) is None)
     if new:
         frame = playback.posed_frame(session, project)
         key = TrackKey(frame=frame, place=0j, easing=session.preferences.easing)
         command = track_commands.put_track(project.active, Track(handles=new, keys=(key,)))
         project.history.do(Command("Key handle", command.change), gesture=gesture)
-    known = {figure.track_of(identity) for identity in handles} - {None}
+    known = {layer.track_of(identity) for identity in handles} - {None}
     for track in known:
         if track is not None:
             _key(session, project, track, gesture)
@@ -67,7 +67,7 @@ def key_here(session: Session, project: Project, handles: Sequence[int]) -> None
 
 def _key(session: Session, project: Project, track: Track, gesture: object) -> None:
     """Insert a key into a track at the present frame that changes nothing there."""
-    frame, figure = playback.current_frame(session, project), project.figure
+    frame, layer = playback.current_frame(session, project), project.layer
     own = tracking.key_frame(session, project.document, track, frame)
     if own is None or own in track.key_frames:
         return
@@ -75,7 +75,7 @@ def _key(session: Session, project: Project, track: Track, gesture: object) -> N
 
     def put(place: complex, turn: float | None = None) -> None:
         command = track_commands.put_track_key(
-            figure.id,
+            layer.id,
             track.handles[0],
             own,
             place,
@@ -83,7 +83,7 @@ def _key(session: Session, project: Project, track: Track, gesture: object) -> N
             velocity=velocity_at(track, clip, frame),
             easing=easing,
         )
-        if figure.id in project.puppets and project.document.figure(figure.id).tracks:
+        if layer.id in project.puppets and project.document.layer(layer.id).tracks:
             project.history.do(command, gesture=gesture)
 
     at = track_at(track, clip, frame)
@@ -92,7 +92,7 @@ def _key(session: Session, project: Project, track: Track, gesture: object) -> N
     elif not track.planted:
         put(0j)
     else:
-        place = partial(_beside, project.document, figure, track, [frame], project.samplers)
+        place = partial(_beside, project.document, layer, track, [frame], project.samplers)
         promises.begin(session, project, PLACING, place, lambda found: put(found[0].planted(0j)))
 
 
@@ -105,7 +105,7 @@ def put(
     Of a track with the pose, 0 is where the pose has it: there the track may begin and end.
     """
     playback.halt(session)
-    track = project.figure.track_of(handle)
+    track = project.layer.track_of(handle)
     if track is None:
         return
     frame = playback.current_frame(session, project)
@@ -113,7 +113,7 @@ def put(
     if own is not None:
         key, easing = track_commands.put_track_key, session.preferences.easing
         velocity = velocity_at(track, project.clip, frame)
-        editing.edit_figure(
+        editing.edit_layer(
             session, key, handle, own, place, turn=turn, velocity=velocity, easing=easing
         )
 
@@ -121,9 +121,9 @@ def put(
 class _Beside(NamedTuple):
     """Where a handle is in a frame without its track, as places of tracks' keys are told by it."""
 
-    place: complex  # by the figure itself
+    place: complex  # by the layer itself
     turned: complex  # of modulus 1: by how much the shape is turned there
-    carried: RigidMotion  # where the figure hangs
+    carried: RigidMotion  # where the layer hangs
 
     def planted(self, offset: complex) -> complex:
         """Return the place in the picture of an offset beside the pose."""
@@ -137,15 +137,15 @@ class _Beside(NamedTuple):
 
 def _beside(
     document: Document,
-    figure: Figure,
+    layer: Layer,
     track: Track,
     frames: Sequence[float],
     siblings: Mapping[int, PoseSampler],
 ) -> list[_Beside]:
     """Return where the first handle of a track is in some frames without it."""
-    point = np.array([figure.handle(track.handles[0]).position])
-    carried = carried_in(document, figure.id, siblings)
-    animation = animation_at(document, figure.id, point, siblings, carried)
+    point = np.array([layer.handle(track.handles[0]).position])
+    carried = carried_in(document, layer.id, siblings)
+    animation = animation_at(document, layer.id, point, siblings, carried)
     found = []
     for frame in frames:
         still = animation.base.frame(frame)
@@ -158,15 +158,15 @@ def _beside(
 @with_project
 def plant(session: Session, project: Project, handle: int, planted: bool) -> None:  # noqa: FBT001
     """Let a track's keys be places in the picture, or beside the pose; none moves by that."""
-    figure, track = project.figure, project.figure.track_of(handle)
+    layer, track = project.layer, project.layer.track_of(handle)
     if track is None or track.planted == planted:
         return
     around = [_frames_around(project.document, track, key) for key in track.keys]
     frames = [frame for each in around for frame in each]
-    work = partial(_beside, project.document, figure, track, frames, project.samplers)
+    work = partial(_beside, project.document, layer, track, frames, project.samplers)
 
     def take(found: list[_Beside]) -> None:
-        now = {each.id: each for each in project.document.figures}.get(figure.id)
+        now = {each.id: each for each in project.document.layers}.get(layer.id)
         if now is None or track not in now.tracks:
             # It became another one meanwhile.
             return
@@ -177,7 +177,7 @@ def plant(session: Session, project: Project, handle: int, planted: bool) -> Non
         ]
         places, velocities = [key.place for key in keys], [key.velocity for key in keys]
         command = track_commands.plant_track
-        project.history.do(command(figure.id, handle, places, velocities, planted=planted))
+        project.history.do(command(layer.id, handle, places, velocities, planted=planted))
 
     promises.begin(session, project, PLACING, work, take)
 

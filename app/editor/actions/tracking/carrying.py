@@ -19,7 +19,7 @@ NO_KEY = "The key of the handle could not be kept"
 def carried_track(project: Project, handle: int) -> Track | None:
     """Return the track that a drag of a handle is for, as its row is chosen; None for poses."""
     chosen = project.chosen_track
-    track = None if chosen is None else project.figure.track_of(chosen)
+    track = None if chosen is None else project.layer.track_of(chosen)
     return track if track is not None and handle in track.handles else None
 
 
@@ -36,7 +36,7 @@ def carry(
     handle : int
         The first one of the track's.
     place : complex
-        On the figure by itself.
+        On the layer by itself.
     """
     for held in project.carries:
         if held.gesture is gesture:
@@ -44,7 +44,7 @@ def carry(
             return
     playback.halt(session)
     frame = playback.current_frame(session, project)
-    begun = Carry(figure=project.active, handle=handle, frame=frame, gesture=gesture, place=place)
+    begun = Carry(layer=project.active, handle=handle, frame=frame, gesture=gesture, place=place)
     project.pending.append(begun)
 
 
@@ -56,7 +56,7 @@ def turn(session: Session, project: Project, handle: int, angle: float, *, gestu
     other keys.
     """
     held = next((each for each in project.carries if each.gesture is gesture), None)
-    track, shown = project.figure.track_of(handle), project.puppet.shown
+    track, shown = project.layer.track_of(handle), project.puppet.shown
     if track is None or shown is None:
         return
     if not track.turns:
@@ -69,7 +69,7 @@ def turn(session: Session, project: Project, handle: int, angle: float, *, gestu
     playback.halt(session)
     frame, place = playback.current_frame(session, project), shown.handle_places
     begun = Carry(
-        figure=project.active,
+        layer=project.active,
         handle=handle,
         frame=frame,
         gesture=gesture,
@@ -89,8 +89,8 @@ def forget(project: Project, gesture: object) -> None:
 def go_on(session: Session, project: Project) -> None:
     """Let tracks have the keys that hands want, as far as these are known; once a frame."""
     for held in project.carries:
-        is_there = held.figure == project.active and held.handle in [
-            handle.id for handle in project.figure.handles
+        is_there = held.layer == project.active and held.handle in [
+            handle.id for handle in project.layer.handles
         ]
         try:
             is_over = not is_there or put_key(session, project, held)
@@ -104,7 +104,7 @@ def go_on(session: Session, project: Project) -> None:
 def put_key(session: Session, project: Project, held: Carry) -> bool:
     """Give a handle's track the key that a hand wants; tell whether nothing is awaited."""
     handle, frame = held.handle, held.frame
-    track = project.figure.track_of(handle)
+    track = project.layer.track_of(handle)
     own = frame if track is None else key_frame(session, project.document, track, frame)
     if own is None:
         return True
@@ -122,7 +122,7 @@ def put_key(session: Session, project: Project, held: Carry) -> bool:
     if place is None:
         return False
     command = track_commands.put_track_key(
-        held.figure,
+        held.layer,
         handle,
         own,
         place,

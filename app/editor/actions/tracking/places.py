@@ -1,4 +1,4 @@
-"""What tracks' keys are on the figure that is posed: places, and back."""
+"""What tracks' keys are on the layer that is posed: places, and back."""
 
 import cmath
 import math
@@ -28,12 +28,12 @@ def ground_at(project: Project, frame: int) -> Ground | None:
 
 
 def index_of(project: Project, handle: int) -> int:
-    """Return which of the figure's handles it is."""
-    return [each.id for each in project.figure.handles].index(handle)
+    """Return which of the layer's handles it is."""
+    return [each.id for each in project.layer.handles].index(handle)
 
 
 def wished(project: Project, track: Track, frame: int) -> complex | None:
-    """Return where a track wants its first handle at a frame, on the figure by itself.
+    """Return where a track wants its first handle at a frame, on the layer by itself.
 
     None where it does not act, or where that is not known yet.
     """
@@ -54,7 +54,7 @@ def wished_turn(project: Project, handle: int, frame: int) -> float | None:
 
     None where it turns nothing, or where that is not known yet.
     """
-    track, ground = project.figure.track_of(handle), ground_at(project, frame)
+    track, ground = project.layer.track_of(handle), ground_at(project, frame)
     at = None if track is None or not track.turns else track_at(track, project.clip, frame)
     if at is None or ground is None:
         return None
@@ -67,7 +67,7 @@ def turn_beside(project: Project, handle: int, frame: int, turn: float) -> float
     Of all that are whole turns apart it is the nearest to what the track has there. None where it
     is not known yet.
     """
-    track, ground = project.figure.track_of(handle), ground_at(project, frame)
+    track, ground = project.layer.track_of(handle), ground_at(project, frame)
     if ground is None:
         return None
     at = None if track is None else track_at(track, project.clip, frame)
@@ -77,11 +77,11 @@ def turn_beside(project: Project, handle: int, frame: int, turn: float) -> float
 
 
 def kept(project: Project, handle: int, frame: int, place: complex) -> complex | None:
-    """Return what a key of a handle's track has there for a place of the figure by itself.
+    """Return what a key of a handle's track has there for a place of the layer by itself.
 
     A handle without a track gets one with the pose. None where it is not known yet.
     """
-    track, shown = project.figure.track_of(handle), project.puppet.shown
+    track, shown = project.layer.track_of(handle), project.puppet.shown
     if track is not None and track.planted:
         if shown is None:
             return None

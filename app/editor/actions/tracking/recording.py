@@ -30,7 +30,7 @@ def take_up(session: Session, project: Project) -> None:
     keep(session)
     if session.records:
         session.records = False
-    elif not project.figure.handles:
+    elif not project.layer.handles:
         session.tell("Click on the drawing to add a handle; then record how it is dragged.")
     else:
         playback.halt(session)
@@ -49,14 +49,14 @@ def begin_take(
 ) -> None:
     """Begin to record a drag of a handle, which is at a place of the scene."""
     session.records = False
-    track, document, standing = project.figure.track_of(handle), project.document, project.playhead
+    track, document, standing = project.layer.track_of(handle), project.document, project.playhead
     running = replace(standing, speed=session.recording_speed).play(document, session.clock())
     frames, played = document.frames, document.played
     # Over the seam of a loop it goes on, at most once round; that of a part of it is a jump.
     goes_round = document.loop and played == frames
     project.playhead = running
     project.take = Take(
-        figure=project.active,
+        layer=project.active,
         handle=handle if track is None else track.handles[0],
         gesture=gesture,
         before=track,
@@ -89,9 +89,9 @@ def end_take(session: Session, project: Project, *, has_moved: bool = True) -> N
         session.pointer = None
     take.is_over, take.has_moved = True, has_moved
     project.playhead = replace(take.playhead, since=None, speed=take.speed)
-    if take.figure == project.active:
+    if take.layer == project.active:
         project.chosen_track = take.handle
-        project.timing.unfolded |= {take.figure}
+        project.timing.unfolded |= {take.layer}
 
 
 def keep(session: Session) -> None:
@@ -137,8 +137,8 @@ def maintain(session: Session, project: Project) -> None:
     take = project.take
     if take is None:
         return
-    is_here = take.figure == project.active and any(
-        take.handle == each.id for each in project.figure.handles
+    is_here = take.layer == project.active and any(
+        take.handle == each.id for each in project.layer.handles
     )
     if not is_here or (take.after is not None and take.after is not project.document):
         # What was done since, even that it was taken back, is what the person goes on with.
@@ -171,7 +171,7 @@ def _record(session: Session, project: Project, take: Take) -> None:
         frame = playback.current_frame(session, project)
         (placement,) = project.placements([frame], shown.placement)
         held = Carry(
-            figure=take.figure,
+            layer=take.layer,
             handle=take.handle,
             frame=frame,
             gesture=take.gesture,
@@ -218,7 +218,7 @@ def _write(project: Project, take: Take) -> None:
     if end > clip.frames.last and seam in keys and first is not None:
         keys[first] = replace(keys[seam], frame=first)
     row = tuple(keys[frame] for frame in sorted(keys))
-    command = track_commands.put_track(take.figure, replace(fresh, keys=row))
+    command = track_commands.put_track(take.layer, replace(fresh, keys=row))
     project.history.do(replace(command, label="Record drag"), gesture=take.gesture)
     take.after = project.document
 

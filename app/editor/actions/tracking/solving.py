@@ -66,15 +66,15 @@ def _ground(session: Session, project: Project) -> Iterator[Job]:
     frames = [carry.frame for carry in project.carries]
     frame = frames[0] if frames else playback.current_frame(session, project)
     for clip, puppet, corrected in _corrected(project):
-        if clip.figure.id == project.active:
+        if clip.layer.id == project.active:
             work = corrected.missing_ground(project.document, frame, project.samplers)
             if work is not None:
                 yield _job(session, project, GROUNDING, puppet, clip, work)
 
 
 def _corrected(project: Project) -> Iterator[tuple[Clip, Puppet, CorrectedFrames]]:
-    for figure, puppet in project.puppets.items():
-        clip = clip_of(project.document, figure)
+    for layer, puppet in project.puppets.items():
+        clip = clip_of(project.document, layer)
         if puppet.corrected is not None and not puppet.store.has_failed(clip, "correction"):
             yield clip, puppet, puppet.corrected
 

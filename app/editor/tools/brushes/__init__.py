@@ -1,4 +1,4 @@
-"""Tools that say what a figure is made of: brushes, the knife, the pipette, bones, joints.
+"""Tools that say what a layer is made of: brushes, the knife, the pipette, bones, joints.
 
 In: where the pointer goes.
 Out: strokes and bones, and where the joints of a motion are.

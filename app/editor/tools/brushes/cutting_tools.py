@@ -54,7 +54,7 @@ class Brushing(Tool):
         """Keep or remove what it covers."""
         if place != self.places[-1]:
             self.places.append(place)
-        points = np.array(self.places) - self.project.figure.corner
+        points = np.array(self.places) - self.project.layer.corner
         cutting.brush(session, Stroke(points=points, radius=self.radius, keeps=self.keeps))
 
     @property
@@ -102,7 +102,7 @@ class Parting(Tool):
             self.places.append(place)
         if len(self.places) < 2 or not self.is_away(session, self.places[0], place):
             return  # a click is no line
-        cutting.part(session, Slit(points=np.array(self.places) - self.project.figure.corner))
+        cutting.part(session, Slit(points=np.array(self.places) - self.project.layer.corner))
 
     @property
     def marks(self) -> tuple[Mark, ...]:

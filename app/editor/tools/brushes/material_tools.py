@@ -116,7 +116,7 @@ class Boning(Tool):
         shown = self.project.puppet.shown
         if shown is None:
             return {}
-        handles = shown.clip.figure.handles
+        handles = shown.clip.layer.handles
         places = shown.handle_places.tolist()
         return {handle.id: place for handle, place in zip(handles, places, strict=True)}
 

@@ -1,6 +1,6 @@
-"""What a figure is made of: its cut-out, its mesh, its material.
+"""What a layer is made of: its cut-out, its mesh, its material.
 
-In: the figure that is posed.
+In: the layer that is posed.
 Out: actions on these.
 Imports: `app.ui.style`, `app.ui.shortcuts`.
 """

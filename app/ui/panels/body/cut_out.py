@@ -41,7 +41,7 @@ HAND_TOOLS: tuple[tuple[CutTool, str, str, str], ...] = (
 
 def draw(session: Session, look: Look, project: Project) -> list[Action]:
     """Draw what tells the subject from the rest of the picture."""
-    cut_out = project.figure.cut_out
+    cut_out = project.layer.cut_out
     heading(look, "Background")
     actions = _background(session, look, project, cut_out)
     heading(look, "By hand", framed=True)
@@ -178,7 +178,7 @@ def _state(session: Session, look: Look, project: Project) -> list[Action]:
         hint, keys = "Show the drawing as it is posed", BINDINGS["pose"].keys_in_words
         if text_button("Back to posing###done", FILL, hint, keys):
             actions.append(do(cutting.take_up, None))
-    if project.figure.is_stale and project.figure is project.unbuildable:
+    if project.layer.is_stale and project.layer is project.unbuildable:
         small(
             look, "The mesh is still that of before: this cut-out gives none. Change it, or undo."
         )

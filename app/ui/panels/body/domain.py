@@ -39,8 +39,8 @@ def draw(session: Session, look: Look, project: Project) -> list[Action]:
     heading(look, "Facts")
     _facts(look, project)
     heading(look, "Rebuild")
-    figure = project.figure
-    draft = project.meshing or figure.meshing
+    layer = project.layer
+    draft = project.meshing or layer.meshing
     chosen = _settings(look, draft)
     if chosen != draft:
         actions.append(do(viewing.draft_meshing, chosen))
@@ -50,12 +50,12 @@ def draw(session: Session, look: Look, project: Project) -> list[Action]:
         if progress(renewal.progress, renewal.now):
             actions.append(do(rebuilding.cancel))
     else:
-        is_new = chosen != figure.meshing and renewal is None
+        is_new = chosen != layer.meshing and renewal is None
         text = f"{icons.ICON_FA_ARROWS_ROTATE}  Rebuild###rebuild"
         if main_button(look, text, FILL, enabled=is_new):
             actions.append(do(rebuilding.rebuild))
         if is_new and imgui.button("Revert###forget", ImVec2(FILL, 0)):
-            actions.append(do(viewing.draft_meshing, figure.meshing))
+            actions.append(do(viewing.draft_meshing, layer.meshing))
     small(look, "Handles stay, and every key is posed again. Undo brings all of it back.")
     return actions
 
@@ -74,7 +74,7 @@ def _toggles(overlays: Overlays) -> list[Action]:
 
 
 def _facts(look: Look, project: Project) -> None:
-    domain = project.figure.domain
+    domain = project.layer.domain
     close = ImVec2(imgui.get_style().item_spacing.x, 0.0)
     imgui.push_style_var(imgui.StyleVar_.item_spacing, close)
     width, height = project.document.canvas

@@ -3,7 +3,7 @@
 import numpy as np
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
-from app.document import Figure
+from app.document import Layer
 from app.editor import Action, MaterialTool, Project, Session, do
 from app.editor.actions import cutting, material, posing, rebuilding, viewing
 from app.ui.panels.body.cut_out import BRUSHES
@@ -36,18 +36,18 @@ TOOLS: tuple[tuple[MaterialTool, str, str, str], ...] = (
 
 def draw(session: Session, look: Look, project: Project) -> list[Action]:
     """Draw the brush, the bones, and what brings their effect into keys that are there."""
-    figure = project.figure
+    layer = project.layer
     heading(look, "Brush", framed=True)
     at_end(1.15 * imgui.get_frame_height())
-    hint, is_painted = "Take back all that is painted; bones stay", figure.stiffness is not None
+    hint, is_painted = "Take back all that is painted; bones stay", layer.stiffness is not None
     actions = [] if session.tint == "stiffness" else [do(viewing.tint, "stiffness")]
     if icon_button(look, icons.ICON_FA_TRASH, "clear material", hint, enabled=is_painted):
         actions.append(do(material.clear))
     actions += _tools(session, look) + _brush(session, look, project)
     heading(look, "Bones", framed=True)
-    actions += _bones(look, figure)
-    heading(look, "Whole figure")
-    actions += _whole(figure)
+    actions += _bones(look, layer)
+    heading(look, "Whole layer")
+    actions += _whole(layer)
     heading(look, "Keys")
     return actions + _keys(session, look, project)
 
@@ -87,22 +87,22 @@ def _brush(session: Session, look: Look, project: Project) -> list[Action]:
         actions.append(do(material.set_softness, entered.value))
     small(look, "It acts on the outline within its radius, and by that as deep as a limb is thick.")
     if session.material == "stiff":
-        small(look, _promise(project.figure, session.strength))
+        small(look, _promise(project.layer, session.strength))
     return actions
 
 
-def _bones(look: Look, figure: Figure) -> list[Action]:
-    if not figure.bones:
+def _bones(look: Look, layer: Layer) -> list[Action]:
+    if not layer.bones:
         small(look, "None yet. With “Bone” in hand, drag from a handle to the next one.")
         return []
     actions: list[Action] = []
-    is_shown = any(bone.is_shown for bone in figure.bones)
+    is_shown = any(bone.is_shown for bone in layer.bones)
     at_end(1.15 * imgui.get_frame_height())
     eye = icons.ICON_FA_EYE if is_shown else icons.ICON_FA_EYE_SLASH
     if icon_button(look, eye, "show bones", "Show the bones, or hide them: they act either way"):
         actions.append(do(material.show_bones, shown=not is_shown))
-    for bone in figure.bones:
-        first, second = (figure.handle(identity).name for identity in bone.ends)
+    for bone in layer.bones:
+        first, second = (layer.handle(identity).name for identity in bone.ends)
         name = f"{first} – {second}"
         imgui.push_id(str(bone.ends))
         imgui.align_text_to_frame_padding()
@@ -114,16 +114,16 @@ def _bones(look: Look, figure: Figure) -> list[Action]:
         entered = slider(look, "amount", bone.amount, AMOUNTS, text="%.1f ×", hint=hint)
         if entered is not None:
             actions.append(do(material.set_bone, bone.ends, entered.value))
-        small(look, _promise(figure, bone.amount))
+        small(look, _promise(layer, bone.amount))
         imgui.pop_id()
     return actions
 
 
-def _promise(figure: Figure, amount: float) -> str:
-    """Return in words what new poses keep to where a figure is so stiff all around."""
+def _promise(layer: Layer, amount: float) -> str:
+    """Return in words what new poses keep to where a layer is so stiff all around."""
     if amount <= 1:
-        return "It gives way first, within the limits of the figure."
-    limits = figure.bounds.stiffened(np.array([amount]))
+        return "It gives way first, within the limits of the layer."
+    limits = layer.bounds.stiffened(np.array([amount]))
     fields = limits.k, limits.sigma_a, limits.sigma_b
     shear, stretch, squeeze = (float(np.ravel(each)[0]) for each in fields)
     return (
@@ -132,15 +132,15 @@ def _promise(figure: Figure, amount: float) -> str:
     )
 
 
-def _whole(figure: Figure) -> list[Action]:
+def _whole(layer: Layer) -> list[Action]:
     actions: list[Action] = []
     widths = beside(2)
     hint = "Heads, hands and feet stiff, tails and hair soft, by the names of the handles"
     text = f"{icons.ICON_FA_WAND_MAGIC_SPARKLES}  By names"
-    if text_button(text, next(widths), hint, enabled=bool(figure.handles)):
+    if text_button(text, next(widths), hint, enabled=bool(layer.handles)):
         actions.append(do(material.suggest))
     hint = "Give both sides of the mirror axis what one of them has"
-    is_any = figure.stiffness is not None or bool(figure.bones)
+    is_any = layer.stiffness is not None or bool(layer.bones)
     text = f"{icons.ICON_FA_ARROWS_LEFT_RIGHT}  Mirror"
     if text_button(text, next(widths), hint, enabled=is_any):
         actions.append(do(material.mirror))
@@ -153,7 +153,7 @@ def _keys(session: Session, look: Look, project: Project) -> list[Action]:
     if renewal is not None and renewal.into is None:
         return [do(rebuilding.cancel)] if progress(renewal.progress, renewal.now) else []
     actions: list[Action] = []
-    is_possible = renewal is None and bool(project.figure.handles)
+    is_possible = renewal is None and bool(project.layer.handles)
     is_here = is_possible and posing.pose_here(session, project) is not None
     widths = beside(2)
     hint = "Pull the handles of the pose that is shown to their targets again"

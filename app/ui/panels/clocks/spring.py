@@ -5,7 +5,7 @@ from typing import Any
 
 from imgui_bundle import icons_fontawesome_6 as icons, imgui
 
-from app.document import SPRINGS, Figure, Handle, Spring, root_of, track_commands
+from app.document import SPRINGS, Handle, Layer, Spring, root_of, track_commands
 from app.editor import Action, Project, do
 from app.editor.actions import editing, springs
 from app.ui.style import (
@@ -43,13 +43,13 @@ NUMBERS = (
 
 def draw_spring(look: Look, project: Project, handle: Handle) -> list[Action]:
     """Draw how a handle follows, if it does, and what it swings like."""
-    spring, actions = project.figure.spring_of(handle.id), list[Action]()
+    spring, actions = project.layer.spring_of(handle.id), list[Action]()
     heading(look, "Follows", framed=True)
     if spring is not None:
         at_end(1.15 * imgui.get_frame_height())
         if icon_button(look, icons.ICON_FA_TRASH, "delete spring", "Let it follow no longer"):
             command = track_commands.remove_springs
-            actions.append(do(editing.edit_figure, command, (handle.id,)))
+            actions.append(do(editing.edit_layer, command, (handle.id,)))
     label(look, "Like")
     names = [(name, name.capitalize()) for name in SPRINGS]
     taken = segments(look, "preset", names, "" if spring is None else _preset(spring))
@@ -61,7 +61,7 @@ def draw_spring(look: Look, project: Project, handle: Handle) -> list[Action]:
     if spring is None:
         small(look, "It follows the shape at once. Choose what it swings like.")
         return actions
-    track = project.figure.track_of(handle.id)
+    track = project.layer.track_of(handle.id)
     if track is not None and track.enabled:
         small(look, "Its track comes first: the spring waits until that is off.")
     label(look, "Spring")
@@ -69,7 +69,7 @@ def draw_spring(look: Look, project: Project, handle: Handle) -> list[Action]:
     tip("Whether it follows so; its numbers stay")
     if changed:
         actions.append(_set(replace(spring, enabled=enabled)))
-    actions += _root(look, project.figure, spring)
+    actions += _root(look, project.layer, spring)
     for field, text, scale, written, hint in NUMBERS:
         label(look, text)
         entered = slider(look, field, getattr(spring, field), scale, text=written, hint=hint)
@@ -102,16 +102,16 @@ def _allowed(field: str, value: float) -> float:
     return min(max(round(value, 3), least), most)
 
 
-def _root(look: Look, figure: Figure, spring: Spring) -> list[Action]:
+def _root(look: Look, layer: Layer, spring: Spring) -> list[Action]:
     """Draw about which handle it swings, and what chooses another one."""
     actions: list[Action] = []
-    nearest = root_of(figure, replace(spring, root=None))
-    nearest_name = NEAREST if nearest is None else f"{NEAREST}: {figure.handle(nearest).name}"
+    nearest = root_of(layer, replace(spring, root=None))
+    nearest_name = NEAREST if nearest is None else f"{NEAREST}: {layer.handle(nearest).name}"
     label(look, "Swings about")
     imgui.set_next_item_width(-1)
-    shown = nearest_name if spring.root is None else figure.handle(spring.root).name
+    shown = nearest_name if spring.root is None else layer.handle(spring.root).name
     if imgui.begin_combo("##root", shown):
-        names = [(handle.id, handle.name) for handle in figure.handles]
+        names = [(handle.id, handle.name) for handle in layer.handles]
         for root, name in [(None, nearest_name), *names]:
             if root != spring.handle and imgui.menu_item_simple(f"{name}###about {root}"):
                 actions.append(_set(replace(spring, root=root)))
@@ -123,7 +123,7 @@ def _root(look: Look, figure: Figure, spring: Spring) -> list[Action]:
 
 
 def _set(spring: Spring) -> Action:
-    return do(editing.edit_figure, track_commands.put_spring, spring)
+    return do(editing.edit_layer, track_commands.put_spring, spring)
 
 
 def _preset(spring: Spring) -> str:

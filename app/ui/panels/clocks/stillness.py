@@ -2,7 +2,7 @@
 
 from imgui_bundle import imgui
 
-from app.document import Handle, figure_commands, handle_commands
+from app.document import Handle, handle_commands, shape_commands
 from app.editor import Action, Project, do
 from app.editor.actions import editing
 from app.ui.style import FILL, Look, heading, small, text_button, tip
@@ -10,17 +10,17 @@ from app.ui.style import FILL, Look, heading, small, text_button, tip
 
 def draw_stillness(look: Look, project: Project, handle: Handle) -> list[Action]:
     """Draw whether a handle moves freely between keys, and what makes that void."""
-    figure, actions = project.figure, list[Action]()
+    layer, actions = project.layer, list[Action]()
     heading(look, "Between keys")
     changed, free = imgui.checkbox("Free between keys", handle.free)
     tip("Let it move between two keys that have it at one place; else it stays there")
     if changed:
         command = handle_commands.free_handles(project.active, frozenset({handle.id}), free=free)
         actions.append(do(editing.edit, command))
-    if not figure.stillness:
+    if not layer.stillness:
         small(look, "In this drawing no handle stays between keys.")
         hint = "Let handles stay in between where two keys have them at one place"
         if text_button("Let handles stay", FILL, hint):
-            command = figure_commands.set_stillness(project.active, stillness=True)
+            command = shape_commands.set_stillness(project.active, stillness=True)
             actions.append(do(editing.edit, command))
     return actions

@@ -31,7 +31,7 @@ KINDS = (("pose", "With the pose"), ("picture", "Planted"))
 
 def draw_track(session: Session, look: Look, project: Project, handle: Handle) -> list[Action]:
     """Draw the track of a handle, if it has one."""
-    track = project.figure.track_of(handle.id)
+    track = project.layer.track_of(handle.id)
     if track is None:
         return []
     heading(look, "Own track", framed=True)
@@ -40,7 +40,7 @@ def draw_track(session: Session, look: Look, project: Project, handle: Handle) -
     hint = "Delete the track: the handle moves with the whole pose again"
     if icon_button(look, icons.ICON_FA_TRASH, "delete track", hint):
         command = track_commands.remove_tracks
-        actions.append(do(editing.edit_figure, command, (handle.id,)))
+        actions.append(do(editing.edit_layer, command, (handle.id,)))
     _together(look, project, track)
     actions += _here(session, look, project, track)
     actions += _kind(look, project, handle, track) + _numbers(look, project, handle, track)
@@ -52,7 +52,7 @@ def draw_track(session: Session, look: Look, project: Project, handle: Handle) -
 def _together(look: Look, project: Project, track: Track) -> None:
     """Tell which handles a track moves, if they are several."""
     if len(track.handles) > 1:
-        names = ", ".join(project.figure.handle(identity).name for identity in track.handles)
+        names = ", ".join(project.layer.handle(identity).name for identity in track.handles)
         small(look, f"It moves {names} together.")
 
 
@@ -128,33 +128,33 @@ def _numbers(look: Look, project: Project, handle: Handle, track: Track) -> list
     entered = slider(look, "delay", float(track.delay), scale, text="%.0f", hint=hint)
     if entered is not None:
         delay = round(scale.clamp(entered.value) if project.document.loop else entered.value)
-        actions.append(do(editing.edit_figure, track_commands.set_delay, handle.id, delay))
+        actions.append(do(editing.edit_layer, track_commands.set_delay, handle.id, delay))
     label(look, "Reach")
     hint = "How far around the handle the body gives: 0 hardly, 1 as it likes"
     entered = slider(look, "reach", track.reach, REACHES, hint=hint)
     if entered is not None:
         reach = round(REACHES.clamp(entered.value), 2)
-        actions.append(do(editing.edit_figure, track_commands.set_reach, handle.id, reach))
+        actions.append(do(editing.edit_layer, track_commands.set_reach, handle.id, reach))
     return actions
 
 
 def _copies(project: Project, handle: Handle) -> list[Action]:
     """Draw what gives another handle the same track."""
     actions: list[Action] = []
-    widths, figure = beside(2), project.figure
+    widths, layer = beside(2), project.layer
     imgui.set_next_item_width(next(widths))
     if imgui.begin_combo("##copy track", "Copy to…"):
-        for other in figure.handles:
+        for other in layer.handles:
             if other.id == handle.id:
                 continue
-            mark = "" if figure.track_of(other.id) is None else "  (has one)"
+            mark = "" if layer.track_of(other.id) is None else "  (has one)"
             if imgui.menu_item_simple(f"{other.name}{mark}###copy to {other.id}"):
                 command = track_commands.copy_track
-                actions.append(do(editing.edit_figure, command, handle.id, other.id))
+                actions.append(do(editing.edit_layer, command, handle.id, other.id))
         imgui.end_combo()
     tip("Give another handle the same track, in place of its own")
     words = project.document.pairs
-    partners = partners_of(figure.handles, figure.axis, figure.domain.outline, words)
+    partners = partners_of(layer.handles, layer.axis, layer.domain.outline, words)
     is_pair = partners.get(handle.id, handle.id) != handle.id
     hint = (
         "Give its partner on the other side the mirrored track"
@@ -162,7 +162,7 @@ def _copies(project: Project, handle: Handle) -> list[Action]:
         else "Mirror its track: no partner on the other side was found by name or place"
     )
     if text_button("Mirror track" if not is_pair else "Copy mirrored", next(widths), hint):
-        actions.append(do(editing.edit_figure, track_commands.mirror_track, handle.id, words))
+        actions.append(do(editing.edit_layer, track_commands.mirror_track, handle.id, words))
     return actions
 
 
@@ -170,5 +170,5 @@ def _out_of_reach(session: Session, look: Look, project: Project, handle: Handle
     """Tell by how much the handle misses its track in the present frame, where it does."""
     frame, corrected = playback.current_frame(session, project), project.puppet.corrected
     miss = corrected.misses.get(frame, {}).get(handle.id, 0.0) if corrected else 0.0
-    if falls_short(project.figure, miss):
+    if falls_short(project.layer, miss):
         small(look, f"{miss:.0f} px short of its track here.", look.palette.danger)

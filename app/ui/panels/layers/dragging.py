@@ -19,11 +19,11 @@ def drag_row(look: Look, project: Project, row: TreeRow, low: ImVec2, high: ImVe
     """
     actions: list[Action] = []
     if imgui.begin_drag_drop_source():
-        imgui.set_drag_drop_payload_py_id(MOVED, row.figures[0])
-        if row.figure is None and set(project.selected_layers) != set(row.figures):
-            actions.append(do(layering.choose_all, *row.figures))
-        dragged = _dragged(project, row.figures[0])
-        imgui.text(row.name if set(dragged) <= set(row.figures) else f"{len(dragged)} layers")
+        imgui.set_drag_drop_payload_py_id(MOVED, row.layers[0])
+        if row.layer is None and set(project.selected_layers) != set(row.layers):
+            actions.append(do(layering.choose_all, *row.layers))
+        dragged = _dragged(project, row.layers[0])
+        imgui.text(row.name if set(dragged) <= set(row.layers) else f"{len(dragged)} layers")
         imgui.end_drag_drop_source()
     if not imgui.begin_drag_drop_target():
         return actions
@@ -36,15 +36,15 @@ def drag_row(look: Look, project: Project, row: TreeRow, low: ImVec2, high: ImVe
     elif payload is not None:
         share = (imgui.get_mouse_pos().y - low.y) / max(high.y - low.y, 1.0)
         onto = _onto(project, row, payload.data_id)
-        is_onto = onto is not None and (ONTO < share < 1 - ONTO or row.figure is None)
+        is_onto = onto is not None and (ONTO < share < 1 - ONTO or row.layer is None)
         _show(look, low, high, is_onto=is_onto, is_above=share < 0.5)
         if is_onto and _is_circle(project, row, payload.data_id):
             imgui.set_mouse_cursor(imgui.MouseCursor_.not_allowed)
         if imgui.is_mouse_released(imgui.MouseButton_.left):
             if is_onto and onto is not None:
                 actions.append(onto)
-            elif row.figure is not None:
-                actions += _beside(project, row.figure.id, payload.data_id, is_above=share < 0.5)
+            elif row.layer is not None:
+                actions += _beside(project, row.layer.id, payload.data_id, is_above=share < 0.5)
     imgui.end_drag_drop_target()
     return actions
 
@@ -57,20 +57,20 @@ def _dragged(project: Project, identity: int) -> tuple[int, ...]:
 def _onto(project: Project, row: TreeRow, identity: int) -> Action | None:
     """Return what a drop of layers onto a row does; None where it can do nothing."""
     dragged = _dragged(project, identity)
-    if set(row.figures) <= set(dragged):
+    if set(row.layers) <= set(dragged):
         return None
     if row.group is not None:
         return do(layering.take_in, row.group.name, *dragged)
     if row.choice is not None:
         return do(layering.join, row.choice.name, *dragged)
     # Where that would be a circle, it says so, and nothing moves.
-    return do(layering.hang_together, row.figures[0], *dragged)
+    return do(layering.hang_together, row.layers[0], *dragged)
 
 
 def _is_circle(project: Project, row: TreeRow, identity: int) -> bool:
     """Tell whether layers would hang on a row that hangs on one of them."""
-    return row.figure is not None and any(
-        layering.hangs_on(project, row.figure.id, each) for each in _dragged(project, identity)
+    return row.layer is not None and any(
+        layering.hangs_on(project, row.layer.id, each) for each in _dragged(project, identity)
     )
 
 

@@ -4,7 +4,7 @@ import math
 
 from imgui_bundle import imgui
 
-from app.document import Document, Figure, keyed_frame, movement_at, opacity_at, placing_at
+from app.document import Document, Layer, keyed_frame, movement_at, opacity_at, placing_at
 from app.editor import Action, do, layering
 from app.ui.style import FILL, Look, Scale, label, number, slider, small, text_button, tip
 
@@ -12,36 +12,36 @@ PERCENT = Scale(left=0, right=100)
 HOW = {"right": "goes right", "up": "goes up", "turn": "turns, counter-clockwise"}
 
 
-def draw_opacity(document: Document, look: Look, figure: Figure, frame: int) -> list[Action]:
+def draw_opacity(document: Document, look: Look, layer: Layer, frame: int) -> list[Action]:
     """Draw how opaque a layer is at a frame, and what keys it there."""
-    actions, opacity = [], opacity_at(document, figure, frame)
+    actions, opacity = [], opacity_at(document, layer, frame)
     label(look, "Opacity")
     hint = "How much of what lies behind is covered"
-    if figure.opacities:
+    if layer.opacities:
         hint += "; a change is a key at this frame"
     faded = slider(look, "opacity", 100 * opacity, PERCENT, text="%.0f %%", hint=hint)
     if faded is not None:
-        fade = layering.fade_here if figure.opacities else layering.fade
-        actions.append(do(fade, figure.id, min(max(faded.value / 100, 0.0), 1.0)))
-    keyed = keyed_frame(figure, figure.opacities, frame)
-    is_keyed = any(key.frame == keyed for key in figure.opacities)
+        fade = layering.fade_here if layer.opacities else layering.fade
+        actions.append(do(fade, layer.id, min(max(faded.value / 100, 0.0), 1.0)))
+    keyed = keyed_frame(layer, layer.opacities, frame)
+    is_keyed = any(key.frame == keyed for key in layer.opacities)
     changed, _ = imgui.checkbox("Opacity keyed here", is_keyed)
     tip("It fades evenly from key to key")
     if changed and is_keyed:
-        actions.append(do(layering.unfade_here, figure.id))
+        actions.append(do(layering.unfade_here, layer.id))
     elif changed:
-        actions.append(do(layering.fade_here, figure.id, opacity))
+        actions.append(do(layering.fade_here, layer.id, opacity))
     return actions
 
 
-def draw_movement(document: Document, look: Look, figure: Figure, frame: int) -> list[Action]:
+def draw_movement(document: Document, look: Look, layer: Layer, frame: int) -> list[Action]:
     """Draw by how much a whole layer is moved and turned at a frame, which keys it there."""
-    if figure.hangs and not figure.movement:
+    if layer.hangs and not layer.movement:
         return []
     actions: list[Action] = []
-    moved = movement_at(document, figure, frame)
+    moved = movement_at(document, layer, frame)
     turn = math.degrees(math.atan2(moved.factor.imag, moved.factor.real))
-    shift = moved.shift - (1 - moved.factor) * figure.pivot
+    shift = moved.shift - (1 - moved.factor) * layer.pivot
     entered: dict[str, float] = {}
     label(look, "Moved by")
     each = (imgui.get_content_region_avail().x - 2 * imgui.get_style().item_inner_spacing.x) / 3
@@ -61,36 +61,36 @@ def draw_movement(document: Document, look: Look, figure: Figure, frame: int) ->
     if entered:
         right, up = entered.get("right", shift.real), entered.get("up", shift.imag)
         radians = math.radians(entered.get("turn", turn))
-        actions.append(do(layering.move_here, figure.id, complex(right, up), radians))
-    keyed = keyed_frame(figure, figure.movement, frame)
-    if any(key.frame == keyed for key in figure.movement) and text_button(
+        actions.append(do(layering.move_here, layer.id, complex(right, up), radians))
+    keyed = keyed_frame(layer, layer.movement, frame)
+    if any(key.frame == keyed for key in layer.movement) and text_button(
         f"No movement key at frame {keyed}", FILL, "It goes on between the keys around"
     ):
-        actions.append(do(layering.unmove_here, figure.id))
-    if figure.hangs and figure.movement:
+        actions.append(do(layering.unmove_here, layer.id))
+    if layer.hangs and layer.movement:
         small(look, "While it hangs on another layer it is moved by that one alone.")
     return actions
 
 
-def draw_order(document: Document, look: Look, figure: Figure, frame: int) -> list[Action]:
+def draw_order(document: Document, look: Look, layer: Layer, frame: int) -> list[Action]:
     """Draw beside which layer a layer is painted from the present frame on."""
-    others = [each for each in reversed(document.figures) if each is not figure]
+    others = [each for each in reversed(document.layers) if each is not layer]
     if not others:
         return []
     actions: list[Action] = []
-    now = placing_at(document, figure, frame)
-    beside = None if now is None or now.beside is None else document.figure(now.beside)
+    now = placing_at(document, layer, frame)
+    beside = None if now is None or now.beside is None else document.layer(now.beside)
     words = "where it lies"
     if now is not None and beside is not None:
         words = f"{'in front of' if now.in_front else 'behind'} {beside.name}"
     label(look, "Painted")
     if imgui.begin_combo("##painted", words):
         if imgui.selectable("where it lies", beside is None)[0] and beside is not None:
-            actions.append(do(layering.place_here, figure.id, None))
+            actions.append(do(layering.place_here, layer.id, None))
         for in_front, word in ((True, "in front of"), (False, "behind")):
             imgui.separator()
             actions += [
-                do(layering.place_here, figure.id, each.id, in_front)
+                do(layering.place_here, layer.id, each.id, in_front)
                 for each in others
                 if imgui.selectable(
                     f"{word} {each.name}###{word} {each.id}",
@@ -99,8 +99,8 @@ def draw_order(document: Document, look: Look, figure: Figure, frame: int) -> li
             ]
         imgui.end_combo()
     tip(f"From frame {frame} on, until it is said otherwise")
-    if any(each.frame == frame for each in figure.placings) and text_button(
+    if any(each.frame == frame for each in layer.placings) and text_button(
         f"No change of order at frame {frame}", FILL, "What was said before it holds on"
     ):
-        actions.append(do(layering.unplace_here, figure.id))
+        actions.append(do(layering.unplace_here, layer.id))
     return actions

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from imgui_bundle import icons_fontawesome_6 as icons, imgui
 
-from app.document import Choice, Figure, Group, TreeRow, whole_groups
+from app.document import Choice, Group, Layer, TreeRow, whole_groups
 from app.editor import Action, Project, do, layering
 from app.ui.shortcuts import BINDINGS
 from app.ui.style import tip
@@ -18,8 +18,8 @@ def draw_menu(project: Project, row: TreeRow) -> tuple[list[Action], bool]:
     if not imgui.begin_popup_context_item(f"menu of layer {row.key}"):
         return [], False
     asks = item("Rename…", icons.ICON_FA_PEN, BINDINGS["rename layer"].keys_in_words)
-    if row.figure is not None:
-        actions = _of_layer(project, row.figure)
+    if row.layer is not None:
+        actions = _of_layer(project, row.layer)
     elif row.choice is not None:
         actions = _of_choice(project, row.choice)
     else:
@@ -37,9 +37,9 @@ def kept_whole(groups: Sequence[str]) -> str:
     )
 
 
-def _of_layer(project: Project, figure: Figure) -> list[Action]:
+def _of_layer(project: Project, layer: Layer) -> list[Action]:
     actions: list[Action] = []
-    identity, chosen = figure.id, project.selected_layers
+    identity, chosen = layer.id, project.selected_layers
     is_many = len(chosen) > 1 and identity in chosen
     whom = chosen if is_many else (identity,)
     many = f" {len(chosen)} layers" if is_many else ""
@@ -49,40 +49,40 @@ def _of_layer(project: Project, figure: Figure) -> list[Action]:
         if item("Replace picture…", icons.ICON_FA_FILE_IMAGE):
             actions.append(do(layering.ask_replace, identity))
     imgui.separator()
-    if item(("Show" if figure.hidden else "Hide") + many, icons.ICON_FA_EYE):
+    if item(("Show" if layer.hidden else "Hide") + many, icons.ICON_FA_EYE):
         actions.append(do(layering.show, *whom))
-    if item(("Unlock" if figure.locked else "Lock") + many, icons.ICON_FA_LOCK):
+    if item(("Unlock" if layer.locked else "Lock") + many, icons.ICON_FA_LOCK):
         actions.append(do(layering.lock, *whom))
     alone = project.solo == set(whom)
     if item("Look at all again" if alone else f"Look at{many or ' it'} alone", SOLO):
         actions.append(do(layering.look_at_alone, *whom))
     if not is_many:
-        actions += _kind(figure)
+        actions += _kind(layer)
     imgui.separator()
     if item("Put in a group", icons.ICON_FA_FOLDER_PLUS, enabled=is_many or not project.beside):
         actions.append(do(layering.choose_all, *whom))
         actions.append(do(layering.group_together))
-    if figure.group and item("Take out of the group", icons.ICON_FA_FOLDER_MINUS):
-        actions.append(do(layering.group, figure.group.rpartition("/")[0], *whom))
+    if layer.group and item("Take out of the group", icons.ICON_FA_FOLDER_MINUS):
+        actions.append(do(layering.group, layer.group.rpartition("/")[0], *whom))
     free = is_many and all(project.document.choice_of(each) is None for each in chosen)
     if item("Let them take turns", icons.ICON_FA_MASKS_THEATER, enabled=free):
         actions.append(do(layering.form, *chosen))
     if project.document.choice_of(identity) and item("Take out of the choice", icons.ICON_FA_XMARK):
         actions.append(do(layering.leave, identity))
     imgui.separator()
-    left = len(project.document.figures) > len(whom)
+    left = len(project.document.layers) > len(whom)
     if item(f"Delete{many}", icons.ICON_FA_TRASH, enabled=left):
         actions.append(do(layering.remove, *whom))
     return actions
 
 
-def _kind(figure: Figure) -> list[Action]:
+def _kind(layer: Layer) -> list[Action]:
     actions: list[Action] = []
-    if item("Take into exports" if figure.reference else "Reference only", icons.ICON_FA_BAN):
-        actions.append(do(layering.refer, figure.id))
-    if item("Let it be posed" if figure.still else "Make it a still picture", icons.ICON_FA_IMAGE):
-        turn = layering.stand_up if figure.still else layering.stand_still
-        actions.append(do(turn, figure.id))
+    if item("Take into exports" if layer.reference else "Reference only", icons.ICON_FA_BAN):
+        actions.append(do(layering.refer, layer.id))
+    if item("Let it be posed" if layer.still else "Make it a still picture", icons.ICON_FA_IMAGE):
+        turn = layering.stand_up if layer.still else layering.stand_still
+        actions.append(do(turn, layer.id))
     return actions
 
 
@@ -90,8 +90,8 @@ def _of_choice(project: Project, choice: Choice) -> list[Action]:
     imgui.separator()
     actions = [
         do(layering.show_here, identity)
-        for identity in choice.figures
-        if item(f"Show {project.document.figure(identity).name}", icons.ICON_FA_CIRCLE_DOT)
+        for identity in choice.layers
+        if item(f"Show {project.document.layer(identity).name}", icons.ICON_FA_CIRCLE_DOT)
     ]
     imgui.separator()
     if item("Let them take turns no more", icons.ICON_FA_XMARK):
@@ -103,21 +103,21 @@ def _of_group(project: Project, row: TreeRow, group: Group) -> list[Action]:
     actions: list[Action] = []
     imgui.separator()
     if item("Choose all layers in it", icons.ICON_FA_LIST_CHECK):
-        actions.append(do(layering.choose_all, *row.figures))
+        actions.append(do(layering.choose_all, *row.layers))
     if item("Show" if group.hidden else "Hide", icons.ICON_FA_EYE):
         actions.append(do(layering.show_group, group.name))
-    locked = all(project.document.figure(each).locked for each in row.figures)
+    locked = all(project.document.layer(each).locked for each in row.layers)
     if item("Unlock" if locked else "Lock", icons.ICON_FA_LOCK):
-        actions.append(do(layering.lock, *row.figures))
-    alone = project.solo == set(row.figures)
+        actions.append(do(layering.lock, *row.layers))
+    alone = project.solo == set(row.layers)
     if item("Look at all again" if alone else "Look at it alone", SOLO):
-        actions.append(do(layering.look_at_alone, *row.figures))
+        actions.append(do(layering.look_at_alone, *row.layers))
     whole = whole_groups(project.document, group.name)
-    free = len(row.figures) > 1 and all(
-        project.document.choice_of(each) is None for each in row.figures
+    free = len(row.layers) > 1 and all(
+        project.document.choice_of(each) is None for each in row.layers
     )
     if item("Let its layers take turns", icons.ICON_FA_MASKS_THEATER, enabled=free and not whole):
-        actions.append(do(layering.form, *row.figures, name=row.name))
+        actions.append(do(layering.form, *row.layers, name=row.name))
     if whole:
         tip(kept_whole(whole))
     imgui.separator()

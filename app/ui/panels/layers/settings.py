@@ -2,7 +2,7 @@
 
 from imgui_bundle import ImVec2, imgui
 
-from app.document import BLENDS, Choice, Document, Figure, Group, is_visible, with_repeats
+from app.document import BLENDS, Choice, Document, Group, Layer, is_visible, with_repeats
 from app.editor import Action, Project, do, layering
 from app.ui.panels.layers.in_time import draw_movement, draw_opacity, draw_order
 from app.ui.style import (
@@ -22,41 +22,41 @@ PERCENT = Scale(left=0, right=100)
 NOTHING = "nothing"
 
 
-def draw_settings(project: Project, look: Look, figure: Figure, frame: int) -> list[Action]:
+def draw_settings(project: Project, look: Look, layer: Layer, frame: int) -> list[Action]:
     """Draw the settings of a layer at a frame."""
     actions = []
-    identity = figure.id
+    identity = layer.id
     label(look, "Name")
     entered, name = imgui.input_text(
-        "##layer name", figure.name, imgui.InputTextFlags_.enter_returns_true
+        "##layer name", layer.name, imgui.InputTextFlags_.enter_returns_true
     )
-    if entered or (imgui.is_item_deactivated_after_edit() and name != figure.name):
+    if entered or (imgui.is_item_deactivated_after_edit() and name != layer.name):
         actions.append(do(layering.rename, identity, name))
-    actions += draw_opacity(project.document, look, figure, frame)
+    actions += draw_opacity(project.document, look, layer, frame)
     label(look, "Blend")
-    if imgui.begin_combo("##blend", figure.blend):
+    if imgui.begin_combo("##blend", layer.blend):
         actions += [
             do(layering.blend, identity, blend)
             for blend in BLENDS
-            if imgui.selectable(blend, blend == figure.blend)[0]
+            if imgui.selectable(blend, blend == layer.blend)[0]
         ]
         imgui.end_combo()
     tip("How its colours meet those of what lies behind: multiply darkens, screen lightens")
-    changed, _ = imgui.checkbox("Clipped", figure.clipped)
+    changed, _ = imgui.checkbox("Clipped", layer.clipped)
     tip("Seen only where that is which lies below it in its group")
     if changed:
         actions.append(do(layering.clip, identity))
-    for group in project.document.groups_around(figure.group):
+    for group in project.document.groups_around(layer.group):
         actions += _group(look, group)
-    changed, _ = imgui.checkbox("Reference only", figure.reference)
+    changed, _ = imgui.checkbox("Reference only", layer.reference)
     tip("Seen while you work, left out of exports")
     if changed:
         actions.append(do(layering.refer, identity))
-    actions += _switch(project.document, look, figure, frame)
-    actions += _joint(project, look, figure, frame)
-    actions += draw_movement(project.document, look, figure, frame)
-    actions += draw_order(project.document, look, figure, frame)
-    if figure.still:
+    actions += _switch(project.document, look, layer, frame)
+    actions += _joint(project, look, layer, frame)
+    actions += draw_movement(project.document, look, layer, frame)
+    actions += draw_order(project.document, look, layer, frame)
+    if layer.still:
         small(look, "A still picture: it is shown as it was drawn.")
         if imgui.button("Let it be posed", ImVec2(FILL, 0)):
             actions.append(do(layering.stand_up, identity))
@@ -81,15 +81,15 @@ def _group(look: Look, group: Group) -> list[Action]:
     return actions
 
 
-def _switch(document: Document, look: Look, figure: Figure, frame: int) -> list[Action]:
+def _switch(document: Document, look: Look, layer: Layer, frame: int) -> list[Action]:
     """Draw what shows or hides a layer from the present frame on."""
-    choice = document.choice_of(figure.id)
+    choice = document.choice_of(layer.id)
     if choice is not None:
-        return _turns(document, look, choice, figure, frame)
+        return _turns(document, look, choice, layer, frame)
     actions = []
-    is_seen = is_visible(document, figure, frame)
+    is_seen = is_visible(document, layer, frame)
     text = f"{'Hide' if is_seen else 'Show'} from frame {frame} on"
-    is_put_away = figure.hidden or document.is_in_hidden(figure)
+    is_put_away = layer.hidden or document.is_in_hidden(layer)
     hint = (
         "It is hidden at all times now: switched instead, it is hidden until here and seen from "
         "here on"
@@ -97,55 +97,55 @@ def _switch(document: Document, look: Look, figure: Figure, frame: int) -> list[
         else "For props that come and go; what is in one place takes turns by a choice"
     )
     if text_button(text, FILL, hint):
-        actions.append(do(layering.switch_here, figure.id))
-    is_switched = any(switch.frame == frame for switch in figure.switches)
+        actions.append(do(layering.switch_here, layer.id))
+    is_switched = any(switch.frame == frame for switch in layer.switches)
     if is_switched and imgui.button(f"No change at frame {frame}", ImVec2(FILL, 0)):
-        actions.append(do(layering.unswitch_here, figure.id))
-    if figure.switches:
-        told = (f"{'shown' if s.visible else 'hidden'} from {s.frame}" for s in figure.switches)
+        actions.append(do(layering.unswitch_here, layer.id))
+    if layer.switches:
+        told = (f"{'shown' if s.visible else 'hidden'} from {s.frame}" for s in layer.switches)
         small(look, "This layer is " + ", ".join(told) + ".")
     return actions
 
 
 def _turns(
-    document: Document, look: Look, choice: Choice, figure: Figure, frame: int
+    document: Document, look: Look, choice: Choice, layer: Layer, frame: int
 ) -> list[Action]:
     """Draw which layer of a choice is seen from the present frame on."""
     actions = []
     label(look, shortened(choice.name, (LABEL_WIDTH - 0.5) * look.em))
     seen = with_repeats(document, choice).at(frame)
-    if imgui.begin_combo("##turn", document.figure(seen).name):
+    if imgui.begin_combo("##turn", document.layer(seen).name):
         actions += [
             do(layering.show_here, each)
-            for each in choice.figures
-            if imgui.selectable(f"{document.figure(each).name}###turn {each}", each == seen)[0]
+            for each in choice.layers
+            if imgui.selectable(f"{document.layer(each).name}###turn {each}", each == seen)[0]
         ]
         imgui.end_combo()
     tip(f"Which of these layers is seen from frame {frame} on")
     if text_button("Take it out of the choice", FILL, "It is seen when it was, by itself"):
-        actions.append(do(layering.leave, figure.id))
+        actions.append(do(layering.leave, layer.id))
     return actions
 
 
-def _joint(project: Project, look: Look, figure: Figure, frame: int) -> list[Action]:
+def _joint(project: Project, look: Look, layer: Layer, frame: int) -> list[Action]:
     """Draw what a layer hangs on at the present frame, and from which frames on."""
     document = project.document
 
-    def can_carry(other: Figure) -> bool:
-        return not layering.hangs_on(project, other.id, figure.id)
+    def can_carry(other: Layer) -> bool:
+        return not layering.hangs_on(project, other.id, layer.id)
 
-    if not figure.joints and not any(map(can_carry, document.figures)):
+    if not layer.joints and not any(map(can_carry, document.layers)):
         return []
     actions = []
-    joint = document.joint_at(figure, frame)
-    parent = None if joint is None or joint.to is None else document.figure(joint.to)
+    joint = document.joint_at(layer, frame)
+    parent = None if joint is None or joint.to is None else document.layer(joint.to)
     label(look, "Attached to")
     if imgui.begin_combo("##attached to", NOTHING if parent is None else parent.name):
         if imgui.selectable(NOTHING, parent is None)[0] and parent is not None:
-            actions.append(do(layering.let_hang, figure.id))
+            actions.append(do(layering.let_hang, layer.id))
         actions += [
-            do(layering.hang, figure.id, other.id)
-            for other in filter(can_carry, document.figures)
+            do(layering.hang, layer.id, other.id)
+            for other in filter(can_carry, document.layers)
             if imgui.selectable(f"{other.name}###parent {other.id}", other is parent)[0]
         ]
         imgui.end_combo()
@@ -153,41 +153,41 @@ def _joint(project: Project, look: Look, figure: Figure, frame: int) -> list[Act
     if joint is not None and parent is not None:
         changed, turns = imgui.checkbox("Turns with it", joint.turns)
         if changed:
-            actions.append(do(layering.turn_with, figure.id, turns))
+            actions.append(do(layering.turn_with, layer.id, turns))
     if frame > document.frames.first:
-        actions += _hand_over(project, look, figure, frame)
+        actions += _hand_over(project, look, layer, frame)
     return actions
 
 
-def _hand_over(project: Project, look: Look, figure: Figure, frame: int) -> list[Action]:
+def _hand_over(project: Project, look: Look, layer: Layer, frame: int) -> list[Action]:
     """Draw what lets a layer hang on something else from the present frame on."""
     actions: list[Action] = []
-    document, joint = project.document, figure.keyed_joint(frame)
+    document, joint = project.document, layer.keyed_joint(frame)
     now = None if joint is None else joint.to
     if text_button(f"Hand over from frame {frame} on…", FILL, "Nothing jumps at that frame"):
         imgui.open_popup("hand over")
     if imgui.begin_popup("hand over"):
         if imgui.menu_item_simple("Let it go", enabled=now is not None):
-            actions.append(do(layering.hand_over, figure.id, None))
-        for other in reversed([each for each in document.figures if each is not figure]):
-            is_circle = any(each is figure for each in document.carriers(other.id, frame))
+            actions.append(do(layering.hand_over, layer.id, None))
+        for other in reversed([each for each in document.layers if each is not layer]):
+            is_circle = any(each is layer for each in document.carriers(other.id, frame))
             name = f"To {other.name}###to {other.id}"
             if imgui.menu_item_simple(name, enabled=not is_circle and other.id != now):
-                actions.append(do(layering.hand_over, figure.id, other.id))
+                actions.append(do(layering.hand_over, layer.id, other.id))
             if is_circle:
-                tip(f"At frame {frame} it hangs on {figure.name} itself")
+                tip(f"At frame {frame} it hangs on {layer.name} itself")
             elif other.id == now:
                 tip(f"It hangs there already at frame {frame}")
         imgui.end_popup()
-    keyed = figure.joint_frame(frame)
-    if joint is not None and joint.frame == keyed and len(figure.joints) > 1:
+    keyed = layer.joint_frame(frame)
+    if joint is not None and joint.frame == keyed and len(layer.joints) > 1:
         hint = "What held it before goes on holding it"
         if text_button(f"No change at frame {keyed}###joint", FILL, hint):
-            actions.append(do(layering.take_back_joint, figure.id, keyed))
-    if len(figure.joints) > 1:
+            actions.append(do(layering.take_back_joint, layer.id, keyed))
+    if len(layer.joints) > 1:
         told = (
-            f"{'nothing' if each.to is None else document.figure(each.to).name} from {each.frame}"
-            for each in figure.joints
+            f"{'nothing' if each.to is None else document.layer(each.to).name} from {each.frame}"
+            for each in layer.joints
         )
         small(look, "It hangs on " + ", ".join(told) + ".")
     return actions

@@ -18,14 +18,14 @@ def draw(session: Session, look: Look, project: Project, pictures: SmallPictures
     """Draw the list of layers with their small pictures, and the settings of the chosen one."""
     actions = _summary(look, project) + _offers(look, project)
     actions += draw_tree(session, look, project, pictures)
-    if len(project.document.figures) == 1:
+    if len(project.document.layers) == 1:
         small(look, "Drop another picture here, or open an .ora or .psd file, for more layers.")
     renewal = project.renewal
     if renewal is not None and renewal.replaces and progress(renewal.progress, renewal.now):
         actions.append(do(rebuilding.cancel))
-    heading(look, shortened(project.figure.name, imgui.get_content_region_avail().x))
+    heading(look, shortened(project.layer.name, imgui.get_content_region_avail().x))
     frame = playback.current_frame(session, project)
-    return actions + draw_settings(project, look, project.figure, frame)
+    return actions + draw_settings(project, look, project.layer, frame)
 
 
 def _summary(look: Look, project: Project) -> list[Action]:
@@ -52,17 +52,17 @@ def _summary(look: Look, project: Project) -> list[Action]:
 def _offers(look: Look, project: Project) -> list[Action]:
     """Draw the offers to let layers of a group take turns, where it is named like mouths."""
     actions: list[Action] = []
-    for path, figures in alternates(project.document):
+    for path, layers in alternates(project.document):
         if path in project.declined:
             continue
         name = path.rpartition("/")[2]
         imgui.push_id(path)
-        small(look, f"The {len(figures)} layers of {name} look as if they took turns.")
+        small(look, f"The {len(layers)} layers of {name} look as if they took turns.")
         whole = whole_groups(project.document, path)
         if whole:
             small(look, f"{kept_whole(whole)}.")
         if imgui.button("Let them take turns"):
-            actions.append(do(layering.form, *figures, name=name))
+            actions.append(do(layering.form, *layers, name=name))
         imgui.same_line()
         if imgui.button("No"):
             actions.append(do(layering.decline, path))

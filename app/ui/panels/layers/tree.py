@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
-from app.document import Document, Figure, TreeRow, carried_by, is_visible, with_repeats
+from app.document import Document, Layer, TreeRow, carried_by, is_visible, with_repeats
 from app.editor import Action, Project, Session, do, layering
 from app.editor.actions import playback
 from app.render import Thumbnail
@@ -50,7 +50,7 @@ def draw_tree(
     clipper.begin(len(rows), pitch)
     for number, row in enumerate(rows):
         # The list is scrolled to the one that is posed, and to that whose name is asked for.
-        if row.figure and row.figure.id in {project.active, session.named_layer}:
+        if row.layer and row.layer.id in {project.active, session.named_layer}:
             clipper.include_item_by_index(number)
     while clipper.step():
         for row in rows[clipper.display_start : clipper.display_end]:
@@ -67,8 +67,8 @@ def draw_tree(
 def _bar(look: Look, project: Project) -> list[Action]:
     """Draw the buttons for whole layers."""
     actions: list[Action] = []
-    active, figures, chosen = project.active, project.document.figures, project.selected_layers
-    index, last = figures.index(project.figure), len(figures) - 1
+    active, layers, chosen = project.active, project.document.layers, project.selected_layers
+    index, last = layers.index(project.layer), len(layers) - 1
 
     def button(icon: str, name: str, hint: str, action: Action, *, enabled: bool = True) -> None:
         if icon_button(look, icon, name, hint, enabled=enabled):
@@ -99,21 +99,21 @@ def _row(
     session: Session, look: Look, project: Project, row: TreeRow, pictures: SmallPictures
 ) -> list[Action]:
     actions: list[Action] = []
-    em, figure = look.em, row.figure
+    em, layer = look.em, row.layer
     corner, height = imgui.get_cursor_screen_pos(), ROW * em
     # Below all that follows, which takes the pointer first.
     flags = imgui.SelectableFlags_.allow_overlap | imgui.SelectableFlags_.allow_double_click
-    is_chosen = set(project.selected_layers).issuperset(row.figures)
+    is_chosen = set(project.selected_layers).issuperset(row.layers)
     if imgui.selectable(f"###row {row.key}", is_chosen, flags, ImVec2(0, height))[0]:
         actions.append(_chosen(row))
     after = imgui.get_cursor_screen_pos()
     low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
-    is_active = figure is not None and figure.id == project.active
+    is_active = layer is not None and layer.id == project.active
     if is_active and project.listed != project.active and not imgui.is_item_visible():
         imgui.set_scroll_here_y(0.5)
-    if figure is not None and imgui.is_mouse_hovering_rect(low, high):
+    if layer is not None and imgui.is_mouse_hovering_rect(low, high):
         # While another program drags a file here, nothing else is hovered.
-        actions.append(do(layering.point_at, figure.id))
+        actions.append(do(layering.point_at, layer.id))
     is_named = imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton_.left)
     actions += drag_row(look, project, row, low, high)
     _tell(project.document, row)
@@ -123,7 +123,7 @@ def _row(
     imgui.set_cursor_screen_pos(ImVec2(corner.x, middle - imgui.get_frame_height() / 2))
     frame = playback.current_frame(session, project)
     actions += _switches(look, project, row, frame)
-    hung, told = (0, "") if figure is None else carried_by(project.document, figure, frame)
+    hung, told = (0, "") if layer is None else carried_by(project.document, layer, frame)
     depth = min(row.depth + hung, DEEPEST_INDENT)
     left = imgui.get_item_rect_max().x + (GAP + INDENT * depth) * em
     is_seen = _is_seen(project, row, frame)
@@ -140,9 +140,9 @@ def _row(
             box = ImVec2(left, low.y), ImVec2(left + WIDE * em, high.y)
             write_in(*box, icon, ink(look.palette.text if is_seen else look.palette.dim))
     start = left + (WIDE + GAP) * em
-    if figure is None:
+    if layer is None:
         # What is seen of a choice, and how many are in a group.
-        told = shown.name if row.choice is not None else f"{len(row.figures)}"
+        told = shown.name if row.choice is not None else f"{len(row.layers)}"
     _text(look, project, row, told, start, ImVec2(high.x, middle), is_seen=is_seen)
     imgui.set_cursor_screen_pos(after)
     return actions
@@ -152,28 +152,28 @@ def _chosen(row: TreeRow) -> Action:
     """Return what a click on a row chooses: with Ctrl beside others, with Shift all up to there."""
     io = imgui.get_io()
     if io.key_ctrl:
-        return do(layering.choose_too, *row.figures)
+        return do(layering.choose_too, *row.layers)
     if io.key_shift:
-        return do(layering.choose_up_to, row.figures[-1])
-    if row.figure is not None:
-        return do(layering.choose, row.figure.id)
-    return do(layering.choose_all, *row.figures)
+        return do(layering.choose_up_to, row.layers[-1])
+    if row.layer is not None:
+        return do(layering.choose, row.layer.id)
+    return do(layering.choose_all, *row.layers)
 
 
-def _shown(document: Document, row: TreeRow, frame: int) -> Figure:
+def _shown(document: Document, row: TreeRow, frame: int) -> Layer:
     """Return the layer whose picture a row has: of a choice, the one that is seen."""
     if row.choice is None:
-        return document.figure(row.figures[0])
-    return document.figure(with_repeats(document, row.choice).at(frame))
+        return document.layer(row.layers[0])
+    return document.layer(with_repeats(document, row.choice).at(frame))
 
 
 def _is_seen(project: Project, row: TreeRow, frame: int) -> bool:
     """Tell whether anything in a row is seen now."""
     document = project.document
     return any(
-        is_visible(document, document.figure(each), frame)
+        is_visible(document, document.layer(each), frame)
         and (not project.solo or each in project.solo)
-        for each in row.figures
+        for each in row.layers
     )
 
 
@@ -182,23 +182,23 @@ def _naming(
 ) -> list[Action]:
     """Draw the field for another name of a row, where it is asked for."""
     actions: list[Action] = []
-    document, figure = project.document, row.figure
-    if asks or (figure is not None and session.named_layer == figure.id):
+    document, layer = project.document, row.layer
+    if asks or (layer is not None and session.named_layer == layer.id):
         imgui.open_popup(f"name {row.key}")
         actions.append(do(layering.ask_name, None))
     imgui.set_next_window_pos(low)
     taken: Sequence[str] = ()
     kind = "layer"
-    if figure is not None:
-        taken = [other.name for other in document.figures if other is not figure]
+    if layer is not None:
+        taken = [other.name for other in document.layers if other is not layer]
     elif row.choice is not None:
         kind = "choice"
         taken = [other.name for other in document.choices if other is not row.choice]
     name = name_popup(look, f"name {row.key}", row.name, taken, kind)
     if name is None:
         return actions
-    if figure is not None:
-        return [*actions, do(layering.rename, figure.id, name)]
+    if layer is not None:
+        return [*actions, do(layering.rename, layer.id, name)]
     if row.choice is not None:
         return [*actions, do(layering.rename_choice, row.choice.name, name)]
     if row.group is not None:
@@ -211,10 +211,10 @@ def _tell(document: Document, row: TreeRow) -> None:
     if imgui.get_drag_drop_payload_py_id() is not None or not begin_tip():
         return
     imgui.text_unformatted(row.name)
-    if row.figure is not None:
-        for joint in row.figure.joints:
-            to = "nothing" if joint.to is None else document.figure(joint.to).name
-            since = f" from frame {joint.frame} on" if len(row.figure.joints) > 1 else ""
+    if row.layer is not None:
+        for joint in row.layer.joints:
+            to = "nothing" if joint.to is None else document.layer(joint.to).name
+            since = f" from frame {joint.frame} on" if len(row.layer.joints) > 1 else ""
             imgui.text_unformatted(f"Hangs on {to}{since}")
         imgui.text_disabled(
             "Drag it to change the order, or onto another row to hang it there, double-click to "
@@ -249,21 +249,21 @@ def _switches(look: Look, project: Project, row: TreeRow, frame: int) -> list[Ac
     """Draw the eye and the lock of a row; where layers take turns, a circle for the eye."""
     actions = []
     document = project.document
-    figures = [document.figure(each) for each in row.figures]
-    choice = None if row.figure is None else document.choice_of(row.figure.id)
+    layers = [document.layer(each) for each in row.layers]
+    choice = None if row.layer is None else document.choice_of(row.layer.id)
     if choice is not None:
-        is_on = with_repeats(document, choice).at(frame) == row.figures[0]
+        is_on = with_repeats(document, choice).at(frame) == row.layers[0]
         icon = icons.ICON_FA_CIRCLE_DOT if is_on else ""
         hint = f"Seen from frame {frame} on, in place of the others of {choice.name}"
         if icon_button(look, icon, f"turn {row.key}", hint, active=is_on):
-            actions.append(do(layering.show_here, row.figures[0]))
+            actions.append(do(layering.show_here, row.layers[0]))
         if not is_on:
             _ring(look)
     elif row.choice is not None:
         imgui.dummy(ImVec2(1.15 * imgui.get_frame_height(), imgui.get_frame_height()))
     else:
         group = row.group
-        hidden = figures[0].hidden if group is None else group.hidden
+        hidden = layers[0].hidden if group is None else group.hidden
         eye = icons.ICON_FA_EYE_SLASH if hidden else icons.ICON_FA_EYE
         what = "the layer" if group is None else "the group"
         hint = f"Show {what}" if hidden else f"Hide {what}, also in exports"
@@ -274,7 +274,7 @@ def _switches(look: Look, project: Project, row: TreeRow, frame: int) -> list[Ac
                 else do(layering.show_group, group.name)
             )
     imgui.same_line(0, 0)
-    locked = all(figure.locked for figure in figures)
+    locked = all(layer.locked for layer in layers)
     key = icons.ICON_FA_LOCK if locked else icons.ICON_FA_LOCK_OPEN
     hint = "Let clicks reach it" if locked else "Let clicks pass through it"
     if icon_button(look, key, f"lock {row.key}", hint, active=locked):
@@ -292,13 +292,13 @@ def _ring(look: Look) -> None:
 def _of_chosen(project: Project, row: TreeRow) -> tuple[int, ...]:
     """Return what a switch of a row is for: all chosen layers, if the row's are among them."""
     chosen = project.selected_layers
-    return chosen if set(row.figures).issubset(chosen) and len(chosen) > 1 else row.figures
+    return chosen if set(row.layers).issubset(chosen) and len(chosen) > 1 else row.layers
 
 
 def _picture(
     look: Look,
     project: Project,
-    figure: Figure,
+    layer: Layer,
     left: ImVec2,
     pictures: SmallPictures,
     *,
@@ -312,10 +312,10 @@ def _picture(
     high = ImVec2(left.x + WIDE * em, left.y + half)
     draw_list = imgui.get_window_draw_list()
     draw_list.add_rect_filled(low, high, PAPER, 0.25 * em)
-    pixels = project.puppets[figure.id].small.value
-    picture = None if pixels is None else pictures(figure.id, pixels)
+    pixels = project.puppets[layer.id].small.value
+    picture = None if pixels is None else pictures(layer.id, pixels)
     if picture is None:
-        icon = icons.ICON_FA_IMAGE if figure.still else icons.ICON_FA_PERSON
+        icon = icons.ICON_FA_IMAGE if layer.still else icons.ICON_FA_PERSON
         write_in(low, high, icon, SIGN)
         return
     corner, room = low + ImVec2(pad, pad), high - low - ImVec2(2 * pad, 2 * pad)
@@ -325,15 +325,15 @@ def _picture(
 
 def _signs(project: Project, row: TreeRow) -> list[str]:
     """Return what stands behind the name of a row."""
-    if row.figure is None:
+    if row.layer is None:
         opacity = 1.0 if row.group is None else row.group.opacity
         return [f"{100 * opacity:.0f}%"] if opacity < 1 else []
-    figure = row.figure
-    signs = [f"{100 * figure.opacity:.0f}%"] if figure.opacity < 1 else []
-    signs += [icons.ICON_FA_LINK] if figure.hangs else []
-    signs += [icons.ICON_FA_IMAGE] if figure.still else []
-    signs += [icons.ICON_FA_BAN] if figure.reference else []
-    return signs + ([icons.ICON_FA_BINOCULARS] if figure.id in project.solo else [])
+    layer = row.layer
+    signs = [f"{100 * layer.opacity:.0f}%"] if layer.opacity < 1 else []
+    signs += [icons.ICON_FA_LINK] if layer.hangs else []
+    signs += [icons.ICON_FA_IMAGE] if layer.still else []
+    signs += [icons.ICON_FA_BAN] if layer.reference else []
+    return signs + ([icons.ICON_FA_BINOCULARS] if layer.id in project.solo else [])
 
 
 def _text(

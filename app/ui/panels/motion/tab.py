@@ -1,4 +1,4 @@
-"""The tab of ready motions: those that the figure was given, and one that is drafted for it."""
+"""The tab of ready motions: those that the layer was given, and one that is drafted for it."""
 
 from imgui_bundle import ImVec2, imgui
 
@@ -37,7 +37,7 @@ LOOKS = {None: "As it seems", -1: "Left", 1: "Right"}
 
 
 def draw(session: Session, look: Look, project: Project) -> list[Action]:
-    """Draw the motion that is drafted, or how far it is; else those that the figure was given."""
+    """Draw the motion that is drafted, or how far it is; else those that the layer was given."""
     errand, draft = project.errand, project.draft
     if errand is not None:
         heading(look, f"Giving it “{errand.draft.ready.label}”")
@@ -55,13 +55,13 @@ def draw(session: Session, look: Look, project: Project) -> list[Action]:
 
 
 def _given(session: Session, look: Look, project: Project) -> list[Action]:
-    """Draw what the figure was given, and the button that gives it another motion."""
+    """Draw what the layer was given, and the button that gives it another motion."""
     actions: list[Action] = []
-    binding, figure = BINDINGS["give motion"], project.figure
-    heading(look, f"Motions of {figure.name}" if figure.motions else "Ready motions")
-    if not figure.motions:
+    binding, layer = BINDINGS["give motion"], project.layer
+    heading(look, f"Motions of {layer.name}" if layer.motions else "Ready motions")
+    if not layer.motions:
         small(look, "Let the drawing walk, wave, slither or breathe: say where its joints are.")
-    for given in figure.motions:
+    for given in layer.motions:
         imgui.push_id(given.first)
         actions += _row(look, project, given)
         imgui.pop_id()
@@ -78,7 +78,7 @@ def _row(look: Look, project: Project, given: GivenMotion) -> list[Action]:
     actions: list[Action] = []
     name = MOTIONS[given.motion].label if given.motion in MOTIONS else given.motion
     imgui.text_unformatted(f"{name}, frames {given.first} – {given.last}")
-    if not is_as_given(project.figure, given):
+    if not is_as_given(project.layer, given):
         small(look, "Edited by hand since: it stays as it is.")
     widths = beside(2)
     if text_button("Change…", next(widths), "Give it once more, in another way"):

@@ -1,8 +1,8 @@
-"""The rows of the timeline: of groups, choices and figures, their names and what is seen when.
+"""The rows of the timeline: of groups, choices and layers, their names and what is seen when.
 
 In: the bands of the timeline.
 Out: actions.
 Imports: `app.ui.style`, the keys and tracks of `app.ui.timeline`.
 """
 
-from app.ui.timeline.rows.figures import draw_rows as draw_rows
+from app.ui.timeline.rows.layers import draw_rows as draw_rows

@@ -26,7 +26,7 @@ def draw_stage_names(bands: Bands, frame: int) -> list[Action]:
         left = low.x + INDENT * row.depth * em
         imgui.push_id(row.key)
         if bands.button("name", low, high):
-            actions.append(do(layering.choose_all, *row.figures))
+            actions.append(do(layering.choose_all, *row.layers))
         if in_hand():
             draw_list.add_rect_filled(low, high, ink(palette.hovered), 0.2 * em)
         if begin_tip():
@@ -39,7 +39,7 @@ def draw_stage_names(bands: Bands, frame: int) -> list[Action]:
         text = row.name
         if row.choice is not None:
             seen = with_repeats(document, row.choice).at(frame)
-            text = f"{text}: {document.figure(seen).name}"
+            text = f"{text}: {document.layer(seen).name}"
         with sized(SMALL):
             top = lane.middle - imgui.get_text_line_height() / 2
             text = shortened(text, high.x - left - 3.0 * em)
@@ -71,12 +71,12 @@ def _keys(bands: Bands, lane: StageLane) -> list[Action]:
     """Draw where layers of a group have keys; a click chooses all that are at a frame."""
     actions: list[Action] = []
     document, em = bands.project.document, bands.look.em
-    figures = [document.figure(identity) for identity in lane.row.figures]
+    layers = [document.layer(identity) for identity in lane.row.layers]
     chosen_of = bands.project.chosen_of
     at: dict[int, list[int]] = {}
-    for figure in figures:
-        for index in bands.in_view(figure.keys):
-            at.setdefault(figure.keys[index].frame, []).append(figure.id)
+    for layer in layers:
+        for index in bands.in_view(layer.keys):
+            at.setdefault(layer.keys[index].frame, []).append(layer.id)
     for frame in sorted(at):
         x = bands.x(frame)
         keys: KeysOf = {each: frozenset({frame}) for each in at[frame]}
@@ -118,10 +118,10 @@ def _turns(bands: Bands, lane: StageLane, choice: Choice) -> list[Action]:
         draw_list.add_rect_filled(low, high, ink(palette.accent, strength), 0.2 * em)
         with sized(SMALL):
             top = lane.middle - imgui.get_text_line_height() / 2
-            text = shortened(document.figure(seen).name, right - left - 0.9 * em)
+            text = shortened(document.layer(seen).name, right - left - 0.9 * em)
             draw_list.add_text(ImVec2(left + 0.45 * em, top), ink(palette.text), text)
         if begin_tip():
-            imgui.text_unformatted(f"{document.figure(seen).name} from frame {start} on")
+            imgui.text_unformatted(f"{document.layer(seen).name} from frame {start} on")
             imgui.text_disabled("Right click for another one, drag where it begins to move that")
             imgui.end_tooltip()
         actions += _menu(bands, choice, start)
@@ -146,8 +146,8 @@ def _menu(bands: Bands, choice: Choice, start: int) -> list[Action]:
     actions: list[Action] = []
     if not imgui.begin_popup(f"menu of turn {start}"):
         return actions
-    for identity in choice.figures:
-        name = bands.project.document.figure(identity).name
+    for identity in choice.layers:
+        name = bands.project.document.layer(identity).name
         is_seen = choice.at(start) == identity
         if imgui.menu_item(f"{name}###show {identity}", "", is_seen)[0] and not is_seen:
             actions.append(do(editing.edit, choice_commands.choose_at(identity, start)))

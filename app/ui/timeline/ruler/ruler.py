@@ -2,7 +2,7 @@
 
 from imgui_bundle import ImVec2, imgui
 
-from app.document import Figure, remembered
+from app.document import Layer, remembered
 from app.editor import Action, Scrub, do
 from app.editor.actions import timeline_pointing
 from app.ui.style import SMALL, in_hand, ink, is_pressed, sized, write_in
@@ -22,7 +22,7 @@ def draw_ruler(bands: Bands, frame: int) -> list[Action]:
     if is_pressed():
         actions += [
             do(timeline_pointing.begin, Scrub(), bands.strip),
-            do(timeline_pointing.move, bands.pointed, bands.row.figure.id),
+            do(timeline_pointing.move, bands.pointed, bands.row.layer.id),
         ]
     if imgui.is_item_hovered():
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
@@ -119,9 +119,9 @@ def _tag_width(bands: Bands, frame: int) -> float:
 
 
 @remembered
-def _frames_apart(figure: Figure, step: int) -> frozenset[int]:
+def _frames_apart(layer: Layer, step: int) -> frozenset[int]:
     """Return frames of keys, of which there is one in each of so many frames at most."""
-    return frozenset(key.frame // step * step for key in figure.keys if not figure.still)
+    return frozenset(key.frame // step * step for key in layer.keys if not layer.still)
 
 
 def draw_overview(bands: Bands, frame: int) -> list[Action]:
@@ -143,14 +143,14 @@ def draw_overview(bands: Bands, frame: int) -> list[Action]:
     bar = ink(palette.dim if in_hand() else palette.pressed)
     draw_list.add_rect_filled(ImVec2(left, top), ImVec2(right, bottom), bar, rounding)
     middle = (top + bottom) / 2
-    # Each place once, however many keys there are; those of the active figure over them.
-    figure = bands.project.figure
-    for figures, radius, colour in (
-        (tuple(row.figure for row in bands.rows), 0.09 * em, ink(palette.dim)),
-        ((figure,), 0.11 * em, ink(palette.text, 0.8)),
+    # Each place once, however many keys there are; those of the active layer over them.
+    layer = bands.project.layer
+    for layers, radius, colour in (
+        (tuple(row.layer for row in bands.rows), 0.09 * em, ink(palette.dim)),
+        ((layer,), 0.11 * em, ink(palette.text, 0.8)),
     ):
         step = max(round(2 * radius / per_frame), 1)
-        for at in frozenset[int]().union(*(_frames_apart(each, step) for each in figures)):
+        for at in frozenset[int]().union(*(_frames_apart(each, step) for each in layers)):
             place, half = (
                 ImVec2(bands.left + (at - low) * per_frame, middle),
                 ImVec2(radius, radius),

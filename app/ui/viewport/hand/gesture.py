@@ -85,24 +85,24 @@ def draw_marks(look: Look, screen: Screen, marks: Iterable[Mark]) -> None:
 
 def draw_coming_strokes(look: Look, screen: Screen) -> None:
     """Draw the strokes of the brush that the worker has not come to yet."""
-    figure, known = screen.project.figure, screen.project.puppet.cut.source
+    layer, known = screen.project.layer, screen.project.puppet.cut.source
     done = () if known is None else known.strokes
-    for stroke in figure.cut_out.strokes[len(done) :]:
-        places = tuple(complex(place) for place in stroke.points + figure.corner)
+    for stroke in layer.cut_out.strokes[len(done) :]:
+        places = tuple(complex(place) for place in stroke.points + layer.corner)
         mark = StrokeMark(points=places, radius=stroke.radius, keeps=stroke.keeps)
         _draw_stroke(look, screen, mark)
 
 
 def draw_slits(look: Look, screen: Screen) -> None:
     """Draw the lines along which the knife has parted, or is about to."""
-    figure = screen.project.figure
-    for slit in figure.cut_out.slits:
-        _draw_slit(look, screen, (slit.points + figure.corner).tolist())
+    layer = screen.project.layer
+    for slit in layer.cut_out.slits:
+        _draw_slit(look, screen, (slit.points + layer.corner).tolist())
 
 
 def _draw_slit(look: Look, screen: Screen, places: Sequence[complex]) -> None:
     """Draw a line of the knife, as wide as the slit that comes of it."""
-    width = SLIT_WIDTH * box_diagonal(screen.project.figure.domain.outline) * screen.scale
+    width = SLIT_WIDTH * box_diagonal(screen.project.layer.domain.outline) * screen.scale
     points = [screen.point(place) for place in places]
     draw_list = imgui.get_window_draw_list()
     for tone, breadth in outlined(look, ink(look.palette.accent), 0.1):

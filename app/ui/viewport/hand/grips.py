@@ -48,12 +48,12 @@ def find_ring(session: Session, screen: Screen) -> Ring | None:
     is_posing = session.poses and not session.records and project.playhead.since is None
     if not (is_posing and session.overlays.handles):
         return None
-    if any(project.figure.is_locked(handle) for handle in project.selected):
+    if any(project.layer.is_locked(handle) for handle in project.selected):
         return None
     if len(project.selected) != 1 or not (gesture is None or held is not None):
         return None
     shown = screen.shown
-    found = zip(shown.clip.figure.handles, shown.handle_places, shown.handle_turns, strict=True)
+    found = zip(shown.clip.layer.handles, shown.handle_places, shown.handle_turns, strict=True)
     for handle, place, turn in found:
         if handle.id in project.selected:
             centre = screen.point(complex(place))
@@ -96,7 +96,7 @@ def lay_axis(session: Session, look: Look, screen: Screen) -> Axis:
     """Lay a button over the grip of the axis, if it is shown."""
     if not flipping.shows_axis(session, screen.project):
         return Axis()
-    x, radius = screen.point(complex(screen.project.figure.axis)).x, AXIS_RADIUS * look.em
+    x, radius = screen.point(complex(screen.project.layer.axis)).x, AXIS_RADIUS * look.em
     imgui.set_cursor_screen_pos(_grip(look, x) - ImVec2(radius, radius))
     imgui.invisible_button("mirror axis", ImVec2(2 * radius, 2 * radius))
     if in_hand():

@@ -37,7 +37,7 @@ def hint_at(session: Session, screen: Screen, spot: Spot) -> str:
     if spot.handle is not None:
         if spot.handle in staying(screen.shown):
             told.append("the line below it tells that it stays until the next key")
-        return f"{screen.shown.clip.figure.handle(spot.handle).name}: {', '.join(told)}"
+        return f"{screen.shown.clip.layer.handle(spot.handle).name}: {', '.join(told)}"
     if not (spot.on_shape or spot.on_ring):
         told += ["wheel to zoom", "middle drag to move the view"]
     return _sentence(told)
@@ -83,7 +83,7 @@ def draw_badges(
 def _mode(session: Session, project: Project) -> str:
     """Return in words what drags do instead of posing; empty where they pose."""
     if session.moves:
-        return "Moving the whole figure"
+        return "Moving the whole layer"
     if session.material is not None:
         return MODES[session.material]
     if project.draft is not None:
@@ -100,12 +100,12 @@ def draw_mode(look: Look, what: str, corner: ImVec2, room: ImVec2) -> list[Actio
 
 def first_step(project: Project) -> int | None:
     """Return which hint a new project is at; None where the person has found the way."""
-    figure = project.figure
-    if not figure.handles:
+    layer = project.layer
+    if not layer.handles:
         return 0
-    if len(figure.keys) > 1 or project.playhead.since is not None:
+    if len(layer.keys) > 1 or project.playhead.since is not None:
         return None
-    return 2 if guiding.is_posed(figure) else 1
+    return 2 if guiding.is_posed(layer) else 1
 
 
 def _pill(look: Look, text: str, place: ImVec2, remedy: Binding | None = None) -> list[Action]:

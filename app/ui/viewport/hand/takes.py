@@ -43,8 +43,8 @@ def draw_take(look: Look, project: Project, corner: ImVec2) -> list[Action]:
         return []
     actions: list[Action] = []
     draw_list, em = imgui.get_window_draw_list(), look.em
-    name = project.figure.handle(take.handle).name
-    track = project.figure.track_of(take.handle)
+    name = project.layer.handle(take.handle).name
+    track = project.layer.track_of(take.handle)
     count = 0 if track is None or take.after is None else len(track.keys)
     text = f"{name}: {count} {'key' if count == 1 else 'keys'}" if count else f"{name}…"
     imgui.set_cursor_screen_pos(corner + ImVec2(1.5 * em, 1.5 * em))

@@ -106,14 +106,14 @@ def _to_pose(look: Look, guide: Guide, screen: Screen, places: Places) -> Lead:
             f"({insert.keys_in_words}) makes one.",
             _box(places, "insert key"),
         )
-    figure, handles = screen.shown.clip.figure, screen.shown.handle_places
+    layer, handles = screen.shown.clip.layer, screen.shown.handle_places
     if guide.aim is None or guide.goal is None:
         newest = _ring(look, screen, complex(handles[-1])) if len(handles) else None
         text = "Drag one of the handles. A key with the new pose makes itself."
         return Lead(text, newest, is_round=True)
     near = {
         abs(handle.position - guide.aim): complex(place)
-        for handle, place in zip(figure.handles, handles, strict=False)
+        for handle, place in zip(layer.handles, handles, strict=False)
     }
     reach = REACH * look.em / screen.scale
     held = near[min(near)] if near and min(near) < reach else guide.aim

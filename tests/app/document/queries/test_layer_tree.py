@@ -18,13 +18,13 @@ def document():
     """Six layers, from 0 behind all others to 5 in front."""
     document = disc_document()
     for number in range(1, 6):
-        figure = replace(
-            document.figures[0],
+        layer = replace(
+            document.layers[0],
             id=layers.free_identity(document),
             name=f"layer {number}",
             domain=disc_domain(),
         )
-        document = layers.add_figure(figure)(document)
+        document = layers.add_layer(layer)(document)
     return document
 
 
@@ -36,8 +36,8 @@ def told(document, *toggled, kept=()):
 
 
 def test_without_groups_and_choices_it_is_the_order_of_painting(document):
-    assert told(document) == ["layer 5", "layer 4", "layer 3", "layer 2", "layer 1", "figure"]
-    assert all(row.figures == (row.figure.id,) for row in layer_tree(document))
+    assert told(document) == ["layer 5", "layer 4", "layer 3", "layer 2", "layer 1", "layer"]
+    assert all(row.layers == (row.layer.id,) for row in layer_tree(document))
 
 
 def test_groups_hold_what_is_in_them(document):
@@ -51,25 +51,25 @@ def test_groups_hold_what_is_in_them(document):
         "  legs",
         "    layer 2",
         "    layer 1",
-        "figure",
+        "layer",
     ]
     rows = {row.name: row for row in layer_tree(document)}
-    assert rows["body"].figures == (3, 2, 1)
-    assert rows["legs"].figures == (2, 1)
-    assert told(document, "group body") == ["layer 5", "layer 4", "body +", "figure"]
+    assert rows["body"].layers == (3, 2, 1)
+    assert rows["legs"].layers == (2, 1)
+    assert told(document, "group body") == ["layer 5", "layer 4", "body +", "layer"]
     # What is posed is listed all the same.
     assert told(document, "group body", kept={1}) == [
         "layer 5",
         "layer 4",
         "body +",
         "    layer 1",
-        "figure",
+        "layer",
     ]
 
 
 def test_layers_that_take_turns_are_one_row_where_the_foremost_is(document):
     document = choices.form_choice("mouth", (1, 4))(document)
-    assert told(document) == ["layer 5", "mouth +", "layer 3", "layer 2", "figure"]
+    assert told(document) == ["layer 5", "mouth +", "layer 3", "layer 2", "layer"]
     assert told(document, "choice mouth") == [
         "layer 5",
         "mouth",
@@ -77,7 +77,7 @@ def test_layers_that_take_turns_are_one_row_where_the_foremost_is(document):
         "  layer 1",
         "layer 3",
         "layer 2",
-        "figure",
+        "layer",
     ]
 
 
@@ -92,15 +92,15 @@ def test_a_choice_in_a_group(document):
         "    layer 2",
         "  layer 3",
         "layer 1",
-        "figure",
+        "layer",
     ]
 
 
 def test_a_group_that_others_lie_amid_has_a_row_for_each_run(document):
     document = groups.put_in_group((1, 2, 3), "arm")(document)
-    document = layers.move_figure(5, 2)(document)
+    document = layers.move_layer(5, 2)(document)
     rows = [row for row in layer_tree(document) if row.group]
     assert len({row.key for row in rows}) == len(rows)
-    assert sorted(figure for row in rows for figure in row.figures) == sorted(
-        each.id for each in document.figures if each.group == "arm"
+    assert sorted(layer for row in rows for layer in row.layers) == sorted(
+        each.id for each in document.layers if each.group == "arm"
     )

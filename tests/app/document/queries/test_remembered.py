@@ -13,44 +13,44 @@ from app.document.queries.remembered import MOST, remembered
 from app.document.settings import FrameRange
 
 
-def clips_of_figures(count):
-    """Return clips of as many figures with two keys each."""
+def clips_of_layers(count):
+    """Return clips of as many layers with two keys each."""
     document = disc_document()
     pose = random_pose(random.default_rng(0), document)
     document = key_commands.insert_key(0, 24, pose)(document)
-    named = [replace(document.figures[0], name=f"figure {number}") for number in range(count)]
-    return [clip_of(document.with_figure(figure), 0) for figure in named]
+    named = [replace(document.layers[0], name=f"layer {number}") for number in range(count)]
+    return [clip_of(document.with_layer(layer), 0) for layer in named]
 
 
-def test_what_is_known_of_twenty_figures_is_not_found_out_again_in_each_frame():
-    clips = clips_of_figures(20)
-    first = [(transits(clip), find_shortfall(clip.figure, clip.keys[-1].pose)) for clip in clips]
+def test_what_is_known_of_twenty_layers_is_not_found_out_again_in_each_frame():
+    clips = clips_of_layers(20)
+    first = [(transits(clip), find_shortfall(clip.layer, clip.keys[-1].pose)) for clip in clips]
     for clip, (ways, shortfall) in zip(clips, first, strict=True):
         assert transits(clip) is ways
         assert transits(replace(clip)) is ways
-        assert find_shortfall(clip.figure, clip.keys[-1].pose) is shortfall
+        assert find_shortfall(clip.layer, clip.keys[-1].pose) is shortfall
 
 
-def test_what_is_known_of_a_figure_goes_with_it():
-    (clip,) = clips_of_figures(1)
+def test_what_is_known_of_a_layer_goes_with_it():
+    (clip,) = clips_of_layers(1)
     transits(clip)
-    find_shortfall(clip.figure, clip.keys[0].pose)
-    figure = weakref.ref(clip.figure)
+    find_shortfall(clip.layer, clip.keys[0].pose)
+    layer = weakref.ref(clip.layer)
     del clip
     gc.collect()
-    assert figure() is None
+    assert layer() is None
 
 
 def test_threads_that_ask_at_once_are_all_answered():
     """Also while others make room for new answers; with so many of them that they do."""
-    figure, failures = disc_document().figures[0], []
+    layer, failures = disc_document().layers[0], []
     ask = remembered(lambda _, frames: frames.last + 1)
 
     def go(step):
         try:
             for number in range(10_000):
                 last = number * step % (4 * MOST + 1)
-                assert ask(figure, FrameRange(0, last)) == last + 1
+                assert ask(layer, FrameRange(0, last)) == last + 1
         except (AssertionError, KeyError) as error:
             failures.append(error)
 

@@ -14,44 +14,44 @@ from app.document.timing import Spring
 from engine.maps import Bounds
 
 
-def figure_and_pose(*, lag, share):
+def layer_and_pose(*, lag, share):
     """A handle so many pixels from its target, in a pose that uses this share of the shear."""
     document = altered(disc_document(), bounds=Bounds(k=0.5))
-    figure = add_handle(0, CENTRE)(document).figures[0]
-    rest = figure.keys[0].pose
-    certificate = replace(rest.certificate, k=share * figure.bounds.k)
+    layer = add_handle(0, CENTRE)(document).layers[0]
+    rest = layer.keys[0].pose
+    certificate = replace(rest.certificate, k=share * layer.bounds.k)
     target = Target(position=CENTRE + lag)
-    return figure, replace(rest, targets={0: target}, certificate=certificate)
+    return layer, replace(rest, targets={0: target}, certificate=certificate)
 
 
-def least(figure):
-    low, high = figure.domain.outline.real.min(), figure.domain.outline.real.max()
+def least(layer):
+    low, high = layer.domain.outline.real.min(), layer.domain.outline.real.max()
     assert high - low == pytest.approx(2 * RADIUS, rel=0.05)
     return LAG * np.sqrt(2) * (high - low)
 
 
 @pytest.mark.parametrize("share", [0.02, 0.9, 0.99])
 def test_a_handle_falls_short_where_it_lags_by_enough_to_be_seen(share):
-    figure, _ = figure_and_pose(lag=0, share=share)
-    for lag, is_short in ((0.9 * least(figure), False), (1.1 * least(figure), True)):
-        short = find_shortfall(*figure_and_pose(lag=lag, share=share))
+    layer, _ = layer_and_pose(lag=0, share=share)
+    for lag, is_short in ((0.9 * least(layer), False), (1.1 * least(layer), True)):
+        short = find_shortfall(*layer_and_pose(lag=lag, share=share))
         assert set(short.lags) == ({0} if is_short else set())
     assert_allclose(short.lags[0], lag, rtol=0, atol=1e-9)
 
 
 @pytest.mark.parametrize(("share", "at_limits"), [(0.02, False), (0.9, False), (0.99, True)])
 def test_only_limits_that_are_reached_hold_a_handle_back(share, at_limits):
-    short = find_shortfall(*figure_and_pose(lag=30, share=share))
+    short = find_shortfall(*layer_and_pose(lag=30, share=share))
     assert short.at_limits == at_limits
     assert ("limits" in short.reason) == at_limits
 
 
 def test_what_follows_by_a_spring_never_falls_short():
-    figure, pose = figure_and_pose(lag=30, share=0.5)
+    layer, pose = layer_and_pose(lag=30, share=0.5)
     spring = Spring(handle=0, frequency=2.0, damping=0.3)
-    assert find_shortfall(replace(figure, springs=(spring,)), pose).lags == {}
+    assert find_shortfall(replace(layer, springs=(spring,)), pose).lags == {}
     still = replace(spring, enabled=False)
-    assert find_shortfall(replace(figure, springs=(still,)), pose).lags.keys() == {0}
+    assert find_shortfall(replace(layer, springs=(still,)), pose).lags.keys() == {0}
 
 
 @pytest.mark.parametrize(
@@ -84,5 +84,5 @@ def test_shares_count_from_no_distortion_to_the_limit():
 
 
 def test_a_pose_older_than_a_handle_says_nothing_of_it():
-    figure, pose = figure_and_pose(lag=30, share=0.5)
-    assert find_shortfall(figure, replace(pose, targets={})).lags == {}
+    layer, pose = layer_and_pose(lag=30, share=0.5)
+    assert find_shortfall(layer, replace(pose, targets={})).lags == {}

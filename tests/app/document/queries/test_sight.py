@@ -1,4 +1,4 @@
-"""The camera, figures moved as a whole, fades and orders: at keys, between them, around loops."""
+"""The camera, layers moved as a whole, fades and orders: at keys, between them, around loops."""
 
 from dataclasses import replace
 from math import exp, log, pi
@@ -28,7 +28,7 @@ from app.document import (
 )
 from app.document.commands.scene_commands import KEY_OUTSIDE
 from app.document.layering import Group
-from app.document.model import NO_FIGURE
+from app.document.model import NO_LAYER
 from app.errors import LissomError
 
 EMPTY = replace(disc_document(), frames=FrameRange(0, 48))
@@ -121,16 +121,16 @@ def test_a_held_camera_jumps():
     assert camera_at(held, 9.999) == camera_at(held, 4)
 
 
-def test_a_figure_is_moved_and_turned_around_its_anchor_or_its_middle():
+def test_a_layer_is_moved_and_turned_around_its_anchor_or_its_middle():
     keys = (MoveKey(frame=0), MoveKey(frame=8, shift=10 + 5j, turn=pi / 2))
     document = altered(EMPTY, movement=keys)
-    figure = document.figures[0]
-    motion = movement_at(document, figure, 8)
-    assert abs(figure.pivot - CENTRE) < 1e-9
-    places = motion.on(np.array([figure.pivot, figure.pivot + 1]))
-    assert_allclose(places, figure.pivot + 10 + 5j + np.array([0, 1j]), rtol=0, atol=1e-9)
-    assert abs(movement_at(document, figure, 3.7).factor) == pytest.approx(1, abs=1e-15)
-    by_anchor = replace(figure, anchor=80 + 90j)
+    layer = document.layers[0]
+    motion = movement_at(document, layer, 8)
+    assert abs(layer.pivot - CENTRE) < 1e-9
+    places = motion.on(np.array([layer.pivot, layer.pivot + 1]))
+    assert_allclose(places, layer.pivot + 10 + 5j + np.array([0, 1j]), rtol=0, atol=1e-9)
+    assert abs(movement_at(document, layer, 3.7).factor) == pytest.approx(1, abs=1e-15)
+    by_anchor = replace(layer, anchor=80 + 90j)
     assert movement_at(document, by_anchor, 8).on(np.array([80 + 90j]))[0] == pytest.approx(
         90 + 95j, abs=1e-9
     )
@@ -139,37 +139,37 @@ def test_a_figure_is_moved_and_turned_around_its_anchor_or_its_middle():
 def test_fades_are_even_and_stay_between_nothing_and_all():
     keys = (OpacityKey(frame=0, opacity=1.0), OpacityKey(frame=12, opacity=0.2))
     document = altered(EMPTY, opacities=keys, opacity=0.5)
-    figure = document.figures[0]
-    assert opacity_at(document, figure, 3) == pytest.approx(0.8, abs=1e-12)
-    assert opacity_at(document, figure, 40) == 0.2
+    layer = document.layers[0]
+    assert opacity_at(document, layer, 3) == pytest.approx(0.8, abs=1e-12)
+    assert opacity_at(document, layer, 40) == 0.2
     peaks = [0.9, 1.0, 0.1, 0.0, 0.8]
     keys = tuple(
         OpacityKey(frame=6 * i, opacity=each, passing=Passing.THROUGH)
         for i, each in enumerate(peaks)
     )
     through = altered(EMPTY, opacities=keys)
-    values = [opacity_at(through, through.figures[0], t) for t in np.arange(0, 30, 0.1)]
+    values = [opacity_at(through, through.layers[0], t) for t in np.arange(0, 30, 0.1)]
     assert max(values) == 1.0
     assert min(values) == 0.0
 
 
 def stack(**placings):
     document = EMPTY
-    for name in "abcd"[: 4 - len(document.figures)]:
-        copy = replace(EMPTY.figures[0], id=layer_commands.free_identity(document), name=f"{name}")
-        document = layer_commands.add_figure(copy)(document)
-    ids = {figure.name: figure.id for figure in document.figures}
-    figures = tuple(
+    for name in "abcd"[: 4 - len(document.layers)]:
+        copy = replace(EMPTY.layers[0], id=layer_commands.free_identity(document), name=f"{name}")
+        document = layer_commands.add_layer(copy)(document)
+    ids = {layer.name: layer.id for layer in document.layers}
+    layers = tuple(
         replace(
-            figure,
+            layer,
             placings=tuple(
                 Placing(frame, ids.get(beside), in_front)
-                for frame, beside, in_front in placings.get(figure.name, ())
+                for frame, beside, in_front in placings.get(layer.name, ())
             ),
         )
-        for figure in document.figures
+        for layer in document.layers
     )
-    return replace(document, figures=figures)
+    return replace(document, layers=layers)
 
 
 def order(document, frame):
@@ -178,13 +178,13 @@ def order(document, frame):
 
 def test_a_layer_lies_in_front_of_another_one_from_a_frame_on():
     document = stack(a=[(8, "c", True), (20, None, True)], c=[(30, "a", False)])
-    assert order(document, 0) == order(document, 7.9) == "fabc"
-    assert order(document, 8) == order(document, 19) == "fbca"
-    assert order(document, 20) == "fabc"
-    assert order(document, 30) == "fcab"
+    assert order(document, 0) == order(document, 7.9) == "labc"
+    assert order(document, 8) == order(document, 19) == "lbca"
+    assert order(document, 20) == "labc"
+    assert order(document, 30) == "lcab"
     # What is beside something that is moved itself goes along, and a circle ends somewhere.
-    assert order(stack(a=[(0, "c", True)], c=[(9, "figure", False)]), 9) == "cafb"
-    assert sorted(order(stack(a=[(0, "c", True)], c=[(9, "a", True)]), 9)) == list("abcf")
+    assert order(stack(a=[(0, "c", True)], c=[(9, "layer", False)]), 9) == "calb"
+    assert sorted(order(stack(a=[(0, "c", True)], c=[(9, "a", True)]), 9)) == list("abcl")
 
 
 def test_time_edits_carry_all_of_them_along():
@@ -196,10 +196,10 @@ def test_time_edits_carry_all_of_them_along():
         placings=(Placing(6, None),),
     )
     twice = scene_commands.scale_time(2.0)(document)
-    figure = twice.figures[0]
+    layer = twice.layers[0]
     assert [key.frame for key in twice.camera] == [8, 20, 60, 80]
-    assert [key.frame for key in figure.movement] == [8, 16]
-    assert [figure.opacities[0].frame, figure.placings[0].frame] == [4, 12]
+    assert [key.frame for key in layer.movement] == [8, 16]
+    assert [layer.opacities[0].frame, layer.placings[0].frame] == [4, 12]
     for frame in (3.0, 7.3, 11.0):
         assert_allclose(told(twice, 2 * frame), told(document, frame), rtol=0, atol=1e-12)
 
@@ -217,7 +217,7 @@ def test_what_cannot_be_is_refused():
         scene_commands.set_frames(FrameRange(0, 39))(filmed())
     with pytest.raises(LissomError, match="in front of itself"):
         altered(EMPTY, placings=(Placing(0, 0),))
-    with pytest.raises(LissomError, match=says(NO_FIGURE, identity=7)):
+    with pytest.raises(LissomError, match=says(NO_LAYER, identity=7)):
         altered(EMPTY, placings=(Placing(0, 7),))
     with pytest.raises(LissomError, match="between 0 and 1"):
         OpacityKey(frame=0, opacity=1.5)
@@ -227,14 +227,14 @@ def test_what_cannot_be_is_refused():
 
 def test_a_layer_that_is_removed_leaves_none_that_lies_beside_it():
     document = stack(a=[(8, "c", True)])
-    gone = next(each.id for each in document.figures if each.name == "c")
-    left = layer_commands.remove_figure(gone)(document)
-    assert order(left, 9) == "fab"
+    gone = next(each.id for each in document.layers if each.name == "c")
+    left = layer_commands.remove_layer(gone)(document)
+    assert order(left, 9) == "lab"
 
 
 def stacked(places=None, **groups):
     """Layers from back to front, of which "stripe" and "dots" are clipped by the body."""
-    layers = {
+    drawn = {
         "wall": ("", False),
         "ball": ("", False),
         "body": ("trunk", False),
@@ -244,14 +244,14 @@ def stacked(places=None, **groups):
         "glove": ("", True),
     }
     document = replace(EMPTY, groups=tuple(Group(name=n, **g) for n, g in groups.items()))
-    ids = {name: number for number, name in enumerate(layers)}
-    figures = []
-    for name, (group, clipped) in layers.items():
+    ids = {name: number for number, name in enumerate(drawn)}
+    layers = []
+    for name, (group, clipped) in drawn.items():
         placed = (places or {}).get(name)
         placings = (Placing(6, ids[placed[0]], placed[1]),) if placed else ()
-        figures.append(
+        layers.append(
             replace(
-                EMPTY.figures[0],
+                EMPTY.layers[0],
                 id=ids[name],
                 name=name,
                 group=group if groups else "",
@@ -259,7 +259,7 @@ def stacked(places=None, **groups):
                 placings=placings,
             )
         )
-    return replace(document, figures=tuple(figures))
+    return replace(document, layers=tuple(layers))
 
 
 @pytest.mark.parametrize(
@@ -279,22 +279,22 @@ def stacked(places=None, **groups):
 @pytest.mark.parametrize("groups", [{}, {"trunk": {}}])
 def test_nothing_comes_between_what_is_clipped_and_what_clips_it(places, expected, groups):
     document = stacked(places, **groups)
-    assert in_order(document, 5) == document.figures
+    assert in_order(document, 5) == document.layers
     assert " ".join(each.name for each in in_order(document, 6)) == expected
 
 
 def test_what_is_clipped_by_a_group_goes_beyond_all_of_it():
     document = stacked({"ball": ("arm", False)}, trunk={})
-    clipped = document.with_figure(replace(document.figure(5), clipped=True))
+    clipped = document.with_layer(replace(document.layer(5), clipped=True))
     assert [each.name for each in in_order(clipped, 6)][:2] == ["wall", "ball"]
 
 
 def test_layers_looked_at_alone_are_clipped_by_nothing_else():
     document = stacked(trunk={"clipped": True})
     alone = seen_alone(document, [3])
-    assert not alone.figure(3).clipped
+    assert not alone.layer(3).clipped
     assert not alone.groups[0].clipped
-    assert alone.figure(4).clipped == alone.figure(3).clipped
-    assert seen_alone(document, [2, 3]).figure(3).clipped
+    assert alone.layer(4).clipped == alone.layer(3).clipped
+    assert seen_alone(document, [2, 3]).layer(3).clipped
     assert not seen_alone(document, [2, 3]).groups[0].clipped
-    assert seen_alone(document, [each.id for each in document.figures]) is document
+    assert seen_alone(document, [each.id for each in document.layers]) is document

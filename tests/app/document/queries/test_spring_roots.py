@@ -21,15 +21,15 @@ def drawn():
     document = within(still_document(), CORNERS)
     for name, place in PLACES.items():
         document = handle_commands.add_handle(0, place, name=name)(document)
-    return document.figures[0]
+    return document.layers[0]
 
 
 def spring(handle, **settings):
     return Spring(handle=handle, frequency=2.0, damping=0.2, **settings)
 
 
-def swinging(figure, *springs, **changes):
-    return replace(figure, springs=springs, **changes)
+def swinging(layer, *springs, **changes):
+    return replace(layer, springs=springs, **changes)
 
 
 def test_a_root_is_nearest_along_the_drawing_and_not_across_a_gap(drawn):

@@ -24,7 +24,7 @@ MIDDLE = 100 + 100j
 
 
 def keyed(*frames, last=48, first=0, easing=PRESETS["linear"], **settings):
-    pose = EMPTY.figures[0].keys[0].pose
+    pose = EMPTY.layers[0].keys[0].pose
     keys = tuple(
         Keyframe(frame=frame, pose=pose, easing=easing, passing=Passing.CORNER) for frame in frames
     )
@@ -120,9 +120,9 @@ def test_intervals():
 
 
 def test_exports_keep_the_last_frame_of_a_loop_that_ends_elsewhere():
-    document = add_handle(0, EMPTY.figures[0].domain.mesh.vertices[0])(keyed(0, 48, loop=True))
+    document = add_handle(0, EMPTY.layers[0].domain.mesh.vertices[0])(keyed(0, 48, loop=True))
     assert exported_frames(document) == FrameRange(0, 47)
-    pose = document.figures[0].keys[1].pose
+    pose = document.layers[0].keys[1].pose
     moved = {i: replace(target, position=0j) for i, target in pose.targets.items()}
     posed = pose_key(0, 48, replace(pose, targets=moved))(document)
     assert exported_frames(posed) == FrameRange(0, 48)
@@ -141,8 +141,8 @@ def test_exports_leave_out_the_frame_that_a_loop_repeats():
 
 def test_what_follows_does_not_keep_a_loop_from_closing():
     document = add_handle(0, MIDDLE)(keyed(0, 48, loop=True))
-    figure = document.figures[0]
-    first, last = figure.keys
+    layer = document.layers[0]
+    first, last = layer.keys
     carried = replace(last.pose, targets={0: Target(position=MIDDLE + 1e-3j)})
     changed = altered(document, keys=(first, replace(last, pose=carried)))
     assert exported_frames(changed) == FrameRange(0, 48)

@@ -31,7 +31,7 @@ def track_of(*frames, places=PLACES, delay=0, turns=(), **changes):
 
 
 def clip(last=48, first=0, *, loop=False):
-    keys = (replace(EMPTY.figures[0].keys[0], frame=first),)
+    keys = (replace(EMPTY.layers[0].keys[0], frame=first),)
     return clip_of(altered(EMPTY, keys=keys, frames=FrameRange(first, last), loop=loop), 0)
 
 

@@ -122,10 +122,10 @@ def test_the_paces_of_an_easing(curve, paces):
 def test_passings_are_set_and_holds_undone():
     document = altered(EMPTY, keys=keyed(0, 10, 30).keys)
     held = key_commands.set_passing(0, {10, 30}, Passing.HOLD)(document)
-    assert [key.shown_passing for key in held.figures[0].keys] == ["through", "hold", "hold"]
+    assert [key.shown_passing for key in held.layers[0].keys] == ["through", "hold", "hold"]
     assert key_commands.set_passing(0, {10}, Passing.HOLD)(held) is held
     stopped = key_commands.set_passing(0, {0, 10}, Passing.STOP)(held)
-    assert [key.shown_passing for key in stopped.figures[0].keys] == ["stop", "stop", "hold"]
-    assert stopped.figures[0].key(10).easing == LINEAR
+    assert [key.shown_passing for key in stopped.layers[0].keys] == ["stop", "stop", "hold"]
+    assert stopped.layers[0].key(10).easing == LINEAR
     with pytest.raises(LissomError, match="to hold is an easing"):
-        replace(stopped.figures[0].keys[0], passing=Passing.HOLD)
+        replace(stopped.layers[0].keys[0], passing=Passing.HOLD)

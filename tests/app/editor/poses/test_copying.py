@@ -10,7 +10,7 @@ from projects import project_of
 from sessions import BLANK, go, session_of, settle
 
 from app.document import HOLD
-from app.document.commands import figure_commands, handle_commands, key_commands
+from app.document.commands import handle_commands, key_commands, shape_commands
 from app.document.settings import NATURAL
 from app.editor.actions import editing, posing
 from app.editor.poses import copying, pasting
@@ -30,12 +30,12 @@ def test_a_pose_is_pasted_at_another_frame_as_one_step(session):
     assert pasting.why_not(session, project, "as it is") == "Copy a pose or keys first."
     go(session, 6)
     copying.copy(session)
-    bent = project.figure.key(6).pose
+    bent = project.layer.key(6).pose
     for frame, frames in ((3, {0, 3, 6}), (0, {0, 6})):
         go(session, frame)
         pasting.paste(session)
-        assert project.figure.key_frames == frames
-        pose = project.figure.key(frame).pose
+        assert project.layer.key_frames == frames
+        pose = project.layer.key(frame).pose
         assert (pose.phi is bent.phi, pose.psi is bent.psi) == (True, True)
         assert pose.targets == bent.targets
         assert project.chosen == {frame}
@@ -47,22 +47,22 @@ def test_in_the_timeline_the_one_chosen_key_is_copied_wherever_the_playhead_is(s
     editing.choose_keys(session, frozenset({6}))
     for session.in_timeline, frame in ((True, 6), (False, 0)):
         copying.copy(session)
-        assert session.copied[0].keys[0].pose is session.project.figure.key(frame).pose
+        assert session.copied[0].keys[0].pose is session.project.layer.key(frame).pose
 
 
 def test_several_keys_are_pasted_with_their_ways_and_distances(session):
     project = session.project
-    editing.edit_figure(session, key_commands.set_easing, {0}, HOLD)
+    editing.edit_layer(session, key_commands.set_easing, {0}, HOLD)
     before = project.document
     editing.choose_keys(session, frozenset({0, 6}))
     copying.copy_keys(session)
     go(session, 4)
     pasting.paste(session)
-    assert project.figure.key_frames == {0, 4, 6, 10}
+    assert project.layer.key_frames == {0, 4, 6, 10}
     assert project.chosen == {4, 10}
-    assert project.figure.key(4).pose is project.figure.key(0).pose
-    assert project.figure.key(4).easing == HOLD
-    assert project.figure.key(10).pose is project.figure.key(6).pose
+    assert project.layer.key(4).pose is project.layer.key(0).pose
+    assert project.layer.key(4).easing == HOLD
+    assert project.layer.key(10).pose is project.layer.key(6).pose
     assert project.history.undo_label == "Paste keys"
     editing.undo(session)
     assert project.document is before
@@ -73,16 +73,16 @@ def test_only_the_selected_handles_take_what_was_copied(session):
     editing.edit(session, handle_commands.add_handle(0, 40 + 45j))
     go(session, 6)
     copying.copy(session)
-    bent = project.figure.key(6).pose.targets
+    bent = project.layer.key(6).pose.targets
     go(session, 0)
     assert "Select" in pasting.why_not_on_selected(session, project, "as it is")
     editing.select(session, frozenset({1}))
     pasting.paste_on_selected(session)
     settle(session)
-    targets = project.figure.key(0).pose.targets
+    targets = project.layer.key(0).pose.targets
     assert targets[1].position == bent[1].position
     assert targets[0].position == pytest.approx(60 + 45j, abs=1e-9)
-    check_pose(project.figure, project.figure.key(0).pose)
+    check_pose(project.layer, project.layer.key(0).pose)
 
 
 def test_an_in_between_is_copied_as_the_nearest_pose(session):
@@ -106,9 +106,9 @@ def test_a_pose_is_pasted_with_the_handles_of_now(session):
     editing.edit(session, handle_commands.add_handle(0, 40 + 45j))
     editing.edit(session, handle_commands.remove_handles(0, frozenset({0})))
     pasting.paste(session)
-    pose = project.figure.key(6).pose
+    pose = project.layer.key(6).pose
     assert set(pose.targets) == {1}
-    assert project.figure.lags(pose)[1] == pytest.approx(0.0, abs=1e-9)
+    assert project.layer.lags(pose)[1] == pytest.approx(0.0, abs=1e-9)
 
 
 def test_a_pose_is_proven_against_the_limits_of_now(session):
@@ -116,13 +116,13 @@ def test_a_pose_is_proven_against_the_limits_of_now(session):
     go(session, 6)
     copying.copy(session)
     tighter = replace(NATURAL.bounds, sigma_a=1.01)
-    editing.edit_figure(session, figure_commands.set_bounds, tighter)
+    editing.edit_layer(session, shape_commands.set_bounds, tighter)
     go(session, 3)
     pasting.paste(session)
-    figure = project.figure
-    pose = figure.key(3).pose
-    boundary = Boundary.sample(figure.domain.outline, figure.domain.cage)
-    assert pose.certificate == certify(figure.map_of(pose), boundary, tighter)
+    layer = project.layer
+    pose = layer.key(3).pose
+    boundary = Boundary.sample(layer.domain.outline, layer.domain.cage)
+    assert pose.certificate == certify(layer.map_of(pose), boundary, tighter)
     assert not pose.certificate.certified
 
 

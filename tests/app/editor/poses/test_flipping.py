@@ -19,7 +19,7 @@ def session(tmp_path):
     document = still_document()
     for name, place in (("paw.L", 40 + 45j), ("paw.R", 80 + 45j)):
         document = handle_commands.add_handle(0, place, name=name)(document)
-    first = document.figures[0].keys[0]
+    first = document.layers[0].keys[0]
     keys = (
         replace(first, turns=2, fronts={0: 1.0}),
         Keyframe(frame=6, pose=first.pose, turns=-1),
@@ -35,8 +35,8 @@ def test_keys_are_flipped_with_their_turns_and_what_is_in_front(session):
     pasting.paste(session, "flipped")
     settle(session)
     assert project.chosen == {20, 26}
-    assert (project.figure.key(20).turns, project.figure.key(26).turns) == (-2, 1)
-    assert dict(project.figure.key(20).fronts) == {1: 1.0}
+    assert (project.layer.key(20).turns, project.layer.key(26).turns) == (-2, 1)
+    assert dict(project.layer.key(20).fronts) == {1: 1.0}
     assert flipping.is_fresh(project)
     editing.choose_keys(session, frozenset({20}))
     assert not flipping.is_fresh(project)
@@ -47,7 +47,7 @@ def test_keys_are_flipped_with_their_turns_and_what_is_in_front(session):
 def test_a_flip_that_comes_too_late_is_told(session):
     copying.copy(session)
     pasting.paste(session, "flipped")
-    editing.edit_figure(session, handle_commands.remove_handles, {0})
+    editing.edit_layer(session, handle_commands.remove_handles, {0})
     before = session.project.document
     settle(session)
     assert session.project.document is before

@@ -24,14 +24,14 @@ def keep(session, frame):
     go(session, frame)
     library.keep(session)
     settle(session)
-    return session.project.figure.library[-1]
+    return session.project.layer.library[-1]
 
 
 def test_an_in_between_is_kept_as_the_nearest_pose(session):
     between = keep(session, 3)
-    check_pose(session.project.figure, between.pose)
+    check_pose(session.project.layer, between.pose)
     assert between.pose.certificate.certified
-    assert session.project.figure.key_frames == {0, 6}
+    assert session.project.layer.key_frames == {0, 6}
 
 
 @pytest.mark.parametrize("share", [0.0, 0.3, 0.7])
@@ -39,14 +39,14 @@ def test_a_blend_is_between_and_certified_and_its_beginning_is_not_forgotten(ses
     project = session.project
     kept = keep(session, 6)
     go(session, 0)
-    first, before = project.figure.key(0).pose, project.document
+    first, before = project.layer.key(0).pose, project.document
     for now in (0.9, 1.0, 0.5, share):
         library.blend(session, kept.name, now)
         settle(session)
     library.end_blend(session)
     settle(session)
-    pose = project.figure.key(0).pose
-    check_pose(project.figure, pose)
+    pose = project.layer.key(0).pose
+    check_pose(project.layer, pose)
     assert pose.certificate.certified
     for identity, target in pose.targets.items():
         one, other = (each.targets[identity].position for each in (first, kept.pose))
@@ -65,7 +65,7 @@ def test_without_auto_key_a_blend_waits_to_be_inserted(session):
         settle(session)
         library.end_blend(session)
         settle(session)
-        assert project.figure.key_frames == {0, 6}
+        assert project.layer.key_frames == {0, 6}
         assert project.unkeyed is not None
     assert project.unkeyed is kept.pose
     editing.undo(session)

@@ -34,13 +34,13 @@ SWAPPED, FLIPPED, PLAIN = "swapped", "flipped", "as it is"
 
 def walking(folder, document):
     """A session of somebody whose first layer in front is bent at frame 0."""
-    first = Document(figures=document.figures[:1], size=document.size)
+    first = Document(layers=document.layers[:1], size=document.size)
     height, width = document.size[1], document.size[0]
     session = session_of(first, folder, np.zeros((height, width, 4), np.uint8))
-    for figure in document.figures[1:]:
-        editing.edit(session, layer_commands.add_figure(figure))
+    for layer in document.layers[1:]:
+        editing.edit(session, layer_commands.add_layer(layer))
     settle(session)
-    (near,) = (each.id for each in document.figures if each.id == 0)
+    (near,) = (each.id for each in document.layers if each.id == 0)
     layering.choose(session, near)
     return session
 
@@ -48,7 +48,7 @@ def walking(folder, document):
 def pull(session, name, **ways):
     """Pull handles of a layer, which is chosen then, at the present frame."""
     layering.choose(session, identity(session, name))
-    ids = {handle.name: handle.id for handle in session.project.figure.handles}
+    ids = {handle.name: handle.id for handle in session.project.layer.handles}
     settle(session)
     for handle, way in ways.items():
         editing.select(session, frozenset({ids[handle]}))
@@ -58,16 +58,16 @@ def pull(session, name, **ways):
 
 
 def identity(session, name):
-    return next(each.id for each in session.project.document.figures if each.name == name)
+    return next(each.id for each in session.project.document.layers if each.name == name)
 
 
-def figure(session, name):
-    return session.project.document.figure(identity(session, name))
+def layer(session, name):
+    return session.project.document.layer(identity(session, name))
 
 
 def ways(session, name, frame):
     """Return how far a key has taken a layer's handles, by their names."""
-    one = figure(session, name)
+    one = layer(session, name)
     targets = one.key(frame).pose.targets
     return {each.name: targets[each.id].position - each.position for each in one.handles}
 
@@ -105,18 +105,16 @@ def test_a_pose_is_pasted_onto_another_layer_as_one_step(session):
     settle(session)
     check_invariants(session)
     close(ways(session, "far leg", 12), ways(session, "near leg", 0))
-    assert figure(session, "far leg").key(12).pose.certificate.certified
+    assert layer(session, "far leg").key(12).pose.certificate.certified
     assert project.chosen == {12}
-    assert figure(session, "near leg").key_frames == {0}
+    assert layer(session, "near leg").key_frames == {0}
     editing.undo(session)
     assert project.document is before
 
 
 def test_keys_take_their_ways_passings_turns_and_fronts_along(session):
     near, knee = identity(session, "near leg"), 1
-    editing.edit(
-        session, key_commands.insert_key(near, 8, figure(session, "near leg").keys[0].pose)
-    )
+    editing.edit(session, key_commands.insert_key(near, 8, layer(session, "near leg").keys[0].pose))
     editing.edit(session, key_commands.set_easing(near, {0}, PRESETS["in-out"]))
     editing.edit(session, key_commands.set_passing(near, {8}, Passing.STOP))
     editing.edit(session, key_commands.set_turns(near, {0}, 1))
@@ -127,7 +125,7 @@ def test_keys_take_their_ways_passings_turns_and_fronts_along(session):
     go(session, 12)
     pasting.paste(session)
     settle(session)
-    far = figure(session, "far leg")
+    far = layer(session, "far leg")
     assert far.key_frames == {0, 12, 20}
     one, other = far.key(12), far.key(20)
     assert (one.easing, one.turns, dict(one.fronts)) == (PRESETS["in-out"], 1, {knee: 0.5})
@@ -149,7 +147,7 @@ def test_the_step_of_all_layers_is_pasted_swapped_and_nothing_is_mirrored(sessio
     first_near, first_far = near_and_far(session, 0)
     close(far, first_near)
     close(near, first_far)
-    body = figure(session, "body")
+    body = layer(session, "body")
     assert body.key(12).pose.phi is body.key(0).pose.phi
     assert {row: set(at) for row, at in project.chosen_of.items()} == {0: {12}, 1: {12}, 2: {12}}
     editing.undo(session)
@@ -168,12 +166,12 @@ def test_the_step_of_all_layers_is_pasted_swapped_and_nothing_is_mirrored(sessio
     go(session, 12)
     pasting.paste(session)
     settle(session)
-    assert figure(session, "near leg").key(12).easing == PRESETS["in"]
+    assert layer(session, "near leg").key(12).easing == PRESETS["in"]
 
 
 def test_left_and_right_layers_exchange_mirrored_when_flipped(tmp_path):
     mirrored = leg("leg.R", 2, mirrored=True)
-    document = Document(figures=(mirrored, leg("leg.L", 0)), size=(240, 200))
+    document = Document(layers=(mirrored, leg("leg.L", 0)), size=(240, 200))
     session = walking(tmp_path, document)
     pull(session, "leg.L", knee=18 + 8j, foot=-20 + 30j)
     editing.edit(session, key_commands.set_turns(0, {0}, 2))
@@ -182,7 +180,7 @@ def test_left_and_right_layers_exchange_mirrored_when_flipped(tmp_path):
     go(session, 12)
     pasting.paste(session, FLIPPED)
     settle(session)
-    assert figure(session, "leg.R").key(12).turns == -2
+    assert layer(session, "leg.R").key(12).turns == -2
     was = ways(session, "leg.L", 0)
     close(ways(session, "leg.R", 12), {name: -way.conjugate() for name, way in was.items()})
     close(ways(session, "leg.L", 12), dict.fromkeys(was, 0j))
@@ -194,11 +192,11 @@ def test_one_layer_gives_its_pose_to_its_partner_where_sides_exchange(session):
     copying.copy(session)
     go(session, 12)
     (landing,) = receiving.landings(session, project, SWAPPED)
-    assert landing.figure.name == "far leg"
+    assert landing.layer.name == "far leg"
     pasting.paste(session, SWAPPED)
     settle(session)
     close(ways(session, "far leg", 12), ways(session, "near leg", 0))
-    assert figure(session, "near leg").key_frames == {0}
+    assert layer(session, "near leg").key_frames == {0}
 
 
 def test_words_for_sides_are_edited_and_whole_names_are_partners(session):
@@ -255,7 +253,7 @@ def test_why_nothing_can_be_pasted_is_said(session):
 
 def test_layers_without_a_common_name_are_left_out_and_told(session):
     far = identity(session, "far leg")
-    for handle in figure(session, "far leg").handles:
+    for handle in layer(session, "far leg").handles:
         command = handle_commands.rename_handle(far, handle.id, f"point {handle.id}")
         editing.edit(session, command)
     copying.copy_all(session)
@@ -264,8 +262,8 @@ def test_layers_without_a_common_name_are_left_out_and_told(session):
     assert pasting.why_not(session, session.project, SWAPPED) != ""
     pasting.paste(session, FLIPPED)
     settle(session)
-    assert figure(session, "body").key_frames == {0, 12}
-    assert figure(session, "far leg").key_frames == {0}
+    assert layer(session, "body").key_frames == {0, 12}
+    assert layer(session, "far leg").key_frames == {0}
     told = [toast.text for toast in session.toasts]
     assert "“far leg” has no handle called hip, knee or foot." in told
 
@@ -282,12 +280,12 @@ def test_handles_that_are_not_copied_stay_where_the_motion_has_them(session):
     layering.choose(session, far)
     go(session, 12)
     shown = session.project.puppet.shown
-    names = [handle.name for handle in shown.clip.figure.handles]
+    names = [handle.name for handle in shown.clip.layer.handles]
     here = complex(shown.handle_places[names.index("shin")])
     pasting.paste(session)
     settle(session)
-    shin = next(each for each in figure(session, "far leg").handles if each.name == "shin")
-    wished = figure(session, "far leg").key(12).pose.targets[shin.id].position
+    shin = next(each for each in layer(session, "far leg").handles if each.name == "shin")
+    wished = layer(session, "far leg").key(12).pose.targets[shin.id].position
     assert wished == pytest.approx(here, abs=0.5)
     close(
         {k: w for k, w in ways(session, "far leg", 12).items() if k != "shin"},
@@ -299,7 +297,7 @@ def test_selected_handles_alone_take_over_from_another_layer(session):
     copying.copy(session)
     layering.choose(session, identity(session, "far leg"))
     go(session, 0)
-    foot = next(each.id for each in session.project.figure.handles if each.name == "foot")
+    foot = next(each.id for each in session.project.layer.handles if each.name == "foot")
     editing.select(session, frozenset({foot}))
     pasting.paste_on_selected(session)
     settle(session)
@@ -329,7 +327,7 @@ def test_a_layer_that_changes_meanwhile_is_told(session):
     copying.copy(session)
     layering.choose(session, identity(session, "far leg"))
     pasting.paste(session)
-    editing.edit_figure(session, handle_commands.remove_handles, {0})
+    editing.edit_layer(session, handle_commands.remove_handles, {0})
     before = session.project.document
     settle(session)
     assert session.project.document is before
@@ -368,17 +366,17 @@ def test_keys_of_several_layers_come_back_by_name_in_another_project(session, tm
     pasting.paste(other)
     settle(other)
     close(ways(other, "near leg", 6), ways(session, "near leg", 0))
-    (one,) = [each for each in session.copied if each.figure.name == "near leg"]
-    other.copied = (replace(one, figure=replace(one.figure, name="nobody")), *other.copied[1:])
+    (one,) = [each for each in session.copied if each.layer.name == "near leg"]
+    other.copied = (replace(one, layer=replace(one.layer, name="nobody")), *other.copied[1:])
 
 
 def test_handles_of_one_layer_are_swapped_within_it(tmp_path):
     document = walker()
-    body = next(each for each in document.figures if each.name == "body")
+    body = next(each for each in document.layers if each.name == "body")
     for name, place in (("near hand", 60 + 160j), ("far hand", 140 + 160j)):
-        scene = handle_commands.add_handle(1, place, name=name)(Document(figures=(body,)))
-        (body,) = scene.figures
-    session = session_of(Document(figures=(body,)), tmp_path, np.zeros((200, 240, 4), np.uint8))
+        scene = handle_commands.add_handle(1, place, name=name)(Document(layers=(body,)))
+        (body,) = scene.layers
+    session = session_of(Document(layers=(body,)), tmp_path, np.zeros((200, 240, 4), np.uint8))
     pull(session, "body", **{"near hand": 6 + 10j})
     copying.copy(session)
     go(session, 12)
@@ -393,10 +391,10 @@ def test_handles_of_one_layer_are_swapped_within_it(tmp_path):
 
 def test_what_is_turned_as_a_whole_stays_turned_where_its_sides_are_swapped():
     document = walker()
-    body = next(each for each in document.figures if each.name == "body")
+    body = next(each for each in document.layers if each.name == "body")
     for name, place in (("near hand", 60 + 160j), ("far hand", 140 + 160j)):
-        scene = handle_commands.add_handle(1, place, name=name)(Document(figures=(body,)))
-        (body,) = scene.figures
+        scene = handle_commands.add_handle(1, place, name=name)(Document(layers=(body,)))
+        (body,) = scene.layers
     turn, key = np.exp(0.7j), body.keys[0]
     targets = {each.id: Target(position=turn * each.position) for each in body.handles}
     pose = replace(key.pose, targets=targets, phi=turn * body.domain.cage)
@@ -421,7 +419,7 @@ def test_keys_of_tracks_go_to_the_handles_of_the_partner(session, way, mirrors):
     before = session.project.document
     pasting.paste(session, way)
     settle(session)
-    track = figure(session, "far leg").track_of(foot)
+    track = layer(session, "far leg").track_of(foot)
     assert [key.frame for key in track.keys] == [12, 18]
     for key, place in zip(track.keys, (4 + 2j, -3 + 5j), strict=True):
         ways = [place, 1 + 2j]
@@ -440,7 +438,7 @@ def test_the_poses_of_chosen_layers_are_copied_and_one_is_pasted_onto_all_of_the
     layering.choose_all(session, near, far)
     copying.copy(session)
     settle(session)
-    assert {each.figure.id for each in session.copied} == {near, far}
+    assert {each.layer.id for each in session.copied} == {near, far}
     layering.choose(session, near)
     copying.copy(session)
     go(session, 12)
@@ -450,7 +448,7 @@ def test_the_poses_of_chosen_layers_are_copied_and_one_is_pasted_onto_all_of_the
     settle(session)
     close(ways(session, "far leg", 12), ways(session, "near leg", 0))
     close(ways(session, "near leg", 12), ways(session, "near leg", 0))
-    assert figure(session, "body").key_frames == {0}
+    assert layer(session, "body").key_frames == {0}
     assert any("“body” has no handle" in toast.text for toast in session.toasts)
     editing.undo(session)
     assert session.project.document is before
@@ -459,15 +457,15 @@ def test_the_poses_of_chosen_layers_are_copied_and_one_is_pasted_onto_all_of_the
 def test_pairs_of_the_document_tell_partners_of_handles_too(session):
     names = ("hip", "Spielknie", "Standknie")
     for handle, name in enumerate(names):
-        editing.edit_figure(session, handle_commands.rename_handle, handle, name)
+        editing.edit_layer(session, handle_commands.rename_handle, handle, name)
     pasting.set_pairs(session, "L/R, Spielknie/Standknie")
     editing.select(session, frozenset({1}))
     editing.select_mirrored(session)
     assert session.project.selected == {2}
     editing.edit(session, track_commands.put_track_key(0, 1, 0, 4 + 2j))
     pairs = session.project.document.pairs
-    editing.edit_figure(session, track_commands.mirror_track, 1, pairs)
-    assert session.project.figure.track_of(2).keys[0].place == -4 + 2j
-    editing.edit_figure(session, material_commands.add_bone, (0, 1), 5.0)
+    editing.edit_layer(session, track_commands.mirror_track, 1, pairs)
+    assert session.project.layer.track_of(2).keys[0].place == -4 + 2j
+    editing.edit_layer(session, material_commands.add_bone, (0, 1), 5.0)
     material.mirror(session)
-    assert [bone.ends for bone in session.project.figure.bones] == [(0, 1), (0, 2)]
+    assert [bone.ends for bone in session.project.layer.bones] == [(0, 1), (0, 2)]

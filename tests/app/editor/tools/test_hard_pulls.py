@@ -7,7 +7,7 @@ from PIL import Image, ImageDraw
 from sessions import session_of, settle
 
 from app.document import NATURAL, RUBBERY
-from app.document.commands import figure_commands, handle_commands, material_commands
+from app.document.commands import handle_commands, material_commands, shape_commands
 from app.editor.actions import editing, playback, posing
 from app.editor.actions.posing.stopping import STOPPED_AT_LIMIT
 from app.editor.actions.upkeep import maintain
@@ -63,8 +63,8 @@ def session(request, tmp_path):
     picture, places = SHAPES[request.param]
     document = still_document(picture)
     # Half of the corners do, and make poses several times as fast.
-    document = within(document, document.figures[0].domain.outline[::2])
-    document = figure_commands.set_bounds(0, NATURAL.bounds)(document)
+    document = within(document, document.layers[0].domain.outline[::2])
+    document = shape_commands.set_bounds(0, NATURAL.bounds)(document)
     for place in places:
         document = handle_commands.add_handle(0, place)(document)
     return session_of(document, tmp_path, picture)
@@ -72,18 +72,18 @@ def session(request, tmp_path):
 
 def outwards(project):
     """Return the first handle, and the way from all others to it, as long as the drawing."""
-    places = [handle.position for handle in project.figure.handles]
+    places = [handle.position for handle in project.layer.handles]
     away = places[0] - np.mean(places[1:])
-    size = box_diagonal(project.figure.domain.outline)
-    return project.figure.handles[0].id, complex(size * away / abs(away))
+    size = box_diagonal(project.layer.domain.outline)
+    return project.layer.handles[0].id, complex(size * away / abs(away))
 
 
 def where(project):
     """Return where handles are, and the outline, in the key that is pulled."""
-    figure, pose = project.figure, project.figure.key(0).pose
-    f, points = figure.map_of(pose), [handle.position for handle in figure.handles]
-    ids = [handle.id for handle in figure.handles]
-    return dict(zip(ids, f(np.array(points)).tolist(), strict=True)), f(figure.domain.outline)
+    layer, pose = project.layer, project.layer.key(0).pose
+    f, points = layer.map_of(pose), [handle.position for handle in layer.handles]
+    ids = [handle.id for handle in layer.handles]
+    return dict(zip(ids, f(np.array(points)).tolist(), strict=True)), f(layer.domain.outline)
 
 
 def picture(session):
@@ -114,7 +114,7 @@ def drag_too_far(session, **rests):
 
 
 def per_mille(session, lengths):
-    size = box_diagonal(session.project.figure.domain.outline)
+    size = box_diagonal(session.project.layer.domain.outline)
     return 1000 * float(np.max(np.abs(lengths))) / size
 
 
@@ -130,11 +130,11 @@ def test_a_hand_beyond_reach_moves_a_limb_and_leaves_the_rest(session):
     # Nothing creeps once the hand has let go.
     assert per_mille(session, rests - released) < 10
     # It is wanted where it came to, a hair farther out.
-    wanted = project.figure.key(0).pose.targets[hand].position
+    wanted = project.layer.key(0).pose.targets[hand].position
     assert per_mille(session, wanted - after[hand]) < 1
     assert ((wanted - after[hand]) / (asked - after[hand])).real > 0
     (toast,) = [toast for toast in session.toasts if "stopped" in toast.text]
-    name = project.figure.handle(hand).name
+    name = project.layer.handle(hand).name
     assert toast.text == STOPPED_AT_LIMIT.format(who=name, its="its")
     # All of that is one step, and the pose is found again from its own wishes.
     posing.pull_again(session, {}, gesture=object())
@@ -160,7 +160,7 @@ def test_loosen_pulls_once_more_to_where_the_hand_went(session):
     toast.action.apply(session)
     settle(session)
     assert playback.current_frame(session, project) == 0
-    assert project.figure.bounds == RUBBERY.bounds
+    assert project.layer.bounds == RUBBERY.bounds
     assert abs(where(project)[0][hand] - asked) < 0.7 * short
 
 
@@ -171,7 +171,7 @@ def test_alt_keeps_the_wish_and_pulls_as_strongly_as_it_takes(session):
     pointing.end_insisting(session, asked)
     settle(session)
     after, _ = where(project)
-    assert project.figure.key(0).pose.targets[hand].position == asked
+    assert project.layer.key(0).pose.targets[hand].position == asked
     assert per_mille(session, [after[i] - before[i] for i in before if i != hand]) > 10
     assert not [toast for toast in session.toasts if "stopped" in toast.text]
 
@@ -184,7 +184,7 @@ def test_the_next_drag_does_not_pull_on_at_what_the_hand_has_left(session, rests
     pointing.end(session, asked)
     for _ in range(rests):
         picture(session)
-    other, way = project.figure.handles[1].id, 0.03 * box_diagonal(project.figure.domain.outline)
+    other, way = project.layer.handles[1].id, 0.03 * box_diagonal(project.layer.domain.outline)
     pointing.end(session, drag(session, other, way, rests=rests))
     settle(session)
     after, _ = where(project)
@@ -200,7 +200,7 @@ def test_a_drag_within_reach_is_wanted_where_it_was_let_go(session):
     asked = drag(session, hand, -0.05 * out)
     pointing.end(session, asked)
     settle(session)
-    assert project.figure.key(0).pose.targets[hand].position == asked
+    assert project.layer.key(0).pose.targets[hand].position == asked
     assert per_mille(session, where(project)[0][hand] - asked) < 1
     assert not session.toasts
 
@@ -211,12 +211,12 @@ def test_a_pose_that_rests_when_the_hand_lets_go_is_kept(session):
     hand, out = outwards(project)
     asked = drag(session, hand, -0.05 * out, rests=40)
     assert project.pull.is_at_rest
-    phi = project.figure.key(0).pose.phi
+    phi = project.layer.key(0).pose.phi
     pointing.end(session, asked)
     maintain(session)
     assert not project.pending
-    assert project.figure.key(0).pose.phi is phi
-    assert project.figure.key(0).pose.targets[hand].position == asked
+    assert project.layer.key(0).pose.phi is phi
+    assert project.layer.key(0).pose.targets[hand].position == asked
 
 
 def test_a_joint_that_gave_in_is_wanted_where_it_came_to(tmp_path):
@@ -231,7 +231,7 @@ def test_a_joint_that_gave_in_is_wanted_where_it_came_to(tmp_path):
     asked = drag(session, 2, 160j)
     pointing.end(session, asked)
     settle(session)
-    joint, targets = where(project)[0][1], project.figure.key(0).pose.targets
+    joint, targets = where(project)[0][1], project.layer.key(0).pose.targets
     assert abs(joint - 100 - 40j) > 2
     assert abs(targets[1].position - joint) < 0.1
     assert abs(targets[0].position - 24 - 40j) < 1e-9
@@ -240,9 +240,9 @@ def test_a_joint_that_gave_in_is_wanted_where_it_came_to(tmp_path):
 @pytest.mark.parametrize("session", ["person"], indirect=True)
 def test_all_handles_together_take_the_whole_drawing_along(session):
     project = session.project
-    way = 0.8 * box_diagonal(project.figure.domain.outline) * np.exp(1j)
+    way = 0.8 * box_diagonal(project.layer.domain.outline) * np.exp(1j)
     _, before = where(project)
-    handles = [handle.id for handle in project.figure.handles]
+    handles = [handle.id for handle in project.layer.handles]
     start = complex(where(project)[0][handles[0]])
     editing.select(session, frozenset(handles))
     pointing.press(session, Spot(place=start, handle=handles[0]))

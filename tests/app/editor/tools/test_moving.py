@@ -1,4 +1,4 @@
-"""Moving a figure as a whole: exactly as it is, with all that it wants."""
+"""Moving a layer as a whole: exactly as it is, with all that it wants."""
 
 from dataclasses import replace
 
@@ -7,7 +7,7 @@ import pytest
 from animations import moving_document, round_document
 from sessions import session_of, settle
 
-from app.document.commands import figure_commands, handle_commands
+from app.document.commands import handle_commands, shape_commands
 from app.editor import layering
 from app.editor.actions import editing, playback, posing
 from app.editor.actions.upkeep import maintain
@@ -45,7 +45,7 @@ def session(pulled, tmp_path):
 
 
 def pose_of(session, number=0):
-    return session.project.figure.keys[number].pose
+    return session.project.layer.keys[number].pose
 
 
 def target(session, identity):
@@ -65,8 +65,8 @@ def drag(session, way=WAY, *, end=True, **held):
 
 def is_moved(session, pose, before, way):
     """Tell whether a pose is another one, moved, and nothing else."""
-    f, g = (session.project.figure.map_of(each) for each in (pose, before))
-    places = session.project.figure.domain.mesh.vertices
+    f, g = (session.project.layer.map_of(each) for each in (pose, before))
+    places = session.project.layer.domain.mesh.vertices
     np.testing.assert_allclose(f(places), g(places) + way, rtol=0, atol=1e-9)
     assert pose.targets.keys() == before.targets.keys()
     for identity, wanted in pose.targets.items():
@@ -96,7 +96,7 @@ def test_with_the_tool_it_does_so_from_anywhere(session, at):
     moving.take_up(session)
     drag(session, **at)
     assert is_moved(session, pose_of(session), before, WAY)
-    assert len(session.project.figure.handles) == 2
+    assert len(session.project.layer.handles) == 2
     moving.pose(session)
     pointing.press(session, Spot(place=LEFT, handle=0))
     assert type(session.pointer).__name__ == "Pulling"
@@ -105,7 +105,7 @@ def test_with_the_tool_it_does_so_from_anywhere(session, at):
 def test_ctrl_click_still_sets_the_anchor(session):
     moving.take_up(session)
     pointing.press(session, Spot(place=LEFT + 5j, on_shape=True, ctrl=True))
-    assert session.project.figure.anchor is not None
+    assert session.project.layer.anchor is not None
 
 
 def test_escape_in_the_middle_takes_it_back(session):
@@ -148,7 +148,7 @@ def test_each_arrow_is_a_step(session):
 def joined(blob, tmp_path):
     """Two blobs, the second of which hangs on the first, and is posed."""
     session = session_of(blob, tmp_path)
-    session.project.history.do(figure_commands.set_anchor(0, LEFT))
+    session.project.history.do(shape_commands.set_anchor(0, LEFT))
     settle(session)
     layering.duplicate(session, 0)
     layering.hang(session, 1, 0)
@@ -157,19 +157,19 @@ def joined(blob, tmp_path):
     return session
 
 
-def places_of(session, figure):
+def places_of(session, layer):
     """Where all points of a layer are in the scene."""
-    shown = session.project.puppets[figure].shown
+    shown = session.project.puppets[layer].shown
     return shown.placement.on(shown.positions)
 
 
 def test_a_layer_moves_what_it_hangs_on(joined):
-    project, before = joined.project, [places_of(joined, figure) for figure in (0, 1)]
+    project, before = joined.project, [places_of(joined, layer) for layer in (0, 1)]
     drag(joined, end=False, ctrl=True, shift=True)
     settle(joined)
     assert project.active == 0
-    for figure in (0, 1):
-        np.testing.assert_allclose(places_of(joined, figure), before[figure] + WAY, atol=1e-3)
+    for layer in (0, 1):
+        np.testing.assert_allclose(places_of(joined, layer), before[layer] + WAY, atol=1e-3)
     pointing.cancel(joined)
     settle(joined)
     assert project.active == 1
@@ -196,7 +196,7 @@ def test_the_layer_that_is_pressed_moves_and_no_other(blob, tmp_path):
     settle(session)
     moving.take_up(session)
     before = places_of(session, 0)
-    drag(session, figure=1, on_shape=True)
+    drag(session, layer=1, on_shape=True)
     settle(session)
     assert session.project.active == 1
     np.testing.assert_allclose(places_of(session, 0), before, atol=1e-6)
@@ -233,14 +233,14 @@ def test_an_in_between_becomes_a_pose_of_its_own(tmp_path, auto_key, is_there):
     middle = project.puppet.shown.handle_places.mean()
     drag(session, ctrl=True, shift=True)
     settle(session)
-    frames = [key.frame for key in project.figure.keys]
+    frames = [key.frame for key in project.layer.keys]
     assert frames == ([0, 3, 6] if auto_key else [0, 6])
     assert (project.unkeyed is None) == auto_key
     if is_there:
         moved = project.puppet.shown.handle_places.mean()
         assert abs(moved - middle - WAY) < 0.01 * abs(WAY)
     editing.undo(session)
-    assert [key.frame for key in project.figure.keys] == [0, 6]
+    assert [key.frame for key in project.layer.keys] == [0, 6]
     assert project.unkeyed is None
 
 

@@ -111,20 +111,20 @@ def test_a_press_on_the_shape_that_is_dragged_is_one_step(session):
     drag(session, ON_SHAPE, FREE + 8, FREE + 8 + 8j)
     pointing.end(session, FREE + 8 + 8j)
     settle(session)
-    assert len(project.figure.handles) == 3
-    target = project.figure.keys[0].pose.targets[2].position
+    assert len(project.layer.handles) == 3
+    target = project.layer.keys[0].pose.targets[2].position
     assert abs(target - (FREE + 8 + 8j)) < 1e-9
     editing.undo(session)
     assert project.document is first
     editing.redo(session)
-    assert len(project.figure.handles) == 3
+    assert len(project.layer.handles) == 3
 
 
 def test_undo_before_the_solver_has_begun_takes_the_new_handle_back(session):
     project, first = session.project, session.project.document
     pointing.press(session, ON_SHAPE)
     pointing.move(session, FREE + 8)
-    assert len(project.figure.handles) == 3
+    assert len(project.layer.handles) == 3
     editing.undo(session)
     assert project.document is first
     settle(session)
@@ -137,14 +137,14 @@ def test_selected_handles_are_pulled_together(session):
     drag(session, AT_RIGHT, RIGHT + 6j)
     pointing.end(session, RIGHT + 6j)
     settle(session)
-    targets = project.figure.keys[0].pose.targets
+    targets = project.layer.keys[0].pose.targets
     assert [targets[i].position for i in (0, 1)] == pytest.approx([LEFT + 6j, RIGHT + 6j])
     # One that is not selected alone.
     editing.select(session, frozenset({0}))
     drag(session, Spot(place=RIGHT + 6j, handle=1), RIGHT)
     pointing.end(session, RIGHT)
     settle(session)
-    targets = project.figure.keys[0].pose.targets
+    targets = project.layer.keys[0].pose.targets
     assert [targets[i].position for i in (0, 1)] == pytest.approx([LEFT + 6j, RIGHT])
 
 
@@ -155,7 +155,7 @@ def test_a_turn_begins_where_the_pointer_leaves_the_handle(session):
     assert mark == SweepMark(handle=1, turn=pytest.approx(0.2), swept=pytest.approx(0.2))
     pointing.end(session, end)
     settle(session)
-    target = session.project.figure.keys[0].pose.targets[1]
+    target = session.project.layer.keys[0].pose.targets[1]
     assert target.rotation == pytest.approx(0.2)
 
 
@@ -163,7 +163,7 @@ def test_a_click_with_alt_deletes_and_one_on_the_ring_does_not(session):
     for spot, left in ((ON_RING, 2), (replace(AT_LEFT, alt=True), 1)):
         pointing.press(session, spot)
         pointing.end(session, spot.place)
-        assert len(session.project.figure.handles) == left
+        assert len(session.project.layer.handles) == left
 
 
 def test_the_anchor_goes_to_where_it_is_set_and_back_by_a_second_click(session):
@@ -171,10 +171,10 @@ def test_the_anchor_goes_to_where_it_is_set_and_back_by_a_second_click(session):
     for anchor in (RIGHT, None):
         pointing.press(session, replace(AT_RIGHT, ctrl=True))
         pointing.end(session, RIGHT)
-        assert project.figure.anchor == anchor
+        assert project.layer.anchor == anchor
     pointing.press(session, replace(ON_SHAPE, ctrl=True))
     pointing.end(session, FREE)
-    assert project.figure.anchor == pytest.approx(FREE)
+    assert project.layer.anchor == pytest.approx(FREE)
 
 
 @pytest.mark.parametrize("shift", [False, True])
@@ -201,7 +201,7 @@ def test_a_playhead_that_leaves_a_drag_does_not_leave_it_half_taken_back(session
     playback.scrub(session, 10)
     pointing.move(session, RIGHT + 9j)
     frames(session)
-    assert project.figure.key_frames == {0, 10}
+    assert project.layer.key_frames == {0, 10}
     pointing.cancel(session)
     settle(session)
     assert project.document is first
@@ -237,7 +237,7 @@ def test_there_is_a_hint_wherever_something_can_be_done(session, spot):
 
 def wish(session, identity=0):
     settle(session)
-    return session.project.figure.keys[0].pose.targets[identity]
+    return session.project.layer.keys[0].pose.targets[identity]
 
 
 def test_a_drag_goes_as_far_as_is_typed_whatever_the_pointer_does(session):

@@ -1,7 +1,7 @@
-"""Ready motions: what a figure is to be given, where its joints are, and giving it.
+"""Ready motions: what a layer is to be given, where its joints are, and giving it.
 
 In: a session with a project.
-Out: a draft of a motion; then the figure with its keys, in one step of undo.
+Out: a draft of a motion; then the layer with its keys, in one step of undo.
 Imports: `app.solving`, `app.editor.promises`, `app.editor.actions.playback` and `editing`.
 """
 

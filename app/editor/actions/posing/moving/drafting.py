@@ -4,7 +4,7 @@ from collections.abc import Collection
 from dataclasses import replace
 from typing import Any
 
-from app.document import Figure, GivenMotion, is_as_given
+from app.document import GivenMotion, Layer, is_as_given
 from app.editor.actions import playback
 from app.editor.actions.posing.moving.placing import joints_in
 from app.editor.project import Project
@@ -19,18 +19,18 @@ LINKS = 6
 
 
 def why_not(_: Session, project: Project) -> str:
-    """Return why the figure that is posed can be given no motion; empty where it can."""
-    figure = project.figure
-    if figure.still:
-        return f"{figure.name} is a still picture: there is no shape on it to be moved."
-    if figure.locked:
-        return f"{figure.name} is locked: unlock it in the list of layers first."
+    """Return why the layer that is posed can be given no motion; empty where it can."""
+    layer = project.layer
+    if layer.still:
+        return f"{layer.name} is a still picture: there is no shape on it to be moved."
+    if layer.locked:
+        return f"{layer.name} is locked: unlock it in the list of layers first."
     return ""
 
 
 @with_project
 def begin(session: Session, project: Project) -> None:
-    """Draft a motion for the figure that is posed: the one that it has at this frame, or a new one.
+    """Draft a motion for the layer that is posed: the one that it has at this frame, or a new one.
 
     What is drafted already is shown.
     """
@@ -42,58 +42,58 @@ def begin(session: Session, project: Project) -> None:
     session.moves = session.records = False
     project.selected = frozenset()
     frame = playback.current_frame(session, project)
-    here = [each for each in project.figure.motions if each.first <= frame < each.last]
+    here = [each for each in project.layer.motions if each.first <= frame < each.last]
     if here:
-        project.draft = draft_again(project.figure, here[-1])
+        project.draft = draft_again(project.layer, here[-1])
     else:
-        project.draft = _put_away(project, frame) or _new(project.figure, frame)
+        project.draft = _put_away(project, frame) or _new(project.layer, frame)
     # It has hints of its own.
     session.guide = None
 
 
 @with_project
 def begin_again(session: Session, project: Project, given: GivenMotion) -> None:
-    """Draft a motion that the figure was given once more, to give it in another way."""
-    if given in project.figure.motions:
+    """Draft a motion that the layer was given once more, to give it in another way."""
+    if given in project.layer.motions:
         playback.scrub(session, given.first)
         begin(session)
 
 
 @with_project
 def begin_after(session: Session, project: Project, given: GivenMotion) -> None:
-    """Draft another motion, to follow one that the figure was given; joints stay as they are."""
+    """Draft another motion, to follow one that the layer was given; joints stay as they are."""
     draft = project.draft
     if draft is None:
         playback.scrub(session, given.last)
         begin(session)
-    elif given in project.figure.motions:
+    elif given in project.layer.motions:
         playback.scrub(session, given.last)
         project.draft = replace(draft, given=None, first=given.last)
 
 
 def _put_away(project: Project, frame: int) -> MotionDraft | None:
     """Return the draft that was put away last, if it was of the same shape, and a first motion."""
-    draft, figure = project.last_draft, project.figure
-    if draft is None or figure.motions or draft.given is not None:
+    draft, layer = project.last_draft, project.layer
+    if draft is None or layer.motions or draft.given is not None:
         return None
-    is_same = (draft.figure, draft.domain) == (figure.id, figure.domain)
+    is_same = (draft.layer, draft.domain) == (layer.id, layer.domain)
     return replace(draft, first=frame, past=(), chosen=None) if is_same else None
 
 
-def _new(figure: Figure, frame: int) -> MotionDraft:
-    """Return what a figure is given that has nothing at a frame: as the last one, or as it seems.
+def _new(layer: Layer, frame: int) -> MotionDraft:
+    """Return what a layer is given that has nothing at a frame: as the last one, or as it seems.
 
     Joints of the motion before are those of this one.
     """
-    earlier = [each for each in figure.motions if each.first <= frame]
+    earlier = [each for each in layer.motions if each.first <= frame]
     if earlier:
-        draft = draft_again(figure, earlier[-1])
+        draft = draft_again(layer, earlier[-1])
         return replace(draft, given=None, first=frame, parameters=Parameters(), rounds=1)
-    kind = guessed_kind(figure.domain.loops)
-    joints = joints_in(figure, kind.name)
+    kind = guessed_kind(layer.domain.loops)
+    joints = joints_in(layer, kind.name)
     return MotionDraft(
-        figure=figure.id,
-        domain=figure.domain,
+        layer=layer.id,
+        domain=layer.domain,
         kind=kind.name,
         motion=_first_motion(kind.name, joints),
         joints=joints,
@@ -102,19 +102,19 @@ def _new(figure: Figure, frame: int) -> MotionDraft:
     )
 
 
-def draft_again(figure: Figure, given: GivenMotion) -> MotionDraft:
-    """Return the draft by which a figure was given a motion."""
-    there = {handle.id: handle.position for handle in figure.handles}
+def draft_again(layer: Layer, given: GivenMotion) -> MotionDraft:
+    """Return the draft by which a layer was given a motion."""
+    there = {handle.id: handle.position for handle in layer.handles}
     names = given.joints.items()
     joints = {name: there[handle] for name, handle in names if handle in there}
-    ends = {handle for bone in figure.bones for handle in bone.ends}
+    ends = {handle for bone in layer.bones for handle in bone.ends}
     return MotionDraft(
-        figure=figure.id,
-        domain=figure.domain,
+        layer=layer.id,
+        domain=layer.domain,
         kind=given.kind,
         motion=given.motion,
         joints=joints if given.kind != "anything" else {},
-        suggested=joints_in(figure, given.kind),
+        suggested=joints_in(layer, given.kind),
         parameters=given.parameters,
         rounds=given.rounds,
         facing=given.facing,
@@ -149,7 +149,7 @@ def choose_kind(_: Session, project: Project, kind: str) -> None:
     if draft is None or kind == draft.kind:
         return
     others = {**draft.others, draft.kind: draft.joints}
-    suggested = joints_in(project.figure, kind)
+    suggested = joints_in(project.layer, kind)
     joints = others.get(kind, suggested)
     fits = kind in MOTIONS[draft.motion].courses
     project.draft = replace(
@@ -196,7 +196,7 @@ def was_edited(project: Project) -> bool:
     return (
         draft is not None
         and draft.given is not None
-        and not is_as_given(project.figure, draft.given)
+        and not is_as_given(project.layer, draft.given)
     )
 
 
@@ -215,18 +215,18 @@ def hindrance(project: Project) -> str:
 
 @with_project
 def give_up(_: Session, project: Project) -> None:
-    """Put the draft away; nothing of it was done to the figure, and its joints are remembered."""
+    """Put the draft away; nothing of it was done to the layer, and its joints are remembered."""
     project.last_draft, project.draft = project.draft, None
 
 
 @with_project
 def maintain(_: Session, project: Project) -> None:
-    """Forget a draft whose figure is not posed any more, or has another shape; once a frame."""
+    """Forget a draft whose layer is not posed any more, or has another shape; once a frame."""
     draft = project.draft
     if draft is None:
         return
-    figure = project.figure
-    if draft.figure != project.active or draft.domain is not figure.domain or figure.still:
+    layer = project.layer
+    if draft.layer != project.active or draft.domain is not layer.domain or layer.still:
         project.draft = None
-    elif draft.given is not None and draft.given not in figure.motions:
+    elif draft.given is not None and draft.given not in layer.motions:
         project.draft = replace(draft, given=None)

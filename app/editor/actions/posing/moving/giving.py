@@ -1,4 +1,4 @@
-"""Giving a motion: the worker solves key after key, and the figure has them in one step of undo."""
+"""Giving a motion: the worker solves key after key, and the layer has them in one step of undo."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -21,7 +21,7 @@ MOST_TOLD = 3  # joints that are out of reach
 
 @with_project
 def give(session: Session, project: Project) -> None:
-    """Give the figure the motion that is drafted, as soon as the document has settled."""
+    """Give the layer the motion that is drafted, as soon as the document has settled."""
     draft = project.draft
     if draft is not None and not drafting.hindrance(project):
         drafting.give_up(session)
@@ -30,9 +30,9 @@ def give(session: Session, project: Project) -> None:
 
 @with_project
 def _begin(session: Session, project: Project, draft: MotionDraft) -> None:
-    if draft.figure not in project.puppets:
+    if draft.layer not in project.puppets:
         return
-    before = project.document.figure(draft.figure)
+    before = project.document.layer(draft.layer)
     if before.domain is not draft.domain:
         session.tell("The motion was not given: the drawing has another shape by now. Start again.")
         return
@@ -65,22 +65,22 @@ def _without(document: Document, draft: MotionDraft) -> Document:
 
     What it blended in from stays, and one key that is replaced, where there is no other.
     """
-    given, figure = draft.given, document.figure(draft.figure)
+    given, layer = draft.given, document.layer(draft.layer)
     if given is None:
         return document
-    kept = [key for key in figure.keys if not given.first <= key.frame <= given.last]
+    kept = [key for key in layer.keys if not given.first <= key.frame <= given.last]
     if given.start > given.first or not kept:
-        kept = [key for key in figure.keys if key in kept or key.frame == given.first]
-    bones = figure.bones
+        kept = [key for key in layer.keys if key in kept or key.frame == given.first]
+    bones = layer.bones
     if not draft.bones:
         limbs = drafting.limb_joints(given)
         bones = tuple(bone for bone in bones if limbs.isdisjoint(bone.ends))
-    return document.with_figure(
+    return document.with_layer(
         replace(
-            figure,
-            keys=tuple(kept) or figure.keys[:1],
-            cycles=tuple(each for each in figure.cycles if each.first != given.start),
-            motions=tuple(each for each in figure.motions if each is not given),
+            layer,
+            keys=tuple(kept) or layer.keys[:1],
+            cycles=tuple(each for each in layer.cycles if each.first != given.start),
+            motions=tuple(each for each in layer.motions if each is not given),
             bones=bones,
         )
     )
@@ -103,7 +103,7 @@ def _step(
 
 
 def _go_on(session: Session, project: Project, errand: MotionErrand) -> None:
-    """Take the next step, or let the figure have the motion."""
+    """Take the next step, or let the layer have the motion."""
     if errand.giving is not None and not errand.giving.is_over:
         _step(session, project, errand, partial(give_on, errand.giving))
     elif errand.giving is not None:
@@ -111,9 +111,9 @@ def _go_on(session: Session, project: Project, errand: MotionErrand) -> None:
 
 
 def _accept(session: Session, project: Project, errand: MotionErrand, giving: Giving) -> None:
-    """Let the figure have the motion, and play it; where it changed meanwhile, say so."""
+    """Let the layer have the motion, and play it; where it changed meanwhile, say so."""
     before, draft = errand.before, errand.draft
-    if before not in project.document.figures:
+    if before not in project.document.layers:
         session.tell("The motion was not given: the drawing was posed or changed meanwhile.")
         project.draft = project.draft or draft
         return
@@ -121,7 +121,7 @@ def _accept(session: Session, project: Project, errand: MotionErrand, giving: Gi
     change = Command(command.label, lambda document: command(_without(document, draft)))
     project.history.do(change, gesture=gesture)
     unkeyed = project.history.unkeyed
-    if unkeyed is not None and unkeyed.figure == before.id:
+    if unkeyed is not None and unkeyed.layer == before.id:
         project.history.pose(None, gesture=gesture)
     _tell_what_is_short(session, giving)
     if session.pointer is None:
@@ -151,9 +151,9 @@ def _tell_what_is_short(session: Session, giving: Giving) -> None:
 
 
 @with_project
-def give_at_size(session: Session, project: Project, figure: int, first: int, size: float) -> None:
+def give_at_size(session: Session, project: Project, layer: int, first: int, size: float) -> None:
     """Give a motion that begins at a frame again, at another size."""
-    found = project.document.figure(figure) if figure in project.puppets else None
+    found = project.document.layer(layer) if layer in project.puppets else None
     given = next((each for each in found.motions if each.first == first), None) if found else None
     if found is None or given is None:
         session.tell("That motion is not there any more.")

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.document import Figure
+from app.document import Layer
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work import MotionDraft
@@ -30,13 +30,13 @@ BESIDE: Mapping[str, complex] = {
 }
 
 
-def joints_in(figure: Figure, kind: str) -> dict[str, complex]:
-    """Return the joints of a kind in a figure: its handles where these are, or by their names."""
+def joints_in(layer: Layer, kind: str) -> dict[str, complex]:
+    """Return the joints of a kind in a layer: its handles where these are, or by their names."""
     body = kind_named(kind)
-    joints = dict(suggested_joints(figure.domain.loops, body))
-    near = NEAR * box_diagonal(figure.domain.outline)
-    named = {h.name: h.position for h in figure.handles if h.name in body.parents}
-    free = [h.position for h in figure.handles if h.name not in named]
+    joints = dict(suggested_joints(layer.domain.loops, body))
+    near = NEAR * box_diagonal(layer.domain.outline)
+    named = {h.name: h.position for h in layer.handles if h.name in body.parents}
+    free = [h.position for h in layer.handles if h.name not in named]
     for name, place in joints.items():
         nearest = min(free, key=lambda at: abs(at - place), default=None)
         if name not in named and nearest is not None and abs(nearest - place) <= near:

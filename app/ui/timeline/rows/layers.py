@@ -1,29 +1,29 @@
-"""The rows of a scene's figures: their names, and when each one is shown or hidden."""
+"""The rows of a scene's layers: their names, and when each one is shown or hidden."""
 
 from bisect import bisect_left
 from collections.abc import Sequence
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
-from app.document import Figure, Switch, carried_by, is_visible, layer_commands, sights_of
+from app.document import Layer, Switch, carried_by, is_visible, layer_commands, sights_of
 from app.editor import Action, SwitchDrag, do
 from app.editor.actions import editing, playback, timeline_pointing
 from app.ui.style import CHOSEN, SMALL, begin_tip, in_hand, ink, is_pressed, shortened, sized
-from app.ui.timeline.bands import THIN, Bands, FigureRow, HasFrame, tag
+from app.ui.timeline.bands import THIN, Bands, HasFrame, LayerRow, tag
 from app.ui.timeline.keys import choose_row
 from app.ui.timeline.rows.stage import INDENT, draw_stage, draw_stage_names
 from app.ui.timeline.tracks import FOLD, draw_fold, draw_names, draw_ways
 
-HATCH = 0.55  # em between the lines over a time in which a figure is hidden
-EYE = 0.62  # em: half the width of the mark where a figure is shown or hidden
-CHANGE = 0.24  # em: half of the mark where a figure is moved, fades or is ordered as a whole
+HATCH = 0.55  # em between the lines over a time in which a layer is hidden
+EYE = 0.62  # em: half the width of the mark where a layer is shown or hidden
+CHANGE = 0.24  # em: half of the mark where a layer is moved, fades or is ordered as a whole
 BESIDE = 0.35  # em that it makes way for a key at the same frame
 DEEPEST_INDENT = 5  # rows that are deeper are not shifted any more
 LEAST_TOLD = 1.8  # em: with less room behind a name its carrier is told by the tooltip alone
 
 
 def draw_rows(bands: Bands, frame: int) -> list[Action]:
-    """Draw what lies behind the keys of all figures; take clicks on names and on eyes."""
+    """Draw what lies behind the keys of all layers; take clicks on names and on eyes."""
     actions: list[Action] = []
     if bands.has_names:
         actions += _draw_names(bands, frame)
@@ -32,21 +32,21 @@ def draw_rows(bands: Bands, frame: int) -> list[Action]:
     for row in filter(bands.shows_row, bands.rows):
         if bands.has_names:
             _draw_ground(bands, row)
-        for begin, end in _hidden(bands, row.figure):
+        for begin, end in _hidden(bands, row.layer):
             _hatch(bands, row, begin, end)
     draw_ways(bands)
     for row in filter(bands.shows_row, bands.rows):
-        imgui.push_id(f"row {row.figure.id}")
+        imgui.push_id(f"row {row.layer.id}")
         actions += _draw_changes(bands, row)
-        for index in bands.in_view(row.figure.switches):
-            actions += _draw_switch(bands, row, row.figure.switches[index])
+        for index in bands.in_view(row.layer.switches):
+            actions += _draw_switch(bands, row, row.layer.switches[index])
         imgui.pop_id()
     imgui.pop_clip_rect()
     return actions
 
 
-def _draw_ground(bands: Bands, row: FigureRow) -> None:
-    """Part a row from the next one; that of the active figure is brighter."""
+def _draw_ground(bands: Bands, row: LayerRow) -> None:
+    """Part a row from the next one; that of the active layer is brighter."""
     palette, draw_list = bands.look.palette, imgui.get_window_draw_list()
     low, high = ImVec2(bands.left, row.top), ImVec2(bands.right, row.bottom)
     if row.is_active:
@@ -62,24 +62,24 @@ def _draw_names(bands: Bands, frame: int) -> list[Action]:
     imgui.push_clip_rect(low, high, intersect_with_current_clip_rect=True)
     for row in filter(bands.shows_row, bands.rows):
         box = ImVec2(low.x, row.top), ImVec2(high.x - 0.3 * em, row.bottom)
-        if bands.button(f"name {row.figure.id}", *box):
-            actions += choose_row(row.figure.id, {})
+        if bands.button(f"name {row.layer.id}", *box):
+            actions += choose_row(row.layer.id, {})
         if row.is_active or in_hand():
             colour = ink(palette.accent, CHOSEN) if row.is_active else ink(palette.hovered)
             draw_list.add_rect_filled(*box, colour, 0.2 * em)
-        hung, carrier = carried_by(document, row.figure, frame)
+        hung, carrier = carried_by(document, row.layer, frame)
         if begin_tip():
-            imgui.text_unformatted(row.figure.name)
+            imgui.text_unformatted(row.layer.name)
             if carrier:
                 imgui.text_disabled(f"Hangs {carrier}")
             imgui.end_tooltip()
-        icon = icons.ICON_FA_IMAGE if row.figure.still else icons.ICON_FA_PERSON
-        colour = ink(palette.text if is_visible(document, row.figure, frame) else palette.dim)
+        icon = icons.ICON_FA_IMAGE if row.layer.still else icons.ICON_FA_PERSON
+        colour = ink(palette.text if is_visible(document, row.layer, frame) else palette.dim)
         indent = low.x + INDENT * min(row.depth + hung, DEEPEST_INDENT) * em
         with sized(SMALL):
-            left = indent + (1.8 + FOLD * bool(row.figure.tracks)) * em
+            left = indent + (1.8 + FOLD * bool(row.layer.tracks)) * em
             room = box[1].x - left - 0.8 * em
-            text = shortened(row.figure.name, room)
+            text = shortened(row.layer.name, room)
             top = row.middle - imgui.get_text_line_height() / 2
             draw_list.add_text(ImVec2(left - 1.4 * em, top), colour, icon)
             draw_list.add_text(ImVec2(left, top), colour, text)
@@ -112,9 +112,9 @@ def _draw_scrolled(bands: Bands) -> None:
     )
 
 
-def _hidden(bands: Bands, figure: Figure) -> list[tuple[int | None, int | None]]:
-    """Return the stretches in view in which a figure is hidden; None is where they do not end."""
-    switches = sights_of(bands.project.document, figure)
+def _hidden(bands: Bands, layer: Layer) -> list[tuple[int | None, int | None]]:
+    """Return the stretches in view in which a layer is hidden; None is where they do not end."""
+    switches = sights_of(bands.project.document, layer)
     if not switches:
         return []
     stretches: list[tuple[int | None, int | None]] = []
@@ -130,12 +130,12 @@ def _hidden(bands: Bands, figure: Figure) -> list[tuple[int | None, int | None]]
             end = None if is_last else switches[index + 1].frame
             stretches.append((switches[index].frame, end))
     if not switches[0].visible:
-        # A figure begins as its first switch says.
+        # A layer begins as its first switch says.
         stretches.append((None, switches[0].frame))
     return stretches
 
 
-def _hatch(bands: Bands, row: FigureRow, begin: int | None, end: int | None) -> None:
+def _hatch(bands: Bands, row: LayerRow, begin: int | None, end: int | None) -> None:
     palette, draw_list = bands.look.palette, imgui.get_window_draw_list()
     frames = bands.project.document.frames
     left = max(bands.x(frames.first if begin is None else begin), bands.left)
@@ -155,15 +155,15 @@ def _hatch(bands: Bands, row: FigureRow, begin: int | None, end: int | None) -> 
     imgui.pop_clip_rect()
 
 
-def _draw_changes(bands: Bands, row: FigureRow) -> list[Action]:
-    """Draw where a figure is keyed as a whole: its movement, its opacity and its order."""
+def _draw_changes(bands: Bands, row: LayerRow) -> list[Action]:
+    """Draw where a layer is keyed as a whole: its movement, its opacity and its order."""
     actions: list[Action] = []
-    figure, em, palette = row.figure, bands.look.em, bands.look.palette
+    layer, em, palette = row.layer, bands.look.em, bands.look.palette
     changes: dict[int, list[str]] = {}
     rows: dict[str, Sequence[HasFrame]] = {
-        "Moved": figure.movement,
-        "Opacity": figure.opacities,
-        "Order": figure.placings,
+        "Moved": layer.movement,
+        "Opacity": layer.opacities,
+        "Order": layer.placings,
     }
     for what, row_of_keys in rows.items():
         for index in bands.in_view(row_of_keys):
@@ -183,13 +183,13 @@ def _draw_changes(bands: Bands, row: FigureRow) -> list[Action]:
     return actions
 
 
-def _draw_switch(bands: Bands, row: FigureRow, switch: Switch) -> list[Action]:
-    """Draw an eye where a figure comes to be seen, or a struck one where it is hidden."""
+def _draw_switch(bands: Bands, row: LayerRow, switch: Switch) -> list[Action]:
+    """Draw an eye where a layer comes to be seen, or a struck one where it is hidden."""
     frame, half = switch.frame, EYE * bands.look.em
     x = bands.x(frame)
     left = _left_of_eye(bands, row, frame)
     drag = bands.project.timing.gesture
-    if not isinstance(drag, SwitchDrag) or (drag.figure, drag.at) != (row.figure.id, frame):
+    if not isinstance(drag, SwitchDrag) or (drag.layer, drag.at) != (row.layer.id, frame):
         drag = None
     # By where it was before it was dragged, so that its button stays the same one.
     origin = frame if drag is None else drag.switch
@@ -201,17 +201,17 @@ def _draw_switch(bands: Bands, row: FigureRow, switch: Switch) -> list[Action]:
     return _point(bands, row, switch) + _menu(row, frame)
 
 
-def _left_of_eye(bands: Bands, row: FigureRow, frame: int) -> ImVec2:
-    """Return where an eye begins: below the keys of the active figure, and beside the others'."""
+def _left_of_eye(bands: Bands, row: LayerRow, frame: int) -> ImVec2:
+    """Return where an eye begins: below the keys of the active layer, and beside the others'."""
     em, x = bands.look.em, bands.x(frame)
     if row.is_active and row.bottom - row.top > 2 * THIN * em:
         return ImVec2(x, row.bottom - (0.1 + THIN / 2) * em)
-    at = bisect_left(row.figure.keys, frame, key=lambda key: key.frame)
-    is_at_key = at < len(row.figure.keys) and row.figure.keys[at].frame == frame
+    at = bisect_left(row.layer.keys, frame, key=lambda key: key.frame)
+    is_at_key = at < len(row.layer.keys) and row.layer.keys[at].frame == frame
     return ImVec2(x + (BESIDE * em if is_at_key else 0.0), row.middle)
 
 
-def _draw_eye(bands: Bands, row: FigureRow, switch: Switch, left: ImVec2, *, is_hot: bool) -> None:
+def _draw_eye(bands: Bands, row: LayerRow, switch: Switch, left: ImVec2, *, is_hot: bool) -> None:
     draw_list, x = imgui.get_window_draw_list(), bands.x(switch.frame)
     colour = ink(bands.look.palette.text if is_hot else bands.look.palette.anchor)
     draw_list.add_line(ImVec2(x, row.top + 2), ImVec2(x, row.bottom - 2), colour, 1.5)
@@ -221,7 +221,7 @@ def _draw_eye(bands: Bands, row: FigureRow, switch: Switch, left: ImVec2, *, is_
         draw_list.add_text(ImVec2(left.x + 0.15 * bands.look.em, top), colour, icon)
 
 
-def _point(bands: Bands, row: FigureRow, switch: Switch) -> list[Action]:
+def _point(bands: Bands, row: LayerRow, switch: Switch) -> list[Action]:
     """Take what the pointer does to an eye, the last item, and tell what can be done with it."""
     frame, document = switch.frame, bands.project.document
     if in_hand():
@@ -230,7 +230,7 @@ def _point(bands: Bands, row: FigureRow, switch: Switch) -> list[Action]:
         imgui.open_popup(f"menu of switch {frame}")
     elif is_pressed():
         drag = SwitchDrag(
-            figure=row.figure.id,
+            layer=row.layer.id,
             switch=frame,
             at=frame,
             start=bands.pointed,
@@ -245,12 +245,12 @@ def _point(bands: Bands, row: FigureRow, switch: Switch) -> list[Action]:
     return []
 
 
-def _menu(row: FigureRow, frame: int) -> list[Action]:
+def _menu(row: LayerRow, frame: int) -> list[Action]:
     """Draw the menu of an eye, if it is open."""
     actions: list[Action] = []
     if imgui.begin_popup(f"menu of switch {frame}"):
         if imgui.menu_item_simple("Delete"):
-            command = layer_commands.switch_at(row.figure.id, frame, visible=None)
+            command = layer_commands.switch_at(row.layer.id, frame, visible=None)
             actions.append(do(editing.edit, command))
         imgui.end_popup()
     return actions

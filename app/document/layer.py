@@ -1,4 +1,4 @@
-"""A figure: a picture that is deformed, its domain, and the keys that pose it."""
+"""A layer: a picture that is deformed, its domain, and the keys that pose it."""
 
 import hashlib
 import re
@@ -54,7 +54,7 @@ Posed = TypeVar("Posed", Keyframe, KeptPose)
 NO_KEY = "There is no key at frame {frame}."
 NO_HANDLE = "There is no handle with the id {identity}."
 BONES_IN_ONE_PLACE = "Two bones are between handles {!r}."
-POSE_COUNT = "The figure has {count} poses, not {given}."
+POSE_COUNT = "The layer has {count} poses, not {given}."
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -77,7 +77,7 @@ class PictureFile:
 
 
 @dataclass(frozen=True, slots=True, weakref_slot=True, kw_only=True, eq=False)
-class Figure:
+class Layer:
     """A picture that is deformed, with all that is its own; time and export are the scene's."""
 
     id: int = 0  # never given twice in one document
@@ -111,7 +111,7 @@ class Figure:
     # Where the upright axis crosses the picture at which flipped poses are mirrored, in pixels from
     # its left edge; None takes the middle of the handles that are pairs, or of the shape.
     mirror: float | None = None
-    name: str = "figure"  # unique in the document
+    name: str = "layer"  # unique in the document
     # Where the lower left corner of the picture is on the canvas; the domain, the handles and all
     # else are in pixels of the canvas, y up.
     corner: complex = 0j
@@ -127,7 +127,7 @@ class Figure:
     opacity: float = 1.0  # in [0, 1]; where it has keys, they hold instead
     opacities: tuple[OpacityKey, ...] = ()
     blend: BlendMode = "normal"
-    # Whether it is seen only where that is which lies below it in its group: a figure, or a group.
+    # Whether it is seen only where that is which lies below it in its group: a layer, or a group.
     clipped: bool = False
     group: str = ""  # the path of the innermost group that it is in; "" outside of all groups
     # The joints by which it hangs on others, each from its frame on; its anchor is then given.
@@ -139,7 +139,7 @@ class Figure:
 
     def __post_init__(self) -> None:
         require_identity(self.id, "a layer")
-        require(bool(self.name.strip()), "A figure needs a name.")
+        require(bool(self.name.strip()), "A layer needs a name.")
         require_place(self.corner, f"The corner of {self.name!r}")
         require(0 <= self.opacity <= 1, f"Opacity is between 0 and 1, not {self.opacity:g}.")
         require(
@@ -239,8 +239,8 @@ class Figure:
             places = [float(self.domain.outline.real.min()), float(self.domain.outline.real.max())]
         return sum(places) / len(places)
 
-    def with_poses(self, poses: Iterable[Pose], **changes: Any) -> "Figure":
-        """Return the figure with others for its `poses`, in their order, and with other changes."""
+    def with_poses(self, poses: Iterable[Pose], **changes: Any) -> "Layer":
+        """Return the layer with others for its `poses`, in their order, and with other changes."""
         given = tuple(poses)
         if len(given) != len(self.poses):
             raise LissomError(POSE_COUNT.format(count=len(self.poses), given=len(given)))
@@ -284,7 +284,7 @@ class Figure:
 
     @property
     def hangs(self) -> bool:
-        """Whether it hangs on another figure at some time."""
+        """Whether it hangs on another layer at some time."""
         return any(joint.to is not None for joint in self.joints)
 
     def keyed_joint(self, frame: int) -> Attachment | None:
@@ -466,12 +466,12 @@ def pose_as_drawn(domain: Domain, handles: Iterable[Handle]) -> Pose:
     return Pose.of(rest, targets, undistorted)
 
 
-def new_figure(
+def new_layer(
     picture: PictureFile, domain: Domain, meshing: Meshing, cut_out: CutOut = CutOut()
-) -> Figure:
-    """Return the figure of a picture just opened: one key at frame 0, as it was drawn."""
+) -> Layer:
+    """Return the layer of a picture just opened: one key at frame 0, as it was drawn."""
     pose = pose_as_drawn(domain, ())
-    return Figure(
+    return Layer(
         picture=picture,
         domain=domain,
         meshing=meshing,
