@@ -1,4 +1,4 @@
-"""The shipped sample pictures: sound subjects, and what the script beside them draws."""
+"""The shipped sample pictures: sound subjects, and what the script in `tests/drawings` draws."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from scipy import ndimage
 from app.storage.pictures import read_openraster
 
 SAMPLES = Path(__file__).parents[1] / "sample_images"
+DRAWINGS = Path(__file__).parent / "drawings"
 NAMES = ("bar", "character", "dragon", "giraffe", "octopus", "ring", "s")
 VISIBLE = 8  # alpha from which the mask of a picture with a soft rim counts a pixel
 
@@ -25,9 +26,9 @@ def draw(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
 
 
 def load(name: str, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
-    """Load a drawing script as `python sample_images/NAME.py` finds it."""
-    monkeypatch.syspath_prepend(str(SAMPLES))
-    spec = importlib.util.spec_from_file_location(name, SAMPLES / f"{name}.py")
+    """Load a drawing script as `python tests/drawings/NAME.py` finds it."""
+    monkeypatch.syspath_prepend(str(DRAWINGS))
+    spec = importlib.util.spec_from_file_location(name, DRAWINGS / f"{name}.py")
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
@@ -100,7 +101,7 @@ def test_script_draws_the_shipped_layers(draw: ModuleType) -> None:
 
 def test_script_draws_the_shipped_icon(monkeypatch: pytest.MonkeyPatch) -> None:
     module = load("icon", monkeypatch)
-    with Image.open(SAMPLES.parent / "icon" / "lissom.png") as shipped:
+    with Image.open(SAMPLES.parent / "app" / "icon" / "lissom.png") as shipped:
         assert differ_at_most(module.icon().image(), shipped) <= 1
 
 

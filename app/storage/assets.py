@@ -19,7 +19,7 @@ def shader_source(name: str) -> str:
 
 def app_icon() -> bytes:
     """Return the icon of Lissom, a PNG picture of 512 × 512 pixels."""
-    return _read(_folder("icon") / "lissom.png")
+    return _read(_APP / "icon" / "lissom.png")
 
 
 def manual_page(name: str = "index") -> Path:

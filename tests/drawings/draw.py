@@ -1,4 +1,4 @@
-"""Draw the sample pictures: `python sample_images/draw.py [--out DIR] [NAME ...]`."""
+"""Draw the sample pictures: `python tests/drawings/draw.py [--out DIR] [NAME ...]`."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from dragon import dragon
 from giraffe import giraffe
 from octopus import octopus
 
+SAMPLES = Path(__file__).resolve().parents[2] / "sample_images"
 # Drawings on layers, by their own scripts.
 LAYERED = {"friend": friend.save}
 PICTURES = {
@@ -37,7 +38,7 @@ def main(words: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description="Draw the sample pictures of Lissom.")
     known = [*PICTURES, *LAYERED]
     parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(known))
-    parser.add_argument("--out", type=Path, default=Path(__file__).parent, metavar="DIR")
+    parser.add_argument("--out", type=Path, default=SAMPLES, metavar="DIR")
     arguments = parser.parse_args(words)
     unknown = set(arguments.names) - set(known)
     if unknown:

@@ -1,4 +1,4 @@
-"""Make the sample projects: `python sample_images/animate.py [NAME ...] [--out DIR]`.
+"""Make the sample projects: `python tests/drawings/animate.py [NAME ...] [--out DIR]`.
 
 Each NAME.json beside this script says how NAME.png, or NAME.ora, moves; NAME.lissom is what Lissom
 makes of both, and moving/NAME.webp how it moves, small, for the welcome view.
@@ -12,15 +12,15 @@ from PIL import Image, ImageSequence
 
 from app.cli.main import main
 
-HERE = Path(__file__).resolve().parent
+SAMPLES = Path(__file__).resolve().parents[2] / "sample_images"
 TRIANGLES = 30_000  # fine enough at the pictures' size, and small to ship
 WIDTH, HEIGHT, FPS = 200, 160, 10  # of what the welcome view shows
 QUALITY = 60  # of a hundred
 
 
 def _drawing(name: str) -> Path:
-    layered = HERE / f"{name}.ora"
-    return layered if layered.exists() else HERE / f"{name}.png"
+    layered = SAMPLES / f"{name}.ora"
+    return layered if layered.exists() else SAMPLES / f"{name}.png"
 
 
 def _move(project: Path, out: Path) -> None:
@@ -45,10 +45,10 @@ def _move(project: Path, out: Path) -> None:
 
 def animate() -> None:
     """Make the projects that the command line names, or all."""
-    names = sorted(path.stem for path in HERE.glob("*.json"))
+    names = sorted(path.stem for path in SAMPLES.glob("*.json"))
     parser = argparse.ArgumentParser(description=animate.__doc__)
     parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(names))
-    parser.add_argument("--out", type=Path, default=HERE, help="folder for the projects")
+    parser.add_argument("--out", type=Path, default=SAMPLES, help="folder for the projects")
     arguments = parser.parse_args()
     for name in arguments.names or names:
         project = arguments.out / f"{name}.lissom"
@@ -56,7 +56,7 @@ def animate() -> None:
             [
                 "pose",
                 str(_drawing(name)),
-                str(HERE / f"{name}.json"),
+                str(SAMPLES / f"{name}.json"),
                 f"--out={project}",
                 f"--triangles={TRIANGLES}",
             ]

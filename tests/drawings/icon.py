@@ -1,4 +1,4 @@
-"""Draw the icon of Lissom: `python sample_images/icon.py [OUT.png]`."""
+"""Draw the icon of Lissom: `python tests/drawings/icon.py [OUT.png]`."""
 
 from __future__ import annotations
 
@@ -30,5 +30,5 @@ def icon() -> Canvas:
 
 
 if __name__ == "__main__":
-    shipped = Path(__file__).parents[1] / "icon" / "lissom.png"
+    shipped = Path(__file__).parents[2] / "app" / "icon" / "lissom.png"
     icon().save(Path(sys.argv[1]) if len(sys.argv) > 1 else shipped)
