@@ -7,7 +7,7 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices, held_bytes
-from engine.interpolation.added.periods import Closing
+from engine.interpolation.added import Closing
 from engine.interpolation.added.pins import CorrectionSeries, FoldedCorrection, Mixing, SpanBasis
 from engine.interpolation.blends import Blend
 from engine.interpolation.passage import Derivatives, Passage, weighted

@@ -4,10 +4,9 @@ from functools import partial
 
 import numpy as np
 
-from engine.arrays import Complexes, Floats
+from engine.arrays import Complexes
 from engine.deform.correction import BaseFrame, PointCorrector
 from engine.errors import EngineError
-from engine.interpolation.added.periods import Unclosed, close, to_conformal
 from engine.interpolation.added.pins import BaseAt, CorrectionSeries, SegmentPins, pin
 from engine.interpolation.blends import BLENDS, Blend
 from engine.interpolation.inbetweens import Frame, Inbetweens
@@ -16,9 +15,6 @@ from engine.interpolation.scaling import Scaling
 from engine.interpolation.sites import Sites
 from engine.maps import Bounds
 from engine.variant import Variant
-
-# Times at which it is seen whether in-betweens around holes need a ρ.
-TIMES = 24
 
 
 def prepare_inbetweens(variant: Variant, interval: Interval) -> Inbetweens:
@@ -48,7 +44,7 @@ def frame_at(
     """
     if not 0.0 <= time <= 1.0:
         raise EngineError(f"An interval runs from time 0 to 1; {time:g} is outside.")
-    if interval.sites.period_basis is not None:
+    if interval.sites.closer is not None:
         found = prepare_inbetweens(variant, interval)
     else:
         found = _closed(BLENDS[variant].only_at(time, interval), interval.sites)
@@ -99,28 +95,16 @@ def solve_pins(
 
 def _closed(blend: Blend, sites: Sites) -> Inbetweens:
     """Close the periods around holes, and scale Ψ where that is called for."""
-    unclosed, basis = blend, sites.period_basis
     closing = conformal = scale = None
-    is_scaled = blend.is_scaled
-    if basis is not None and blend.sign:
-        constants = blend.constants
-        at_loops = unclosed.at(sites.paths.around)
-
-        def at(times: Floats) -> Unclosed:
-            return Unclosed(
-                *at_loops.values(times), None if constants is None else constants.at(times)
-            )
-
-        breaks = (0.0, 1.0) if constants is None else tuple(constants.series.breaks)
-        closing = close(basis, at, sign=blend.sign, breaks=breaks)
-        blend = blend.with_residual(closing.residual)
-        if blend.is_scaled_around_holes:
-            times = np.linspace(0.0, 1.0, TIMES + 2)[1:-1]
-            is_scaled = bool(unclosed.sharp_scaling(sites, closing, None)(times).min() < 1.0)
-        if is_scaled:
-            conformal = to_conformal(basis, at, sign=blend.sign, breaks=breaks)
-    if is_scaled:
-        scale = Scaling.of(unclosed.sharp_scaling(sites, closing, conformal))
+    closed, closer = blend, sites.closer
+    if closer is not None and blend.sign:
+        values = blend.at(sites.paths.around).values
+        closing = closer.close(values, blend.sign, blend.moduli(sites.boundary))
+        closed = blend.with_residual(closing.residual)
+        if blend.is_scaled:
+            conformal = closer.to_conformal(values, blend.sign)
+    if blend.is_scaled:
+        scale = Scaling.of(blend.sharp_scaling(sites, closing, conformal))
     return Inbetweens(
-        sites=sites, blend=blend, scale=scale, closing=closing, conformal_closing=conformal
+        sites=sites, blend=closed, scale=scale, closing=closing, conformal_closing=conformal
     )

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from engine.arrays import Complexes, Floats, Indices, as_points, freeze, held_bytes
 from engine.errors import EngineError
 from engine.geometry import ON_OUTLINE, Hole, deepest_point, diameter, require_inside
-from engine.interpolation.added.periods import PeriodBasis
+from engine.interpolation.added import HoleCloser
 from engine.maps import Boundary
 from engine.paths import (
     IntegrationPaths,
@@ -63,8 +63,8 @@ class Sites:
         Around the holes, at the nodes `paths.around`.
     arguments : float64, shape (1 + m, holes)
         Of z − c_j at the anchor and the points, continued along the paths.
-    period_basis : PeriodBasis or None
-        Of corrections around the holes; None where there are none.
+    closer : HoleCloser or None
+        Of periods around the holes; None where there are none.
     value_points : complex128, shape (v,)
         At which in-betweens have derivatives only, and no positions.
     """
@@ -75,7 +75,7 @@ class Sites:
     boundary: Boundary
     loops: Loops
     arguments: Floats
-    period_basis: PeriodBasis | None
+    closer: HoleCloser | None
     value_points: Complexes = field(default_factory=_none)
 
     @property
@@ -204,7 +204,7 @@ def prepare_sites(
         boundary=boundary,
         loops=loops,
         arguments=freeze(_arguments(paths, boundary.span.centres)),
-        period_basis=PeriodBasis.of(boundary, loops, paths.nodes) if inner else None,
+        closer=HoleCloser.of(boundary, loops, paths.nodes) if inner else None,
         value_points=beside,
     )
 

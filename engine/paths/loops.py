@@ -71,9 +71,3 @@ class Loops:
     def integrals(self, values: Complexes) -> Complexes:
         """Integrate over each loop: (..., c) to (..., holes)."""
         return np.asarray(np.add.reduceat(values * self.differentials, self.starts, axis=-1))
-
-    def products(self, values: Complexes, functions: Complexes) -> Complexes:
-        """Integrate values (t, c) times functions (c, b) over each loop, (t, holes, b)."""
-        each, ends = values * self.differentials, self.starts + self.counts
-        loops = [slice(start, end) for start, end in zip(self.starts, ends, strict=True)]
-        return np.stack([each[:, own] @ functions[own] for own in loops], axis=1)

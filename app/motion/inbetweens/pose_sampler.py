@@ -300,7 +300,7 @@ class PoseSampler:
 
     def makes_single_frames(self, variant: Variant) -> bool:
         """Tell whether one in-between alone takes less time than all of its interval."""
-        return variant.needs_transform and self.sites.period_basis is None
+        return variant.needs_transform and self.sites.closer is None
 
     def frame_of(
         self,

@@ -86,9 +86,9 @@ class CorrectedFrame:
     def rows(self) -> Floats:
         """Return the derivatives of these by the unknowns: real parts, then imaginary ones."""
         values, integrals = self.corrector.variables.at_nodes, self.corrector.paths.integrals
-        by_h = integrals(values.h * self.conformal)
-        by_h += integrals(values.h * (self.base.sign * self.own + self.mixed)).conj()
-        rows = np.vstack([by_h, integrals(values.q * self.factor).conj()]).T
+        by_h = integrals(values.h, self.conformal)
+        by_h += integrals(values.h, self.base.sign * self.own + self.mixed).conj()
+        rows = np.vstack([by_h, integrals(values.q, self.factor).conj()]).T
         return np.vstack([rows.real, rows.imag])
 
     def bending(self, pulls: Complexes) -> "Bending":

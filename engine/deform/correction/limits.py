@@ -8,7 +8,7 @@ from engine.arrays import Floats
 from engine.deform.correction.corrector import PointCorrector
 from engine.deform.correction.frame import BaseFrame, CorrectedFrame
 from engine.deform.correction.solver import PointSolution, Targets, solve
-from engine.deform.correction.walls import WIDTH, LimitWalls, quantities
+from engine.deform.correction.walls import WIDTH, LimitWalls, extremes
 from engine.maps import Bounds
 
 INSIDE = 0.002  # of the limits: how far inside a correction ends, as between samples it is more
@@ -115,11 +115,3 @@ def largest_share(corrector: PointCorrector, base: BaseFrame, x: Floats, limits:
         middle = (low + high) / 2
         low, high = (middle, high) if is_kept(middle) else (low, middle)
     return low
-
-
-def extremes(corrector: PointCorrector, base: BaseFrame, x: Floats) -> Floats:
-    """Return the largest ln σ_a, −ln σ_b and k of a corrected frame at the samples, (3,)."""
-    values = corrector.variables.at_samples
-    conformal, own, factor = base.corrected(values, x)
-    a, b = np.abs(conformal), np.abs(own + factor * values.q_of(x))
-    return np.asarray(quantities(a, b).max(axis=1))

@@ -68,9 +68,17 @@ class PointPaths:
             passes=freeze(scipy.linalg.block_diag(passes, np.eye(len(holes)))),
         )
 
-    def integrals(self, values: Complexes) -> Complexes:
-        """Integrate values (..., s) along the ways and loops, (..., m + holes)."""
-        legs = np.add.reduceat(values * self.steps, self.starts, axis=-1)
+    @classmethod
+    def around(cls, loops: Loops) -> Self:
+        """Take loops around holes alone, without points."""
+        count = len(loops.starts)
+        return cls(
+            nodes=loops.nodes, steps=loops.differentials, starts=loops.starts, passes=np.eye(count)
+        )
+
+    def integrals(self, values: Complexes, factors: Complexes | float = 1.0) -> Complexes:
+        """Integrate values (..., s) times factors along the ways and loops, (..., m + holes)."""
+        legs = np.add.reduceat(values * (factors * self.steps), self.starts, axis=-1)
         return np.asarray(legs @ self.passes.T)
 
     def spread(self, pulls: Complexes) -> Complexes:

@@ -20,7 +20,7 @@ from engine.arrays import Complexes, Floats
 from engine.deform.correction.corrector import PointCorrector
 from engine.deform.correction.frame import BaseFrame, Bending, CorrectedFrame
 from engine.deform.correction.step_model import Rows, StepModel
-from engine.deform.correction.walls import LAST, LimitWalls, WallState
+from engine.deform.correction.walls import LimitWalls, WallState
 
 SMALL = 1e-6  # a step in h: where the iteration ends
 MET = 1e-9  # of the diagonal: points that are where they are wanted
@@ -108,11 +108,12 @@ def solve(
         What the correction is to keep.
     """
     problem = _Problem(corrector, base, targets, walls)
-    if not problem.is_asked:
-        nothing = np.zeros(2 * corrector.variables.count)
+    is_inside = walls is None or not walls.beyond.any()
+    if not problem.is_asked and is_inside and (walls is None or start is None or not start.x.any()):
+        nothing = corrector.variables.nothing
         return PointSolution(x=nothing, shift=0j, misses=np.abs(targets.moves), steps=0)
     if start is None:
-        at = problem.state(np.zeros(2 * corrector.variables.count), 0j)
+        at = problem.state(corrector.variables.nothing, 0j)
     else:
         at = problem.state(start.x, start.shift)
     return problem.solved(at)
@@ -138,8 +139,7 @@ class _Problem:
         self.gains = GAINS if walls is None else GAINS_AT_WALLS
         holes = len(corrector.boundary.holes)
         self.count = count = len(targets.moves)
-        nothing = np.zeros(2 * corrector.variables.count)
-        places = CorrectedFrame.of(corrector, base, nothing).places()
+        places = CorrectedFrame.of(corrector, base, corrector.variables.nothing).places()
         self.of_points = np.concatenate([np.ones(count), np.zeros(holes)])
         # Points are moved from the base's places; periods are closed.
         self.wanted = places * self.of_points
@@ -183,8 +183,8 @@ class _Problem:
 
     def rows(self, at: _State) -> Rows:
         """Return what is wanted around a state."""
-        h = self.corrector.variables.at_points.h[:, self.turned]
-        turning = np.hstack([h.imag.T, np.zeros_like(h.imag.T)])
+        h, q = (each[:, self.turned].T for each in self.corrector.variables.at_points)
+        turning = np.hstack([h.imag, 0.0 * q.real])
         points = np.tile(self.roots, 2)[:, None] * at.frame.rows()
         scale = float(np.vdot(points, points)) / len(points)
         return Rows(
@@ -229,9 +229,10 @@ class _Problem:
             moved = self._length(tried.frame.x - at.frame.x)
             off = np.abs(tried.lack)[self.held].max(initial=0.0)
             at = tried
-            if self.walls is not None and self.walls.weight > LAST:
+            if self.walls is not None and at.walls is not None and not self.walls.is_lowest:
                 if is_stuck or (share > ENOUGH and moved < CLOSE):
-                    self.walls = self.walls.lowered()
+                    self.walls, left = self.walls.lowered(at.walls)
+                    at = at._replace(walls=left)
                 continue
             if is_stuck or (moved < small and (off < MET * size or share < 1.0)):
                 break

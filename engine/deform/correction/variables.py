@@ -91,10 +91,27 @@ class Variables:
             h=freeze(of_h), q=freeze(of_q), at_nodes=on[0], at_samples=on[1], at_points=on[2]
         )
 
+    def of_h(self, forms: Floats) -> Self:
+        """Return h alone, in combinations (N, M) of its unknowns."""
+        places = (self.at_nodes, self.at_samples, self.at_points)
+        nodes, samples, points = (Values(freeze(forms.T @ v.h), v.q[:0]) for v in places)
+        return type(self)(
+            h=freeze(self.h @ forms),
+            q=self.q[:, :0],
+            at_nodes=nodes,
+            at_samples=samples,
+            at_points=points,
+        )
+
     @property
     def count(self) -> int:
-        """N, of h and of q."""
+        """N, of h."""
         return int(self.h.shape[1])
+
+    @property
+    def nothing(self) -> Floats:
+        """The unknowns, of h and q, of no correction."""
+        return np.zeros(self.h.shape[1] + self.q.shape[1])
 
 
 def _gram(columns: Complexes) -> Floats:

@@ -5,13 +5,14 @@ With a = |F| e^{Re h} and b = |G e^{σh} + q K e^h| they are on ln σ_a = ln (a 
 
     weight · its share of the boundary · (d / width − 1 − ln (d / width))    where d < width,
 
-which has no jump in its slope: what keeps farther from the limits is not changed. The weight falls
-from step to step, and the width with it. How firm the barrier is taken to be follows from the
+which has no jump in its slope: what keeps farther from the limits is not changed. Limits that are
+exceeded at first are wide enough for that, and close in behind what comes inside; then the weight
+falls from step to step, and the width with it. How firm the barrier is taken to be follows from the
 pushes that the steps before found (primal-dual; Wächter and Biegler 2006).
 """
 
-from dataclasses import dataclass, replace
-from typing import NamedTuple
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple, Self
 
 import numpy as np
 
@@ -24,6 +25,9 @@ ROUND = 1e-12  # the least b that is divided by
 LEAST = 1e-12  # of what is left
 # The weight at first, how it falls, and at last; and the width at last.
 FIRST, FALL, LAST, WIDTH = 1.0, 0.3, 0.01, 0.05
+# Of what is left of limits that are too wide: by how much they close in; and of the width: with how
+# little they stay where they are.
+TAKEN, SLIGHT = 0.9, 1e-3
 NEAR = 100.0  # times what the barrier itself pushes with: what pushes may be off it
 FLAT = 1e-9  # of the largest curvature of a sample: what counts for nothing
 
@@ -37,6 +41,10 @@ class WallState(NamedTuple):
     g: Complexes
     by_h: Complexes  # derivative of the corrected G by h
     by_q: Complexes
+
+
+def _none() -> Floats:
+    return np.zeros(3)
 
 
 class WallModel(NamedTuple):
@@ -57,23 +65,48 @@ class LimitWalls:
         At the samples.
     limits : float64, shape (3,)
         Of ln σ_a, −ln σ_b and k.
-    weight : float
-        Of the whole boundary.
+    weight, last : float
+        Of the whole boundary, now and at last.
+    beyond : float64, shape (3,)
+        By how much limits are still too wide.
     """
 
     corrector: PointCorrector
     base: BaseFrame
     limits: Floats
     weight: float = FIRST
+    last: float = LAST
+    beyond: Floats = field(default_factory=_none)
+
+    @classmethod
+    def around(
+        cls, corrector: PointCorrector, base: BaseFrame, limits: Floats, scale: float, x: Floats
+    ) -> Self:
+        """Return a barrier for corrections of some scale that starts around unknowns x."""
+        width = scale * WIDTH
+        beyond = np.maximum(extremes(corrector, base, x) - limits + width, 0.0)
+        first, last = (LAST * (w / WIDTH) ** 2 for w in (max(width, beyond.max()), width))
+        return cls(corrector, base, limits, first, last, beyond)
 
     @property
     def width(self) -> float:
         """What is left of a limit where the barrier begins."""
         return WIDTH * float(np.sqrt(self.weight / LAST))
 
-    def lowered(self) -> "LimitWalls":
-        """Return the barrier of the next step."""
-        return replace(self, weight=max(FALL * self.weight, LAST))
+    @property
+    def is_lowest(self) -> bool:
+        """Whether it is not lowered any more."""
+        return self.weight <= self.last and not self.beyond.any()
+
+    def lowered(self, at: WallState) -> tuple["LimitWalls", WallState]:
+        """Return the barrier of the next step, and what it leaves of its limits."""
+        if not self.beyond.any():
+            return replace(self, weight=max(FALL * self.weight, self.last)), at
+        taken = np.minimum(self.beyond, TAKEN * at.left.min(axis=1))
+        left, beyond = at.left - taken[:, None], self.beyond - taken
+        stays = np.where(taken < SLIGHT * self.width, beyond, 0.0)
+        walls = replace(self, limits=self.limits + stays, beyond=beyond - stays)
+        return walls, at._replace(left=left)
 
     def state(self, x: Floats, last: WallState | None = None) -> WallState:
         """Work a corrected frame out, after a step from a last one."""
@@ -81,7 +114,7 @@ class LimitWalls:
         conformal, own, factor = self.base.corrected(values, x)
         mixed = factor * values.q_of(x)
         a, g = np.abs(conformal), own + mixed
-        left = self.limits[:, None] - quantities(a, np.abs(g))
+        left = (self.limits + self.beyond)[:, None] - quantities(a, np.abs(g))
         pushes = self.weight * self.corrector.boundary.shares / np.maximum(left, LEAST)
         if last is not None:
             follow = self.weight * self.corrector.boundary.shares / last.left
@@ -160,6 +193,14 @@ def _by_both(a: Floats, g: Complexes, by_h: Complexes, by_q: Complexes) -> tuple
     )
     forms = sum(by[..., None, None] * form for by, form in parts)
     return slopes, np.asarray(forms)
+
+
+def extremes(corrector: PointCorrector, base: BaseFrame, x: Floats) -> Floats:
+    """Return the largest ln σ_a, −ln σ_b and k of a corrected frame at the samples, (3,)."""
+    values = corrector.variables.at_samples
+    conformal, own, factor = base.corrected(values, x)
+    a, b = np.abs(conformal), np.abs(own + factor * values.q_of(x))
+    return np.asarray(quantities(a, b).max(axis=1))
 
 
 def quantities(a: Floats, b: Floats) -> Floats:

@@ -3,8 +3,7 @@
 In: the passage from one keyframe to the next; for the metric variant an outline's transform.
 Out: f_z, conj(f_z̄) and their derivatives at any time; what is blended, and how far it distorts.
 Imports: `engine.dirichlet`, `engine.interpolation.passage`, `engine.interpolation.enclosing`,
-`engine.interpolation.scaling`, `engine.interpolation.courses`, and in `engine.interpolation.added`
-`periods`.
+`engine.interpolation.scaling`, `engine.interpolation.courses`, `engine.interpolation.added`.
 """
 
 from engine.interpolation.blends.blend import Blend as Blend

@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices
-from engine.interpolation.added.periods import Closing
+from engine.interpolation.added import Closing, Moduli
 from engine.interpolation.courses import (
     Course,
     Joint,
@@ -41,9 +41,8 @@ class Blend(ABC):
 
     # What the correction around holes keeps: 1 for ν, −1 for η; 0 where none is needed.
     sign: ClassVar[int] = -1
-    # Whether Ψ is scaled by a ρ: always, or where closed periods around holes ask for it.
+    # Whether Ψ is scaled by a ρ.
     is_scaled: ClassVar[bool] = False
-    is_scaled_around_holes: ClassVar[bool] = False
 
     # Whether what is blended at a place follows from the keyframes there, and not from elsewhere.
     is_closed_form: ClassVar[bool] = True
@@ -85,6 +84,10 @@ class Blend(ABC):
     @property
     def constants(self) -> HoleConstants | None:
         """What the correction around holes has to make good beside the periods."""
+        return None
+
+    def moduli(self, _boundary: Boundary, /) -> Moduli | None:
+        """Return what that correction is to keep at the boundary beside them."""
         return None
 
     def sharp_scaling(

@@ -7,7 +7,7 @@ from typing import Any, Self
 import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices, freeze
-from engine.interpolation.added.periods import Closing
+from engine.interpolation.added import Closing
 from engine.interpolation.blends.blend import Blend, PairCurves
 from engine.interpolation.enclosing import Changes, EndValues, Patch, exponential
 from engine.interpolation.passage import Derivatives, Interval, weighted

@@ -8,21 +8,20 @@ handful of Dirichlet problems serve every time.
 
 Around holes ln |f_z| differs from what Equation (13) asks for: by a constant on the boundary of
 each hole, which no single-valued f_z does without (`engine.dirichlet`), and by the h that closes
-the periods and makes the constants good as far as it can (`engine.interpolation.added.periods`).
-Between hard keyframes the map may then leave their bounds, and even fold. There η is scaled by a ρ,
-as in the scaled η variant.
+the periods, makes the constants good as far as it can, and keeps the limits of the keyframes
+(`engine.interpolation.added.closing`).
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any, Self
 
 import numpy as np
 
-from engine.arrays import Complexes, Floats, Indices
+from engine.arrays import Complexes, Floats
+from engine.deform.correction import limits_of, quantities
 from engine.dirichlet import Extension, Refinement
 from engine.errors import EngineError
-from engine.interpolation.added.periods import Closing
+from engine.interpolation.added import Moduli
 from engine.interpolation.blends.blend import PairCurves
 from engine.interpolation.blends.eta import EtaBlend
 from engine.interpolation.blends.outline import (
@@ -39,9 +38,7 @@ from engine.interpolation.enclosing import (
     from_metric,
 )
 from engine.interpolation.passage import BoundaryResidual, Interval
-from engine.interpolation.scaling import Worst, allowed
-from engine.interpolation.series import HoleConstants, PiecewiseSeries, Residual, one, separate
-from engine.interpolation.sites import Sites
+from engine.interpolation.series import HoleConstants, Residual, one, separate
 from engine.maps import Boundary, Bounds, Enclosures, derivatives_of
 
 TOLERANCE = 1e-9  # of the series' last terms, in ln |f_z|
@@ -51,10 +48,6 @@ LEFT_OUT, LEFT_OUT_PASSING = 2e-6, 1e-7
 # Last Legendre coefficients of the residual on a panel, in ln |f_z|, up to which it may stay; the
 # times at which they are looked at; and how often a panel may be halved.
 RESOLVED, LOOKED_AT, MOST_HALVINGS = 5e-4, (0.03, 0.25, 0.5, 0.75, 0.97), 8
-# What in-betweens around holes may be beyond the worst of the keyframes: the errors of the
-# Dirichlet problem's solution.
-BEYOND = 1e-3
-BLOCK = 64  # times that are looked at together
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -81,7 +74,6 @@ class MetricBlend(EtaBlend):
         By how much each H_j stays below U_j on the boundary of a hole.
     """
 
-    is_scaled_around_holes = True
     is_closed_form = False
 
     lost: HoleConstants
@@ -139,27 +131,24 @@ class MetricBlend(EtaBlend):
         """What the correction around holes has to make good beside the periods."""
         return self.lost
 
-    def sharp_scaling(
-        self, sites: Sites, closing: Closing | None, conformal: Closing | None
-    ) -> Callable[[Floats], Floats]:
-        """Return the largest ρ that samples of the boundary allow."""
-        boundary, course = sites.boundary, self.passage.eta_course
+    def moduli(self, boundary: Boundary) -> Moduli:
+        """Return what is known at samples of the boundary before periods are closed."""
+        course = self.passage.eta_course
         fz, fzbar = derivatives_of([key.map for key in self.passage.keyframes], boundary.points)
-        a, b = np.abs(fz), np.abs(fzbar)
-        worst = Worst(k=(b / a).max(), sigma_a=(a + b).max(), sigma_b=(a - b).min())
-        corrections = []
-        for each in (closing, conformal):
-            if each is not None:
-                (modes,) = boundary.span.evaluate(each.functions, boundary.points, orders=(0,))
-                corrections.append((modes, each.series))
+        metric = OutlineMetric.of(fz, fzbar, course, self.bounds)
         counts = np.diff([*boundary.starts, len(boundary.points)])
-        return _Ratios(
-            metric=OutlineMetric.of(fz, fzbar, course, self.bounds),
-            constants=self.lost,
-            loops=np.repeat(np.arange(len(counts)), counts),
-            worst=worst if course.is_straight else worst.widened(self.bounds),
-            corrections=tuple(corrections),
-        )
+        loops = np.repeat(np.arange(len(counts)), counts)
+
+        def at(times: Floats) -> tuple[Floats, Floats]:
+            logarithm = metric.residuals(times).T + course.full.at(times).T @ metric.log_modulus
+            lost = np.pad(self.lost.at(times), ((0, 0), (1, 0)))[:, loops]
+            a = np.exp(logarithm - lost)
+            return a, np.abs(course.at(times).T @ metric.eta) / a
+
+        keyframes = zip(*at(np.array([0.0, 1.0])), strict=True)
+        ends = [quantities(*each).max(axis=1) for each in keyframes]
+        bounds = [] if course.is_straight else [limits_of(self.bounds, inside=0.0)]
+        return Moduli(at, np.max([*ends, *bounds], axis=0), self.lost)
 
     @staticmethod
     def pair(fz: Complexes, g: Complexes) -> tuple[Complexes, Complexes]:
@@ -227,48 +216,3 @@ def _matching(interval: Interval) -> Extension:
             "sites' paths."
         )
     return transform
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class _Ratios:
-    """The largest ρ at each time around holes: the minimum over samples of the boundary (p,).
-
-    Parameters
-    ----------
-    metric : OutlineMetric
-        At the samples.
-    constants : HoleConstants
-    loops : intp, shape (p,)
-        The loop of the boundary that a sample is on, 0 for the outline.
-    worst : Worst
-        Of the keyframes.
-    corrections : tuple of (complex128 (p, j), PiecewiseSeries)
-        The modes of h at the samples, and those of d where it is known.
-    """
-
-    metric: OutlineMetric
-    constants: HoleConstants
-    loops: Indices
-    worst: Worst
-    corrections: tuple[tuple[Complexes, PiecewiseSeries], ...]
-
-    def __call__(self, times: Floats) -> Floats:
-        """Return ρ in (0, 1] at times (t,)."""
-        blocks = np.array_split(times, max(1, -(-len(times) // BLOCK)))
-        return np.concatenate([self._minima(block) for block in blocks])
-
-    def _minima(self, times: Floats) -> Floats:
-        metric = self.metric
-        h, *conformal = (series.at(times).T @ modes.T for modes, series in self.corrections)
-        logarithm = metric.residuals(times).T + metric.course.full.at(times).T @ metric.log_modulus
-        lost = np.pad(self.constants.at(times), ((0, 0), (1, 0)))[:, self.loops]
-        a = np.exp(logarithm - lost + h.real)
-        b = np.abs(metric.course.at(times).T @ metric.eta) / a
-        limits = (
-            self.worst.k * (1 + BEYOND),
-            self.worst.sigma_a * (1 + BEYOND),
-            self.worst.sigma_b * (1 - BEYOND),
-        )
-        ratios = allowed(a, b, conformal[0] if conformal else None, limits)
-        smallest: Floats = np.minimum(ratios.min(axis=1), 1.0)
-        return smallest

@@ -78,7 +78,7 @@ class Changes(NamedTuple):
     Parameters
     ----------
     correction : Patch
-        Re h (`engine.interpolation.added.periods`).
+        Re h (`engine.interpolation.added`).
     rho : Patch
         ln ρ, by which conj(f_z̄) is scaled.
     factor : Patch

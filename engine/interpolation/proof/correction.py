@@ -11,12 +11,12 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from engine.arrays import Complexes, Floats, Indices
-from engine.interpolation.added.periods import Closing
+from engine.interpolation.added import Closing
 from engine.interpolation.enclosing import Patch, Subdivision, followed
 from engine.interpolation.series import HoleConstants, PiecewiseSeries
 from engine.maps import Boundary
 
-LEFT_OUT = 1e-9  # of what closes periods: its smallest modes
+LEFT_OUT = 1e-9  # of what closes periods: what its series leave out, and rounding
 
 
 class Chords(NamedTuple):
@@ -139,5 +139,6 @@ def closing_on(
     pieces: Subdivision,
     constants: HoleConstants | None = None,
 ) -> Correction:
-    """Return what closes periods around holes, but for its smallest modes."""
-    return Correction(*closing.leading(LEFT_OUT), boundary, pieces, constants)
+    """Return what closes periods around holes."""
+    functions, series = closing.functions.coefficients, closing.series
+    return Correction(functions, series, boundary, pieces, constants)

@@ -2,13 +2,12 @@
 
 In: keyframes, an outline, the course through the keys, bounds.
 Out: the factor ρ at any time.
-Imports: `engine.maps`, `engine.interpolation.courses.course`, `engine.interpolation.added.periods`.
+Imports: `engine.maps`, `engine.interpolation.courses.course`, `engine.interpolation.added`.
 """
 
 from engine.interpolation.scaling.pointwise import (
     PointSamples as PointSamples,
     Worst as Worst,
-    allowed as allowed,
 )
 from engine.interpolation.scaling.sharp import (
     BESIDE_KEY as BESIDE_KEY,

@@ -8,7 +8,7 @@ import numpy as np
 
 from engine.arrays import Booleans, Complexes, Floats, Indices
 from engine.geometry import box_diagonal, sample_graded
-from engine.interpolation.added.periods import Closing
+from engine.interpolation.added import Closing
 from engine.interpolation.courses import Course
 from engine.interpolation.scaling.outline_curves import (
     PARTS,
@@ -25,7 +25,6 @@ from engine.maps import Bounds, HarmonicMap
 # the box diagonal. Interpolation between them is then right to 1e-7.
 SEGMENT_PER_DISTANCE = 0.2
 SEGMENT_PER_SIZE = 1 / 400
-FAINT = 1e-8  # modes of h and d below this are left out
 GAIN = 1e-7  # by which a stretch must promise to lower ρ to be looked at
 MANY = 4096  # stretches that are refined at a time
 RUN = 16  # times at whose ends all samples are looked at
@@ -90,8 +89,7 @@ class SharpScaling:
         starts = np.cumsum([0, *map(len, sampled[:-1])])
         columns = np.array([f.columns for f in maps]).swapaxes(0, 1)  # Φ of all, and then Ψ of all
         columns = columns.reshape(-1, len(span)).T
-        leading = [each.leading(FAINT) for each in closings]
-        modes = [functions for functions, _ in leading]
+        modes = [each.functions.coefficients for each in closings]
         derivatives = span.evaluate(np.hstack([columns, *modes]), points, orders=(0, 1, 2))
         values, first, second = (each.T for each in derivatives)
         keys = columns.shape[1]
@@ -111,7 +109,7 @@ class SharpScaling:
             curves=curves,
             samples=samples,
             worst=worst,
-            closings=tuple(series for _, series in leading),
+            closings=tuple(each.series for each in closings),
         )
 
     def __call__(self, times: Floats) -> Floats:

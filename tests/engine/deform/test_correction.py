@@ -10,7 +10,12 @@ from numpy.testing import assert_allclose
 from scipy.optimize import minimize
 
 from engine.deform.correction import (
+    WIDTH,
     BaseFrame,
+    CorrectedFrame,
+    LimitWalls,
+    PointPaths,
+    PointSolution,
     Targets,
     corrector_of,
     extremes,
@@ -19,9 +24,6 @@ from engine.deform.correction import (
     solve,
     solve_within,
 )
-from engine.deform.correction.frame import CorrectedFrame
-from engine.deform.correction.paths import PointPaths
-from engine.deform.correction.walls import LimitWalls
 from engine.maps import Boundary, Bounds
 
 SHAPES = {"bar": (bar_boundary, BAR_POINTS), "star": (star_boundary, STAR_POINTS)}
@@ -279,6 +281,28 @@ def test_the_barrier_has_the_slope_of_its_energy(sign):
     rise = (walls.energy(walls.state(x + e * step)) - walls.energy(walls.state(x - e * step))) / e
     assert walls.model(walls.state(x)).slope @ step == pytest.approx(rise / 2, rel=1e-4)
     assert walls.energy(walls.state(300 * x)) == np.inf
+
+
+@pytest.mark.parametrize("scale", [1.0, 0.01])
+def test_a_barrier_that_is_passed_at_first_closes_in(scale):
+    known = corrector("star")
+    nodes, samples = (bent(z, sign=-1) for z in (known.paths.nodes, known.boundary.points))
+    nothing = known.variables.nothing
+    targets = Targets(moves_of(known.points, 0.0), np.ones(6), is_anchored=False)
+    start = PointSolution(x=nothing, shift=0j, misses=np.zeros(6), steps=0)
+    own = extremes(known, samples, nothing)
+    limits = own - 0.03 * scale
+    walls = LimitWalls.around(known, samples, limits, scale, nothing)
+    found = solve(known, nodes, targets, start, walls)
+    assert (extremes(known, samples, found.x) < limits).all()
+    # Limits that cannot be kept are approached.
+    far = LimitWalls.around(known, samples, own - 1.0, scale, nothing)
+    least = extremes(known, samples, solve(known, nodes, targets, start, far).x)
+    assert (least > own - 1.0).any()
+    assert (least < own).all()
+    # What has room is left alone.
+    walls = LimitWalls.around(known, samples, own + WIDTH * scale, scale, nothing)
+    assert not solve(known, nodes, targets, start, walls).x.any()
 
 
 @pytest.mark.parametrize(("name", "sign"), [("bar", -1), ("star", 1)])

@@ -105,8 +105,8 @@ def pin(
     """
     known, size = corrector.variables, corrector.boundary.size
     solved: dict[float, PointSolution] = {}
-    nothing, share = np.zeros(2 * known.count), 1.0
-    ends = [extremes(corrector, base_at(time).samples, nothing) for time in (0.0, 1.0)]
+    share = 1.0
+    ends = [extremes(corrector, base_at(time).samples, known.nothing) for time in (0.0, 1.0)]
     limits = limits_of(bounds, *ends)
 
     def at(time: float) -> Floats:
