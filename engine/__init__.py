@@ -2,13 +2,16 @@
 
 But for one thing: it keeps BLAS to one thread (`engine.arrays`), in a script as in the program.
 
-In: pictures, handles, harmonic maps, as arrays.
+In: pictures, polygons, handles, harmonic maps, as arrays.
 Out: domains, certified maps, in-betweens, series in time, as arrays.
 Imports: NumPy, SciPy, contourpy, Shapely; never `app`.
 
+`engine.face` lists the names that a script needs, `engine/examples` has scripts, and
+`engine.reference` has the paper's variants as printed.
+
 Equation map of *Bounded Distortion Harmonic Shape Interpolation* (Chien, Chen, Weber 2016):
 
-    (1), (14)       f = Φ + conj(Ψ)                engine.maps.harmonic_map.HarmonicMap
+    (1)             f = Φ + conj(Ψ)                engine.maps.harmonic_map.HarmonicMap
     (14)            Cauchy coordinates             engine.maps.cauchy.cauchy_coordinates
     Section 3.4     μ, first dilatation            engine.maps.distortion.mu
     Section 3.4     k, little dilatation           engine.maps.distortion.k
@@ -20,13 +23,19 @@ Equation map of *Bounded Distortion Harmonic Shape Interpolation* (Chien, Chen, 
     Section 8       τ, isometric distortion        engine.maps.distortion.tau
     (2), (15)       continuous logarithm           engine.paths.complex_log.continue_logarithm
     Section 7.2     branch at the anchor           engine.paths.complex_log.root_sheets
-    Section 4.1     harmonic in-betweens           engine.interpolation.Inbetweens
+    Section 4.1     harmonic in-betweens           engine.interpolation.inbetweens.Inbetweens
     (3)             logarithmic blend of f_z       engine.interpolation.passage.derivatives.Passage
     (4), (5)        ν variant                      engine.interpolation.blends.nu.NuBlend
     (6), (7)        η variant                      engine.interpolation.blends.eta.EtaBlend
-    (8), (16)-(18)  scaled η, largest ρ(t)         engine.interpolation.scaling.sharp.SharpScaling
+    (8)             scaled η variant               engine.interpolation.inbetweens.Inbetweens
+    (16)            ρ within k at a point          engine.interpolation.scaling.pointwise.allowed
+    (17)            ρ within σ_a                   engine.interpolation.scaling.pointwise.allowed
+    (18)            ρ within σ_b                   engine.interpolation.scaling.pointwise.allowed
+    Section 7.3     largest ρ(t) of the outline    engine.interpolation.scaling.sharp.SharpScaling
     Property 4      ρ(t) without kinks             engine.interpolation.scaling.smooth.Scaling
-    (9)-(13)        metric, outline, Lemma 7       engine.interpolation.blends.outline.OutlineMetric
+    (9), (13)       metric on the outline          engine.interpolation.blends.outline.OutlineMetric
+    (10), (11)      σ_a, σ_b of the metric         engine.interpolation.blends.outline.OutlineMetric
+    (12)            K of the metric, Lemma 7       engine.interpolation.blends.outline.OutlineMetric
     Section 6       metric variant                 engine.interpolation.blends.metric.MetricBlend
     Section 7.4     Hilbert transform              engine.dirichlet.hilbert.HilbertTransform
     Section 7       spanning tree from the anchor  engine.paths.spanning_tree.SpanningTree
@@ -45,3 +54,24 @@ The deformer follows Chen and Weber, *Bounded Distortion Harmonic Mappings in th
     2017            symmetric Dirichlet energy       engine.deform.model.energy.symmetric_dirichlet
     2017            Newton step, projected Hessian   engine.deform.model.newton.newton_direction
 """
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from engine.face import *  # noqa: F403
+
+
+def __getattr__(name: str) -> object:
+    """Load the face, and with it the rooms, when a name of theirs is asked for first.
+
+    Who imports `engine.variant` or `engine.errors` alone does not load NumPy.
+    """
+    if name.startswith("_"):
+        raise AttributeError(name)
+    face = import_module("engine.face")
+    return globals()[name] if name in globals() else getattr(face, name)
+
+
+def __dir__() -> list[str]:
+    return [name for name in dir(import_module("engine.face")) if not name.startswith("_")]

@@ -5,9 +5,10 @@ are small, and a second thread on a busy core can make a solver's step a hundred
 one thread results repeat bit for bit.
 """
 
+import operator
 from collections.abc import Iterable
 from dataclasses import fields, is_dataclass
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -20,10 +21,16 @@ from engine.errors import EngineError
 NOT_COMPLEX = "{name} must be complex numbers, not {dtype}."
 NOT_FINITE = "{name} must be finite, but entry {index} is {value}."
 FEW_ENTRIES = "{name} must have at least {at_least} entries, not {count}."
+NOT_REAL = "{name} must be real numbers, not {dtype}."
+NOT_NUMBER = "{name} must be a number, not {value!r}."
+NOT_LISTED = "{name} must be a list, not {value!r}."
+OTHER_KIND = "{name} must be of the class {kind}, not {given}."
+NOT_WHOLE = "{name} must be a whole number, not {value!r}."
 
 threadpool_limits(limits=1, user_api="blas")
 
 type_ = TypeVar("type_", bound=np.generic)
+item_ = TypeVar("item_")
 Complexes = npt.NDArray[np.complex128]
 Floats = npt.NDArray[np.float64]
 Singles = npt.NDArray[np.float32]
@@ -114,7 +121,7 @@ def as_points(values: npt.ArrayLike, name: str, *, at_least: int = 0) -> Complex
     EngineError
         If the values are not numbers, not one-dimensional, too few or not finite.
     """
-    array = np.asarray(values)
+    array = _as_array(values)
     if array.dtype.kind not in "biufc":
         raise EngineError(NOT_COMPLEX.format(name=name, dtype=array.dtype))
     if array.ndim != 1:
@@ -126,3 +133,50 @@ def as_points(values: npt.ArrayLike, name: str, *, at_least: int = 0) -> Complex
         bad = int(np.flatnonzero(~np.isfinite(points))[0])
         raise EngineError(NOT_FINITE.format(name=name, index=bad, value=points[bad]))
     return points
+
+
+def as_count(value: object, name: str) -> int:
+    """Return a whole number, or raise `EngineError` if the value is none."""
+    try:
+        return operator.index(value)  # type: ignore[arg-type]
+    except TypeError:
+        raise EngineError(NOT_WHOLE.format(name=name, value=value)) from None
+
+
+def as_number(value: npt.ArrayLike, name: str) -> float:
+    """Return a real number, or raise `EngineError` if the value is none."""
+    array = _as_array(value)
+    if array.ndim or array.dtype.kind not in "biuf":
+        raise EngineError(NOT_NUMBER.format(name=name, value=value))
+    return float(array)
+
+
+def as_reals(values: npt.ArrayLike, name: str) -> Floats:
+    """Return real numbers of any shape, NaN and infinity included, as float64."""
+    array = _as_array(values)
+    if array.dtype.kind not in "biuf":
+        raise EngineError(NOT_REAL.format(name=name, dtype=array.dtype))
+    return array.astype(np.float64)
+
+
+def as_tuple(values: Iterable[item_], name: str) -> tuple[item_, ...]:
+    """Return the entries of a list, or raise `EngineError` if the values are none."""
+    try:
+        return tuple(values)
+    except TypeError:
+        raise EngineError(NOT_LISTED.format(name=name, value=values)) from None
+
+
+def require_kind(value: object, kind: type, name: str) -> None:
+    """Raise `EngineError` unless a value is of a class."""
+    if not isinstance(value, kind):
+        given = type(value).__name__
+        raise EngineError(OTHER_KIND.format(name=name, kind=kind.__name__, given=given))
+
+
+def _as_array(values: npt.ArrayLike) -> npt.NDArray[Any]:
+    """Return values as an array, of objects where lists are of different lengths."""
+    try:
+        return np.asarray(values)
+    except ValueError:
+        return np.asarray(values, dtype=object)

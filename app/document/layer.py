@@ -45,7 +45,7 @@ from app.document.timing import Cycle, Spring, Track, require_apart, require_rep
 from app.errors import LissomError
 from engine.arrays import Booleans, Complexes, Floats, readonly
 from engine.deform import MOST_HANDLES
-from engine.domain import CutOut, Domain
+from engine.domain import CutOut, MeshedDomain
 from engine.geometry import ON_OUTLINE, box_diagonal, contains
 from engine.maps import Bounds, Certificate, HarmonicMap, require_stiffness
 from engine.variant import Variant
@@ -82,7 +82,7 @@ class Layer:
 
     id: int = 0  # never given twice in one document
     picture: PictureFile
-    domain: Domain
+    domain: MeshedDomain
     meshing: Meshing  # what the domain was built with
     cut_out: CutOut = CutOut()  # what tells the subject from the rest of the picture
     is_stale: bool = False  # whether the domain is still that of an earlier cut-out
@@ -377,15 +377,24 @@ class Layer:
         if self.anchor is not None:
             require_place(self.anchor, "The anchor")
             places["anchor"] = self.anchor
-        if places:
-            points = np.array(list(places.values()), dtype=np.complex128)
-            inside = self.covers(points, tolerance=ON_OUTLINE * box_diagonal(self.domain.outline))
-            for (name, place), is_inside in zip(places.items(), inside, strict=True):
-                require(
-                    bool(is_inside),
-                    f"The {name} at ({place.real:g}, {place.imag:g}) lies outside the shape; "
-                    "move it onto the shape or remove it.",
-                )
+        self.require_on_shape(places)
+
+    def require_on_shape(self, places: Mapping[str, complex]) -> None:
+        """Refuse places, by the names of what is there, of which one is not on the shape.
+
+        Raises
+        ------
+        LissomError
+            For the first of these.
+        """
+        points = np.array(list(places.values()), dtype=np.complex128)
+        inside = self.covers(points, tolerance=ON_OUTLINE * box_diagonal(self.domain.outline))
+        for (name, place), is_inside in zip(places.items(), inside, strict=True):
+            require(
+                bool(is_inside),
+                f"The {name} at ({place.real:g}, {place.imag:g}) lies outside the shape; "
+                "move it onto the shape or remove it.",
+            )
 
     def _check_keys(self) -> None:
         require(len(self.keys) > 0, "An animation has at least one key.")
@@ -458,7 +467,7 @@ def _with_pose(each: Posed, pose: Pose) -> Posed:
     return each if each.pose is pose else replace(each, pose=pose)
 
 
-def pose_as_drawn(domain: Domain, handles: Iterable[Handle]) -> Pose:
+def pose_as_drawn(domain: MeshedDomain, handles: Iterable[Handle]) -> Pose:
     """Return the pose of a drawing as it was drawn, with its handles where they grip."""
     rest = HarmonicMap.identity(domain.cage, domain.holes)
     targets = {each.id: Target(position=each.position) for each in handles}
@@ -467,7 +476,7 @@ def pose_as_drawn(domain: Domain, handles: Iterable[Handle]) -> Pose:
 
 
 def new_layer(
-    picture: PictureFile, domain: Domain, meshing: Meshing, cut_out: CutOut = CutOut()
+    picture: PictureFile, domain: MeshedDomain, meshing: Meshing, cut_out: CutOut = CutOut()
 ) -> Layer:
     """Return the layer of a picture just opened: one key at frame 0, as it was drawn."""
     pose = pose_as_drawn(domain, ())

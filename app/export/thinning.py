@@ -8,7 +8,7 @@ from scipy.spatial import Delaunay
 
 from app.render.gpu import border_edges
 from engine.arrays import Booleans, Complexes, Indices, Integers, Singles
-from engine.domain import Domain
+from engine.domain import MeshedDomain
 from engine.domain.meshing import Mesh, in_order_of
 from engine.geometry import as_xy
 
@@ -66,7 +66,7 @@ class Thinning:
         Pixels of the frame per unit of the plane.
     """
 
-    def __init__(self, domain: Domain, scale: float) -> None:
+    def __init__(self, domain: MeshedDomain, scale: float) -> None:
         self._domain = domain
         self._tolerance = TOLERANCE / scale
         self._spacing = _SPACING / scale

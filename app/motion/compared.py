@@ -4,7 +4,7 @@ import numpy as np
 
 from app.document import Clip, intervals, resting_pose, time_of
 from engine.baselines import Baseline, MeshFrame, MeshInbetweens, prepare_baseline
-from engine.domain import Domain
+from engine.domain import MeshedDomain
 
 
 class RememberedFrames:
@@ -31,7 +31,7 @@ class RememberedFrames:
 
 
 def prepare_compared(
-    clip: Clip, baseline: Baseline, interval: int, domain: Domain
+    clip: Clip, baseline: Baseline, interval: int, domain: MeshedDomain
 ) -> RememberedFrames:
     """Return a clip's in-betweens by a baseline, with those of all whole frames worked out.
 

@@ -8,7 +8,7 @@ import numpy.typing as npt
 from app.document import Pose
 from app.motion.paint_order import PaintOrder
 from engine.arrays import Booleans, Complexes, Floats, Integers
-from engine.domain import Domain
+from engine.domain import MeshedDomain
 from engine.domain.meshing import Mesh, in_order_of, triangulate
 from engine.maps import Span
 
@@ -57,9 +57,9 @@ class PosableMesh:
 
     Parameters
     ----------
-    domain : Domain
+    domain : MeshedDomain
         With the mesh that is shown, which may be coarser than the layer's own.
-    source : Domain
+    source : MeshedDomain
         The layer's.
     coordinates : complex64, shape (v, n)
         Values at the vertices of the functions that maps are made of: single precision is plenty
@@ -71,8 +71,8 @@ class PosableMesh:
         In which order the mesh's triangles are painted.
     """
 
-    domain: Domain
-    source: Domain
+    domain: MeshedDomain
+    source: MeshedDomain
     coordinates: npt.NDArray[np.complex64]
     order: PaintOrder = field(init=False)
 
@@ -80,12 +80,12 @@ class PosableMesh:
         object.__setattr__(self, "order", PaintOrder(self.domain.mesh))
 
     @classmethod
-    def fine(cls, source: Domain) -> "PosableMesh":
+    def fine(cls, source: MeshedDomain) -> "PosableMesh":
         """Return the layer's own mesh."""
         return cls(domain=source, source=source, coordinates=_coordinates(source))
 
     @classmethod
-    def coarse(cls, source: Domain, *, among: int = 1) -> "PosableMesh":
+    def coarse(cls, source: MeshedDomain, *, among: int = 1) -> "PosableMesh":
         """Return a coarse mesh of the same domain, or the layer's own if that is hardly finer.
 
         The more layers are drawn (it is `among` them), the fewer triangles it has.
@@ -164,9 +164,9 @@ def _cross(first: Complexes, second: Complexes) -> Floats:
     return product
 
 
-def _coordinates(domain: Domain) -> npt.NDArray[np.complex64]:
+def _coordinates(domain: MeshedDomain) -> npt.NDArray[np.complex64]:
     return _span(domain).coordinates(domain.mesh.vertices).astype(np.complex64)
 
 
-def _span(domain: Domain) -> Span:
+def _span(domain: MeshedDomain) -> Span:
     return Span(cage=domain.cage, holes=domain.holes)

@@ -24,7 +24,7 @@ from app.motion.joints import Hinge, Joints, along, chain_of
 from app.motion.posable_mesh import AttachedPoints, PosableMesh
 from app.motion.vertices import Streamed, Vertices
 from engine.arrays import Complexes
-from engine.domain import Domain
+from engine.domain import MeshedDomain
 from engine.geometry import HERE, RigidMotion
 
 
@@ -40,7 +40,7 @@ class Shown:
     handles: AttachedPoints  # of the layer's handles in the mesh
     # What is shown instead until the in-between is there: one of its two keys, or another of their
     # in-betweens; or what was drawn of another domain.
-    stand_in: Pose | OneFrame | Domain | None = None
+    stand_in: Pose | OneFrame | MeshedDomain | None = None
     correction: SolvedTracks | None = None  # what tracks and springs add
     is_rough: bool = False  # whether that only stands in for the frame's own
     # Where the layer is in the scene; all else is where it is by itself.

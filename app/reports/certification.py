@@ -154,7 +154,7 @@ def certify_clip(
     between two of them is measured.
     """
     layer, domain = clip.layer, clip.layer.domain
-    boundary = Boundary.sample(domain.outline, domain.cage, domain.holes)
+    boundary = Boundary.sample(domain)
     keys = tuple(
         (key.frame, certify(clip.layer.map_of(key.pose), boundary, clip.layer.bounds))
         for key in clip.keys

@@ -7,7 +7,7 @@ from PIL import Image, ImageDraw
 
 from app.storage import Picture
 from engine.arrays import Complexes
-from engine.domain import Domain
+from engine.domain import MeshedDomain
 
 LONG_SIDE = 1600  # pixels of the preview
 SUPERSAMPLING = 2
@@ -15,12 +15,12 @@ PAPER, CHECK = (250, 249, 246, 255), (232, 231, 227, 255)
 MESH_COLOUR, OUTLINE_COLOUR, CAGE_COLOUR = (30, 40, 60, 70), (0, 120, 215, 255), (235, 94, 40, 255)
 
 
-def draw_preview(picture: Picture, domain: Domain) -> bytes:
+def draw_preview(picture: Picture, domain: MeshedDomain) -> bytes:
     """Return a PNG of the picture on a checkerboard, its mesh, outlines (blue) and cages (orange).
 
     Parameters
     ----------
-    domain : Domain
+    domain : MeshedDomain
         Its points are in the pixels of `picture`, y up.
     """
     everything = np.concatenate([domain.cage, [0, complex(*picture.size)]])

@@ -186,7 +186,9 @@ def solve_from(
 ) -> Pose:
     """Return the pose with these wishes that is found from a map, along some ways."""
     deformer, wish = rig.deformer, rig.wish(targets, tuple(pins))
-    state, _ = deformer.settle(rig.beginning_at(begin), wish, ways=ways, at_most=MOST_STEPS)
+    state, _ = deformer.settle(
+        rig.beginning_at(begin), wish, ways=ways, at_most=MOST_STEPS, throw=False
+    )
     # Steps that walk into the bounds are proven for wider ones.
     proven = certify(state.map, deformer.boundary, deformer.bounds)
     return rig.pose(state.map, targets, proven)

@@ -69,7 +69,7 @@ class Rig:
             boundary = earlier.deformer.boundary
             is_same = are_as_stiff(earlier.layer, layer)
         else:
-            boundary, is_same = Boundary.sample(domain.outline, domain.cage, domain.holes), False
+            boundary, is_same = Boundary.sample(domain), False
         if not is_same:
             boundary, earlier = stiffened(layer, boundary), None
         if earlier and earlier.handles == held and earlier.pins == pins:

@@ -164,11 +164,11 @@ def _solved(renewal: Renewal, rig: Rig, index: int) -> Pose:
     if not renewal.pulls and certify(first, boundary, bounds).certified:
         return pose
     wish = rig.wish(pose.targets, pins)
-    state, _ = rig.deformer.settle(rig.beginning_at(first), wish, at_most=MOST_STEPS)
+    state, _ = rig.deformer.settle(rig.beginning_at(first), wish, at_most=MOST_STEPS, throw=False)
     certificate = certify(state.map, boundary, bounds)
     if into is not None and not certificate.certified:
         # Where the new shape is larger, what was carried over may have no way back into the bounds.
-        state, _ = rig.deformer.settle(rig.deformer.start(), wish, at_most=MOST_STEPS)
+        state, _ = rig.deformer.settle(rig.deformer.start(), wish, at_most=MOST_STEPS, throw=False)
         certificate = certify(state.map, boundary, bounds)
     if into is None and not certificate.certified:
         return replace(pose, certificate=certify(first, boundary, bounds))

@@ -8,7 +8,7 @@ import numpy as np
 from app.document import Layer, Pose, Target, Track, TrackKey, carried_over
 from app.solving.renewal import Renewal, carried
 from engine.arrays import Complexes
-from engine.domain import Domain
+from engine.domain import MeshedDomain
 from engine.maps import HarmonicMap
 
 
@@ -66,7 +66,7 @@ def _middle(outline: Complexes) -> complex:
     return complex(x.min() + x.max(), y.min() + y.max()) / 2
 
 
-def _places(before: Layer, domain: Domain) -> Mapping[complex, complex]:
+def _places(before: Layer, domain: MeshedDomain) -> Mapping[complex, complex]:
     """Return where handles and the anchor come, by where they were."""
     old = [handle.position for handle in before.handles]
     if before.anchor is not None and before.anchor not in old:
@@ -90,7 +90,9 @@ def _replanted(before: Layer, track: Track, places: Mapping[complex, complex]) -
     return replace(track, keys=tuple(map(moved, track.keys)))
 
 
-def _at_rest(before: Layer, pose: Pose, domain: Domain, places: Mapping[complex, complex]) -> Pose:
+def _at_rest(
+    before: Layer, pose: Pose, domain: MeshedDomain, places: Mapping[complex, complex]
+) -> Pose:
     """Return a pose over the new domain, at rest, with its wishes moved as the handles are."""
     rest, shape = HarmonicMap.identity(domain.cage, domain.holes), before.map_of(pose)
     targets = {}

@@ -35,7 +35,7 @@ class HandleInbetweens:
         handles = self.deformer.handles
         targets = (1.0 - time) * self.first(handles.points) + time * self.second(handles.points)
         start = self.deformer.resume(self.first if time < 0.5 else self.second)
-        state, _ = self.deformer.settle(start, handles.wish(targets), ways=(Way.HERE,))
+        state, _ = self.deformer.settle(start, handles.wish(targets), ways=(Way.HERE,), throw=False)
         return _frame(self.domain, state.map(self.domain.points))
 
 

@@ -19,7 +19,7 @@ from engine.baselines.poisson import PoissonStep
 from engine.baselines.triangulated_domain import TriangulatedDomain
 from engine.deform import Deformer, Handles
 from engine.errors import EngineError
-from engine.geometry import ON_OUTLINE, diameter, require_inside
+from engine.geometry import ON_OUTLINE, Domain, diameter, require_inside
 from engine.interpolation import Variant, interval_at, prepare, require_keyframes
 from engine.maps import Boundary, Bounds, HarmonicMap
 from engine.variant import Baseline
@@ -116,7 +116,7 @@ def prepare_baseline(
         maps = _maps_over_one_cage(baseline, around)
         if border is None:
             raise EngineError(f"The method {baseline} needs the domain's outline.")
-        boundary = Boundary.sample(border, maps[0].cage, maps[0].holes)
+        boundary = Boundary.sample(Domain(border, maps[0].cage, maps[0].holes))
         if baseline is Baseline.HANDLES:
             intervals = _by_handles(domain, boundary, maps, handles, bounds)
         else:
@@ -173,8 +173,8 @@ def _conformal(
     require_holomorphic(maps, boundary)
     prepared = prepare(
         maps,
+        boundary,
         domain.points,
-        outline=boundary.outline,
         variant=Variant.NU,
         triangles=domain.mesh.triangles,
         anchor=domain.points[domain.anchor],

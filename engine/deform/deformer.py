@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from engine.arrays import Complexes
+from engine.arrays import Complexes, as_count, require_kind
 from engine.deform.following import follow_hand
-from engine.deform.handles import Wish
+from engine.deform.handles import TARGET_COUNT, Wish
 from engine.deform.held_shape import HeldShape
 from engine.deform.rest import Way
 from engine.deform.settling import begin_searches, search_on
@@ -25,6 +25,10 @@ PATH_STEPS = 10
 PATH_REST = 1e-3
 # Steps without progress after which a drag is handed over to the search for the minimum.
 PATIENCE = 4
+UNSETTLED = (
+    "The shape did not come to rest in {count} steps: it is {status}. Give more steps (at_most), "
+    "wider bounds or nearer targets, or take the shape as it is (throw=False)."
+)
 UNCERTIFIED_START = (
     "The start map is not certified within the bounds: it has k up to {k:.4g}, sigma_a up to "
     "{sigma_a:.4g} and sigma_b down to {sigma_b:.4g}. Start from another map or widen the bounds."
@@ -49,6 +53,7 @@ class Deformer(HeldShape):
             If the map is not certified within the bounds.
         """
         first = self.at_rest if harmonic_map is None else harmonic_map
+        require_kind(first, HarmonicMap, "the map")
         certificate = certify(first, self.boundary, self.bounds)
         if not certificate.certified:
             raise EngineError(
@@ -134,8 +139,9 @@ class Deformer(HeldShape):
         s samples in the Hessian, n the number of cage vertices; then 22 n³ for its factors. Far
         from walls both serve some steps, and each of those costs 32 m n for m samples a round.
         """
+        self._require_own(wish)
         if len(wish.positions) == 0 and self.allows(state):
-            return replace(state, limits=self.bounds, status=Status.CONVERGED, wish=wish)
+            return replace(state, limits=self.bounds, status=Status.FREE, wish=wish)
         if not self._goes_on(state, wish):
             state = replace(state, search=None, outcome=None, ways=())
         elif state.status.is_final:
@@ -159,6 +165,14 @@ class Deformer(HeldShape):
                 return replace(state, wish=left)
         return replace(state, status=Status.MOVING, search=None, outcome=None, ways=())
 
+    def _require_own(self, wish: Wish) -> None:
+        """Refuse targets of other handles."""
+        require_kind(wish, Wish, "targets")
+        if len(wish.positions) != len(self.handles.points):
+            raise EngineError(
+                TARGET_COUNT.format(count=len(self.handles.points), given=len(wish.positions))
+            )
+
     def _goes_on(self, state: State, wish: Wish) -> bool:
         """Tell whether the last step was towards this wish, with these handles and bounds."""
         return (
@@ -178,14 +192,35 @@ class Deformer(HeldShape):
         )
 
     def settle(
-        self, state: State, wish: Wish, *, ways: tuple[Way, ...] = tuple(Way), at_most: int = 600
+        self,
+        state: State,
+        wish: Wish,
+        *,
+        ways: tuple[Way, ...] = tuple(Way),
+        at_most: int = 600,
+        throw: bool = True,
     ) -> tuple[State, int]:
         """Find the pose of least energy for a wish; return the number of steps too.
 
         It is searched for along these ways; that from the present map alone stays in its valley. At
         most `at_most` steps are taken. The energy is never above that of the present map, once that
         is within the bounds.
+
+        Raises
+        ------
+        EngineError
+            If the shape did not come to rest within the bounds. With `throw=False` the state is
+            returned as it is then, certified for its `limits`, and `status` is the reason.
         """
+        self._require_own(wish)
+        state, count = self._settled(state, wish, ways, as_count(at_most, "at_most"))
+        if throw and not state.status.is_solved:
+            raise EngineError(UNSETTLED.format(count=count, status=state.status.value))
+        return state, count
+
+    def _settled(
+        self, state: State, wish: Wish, ways: tuple[Way, ...], at_most: int
+    ) -> tuple[State, int]:
         count = 0
         if not (self._goes_on(state, wish) and state.status.is_final):
             while count < at_most and not self.allows(state):
@@ -202,6 +237,7 @@ class Deformer(HeldShape):
 
     def follow(self, state: State, wish: Wish) -> tuple[State, int]:
         """Take the few steps that one row of a recorded path gets; return their number too."""
+        self._require_own(wish)
         for count in range(1, PATH_STEPS + 1):
             state = follow_hand(self, state, wish)
             done = state.statistics

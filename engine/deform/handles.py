@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from engine.arrays import Complexes, Floats, as_points, readonly
+from engine.arrays import Complexes, Floats, as_points, as_reals, readonly, require_kind
 from engine.deform.hands import Hand, Hands, Link, Links
 from engine.errors import EngineError
-from engine.geometry import Hole, box_diagonal, require_inside
+from engine.geometry import Domain, box_diagonal, require_inside
 from engine.maps import Boundary
 
 # λ = STIFFNESS / L² for a handle of weight 1.
@@ -132,7 +132,7 @@ class Handles:
 
     @classmethod
     def place(
-        cls, boundary: Boundary, points: Complexes, weights: npt.ArrayLike | None = None
+        cls, boundary: Boundary, points: npt.ArrayLike, weights: npt.ArrayLike | None = None
     ) -> "Handles":
         """Place handles on a shape.
 
@@ -150,7 +150,8 @@ class Handles:
             If a point is outside the outline or not finite, a weight is not positive, or the cages
             have too many vertices.
         """
-        points = require_held(points, boundary.outline, boundary.cage, boundary.holes)
+        require_kind(boundary, Boundary, "boundary")
+        points = require_held(points, boundary.domain)
         around, firmer = boundary.stiffness_around(points)
         factors = _weights(weights, len(points)) * firmer
         stiffness = factors * STIFFNESS / boundary.size**2
@@ -182,7 +183,7 @@ class Handles:
 
     def wish(
         self,
-        positions: Complexes,
+        positions: npt.ArrayLike,
         rotations: npt.ArrayLike | None = None,
         hands: Sequence[Hand] = (),
         links: Sequence[Link] = (),
@@ -220,7 +221,7 @@ class Handles:
         linked = Links.of(links, self.around * STIFFNESS / size**2)
         if rotations is None:
             return Wish(targets, np.full(len(targets), np.nan), pulling, linked)
-        angles = np.asarray(rotations, dtype=np.float64)
+        angles = as_reals(rotations, "rotations")
         if angles.shape != targets.shape or np.isinf(angles).any():
             raise EngineError(
                 f"Rotations must be {len(targets)} finite angles, or NaN where a handle may turn "
@@ -239,31 +240,28 @@ def _told_twice(i: int, j: int, what: str) -> EngineError:
     )
 
 
-def require_held(
-    points: npt.ArrayLike, outline: npt.ArrayLike, cage: npt.ArrayLike, holes: Sequence[Hole]
-) -> Complexes:
+def require_held(points: npt.ArrayLike, domain: Domain) -> Complexes:
     """Return the points of handles, or raise `EngineError` unless they can hold a shape.
 
     Nothing needs to be sampled before.
     """
-    points, cage = as_points(points, "handles"), as_points(cage, "cage", at_least=3)
-    outline = as_points(outline, "outline", at_least=3)
+    points = as_points(points, "handles")
     if len(points) > MOST_HANDLES:
         raise EngineError(
             f"{len(points):,} handles are too many, as their memory grows with their square; "
             f"give at most {MOST_HANDLES:,}."
         )
-    count = len(cage) + sum(len(hole.cage) for hole in holes)
+    count = sum(map(len, domain.cages))
     if count > MOST_VERTICES:
         raise EngineError(MOST_CAGE.format(count=count, most=MOST_VERTICES))
-    inner = [hole.outline for hole in holes]
+    outline, *inner = domain.loops
     near = OUTSIDE * box_diagonal(outline)
     require_inside(outline, points, "handle", holes=inner, tolerance=near)
     return points
 
 
 def _weights(weights: npt.ArrayLike | None, count: int) -> Floats:
-    factors = np.ones(count) if weights is None else np.asarray(weights, dtype=np.float64)
+    factors = np.ones(count) if weights is None else as_reals(weights, "weights")
     if factors.shape != (count,):
         raise EngineError(f"{count} handles need as many weights, not {factors.shape}.")
     if not (np.isfinite(factors) & (factors > 0)).all():

@@ -18,6 +18,8 @@ class Status(Enum):
     """On its way: more steps lead on."""
     CONVERGED = "converged"
     """At rest in a minimum of the energy, which no bound holds back."""
+    FREE = "free"
+    """Nothing is asked for: the shape has no handle, and stays as it is within the bounds."""
     AT_LIMITS = "at the limits"
     """At rest in a minimum of the energy within the bounds: they allow no less."""
     UNFINISHED = "unfinished"
@@ -31,6 +33,11 @@ class Status(Enum):
     def is_final(self) -> bool:
         """Whether more steps with the same wish change nothing."""
         return self not in (Status.MOVING, Status.TIGHTENING)
+
+    @property
+    def is_solved(self) -> bool:
+        """Whether the map is what was asked for: at rest within the bounds."""
+        return self in (Status.CONVERGED, Status.AT_LIMITS, Status.FREE)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

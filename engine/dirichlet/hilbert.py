@@ -16,7 +16,7 @@ the keyframes, and loses the bounds that Theorem 6 proves.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NamedTuple, Self
 
 import numpy as np
@@ -29,7 +29,7 @@ from engine.dirichlet.cauchy_integral import CauchyIntegral
 from engine.dirichlet.panels import Panels
 from engine.dirichlet.skeleton_solver import SkeletonSolver
 from engine.geometry import (
-    Hole,
+    Domain,
     as_xy,
     box_diagonal,
     contains,
@@ -85,28 +85,17 @@ class HilbertTransform:
     means: Floats
 
     @classmethod
-    def on(
-        cls,
-        outline: Complexes,
-        cage: Complexes,
-        holes: Sequence[Hole] = (),
-        *,
-        progress: Callable[[float], None] | None = None,
-    ) -> Self:
-        """Discretise and factorise the integral equation of an outline inside a cage, and holes.
+    def on(cls, domain: Domain, *, progress: Callable[[float], None] | None = None) -> Self:
+        """Discretise and factorise the integral equation of a domain.
 
         The number of nodes follows from the shape: it grows with the number of corners, and where
         the outline comes near itself or near the cage. Time and memory grow with it, and somewhat
         faster where the outline fills an area. `progress` is called again and again with the share
         of the work that is done, from 0 to 1; what it raises ends the work.
         """
-        loops = (outline, *(hole.outline for hole in holes))
-        centre = complex(outline.mean())
-        local = [
-            replace(hole, outline=hole.outline - centre, cage=hole.cage - centre) for hole in holes
-        ]
-        panels = Panels.on(outline - centre, cage - centre, local)
-        return cls.of(loops, panels, centre, progress)
+        centre = complex(domain.outline.mean())
+        panels = Panels.on(domain.moved(-centre))
+        return cls.of(domain.loops, panels, centre, progress)
 
     @classmethod
     def of(

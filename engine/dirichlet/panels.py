@@ -1,6 +1,5 @@
 """Straight panels of a boundary, on which densities are polynomials in a graded parameter."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Self
@@ -8,7 +7,7 @@ from typing import Self
 import numpy as np
 
 from engine.arrays import Booleans, Complexes, Floats, Indices, freeze, ragged
-from engine.geometry import Hole, Pieces, bisect, distance_to_segments, loop_ends, next_on_loop
+from engine.geometry import Domain, Pieces, bisect, distance_to_segments, loop_ends, next_on_loop
 
 NODES = 12  # Gauss-Legendre nodes of a panel
 POWER = 3  # grading at corners: arc length is the third power of the parameter
@@ -44,25 +43,16 @@ class Panels:
     starts: Indices
 
     @classmethod
-    def on(
-        cls,
-        outline: Complexes,
-        cage: Complexes,
-        holes: Sequence[Hole] = (),
-        *,
-        coarseness: float = 1.0,
-    ) -> Self:
+    def on(cls, domain: Domain, *, coarseness: float = 1.0) -> Self:
         """Cut a boundary into panels as short as its narrow places and the cages ask for.
 
         Parameters
         ----------
-        outline, cage : complex128, shapes (p,) and (n,)
-        holes : sequence of Hole
+        domain : Domain
         coarseness : float
             Factor on how long the panels may be.
         """
-        loops = [outline, *(hole.outline for hole in holes)]
-        cages = np.concatenate([cage, *(hole.cage for hole in holes)])
+        loops, cages = domain.loops, np.concatenate(domain.cages)
         corners, following = np.concatenate(loops), loop_ends(loops)
         firsts = np.cumsum([0, *map(len, loops[:-1])])
         sides = Pieces.whole(corners, following)

@@ -1,15 +1,16 @@
-"""From pixels to a domain (Section 7; Chen and Weber 2015).
+"""From pixels or a polygon to a meshed domain (Section 7; Chen and Weber 2015).
 
-In: a picture, uint8 (h, w, 4), and what tells its subject from the rest.
-Out: a `Domain`: outlines, cages and triangulation in the picture's pixels, y up; the texture that
-    is painted on it, where handles are useful in it, and where the joints of a body may be.
+In: a picture, uint8 (h, w, 4), and what tells its subject from the rest; or polygons.
+Out: a `MeshedDomain`: outlines, cages and triangulation in the picture's pixels, y up; the texture
+    that is painted on it, where handles are useful, and where the joints of a body may be.
 Imports: `engine.geometry`.
 """
 
 from engine.domain.build import (
     MOST_TRIANGLES as MOST_TRIANGLES,
-    Domain as Domain,
+    MeshedDomain as MeshedDomain,
     build_domain as build_domain,
+    domain_of_polygon as domain_of_polygon,
     mesh_inside as mesh_inside,
     rectangle_domain as rectangle_domain,
     texture as texture,
@@ -40,3 +41,4 @@ from engine.domain.validity import (
     MOST_MESH_TRIANGLES as MOST_MESH_TRIANGLES,
     require_domain as require_domain,
 )
+from engine.geometry import Domain as Domain

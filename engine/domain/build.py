@@ -1,63 +1,74 @@
-"""From pixels to a domain: outline, cage and triangulation (Section 7; Chen and Weber 2015)."""
+"""From pixels or a polygon to a meshed domain (Section 7; Chen and Weber 2015)."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
+import numpy.typing as npt
 
-from engine.arrays import Booleans, Bytes, Complexes, Floats
+from engine.arrays import Bytes, Complexes, Floats, as_count, as_points, as_tuple
 from engine.domain.meshing import Mesh, triangulate, with_limbs_on_top
-from engine.domain.outline import Detail, enclose
+from engine.domain.outline import MARGINS, Detail, enclose, hole_in, offset_cage
 from engine.domain.picture import CutOut, Subject, matted, subject_mask
 from engine.errors import EngineError
-from engine.geometry import Hole, contains, deepest_point
+from engine.geometry import (
+    Domain,
+    Pieces,
+    bisect,
+    box_diagonal,
+    deepest_point,
+    edges,
+    require_holes,
+    require_simple,
+    signed_area,
+)
 
 FEWEST_TRIANGLES = 1_000
 MOST_TRIANGLES = 2_000_000
+# Edges of a polygon are cut until they are no longer, over the diagonal of the outline and over the
+# length of the loop: with the cage's offset they give maps that bend well.
+LONGEST_EDGE, FEWEST_EDGES = 0.05, 16
 # A picture that is never deformed is as good as any inside a cage so much larger.
 FRAME = 1.1
+NO_DETAIL = "There is no detail {detail!r}; there are {details}."
+NO_PICTURE = "A picture is an array of uint8 of shape (h, w, 4), not {dtype} of shape {shape}."
 
 
-@dataclass(frozen=True, slots=True, weakref_slot=True, kw_only=True, eq=False)
-class Domain:
-    """Where the maps of one picture live.
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class MeshedDomain(Domain):
+    """A domain in pixels of its picture, y up, with the triangles that are painted.
 
     Parameters
     ----------
-    outline : complex128, shape (p,)
-        The domain's boundary: simple, counter-clockwise, in pixels of the picture, y up.
-    cage : complex128, shape (n,)
-        The polygon of the Cauchy coordinates: simple, counter-clockwise, around the outline.
+    outline, cage, holes
+        As in `Domain`.
     mesh : Mesh
-        A triangulation of the inside of the outline, less the holes.
-    holes : tuple of Hole
-        Whose outlines are the rest of the domain's boundary, and whose cages carry coordinates of
-        their own.
+        A triangulation of the domain.
     closed : complex128, shape (m,), optional
         Where the vertices of the `loops`, one loop after the other, are painted: those on both
         sides of a slit meet in its middle. None where there is no slit.
     """
 
-    outline: Complexes
-    cage: Complexes
     mesh: Mesh
-    holes: tuple[Hole, ...] = ()
     closed: Complexes | None = None
 
-    def moved(self, by: complex) -> "Domain":
-        """Return the domain elsewhere in the plane."""
-        mesh = Mesh(vertices=self.mesh.vertices + by, triangles=self.mesh.triangles)
-        holes = tuple(hole.moved(by) for hole in self.holes)
-        return Domain(
-            outline=self.outline + by,
-            cage=self.cage + by,
-            mesh=mesh,
-            holes=holes,
-            closed=None if self.closed is None else self.closed + by,
+    @classmethod
+    def of(cls, domain: Domain, triangles: int, closed: Complexes | None = None) -> Self:
+        """Triangulate a domain with about so many triangles."""
+        return cls(
+            domain.outline,
+            domain.cage,
+            domain.holes,
+            mesh=mesh_inside(domain, triangles=triangles),
+            closed=closed,
         )
 
-    def contains(self, points: Complexes) -> Booleans:
-        """Tell for each point (p,) whether it lies in the domain."""
-        return contains(self.outline, points, holes=self.loops[1:])
+    def moved(self, by: complex) -> Self:
+        """Return the domain elsewhere in the plane."""
+        mesh = Mesh(vertices=self.mesh.vertices + by, triangles=self.mesh.triangles)
+        closed = None if self.closed is None else self.closed + by
+        return replace(Domain.moved(self, by), mesh=mesh, closed=closed)
 
     def nearest(self, points: Complexes) -> Complexes:
         """Return points (p,) of the domain: those outside are exchanged for the nearest middles.
@@ -74,16 +85,6 @@ class Domain:
             places[index] = middles[taken]
         return places
 
-    @property
-    def loops(self) -> tuple[Complexes, ...]:
-        """The polygons of the boundary: the outline, then those of the holes."""
-        return (self.outline, *(hole.outline for hole in self.holes))
-
-    @property
-    def cages(self) -> tuple[Complexes, ...]:
-        """The polygons of the Cauchy coordinates: the outline's cage, then those in the holes."""
-        return (self.cage, *(hole.cage for hole in self.holes))
-
 
 def build_domain(
     rgba: Bytes,
@@ -91,7 +92,7 @@ def build_domain(
     triangles: int,
     detail: Detail,
     cut_out: CutOut | None = None,
-) -> tuple[Domain, tuple[str, ...]]:
+) -> tuple[MeshedDomain, tuple[str, ...]]:
     """Find the subject of a picture and build its domain.
 
     Parameters
@@ -107,7 +108,7 @@ def build_domain(
 
     Returns
     -------
-    domain : Domain
+    domain : MeshedDomain
     notices : tuple of str
         Every remedy that was applied, in words.
 
@@ -116,11 +117,12 @@ def build_domain(
     EngineError
         If `triangles` is out of range, or the picture has no subject that can be outlined.
     """
-    if not FEWEST_TRIANGLES <= triangles <= MOST_TRIANGLES:
-        raise EngineError(
-            f"The number of triangles must be between {FEWEST_TRIANGLES:,} and "
-            f"{MOST_TRIANGLES:,}, not {triangles:,}."
-        )
+    _require_triangles(triangles)
+    if detail not in tuple(MARGINS):
+        raise EngineError(NO_DETAIL.format(detail=detail, details=", ".join(MARGINS)))
+    rgba = np.asarray(rgba)
+    if rgba.dtype != np.uint8 or rgba.ndim != 3 or rgba.shape[2] != 4 or not rgba.size:
+        raise EngineError(NO_PICTURE.format(dtype=rgba.dtype, shape=rgba.shape))
     cut_out = cut_out or CutOut()
     subject = subject_mask(rgba, cut_out)
     enclosure = enclose(
@@ -130,32 +132,82 @@ def build_domain(
         swapped=subject.swapped,
         slits=[slit.points for slit in cut_out.slits],
     )
-    loops = [hole.outline for hole in enclosure.holes]
-    domain = Domain(
-        outline=enclosure.outline,
-        cage=enclosure.cage,
-        mesh=mesh_inside(enclosure.outline, *loops, triangles=triangles),
-        holes=enclosure.holes,
-        closed=enclosure.closed,
+    domain = Domain(enclosure.outline, enclosure.cage, enclosure.holes)
+    meshed = MeshedDomain.of(domain, triangles, enclosure.closed)
+    return meshed, subject.notices + enclosure.notices
+
+
+def domain_of_polygon(
+    outline: npt.ArrayLike, holes: Sequence[npt.ArrayLike] = (), *, triangles: int = 8_000
+) -> MeshedDomain:
+    """Build the domain inside a polygon and outside of its holes.
+
+    Long edges are cut, and the cages are laid beside the polygons as those of pictures are.
+
+    Parameters
+    ----------
+    outline : array_like of complex, shape (p,)
+        A simple polygon in either direction.
+    holes : sequence of array_like of complex, shape (q,)
+        Simple polygons inside the outline and apart, in either direction.
+    triangles : int
+        How many triangles to aim at, 1,000 to 2,000,000.
+
+    Raises
+    ------
+    EngineError
+        If `triangles` is out of range, a polygon is not as said, or the polygons come too close to
+        themselves or each other for cages.
+    """
+    _require_triangles(triangles)
+    rings = [as_points(outline, "outline", at_least=3)]
+    for number, hole in enumerate(as_tuple(holes, "holes")):
+        rings.append(as_points(hole, f"hole {number}", at_least=3))
+    around, *inner = (
+        ring if (signed_area(ring) > 0) == (place == 0) else ring[::-1]
+        for place, ring in enumerate(rings)
     )
-    return domain, subject.notices + enclosure.notices
+    require_simple(around, "outline")
+    require_holes(inner, around)
+    size = box_diagonal(around)
+    offset = MARGINS["normal"] * size
+    around, *inner = (_with_short_edges(ring, LONGEST_EDGE * size) for ring in (around, *inner))
+    cage = offset_cage(around, offset)
+    domain = Domain(around, cage, tuple(hole_in(hole, offset) for hole in inner))
+    return MeshedDomain.of(domain, triangles)
 
 
-def rectangle_domain(width: float, height: float) -> Domain:
+def _with_short_edges(ring: Complexes, longest: float) -> Complexes:
+    """Return a polygon with edges in halves, quarters and so on, none longer than that."""
+    longest = min(longest, float(np.abs(edges(ring)).sum()) / FEWEST_EDGES)
+    pieces = Pieces.whole(ring, np.roll(ring, -1))
+    return bisect(pieces, lambda each: np.asarray(each.lengths <= longest)).starts
+
+
+def _require_triangles(count: int) -> None:
+    if not FEWEST_TRIANGLES <= as_count(count, "triangles") <= MOST_TRIANGLES:
+        raise EngineError(
+            f"The number of triangles must be between {FEWEST_TRIANGLES:,} and "
+            f"{MOST_TRIANGLES:,}, not {count:,}."
+        )
+
+
+def rectangle_domain(width: float, height: float) -> MeshedDomain:
     """Return the domain that is all of a picture of this size, in two triangles."""
     corners = np.array([0, width, width + 1j * height, 1j * height])
     middle = corners.mean()
-    return Domain(
+    return MeshedDomain(
         outline=corners,
         cage=middle + FRAME * (corners - middle),
         mesh=Mesh(vertices=corners, triangles=np.array([[0, 1, 2], [0, 2, 3]], dtype=np.int32)),
     )
 
 
-def mesh_inside(outline: Complexes, *holes: Complexes, triangles: int) -> Mesh:
-    """Triangulate the inside of an outline, in an order that paints limbs over the body."""
-    mesh = triangulate(outline, triangles, holes=holes)
-    return with_limbs_on_top(mesh, deepest_point(outline, holes))
+def mesh_inside(domain: Domain, *, triangles: int) -> Mesh:
+    """Triangulate a domain, in an order that paints limbs over the body."""
+    holes = domain.loops[1:]
+    mesh = triangulate(domain.outline, triangles, holes=holes)
+    return with_limbs_on_top(mesh, deepest_point(domain.outline, holes))
 
 
 def texture(rgba: Bytes, subject: Subject) -> Bytes:

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.arrays import Complexes, Floats, Indices, Integers
-from engine.domain.build import Domain
+from engine.domain.build import MeshedDomain
 from engine.geometry import ON_OUTLINE, box_diagonal, loop_ends
 
 FARTHEST = 8.0  # sizes of a triangle beyond it, that it tells of
@@ -43,7 +43,7 @@ class Seam:
         return result
 
 
-def find_seam(domain: Domain) -> Seam | None:
+def find_seam(domain: MeshedDomain) -> Seam | None:
     """Return how a domain's mesh is painted; None where it has no slit."""
     if domain.closed is None:
         return None
@@ -55,7 +55,9 @@ def find_seam(domain: Domain) -> Seam | None:
     return _beside(domain, moved, places)
 
 
-def _on_sides(domain: Domain, corners: Complexes, shifts: Complexes) -> tuple[Indices, Complexes]:
+def _on_sides(
+    domain: MeshedDomain, corners: Complexes, shifts: Complexes
+) -> tuple[Indices, Complexes]:
     """Return the vertices between the corners of slits, and by how much they are moved."""
     ends = loop_ends(domain.loops)
     shifts_at_ends = loop_ends(
@@ -81,7 +83,7 @@ def _on_sides(domain: Domain, corners: Complexes, shifts: Complexes) -> tuple[In
     return np.concatenate(found), np.concatenate(moves)
 
 
-def _beside(domain: Domain, moved: Indices, places: Complexes) -> Seam:
+def _beside(domain: MeshedDomain, moved: Indices, places: Complexes) -> Seam:
     """Return the seam that paints vertices at other places, each by a triangle beside it."""
     triangles, vertices = domain.mesh.triangles, domain.mesh.vertices
     number = np.full(len(vertices), -1)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from engine.arrays import Complexes, Integers
-from engine.domain.build import MOST_TRIANGLES, Domain
+from engine.domain.build import MOST_TRIANGLES, MeshedDomain
 from engine.domain.meshing import sides_of
 from engine.domain.outline import LARGEST_OUTLINE
 from engine.errors import EngineError
@@ -35,12 +35,12 @@ MESH_FLAT = "The mesh has triangles that are flat or run clockwise."
 MESH_UNUSED = "The mesh has vertices that belong to no triangle."
 MESH_OVERLAPS = "The mesh has edges on which triangles overlap."
 MESH_SIZE = "The mesh must have 1 to {most:,} triangles, not {count:,}."
-VERTEX_COUNT = "The {name} must have 3 to {most:,} vertices, not {count:,}."
+VERTEX_COUNT = "The {name} must have at most {most:,} vertices, not {count:,}."
 TOO_FAR = "The {name} lies farther from the origin than {farthest:,.0f} pixels."
 
 
-def require_domain(domain: Domain) -> None:
-    """Raise `EngineError` unless outline, cage and mesh belong together as a `Domain` says.
+def require_domain(domain: MeshedDomain) -> None:
+    """Raise `EngineError` unless outline, cage and mesh belong together as a `MeshedDomain` says.
 
     Notes
     -----
@@ -55,7 +55,7 @@ def require_domain(domain: Domain) -> None:
     for name, polygons in (("outline", domain.loops), ("cage", domain.cages)):
         count = sum(map(len, polygons))
         _require_near(np.concatenate(polygons), name)
-        if min(map(len, polygons)) < 3 or count > LARGEST_OUTLINE:
+        if count > LARGEST_OUTLINE:
             raise EngineError(VERTEX_COUNT.format(name=name, most=LARGEST_OUTLINE, count=count))
     _require_near(domain.mesh.vertices, "mesh")
     # Far from the origin small shapes would have no digits left for what lies between vertices.
@@ -81,7 +81,7 @@ def _require_near(points: Complexes, name: str) -> None:
         raise EngineError(TOO_FAR.format(name=name, farthest=OUTERMOST))
 
 
-def _require_tiling(domain: Domain) -> None:
+def _require_tiling(domain: MeshedDomain) -> None:
     mesh, outline, holes = domain.mesh, domain.outline, domain.loops[1:]
     vertices, triangles = mesh.vertices, mesh.triangles
     if not 1 <= len(triangles) <= MOST_MESH_TRIANGLES:

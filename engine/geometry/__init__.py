@@ -1,4 +1,4 @@
-"""Plane geometry of segments and closed polygons, for every room above.
+"""Plane geometry of segments, closed polygons and domains, for every room above.
 
 In: polygons by their vertices, segments by their ends, and points.
 Out: samples, pieces, triangles, distances, areas, and whether something is inside.
@@ -6,6 +6,7 @@ Imports: `engine.arrays`, `engine.errors`.
 """
 
 from engine.geometry.best_rigid import best_rigid as best_rigid
+from engine.geometry.domain import Domain as Domain
 from engine.geometry.hole import Hole as Hole, require_cages_in_holes as require_cages_in_holes
 from engine.geometry.polygon import (
     ON_OUTLINE as ON_OUTLINE,

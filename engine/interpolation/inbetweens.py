@@ -14,7 +14,7 @@ from engine.interpolation.passage import Derivatives, Passage, weighted
 from engine.interpolation.scaling import Scaling
 from engine.interpolation.series import Residual
 from engine.interpolation.sites import Sites
-from engine.maps import Boundary, Bounds
+from engine.maps import Boundary, Bounds, distortion
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -33,6 +33,26 @@ class Frame:
     fz: Complexes
     fzbar: Complexes
     rho: float | None
+
+    @property
+    def k(self) -> Floats:
+        """Conformal distortion at the points, float64 (m,)."""
+        return distortion.k(self.fz, self.fzbar)
+
+    @property
+    def tau(self) -> Floats:
+        """Isometric distortion."""
+        return distortion.tau(self.fz, self.fzbar)
+
+    @property
+    def sigma_a(self) -> Floats:
+        """Larger singular value."""
+        return distortion.sigma_a(self.fz, self.fzbar)
+
+    @property
+    def sigma_b(self) -> Floats:
+        """Smaller singular value."""
+        return distortion.sigma_b(self.fz, self.fzbar)
 
 
 class PointValues(NamedTuple):
@@ -223,6 +243,7 @@ class Inbetweens:
         blended = self.blend.derivatives(time)
         if self.scale is not None:
             rho = self.rho(time)
+            # Equation (8): η̃ = ρ η.
             blended = blended._replace(g=rho * blended.g, gz=rho * blended.gz)
             if self._conformal is not None:
                 d, d_z = np.zeros_like(blended.fz), np.zeros_like(blended.fz)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from engine.arrays import held_bytes
+from engine.arrays import as_number, as_tuple, held_bytes, require_kind
 from engine.dirichlet import Extension, HilbertTransform
 from engine.errors import EngineError
 from engine.interpolation.blends import BLENDS
@@ -15,13 +15,16 @@ from engine.interpolation.inbetweens import Frame, Inbetweens
 from engine.interpolation.one_interval import prepare_inbetweens
 from engine.interpolation.passage import Interval, KeyframeSamples, Passage, sample_keyframes
 from engine.interpolation.sites import Sites, prepare_sites
-from engine.maps import Bounds, HarmonicMap
+from engine.maps import Boundary, Bounds, HarmonicMap
 from engine.paths import root_sheets
 from engine.variant import Variant
 
 TWO_KEYFRAMES = "In-betweens need at least two keyframes, not {count}."
 OTHER_CAGE = "Keyframe {number} has another cage than keyframe 0; they must share it."
-TIME_RANGE = "Time {time:g} is out of range: the keyframes span the times from 0 to {last}."
+OTHER_BOUNDARY = (
+    "The keyframes have another cage than the boundary; sample the boundary of their own domain."
+)
+TIME_RANGE = "Time {time} is out of range: the keyframes span the times from 0 to {last}."
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -74,17 +77,18 @@ def interval_at(time: float, count: int) -> tuple[int, float]:
     EngineError
         If the time is not from 0 to `count`.
     """
+    time = as_number(time, "time")
     if not 0.0 <= time <= count:
         raise EngineError(TIME_RANGE.format(time=time, last=count))
     interval = min(int(time), count - 1)
-    return interval, float(time) - interval
+    return interval, time - interval
 
 
 def prepare(
     keyframes: Sequence[HarmonicMap],
+    boundary: Boundary,
     points: npt.ArrayLike,
     *,
-    outline: npt.ArrayLike,
     variant: Variant | str = Variant.METRIC,
     triangles: npt.ArrayLike | None = None,
     anchor: npt.ArrayLike | None = None,
@@ -101,10 +105,10 @@ def prepare(
     ----------
     keyframes : sequence of HarmonicMap, length q ≥ 2
         Locally injective maps over one cage; the first need not be the identity.
+    boundary : Boundary
+        Of the keyframes' domain, from `Boundary.sample`.
     points : complex, shape (m,)
         In the closed domain, to 1e-9 of its diameter.
-    outline : complex, shape (p,)
-        The domain's boundary: simple, counter-clockwise, inside the cage.
     variant : Variant or str
     triangles, anchor
         As in `prepare_sites`.
@@ -128,25 +132,19 @@ def prepare(
     EngineError
         If anything of that does not hold, or a keyframe folds.
     """
-    maps = tuple(keyframes)
+    maps = as_tuple(keyframes, "keyframes")
     variant = _known(variant)
     require_keyframes(maps)
-    sites = prepare_sites(
-        outline,
-        maps[0].cage,
-        points,
-        holes=maps[0].holes,
-        triangles=triangles,
-        anchor=anchor,
-    )
+    require_kind(boundary, Boundary, "boundary")
+    if not boundary.span.equals(maps[0].span):
+        raise EngineError(OTHER_BOUNDARY)
+    sites = prepare_sites(boundary, points, triangles=triangles, anchor=anchor)
     samples = sample_keyframes(maps, sites)
     around = (*samples, samples[0]) if loop else samples
     sheets = root_sheets(np.array([key.anchor_fz for key in around]), turns)
     extension: Extension | None = None
     if variant.needs_transform:
-        transform = transform or HilbertTransform.on(
-            sites.outline, sites.cage, sites.boundary.holes, progress=progress
-        )
+        transform = transform or HilbertTransform.on(boundary.domain, progress=progress)
         sites.require_boundary(transform.loops)
         extension = transform.at(sites.paths.nodes)
     joint = Joint(1.0, 1.0)  # keyframes are at whole times
@@ -195,6 +193,7 @@ def require_keyframes(maps: Sequence[HarmonicMap]) -> None:
     if len(maps) < 2:
         raise EngineError(TWO_KEYFRAMES.format(count=len(maps)))
     for i, f in enumerate(maps):
+        require_kind(f, HarmonicMap, f"keyframe {i}")
         if not f.span.equals(maps[0].span):
             raise EngineError(OTHER_CAGE.format(number=i))
 

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from engine.arrays import Complexes, Floats, Indices, as_points, freeze, held_bytes
 from engine.errors import EngineError
-from engine.geometry import ON_OUTLINE, Hole, deepest_point, diameter, require_inside
+from engine.geometry import ON_OUTLINE, deepest_point, diameter, require_inside
 from engine.interpolation.added import HoleCloser
 from engine.maps import Boundary
 from engine.paths import (
@@ -130,28 +130,21 @@ class Sites:
 
 
 def prepare_sites(
-    outline: npt.ArrayLike,
-    cage: npt.ArrayLike,
+    boundary: Boundary,
     points: npt.ArrayLike,
     *,
-    holes: Sequence[Hole] = (),
     triangles: npt.ArrayLike | None = None,
     anchor: npt.ArrayLike | None = None,
     values_at: npt.ArrayLike = (),
-    boundary: Boundary | None = None,
 ) -> Sites:
     """Find paths inside the domain from the anchor to every point.
 
     Parameters
     ----------
-    outline : complex, shape (p,)
-        The domain's boundary: simple, counter-clockwise.
-    cage : complex, shape (n,)
-        The polygon of the Cauchy coordinates, counter-clockwise around the outline.
+    boundary : Boundary
+        Of the domain, from `Boundary.sample`; other sites may share it.
     points : complex, shape (m,)
         In the closed domain, to 1e-9 of its diameter.
-    holes : sequence of Hole
-        Of the domain.
     triangles : int, shape (t, 3), optional
         Triangles of the points; the paths then follow their edges. Without them the engine finds
         its own paths.
@@ -161,18 +154,13 @@ def prepare_sites(
     values_at : complex, shape (v,), optional
         Further points, without triangles, at which only derivatives are wanted. Each costs one
         node where its neighbour in order can be reached straight.
-    boundary : Boundary, optional
-        That of earlier sites of the same domain.
 
     Raises
     ------
     EngineError
-        If a polygon, a point, a triangle or the anchor is not as said.
+        If a point, a triangle or the anchor is not as said.
     """
     points = as_points(points, "points", at_least=1)
-    if boundary is None:
-        outline, cage = as_points(outline, "outline"), as_points(cage, "cage")
-        boundary = Boundary.sample(outline, cage, holes)
     outline, *inner = boundary.loops
     tolerance = ON_OUTLINE * diameter(outline)
     root = np.array([deepest_point(outline, inner)]) if anchor is None else _single(anchor)

@@ -1,6 +1,5 @@
 """Samples of the outline on which a map over the cage is measured and bounded."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Self
@@ -8,8 +7,9 @@ from typing import Self
 import numpy as np
 import numpy.typing as npt
 
-from engine.arrays import Complexes, Floats, Indices, as_points, freeze, readonly
+from engine.arrays import Complexes, Floats, Indices, freeze, readonly, require_kind
 from engine.geometry import (
+    Domain,
     Hole,
     box_diagonal,
     next_on_loop,
@@ -36,7 +36,7 @@ class Boundary:
 
     Parameters
     ----------
-    outline : complex128
+    domain : Domain
     span : Span
         The functions of maps: cage and holes.
     size : float
@@ -70,7 +70,7 @@ class Boundary:
         Of the functions of the basis.
     """
 
-    outline: Complexes
+    domain: Domain
     span: Span
     size: float
     points: Complexes
@@ -86,15 +86,8 @@ class Boundary:
     basis_derivatives: Complexes
 
     @classmethod
-    def sample(cls, outline: Complexes, cage: Complexes, holes: Sequence[Hole] = ()) -> Self:
+    def sample(cls, domain: Domain) -> Self:
         """Sample the boundary of a domain.
-
-        Parameters
-        ----------
-        outline, cage : complex128, shapes (p,) and (n,)
-            Counter-clockwise polygons. The outline is simple and lies strictly inside the cage. The
-            cage may cross itself away from the outline, as some published ones do.
-        holes : sequence of Hole
 
         Raises
         ------
@@ -102,13 +95,12 @@ class Boundary:
             If the outline is not simple, or not strictly inside the cage, or a hole is not inside
             the outline, or its cage not in the hole.
         """
-        outline = as_points(outline, "outline", at_least=3)
-        cage = as_points(cage, "cage", at_least=3)
+        require_kind(domain, Domain, "domain")
+        outline, cage, holes, loops = domain.outline, domain.cage, domain.holes, domain.loops
         require_simple(outline, "outline")
         require_around(cage, outline)
         require_cages_in_holes(holes, outline)
-        span = Span(cage=cage, holes=tuple(holes))
-        loops = [outline, *(hole.outline for hole in holes)]
+        span = Span(cage=cage, holes=holes)
         size = box_diagonal(outline)
         singular, longest = np.concatenate([span.vertices, span.centres]), SEGMENT_PER_SIZE * size
         samples = [
@@ -127,7 +119,7 @@ class Boundary:
         others = basis[:, len(span.cages) :]
         others[: len(cage)] -= vertex_coordinates.mean(axis=0) @ others
         return cls(
-            outline=outline,
+            domain=Domain(outline, cage, holes),  # without the mesh that a caller's may have
             span=span,
             size=size,
             points=readonly(points),
@@ -144,19 +136,24 @@ class Boundary:
         )
 
     @property
+    def outline(self) -> Complexes:
+        """The outer polygon of the boundary."""
+        return self.domain.outline
+
+    @property
     def cage(self) -> Complexes:
         """The polygon of the Cauchy coordinates around the outline."""
-        return self.span.cage
+        return self.domain.cage
 
     @property
     def holes(self) -> tuple[Hole, ...]:
         """Those of the domain."""
-        return self.span.holes
+        return self.domain.holes
 
     @property
     def loops(self) -> tuple[Complexes, ...]:
         """The polygons of the boundary: the outline, then those of the holes."""
-        return (self.outline, *(hole.outline for hole in self.holes))
+        return self.domain.loops
 
     @cached_property
     def following(self) -> Indices:

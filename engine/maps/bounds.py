@@ -5,7 +5,7 @@ from math import isfinite
 
 import numpy as np
 
-from engine.arrays import Floats
+from engine.arrays import Floats, as_number
 from engine.errors import EngineError
 from engine.geometry import next_on_loop
 from engine.maps.boundary import Boundary
@@ -115,6 +115,8 @@ class Bounds(Limits):
     sigma_b: float = 0.2
 
     def __post_init__(self) -> None:
+        for name in ("k", "sigma_a", "sigma_b"):
+            as_number(getattr(self, name), name)
         if not 0 < self.k < 1:
             raise EngineError(
                 IMPOSSIBLE_BOUND.format(name="k", allowed="between 0 and 1", value=self.k)

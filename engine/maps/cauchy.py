@@ -1,7 +1,7 @@
 """Cauchy complex barycentric coordinates of a cage and their derivatives.
 
-The coordinates of Weber, Ben-Chen and Gotsman (2009) span the holomorphic functions of Equation
-(14), Φ(z) = Σ C_j(z) φ_j. With the cage vertices z_j in counter-clockwise order, B_j = z_j − z and
+The coordinates of Weber, Ben-Chen and Gotsman (2009) span the holomorphic functions Φ(z) = Σ C_j(z)
+φ_j of Equation (14). With the cage vertices z_j in counter-clockwise order, B_j = z_j − z and
 ℓ_j(z) = log(B_{j+1} / B_j), everything here follows from one real logarithm per vertex and one
 arctangent per edge: the integrand of Cauchy's formula is linear along an edge, with the divided
 difference s_j = (φ_{j+1} − φ_j) / (z_{j+1} − z_j), so that
@@ -21,7 +21,7 @@ import numpy as np
 
 from engine.arrays import Complexes, Floats
 from engine.errors import EngineError
-from engine.geometry import edges
+from engine.geometry import edges, signed_area
 
 TWO_PI_I = 2j * np.pi
 # Entries of one block of points × cage vertices: 8 bytes each, so that a few blocks stay in cache.
@@ -68,6 +68,7 @@ def cauchy_coordinates(cage: Complexes, points: Complexes) -> Complexes:
         logarithms = edge_logarithms(cage, points[block]) / TWO_PI_I
         # ℓ_j (z − z_j) / (z_{j+1} − z_j) belongs to vertex j + 1, the rest of ℓ_j to vertex j.
         to_next = logarithms * ((points[block, None] - cage) / lengths)
+        # The C_j of Equation (14).
         coordinates[block] = logarithms - to_next + np.roll(to_next, 1, axis=1)
     return coordinates
 
@@ -100,7 +101,8 @@ def evaluate(
     Returns
     -------
     list of complex128, shape (m, q)
-        One array for each entry of `orders`.
+        One array for each entry of `orders`; NaN at points around which the cage does not wind
+        once, or, clockwise in a hole, does wind, if order 0 or 1 is among them.
 
     Notes
     -----
@@ -117,20 +119,24 @@ def evaluate(
         both = np.hstack([differences, offsets])
     if 2 in orders:
         jumps = difference_jumps(cage, coefficients)
+    around = 2.0 * np.pi if signed_area(cage) > 0 else 0.0
     results = [np.empty((len(points), coefficients.shape[1]), np.complex128) for _ in orders]
     for block in _blocks(len(points), len(cage)):
         z = points[block]
         x, y, squared = _offsets(cage, z)
-        found = {}
+        found, outside = {}, slice(0)
+        if 0 in orders or 1 in orders:
+            lengths, angles = _logarithms(x, y, squared)
+            outside = np.abs(angles.sum(axis=1) - around) > np.pi
+            found[1] = _product(lengths, angles, both if 0 in orders else differences)
         if 0 in orders:
-            slopes, rest = np.hsplit(_product(*_logarithms(x, y, squared), both), 2)
-            found = {0: rest + (z - middle)[:, None] * slopes, 1: slopes}
-        elif 1 in orders:
-            found = {1: _product(*_logarithms(x, y, squared), differences)}
+            found[1], rest = np.hsplit(found[1], 2)
+            found[0] = rest + (z - middle)[:, None] * found[1]
         if 2 in orders:
             found[2] = _product(x / squared, -y / squared, jumps)
         for order, result in zip(orders, results, strict=True):
             result[block] = found[order] / TWO_PI_I
+            result[block][outside] = np.nan
     return results
 
 

@@ -26,7 +26,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from engine.arrays import Booleans, Complexes, Floats, Indices, ratio
+from engine.arrays import Booleans, Complexes, Floats, Indices, ratio, require_kind
 from engine.errors import EngineError
 from engine.maps.boundary import Boundary
 from engine.maps.bounds import Limits
@@ -88,6 +88,7 @@ def certify(harmonic_map: HarmonicMap, boundary: Boundary, limits: Limits) -> Ce
     by less than the rounding is not certified, nor one whose derivatives overflow; nothing else
     that holds is refused unless a limit is touched within 2⁻¹⁴ of a segment.
     """
+    require_kind(harmonic_map, HarmonicMap, "the map")
     certificate, _, _ = certify_segments(harmonic_map, boundary, limits)
     return certificate
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 from typing import Self
 
 import numpy as np
+import numpy.typing as npt
 
 from engine.arrays import Complexes, as_points, freeze
 from engine.errors import EngineError
@@ -22,7 +23,7 @@ def _none() -> Complexes:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class HarmonicMap:
-    """A harmonic map in closed form, Equations (1) and (14), and around holes `engine.maps.span`.
+    """A harmonic map in closed form, Equation (1), and around holes `engine.maps.span`.
 
     Parameters
     ----------
@@ -75,6 +76,7 @@ class HarmonicMap:
         cls, cage: Complexes, holes: tuple[Hole, ...], *, factor: complex = 1, shift: complex = 0
     ) -> Self:
         """Return the map z ↦ factor · z + shift."""
+        cage = as_points(cage, "cage")
         inside = np.zeros(sum(len(hole.cage) for hole in holes), dtype=np.complex128)
         phi = np.concatenate([factor * cage + shift, inside])
         logs = np.zeros(len(holes), dtype=np.complex128)
@@ -111,18 +113,20 @@ class HarmonicMap:
         """Tell whether both have the same coefficients."""
         return all(map(np.array_equal, self.columns, other.columns))
 
-    def __call__(self, points: Complexes) -> Complexes:
-        """Return f at points (m,) strictly inside the cage, and outside those in holes."""
-        (values,) = self.span.evaluate(self.coefficients, points, orders=(0,))
-        return values[:, 0] + values[:, 1].conj()
+    def __call__(self, points: npt.ArrayLike) -> Complexes:
+        """Return f at points (m,); NaN outside the cage, and inside the cages of holes."""
+        z = as_points(points, "points")
+        (values,) = self.span.evaluate(self.coefficients, z, orders=(0,))
+        return values[:, 0] + values[:, 1].conj()  # Equation (1)
 
-    def derivatives(self, points: Complexes) -> tuple[Complexes, Complexes]:
-        """Return f_z and f_z̄, each (m,).
+    def derivatives(self, points: npt.ArrayLike) -> tuple[Complexes, Complexes]:
+        """Return f_z and f_z̄, each (m,); NaN where the map has no value.
 
         Departs from the paper: its text lost the conjugation bars. f_z = Φ' is holomorphic, and
         f_z̄ = conj(Ψ') is anti-holomorphic.
         """
-        (first,) = self.span.evaluate(self.coefficients, points, orders=(1,))
+        z = as_points(points, "points")
+        (first,) = self.span.evaluate(self.coefficients, z, orders=(1,))
         return first[:, 0], first[:, 1].conj()
 
     def moved(self, factor: complex, shift: complex) -> Self:

@@ -23,7 +23,7 @@ def continue_logarithm(
     paths: IntegrationPaths,
     evaluate: Callable[[Complexes], Complexes],
 ) -> Complexes:
-    """Return log f_z at the nodes, continuous along the paths, Equation (15).
+    """Return log f_z at the nodes, continuous along the paths.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ def continue_logarithm(
         The principal value at the anchor; its exponential is `fz` to rounding everywhere.
     """
     parent = paths.tree.parent
-    turns = np.angle(fz / fz[parent])
+    turns = np.angle(fz / fz[parent])  # Equation (15), imaginary part
     # How fast f_z turns at both ends: whole turns within a step do not show in its ratio.
     pace = np.abs((log_fz_z * paths.steps).imag)
     pace = np.maximum(pace, np.abs((log_fz_z[parent] * paths.steps).imag))
@@ -51,7 +51,7 @@ def continue_logarithm(
         turns[far] = _turns_along(starts, paths.nodes[far], float(pace[far].max()), evaluate)
     principal = np.angle(fz)
     turns[0] = principal[0]
-    arguments = paths.tree.sums(turns)
+    arguments = paths.tree.sums(turns)  # Equation (2), imaginary part
     # Only the integer is taken from the sum, so that no rounding adds up along the path.
     sheets = np.round((arguments - principal) / (2 * np.pi))
     logarithm: Complexes = np.log(np.abs(fz)) + 1j * (principal + 2 * np.pi * sheets)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.arrays import Floats, Singles, held_bytes
+from engine.arrays import Floats, Singles, as_number, held_bytes
 from engine.errors import EngineError
 from engine.interpolation import chebyshev
 
@@ -90,11 +90,12 @@ class Series:
         EngineError
             If the time is out of range, or in a stretch that is left to the direct path.
         """
+        time = as_number(time, "time")
         if not 0.0 <= time <= 1.0:
-            raise EngineError(f"A series runs from time 0 to 1; {time:g} is outside.")
+            raise EngineError(f"A series runs from time 0 to 1; {time} is outside.")
         piece = self._piece_at(time)
         if piece is None:
-            raise EngineError(f"The series does not cover the time {time:g}; take the direct path.")
+            raise EngineError(f"The series does not cover the time {time}; take the direct path.")
         return piece, piece.weights(time)
 
     def values(self, time: float, out: Singles | None = None) -> Singles:

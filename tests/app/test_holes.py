@@ -17,7 +17,7 @@ from app.motion.posable_mesh import PosableMesh
 from app.reports import certify_clip
 from app.solving.drag import fit_map
 from app.storage import load_project, save_project
-from engine.domain import CutOut, Domain, build_domain, require_domain
+from engine.domain import CutOut, MeshedDomain, build_domain, require_domain
 from engine.domain.meshing import triangulate
 from engine.geometry import contains
 from engine.maps import Boundary, Bounds, HarmonicMap, certify
@@ -40,11 +40,11 @@ def document() -> Document:
     """A ring in a picture, with three poses of which none is at rest."""
     outline = shape().outline
     mesh = triangulate(outline, 1500, holes=shape().loops[1:])
-    domain = Domain(outline=outline, cage=shape().cage, mesh=mesh, holes=shape().holes)
+    domain = MeshedDomain(outline=outline, cage=shape().cage, mesh=mesh, holes=shape().holes)
     require_domain(domain)
     layer = new_layer(PICTURE, domain, Meshing())
     handle = Handle(id=0, name="rim", position=MIDDLE + 0.75 * RADIUS)
-    boundary = Boundary.sample(domain.outline, domain.cage, domain.holes)
+    boundary = Boundary.sample(domain)
     keys = []
     for number in range(3):
         f = random_map(coarse(), number, 0.08)

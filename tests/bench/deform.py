@@ -21,6 +21,7 @@ from engine.deform import (
     newton_direction,
     projected_hessian,
 )
+from engine.geometry import Domain
 from engine.maps import Boundary, Bounds, certify
 from tests.bench.table import Row, Table, measure
 
@@ -54,7 +55,7 @@ def tables(extent: Extent) -> Iterator[Table]:
 def star(count: int) -> Boundary:
     """Return a rounded star: outline and cage of as many vertices."""
     angle = 2 * np.pi * np.arange(count) / count
-    return Boundary.sample(_rounded(angle, 0.0), _rounded(angle, 0.04))
+    return Boundary.sample(Domain(_rounded(angle, 0.0), _rounded(angle, 0.04)))
 
 
 def _rounded(angle: np.ndarray[tuple[int], np.dtype[np.float64]], offset: float) -> Complexes:

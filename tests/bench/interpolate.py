@@ -10,7 +10,7 @@ import numpy as np
 from app.storage import decode_picture, sample_images
 from engine.arrays import Complexes, Integers
 from engine.dirichlet import Extension, HilbertTransform
-from engine.domain import CutOut, Domain, build_domain
+from engine.domain import CutOut, MeshedDomain, build_domain
 from engine.domain.meshing import Mesh, triangulate
 from engine.interpolation import (
     Inbetweens,
@@ -23,7 +23,7 @@ from engine.interpolation import (
     prepare_sites,
     sample_keyframes,
 )
-from engine.maps import Bounds, HarmonicMap, Span
+from engine.maps import Boundary, Bounds, HarmonicMap, Span
 from engine.paths import root_sheets
 from engine.streaming import Positions, Series, build_series, finish
 from tests.bench.table import Row, Table, measure
@@ -57,7 +57,7 @@ class KeyframePair:
     extension: Extension
 
     @classmethod
-    def of(cls, domain: Domain, vertices: int, transform: HilbertTransform) -> Self:
+    def of(cls, domain: MeshedDomain, vertices: int, transform: HilbertTransform) -> Self:
         """Sample the giraffe and the giraffe bent by a radian and stretched along itself."""
         maps = (HarmonicMap.identity(domain.cage), bent(domain.cage))
         mesh = triangulate(domain.outline, 2 * vertices)
@@ -92,22 +92,16 @@ def bent(cage: Complexes) -> HarmonicMap:
     return HarmonicMap(cage=cage, phi=phi, psi=0.2 * phi)
 
 
-def sites_of(domain: Domain, mesh: Mesh) -> Sites:
+def sites_of(domain: MeshedDomain, mesh: Mesh) -> Sites:
     """Lay the paths along the edges of a mesh."""
-    return prepare_sites(
-        domain.outline,
-        domain.cage,
-        mesh.vertices,
-        holes=domain.holes,
-        triangles=mesh.triangles,
-    )
+    return prepare_sites(Boundary.sample(domain), mesh.vertices, triangles=mesh.triangles)
 
 
 def tables(extent: Extent) -> Iterator[Table]:
     """Measure frames and preparation, and how both grow with the number of vertices."""
     picture = decode_picture((sample_images() / "giraffe.png").read_bytes(), "")
     domain, _ = build_domain(picture.rgba, triangles=1000, detail="normal")
-    transform = HilbertTransform.on(domain.outline, domain.cage)
+    transform = HilbertTransform.on(domain)
     pair = KeyframePair.of(domain, extent.vertices, transform)
     yield _frames(pair)
     yield _preparation(domain, pair)
@@ -129,7 +123,7 @@ def _frames(pair: KeyframePair) -> Table:
     return Table(title=f"A frame at {len(first):,} vertices, directly", rows=tuple(rows))
 
 
-def _preparation(domain: Domain, pair: KeyframePair) -> Table:
+def _preparation(domain: MeshedDomain, pair: KeyframePair) -> Table:
     sites, transform = pair.sites, pair.transform
     first, second = (key.positions for key in pair.keyframes)
     nodes = len(transform.nodes)
@@ -142,7 +136,7 @@ def _preparation(domain: Domain, pair: KeyframePair) -> Table:
         ),
         Row(
             name="integral equation, once for each outline",
-            seconds=measure(lambda: HilbertTransform.on(domain.outline, domain.cage), repeats=1),
+            seconds=measure(lambda: HilbertTransform.on(domain), repeats=1),
             note=f"{_megabytes(transform.nbytes)}, {nodes:,} nodes, {len(domain.outline)} corners",
         ),
         Row(
@@ -163,7 +157,7 @@ def _preparation(domain: Domain, pair: KeyframePair) -> Table:
     return Table(title=f"Preparation at {len(first):,} vertices", rows=tuple(rows))
 
 
-def _growth(domain: Domain, pairs: Sequence[KeyframePair]) -> Table:
+def _growth(domain: MeshedDomain, pairs: Sequence[KeyframePair]) -> Table:
     rows = []
     for pair in pairs:
         count = len(pair.mesh.vertices)
@@ -226,10 +220,10 @@ class _HoledPair:
     extension: Extension
 
     @classmethod
-    def of(cls, domain: Domain) -> Self:
+    def of(cls, domain: MeshedDomain) -> Self:
         """Prepare what the intervals of a ring share."""
         sites = sites_of(domain, domain.mesh)
-        transform = HilbertTransform.on(domain.outline, domain.cage, domain.holes)
+        transform = HilbertTransform.on(domain)
         whole = bent(domain.cage)
         inside = np.zeros(sum(len(hole.cage) for hole in domain.holes))
         second = HarmonicMap(

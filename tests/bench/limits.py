@@ -86,7 +86,7 @@ def _hard_requests(requests: list[_Request]) -> Table:
         deformer = request.deformer()
         wish = deformer.handles.wish(request.targets)
         begun = time.process_time()
-        state, total = deformer.settle(deformer.start(), wish)
+        state, total = deformer.settle(deformer.start(), wish, throw=False)
         seconds.append(time.process_time() - begun)
         totals.append(total)
         last, found = state.statistics, state.outcome
@@ -95,7 +95,7 @@ def _hard_requests(requests: list[_Request]) -> Table:
         steps.append(found.steps)
         optimal += state.status in (Status.CONVERGED, Status.AT_LIMITS)
         certified += certify(state.map, request.boundary, request.bounds).certified
-        again, _ = deformer.settle(deformer.start(state.map), wish)
+        again, _ = deformer.settle(deformer.start(state.map), wish, throw=False)
         resumed.append(1.0 - _energy(again) / last.objective)
         if number % COMPARED == 0:
             paths.append(last.objective / _energy(_along_path(request)))
@@ -127,7 +127,7 @@ def _rows_of_bounds(requests: dict[str, _Request]) -> Table:
         for bounds in ROW_OF_BOUNDS:
             deformer = replace(request, bounds=bounds).deformer()
             wish = deformer.handles.wish(request.targets)
-            energies.append(_energy(deformer.settle(deformer.start(), wish)[0]))
+            energies.append(_energy(deformer.settle(deformer.start(), wish, throw=False)[0]))
         rise = max(after / before - 1.0 for before, after in pairwise(energies))
         rows.append(_fact(f"largest rise of the energy, {name}", f"{max(rise, 0.0):.1e}"))
     return Table(
@@ -201,7 +201,7 @@ def _requests(count: int) -> Iterator[_Request]:
 def _drawn(name: str) -> Boundary:
     picture = decode_picture((sample_images() / f"{name}.png").read_bytes(), "")
     domain, _ = build_domain(picture.rgba, triangles=1000, detail="coarse")
-    return Boundary.sample(domain.outline, domain.cage)
+    return Boundary.sample(domain)
 
 
 def _inside(boundary: Boundary, rng: np.random.Generator) -> Complexes:
@@ -231,7 +231,7 @@ def _along_path(request: _Request) -> State:
     for share in np.arange(1, PATH_ROWS + 1) / PATH_ROWS:
         row = request.points + share * (request.targets - request.points)
         state, _ = deformer.follow(state, deformer.handles.wish(row))
-    return deformer.settle(state, deformer.handles.wish(request.targets))[0]
+    return deformer.settle(state, deformer.handles.wish(request.targets), throw=False)[0]
 
 
 def _rest_after_release(request: _Request) -> float:

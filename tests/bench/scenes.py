@@ -18,7 +18,7 @@ from app.editor import Puppet
 from app.editor.actions import files
 from app.storage import Picture, decode_picture, load_project, open_layered, sample_images
 from engine.arrays import Complexes
-from engine.domain import Domain, mesh_inside
+from engine.domain import Domain, MeshedDomain
 from tests.bench.memory import most_held
 from tests.bench.stage.driver import REACH, Driver, dragging, playing
 from tests.bench.table import Row, Table, row_of
@@ -164,11 +164,7 @@ def _smaller(
         return replace(full, phi=place(full.phi), psi=scale * full.psi, targets=targets)
 
     outline = place(layer.domain.outline)
-    domain = Domain(
-        outline=outline,
-        cage=place(layer.domain.cage),
-        mesh=mesh_inside(outline, triangles=triangles),
-    )
+    domain = MeshedDomain.of(Domain(outline, place(layer.domain.cage)), triangles)
     return replace(
         layer,
         id=number,

@@ -131,7 +131,7 @@ def _sample(extent: Extent) -> files.Opened:
     """Return the animated sample on a finer mesh."""
     document = load_project(sample_images() / extent.sample)
     layer = document.layers[0]
-    mesh = mesh_inside(*layer.domain.loops, triangles=extent.triangles)
+    mesh = mesh_inside(layer.domain, triangles=extent.triangles)
     domain = replace(layer.domain, mesh=mesh)
     layer = replace(layer, domain=domain, variant=extent.variant)
     document = document.with_layer(layer)

@@ -18,6 +18,7 @@ from engine.arrays import Complexes, Integers
 from engine.deform import Deformer, Handles
 from engine.domain import build_domain, mesh_inside
 from engine.errors import EngineError
+from engine.geometry import Domain
 from engine.interpolation import prepare
 from engine.maps import Boundary, Bounds, HarmonicMap
 from engine.variant import Variant
@@ -96,7 +97,7 @@ def stress(
     bounds = BOUNDS[rng.integers(len(BOUNDS))]
     scale = SCALES[rng.integers(len(SCALES))]
     outline, cage, vertices = (scale * each for each in shape[:3])
-    boundary = Boundary.sample(outline, cage)
+    boundary = Boundary.sample(Domain(outline, cage))
     count = handles or int(rng.integers(1, 9))
     inside = rng.choice(vertices, size=min(count, len(vertices)), replace=False)
     deformer = Deformer(boundary=boundary, handles=Handles.place(boundary, inside), bounds=bounds)
@@ -111,7 +112,7 @@ def stress(
             shown += 1
         maps.append(state.map)
     scaled = Shape(boundary.outline, cage, vertices, shape.triangles)
-    layers = in_betweens(maps, scaled, bounds, rng)
+    layers = in_betweens(maps, boundary, scaled, bounds, rng)
     return {"maps shown": shown, **layers}
 
 
@@ -133,16 +134,20 @@ def check_state(deformer: Deformer, state: object, bounds: Bounds) -> None:
 
 
 def in_betweens(
-    maps: list[HarmonicMap], shape: Shape, bounds: Bounds, rng: np.random.Generator
+    maps: list[HarmonicMap],
+    boundary: Boundary,
+    shape: Shape,
+    bounds: Bounds,
+    rng: np.random.Generator,
 ) -> dict[str, float]:
     """Return how many frames were looked at, and how many of those fold that may."""
     count = folds = coarse = 0
     excess = 0.0
     for variant in Variant:
         through = bool(rng.integers(2))
-        options = {"outline": shape.outline, "variant": variant, "through": through}
+        options = {"variant": variant, "through": through}
         options["bounds"] = bounds
-        prepared = prepare(maps, shape.vertices, triangles=shape.triangles, **options)
+        prepared = prepare(maps, boundary, shape.vertices, triangles=shape.triangles, **options)
         for time in [*rng.uniform(0, len(maps) - 1, 3), float(len(maps) - 1)]:
             frame = prepared.frame(time)
             assert np.isfinite(frame.positions).all()
@@ -160,7 +165,7 @@ def in_betweens(
                 # The map does not fold, but between the corners it bends more than they tell.
                 coarse += 1
                 points, triangles = cut(shape.vertices[shape.triangles[turned]])
-                finer = prepare(maps, points, **options).frame(time).positions
+                finer = prepare(maps, boundary, points, **options).frame(time).positions
                 assert (areas(finer, triangles) > 0).all(), f"{variant} folds at {time}"
     return {
         "frames": count,
@@ -246,7 +251,7 @@ def polygon(corners: Complexes) -> Shape:
     # Parallel to each side, at the same distance from it.
     corner = (normals + before) / (1 + (normals * before.conj()).real)
     cage = turned + 0.02 * np.abs(along).min() * corner
-    mesh = mesh_inside(turned, triangles=TRIANGLES)
+    mesh = mesh_inside(Domain(turned, cage), triangles=TRIANGLES)
     return Shape(turned.astype(complex), cage, mesh.vertices, mesh.triangles)
 
 

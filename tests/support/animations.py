@@ -15,7 +15,7 @@ from app.document.layer import PictureFile, new_layer
 from app.document.model import Document
 from app.document.settings import FrameRange, Meshing
 from engine.arrays import Bytes, Complexes
-from engine.domain.build import Domain, build_domain
+from engine.domain.build import MeshedDomain, build_domain
 from engine.domain.meshing import triangulate
 from engine.domain.picture.cut_out import CutOut, Slit
 
@@ -54,7 +54,7 @@ def within(document: Document, corners: Complexes) -> Document:
     """
     outline = subdivided(corners, LONGEST)
     cage = around(outline, OFFSET)
-    domain = Domain(outline=outline, cage=cage, mesh=triangulate(outline, 300))
+    domain = MeshedDomain(outline=outline, cage=cage, mesh=triangulate(outline, 300))
     return Document(layers=(new_layer(document.layers[0].picture, domain, Meshing()),))
 
 

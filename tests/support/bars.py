@@ -17,7 +17,7 @@ from app.editor.actions import playback, posing
 from app.editor.project import Project
 from app.editor.work.puppet import Puppet
 from app.storage.assets import sample_images
-from engine.domain.build import Domain
+from engine.domain.build import MeshedDomain
 from engine.domain.meshing import triangulate
 
 BENT = 24  # the frame of the key in which it is bent
@@ -54,7 +54,7 @@ def take_few_corners(project: Project) -> None:
     corners = np.array([low, high.real + 1j * low.imag, high, low.real + 1j * high.imag])
     outline = subdivided(corners, LONGEST)
     mesh = triangulate(outline, layer.meshing.triangles)
-    domain = Domain(outline=outline, cage=around(outline, OFFSET), mesh=mesh)
+    domain = MeshedDomain(outline=outline, cage=around(outline, OFFSET), mesh=mesh)
     layer = replace(new_layer(layer.picture, domain, layer.meshing), id=layer.id, name=layer.name)
     document = project.document.with_layer(layer)
     project.history = History(document, saved=history.is_saved)

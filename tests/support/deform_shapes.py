@@ -8,6 +8,7 @@ from interpolation_shapes import around, subdivided
 from engine.deform import Deformer, Handles, Objective, State
 from engine.deform.model import MARGIN
 from engine.deform.rest import Search, Way, advance, begin_search
+from engine.geometry import Domain
 from engine.maps import Boundary, Bounds
 
 
@@ -17,13 +18,13 @@ def star_boundary() -> Boundary:
     radii = np.tile([1.0, 0.42], 5)
     corners = radii * np.exp(1j * (np.pi / 2 + np.pi / 5 * np.arange(10)))
     outline = subdivided(corners, 0.35)
-    return Boundary.sample(outline, around(outline, 0.035))
+    return Boundary.sample(Domain(outline, around(outline, 0.035)))
 
 
 @cache
 def bar_boundary() -> Boundary:
     outline = subdivided(np.array([-2 - 0.5j, 2 - 0.5j, 2 + 0.5j, -2 + 0.5j]), 0.5)
-    return Boundary.sample(outline, around(outline, 0.06))
+    return Boundary.sample(Domain(outline, around(outline, 0.06)))
 
 
 STAR_POINTS = np.concatenate([[0.0], 0.8 * np.exp(1j * np.pi * (0.5 + 0.4 * np.arange(5)))])

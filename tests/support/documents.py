@@ -40,7 +40,7 @@ from app.document.settings import FRAMINGS, VARIANTS, ExportSettings, FrameRange
 from app.document.timing import HOLD, LINEAR, PRESETS, Easing, Spring, Track, TrackKey
 from app.errors import ImportSummary
 from app.export_formats import EXPORT_FORMATS, ShapeDetail, SheetLayout
-from engine.domain.build import Domain
+from engine.domain.build import MeshedDomain
 from engine.domain.meshing.mesh import Mesh
 from engine.domain.picture.cut_out import CutOut, Mask, Stroke
 from engine.maps.bounds import Bounds
@@ -51,12 +51,12 @@ CENTRE = 100 + 100j
 PICTURE = PictureFile(data=blank_png(200, 200), suffix=".png", size=(200, 200))
 
 
-def disc_domain(n: int = 12) -> Domain:
+def disc_domain(n: int = 12) -> MeshedDomain:
     """A disc around the middle of the picture, as a fan of triangles."""
     outline = CENTRE + RADIUS * regular_polygon(n)
     fan = [[0, i, i + 1] for i in range(1, n - 1)]
     mesh = Mesh(vertices=outline, triangles=np.array(fan, dtype=np.int32))
-    return Domain(outline=outline, cage=CENTRE + 1.2 * RADIUS * regular_polygon(n), mesh=mesh)
+    return MeshedDomain(outline=outline, cage=CENTRE + 1.2 * RADIUS * regular_polygon(n), mesh=mesh)
 
 
 def disc_document() -> Document:
@@ -79,7 +79,9 @@ def inside(rng: np.random.Generator) -> complex:
     return CENTRE + complex(0.9 * RADIUS * np.sqrt(rng.random()) * np.exp(1j * tau * rng.random()))
 
 
-def random_pose(rng: np.random.Generator, document: Document, domain: Domain | None = None) -> Pose:
+def random_pose(
+    rng: np.random.Generator, document: Document, domain: MeshedDomain | None = None
+) -> Pose:
     cage = document.layers[0].domain.cage if domain is None else domain.cage
     noise = rng.normal(size=(4, len(cage)))
     return Pose(

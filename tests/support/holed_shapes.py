@@ -8,7 +8,7 @@ from shapes import regular_polygon
 
 from engine.arrays import Complexes
 from engine.deform import Deformer, Handles, State
-from engine.geometry import Hole, contains
+from engine.geometry import Domain, Hole, contains
 from engine.maps import Boundary, Bounds, HarmonicMap
 
 
@@ -24,6 +24,10 @@ class Holed(NamedTuple):
     def loops(self) -> tuple[Complexes, ...]:
         """The outline, then those of the holes."""
         return (self.outline, *(hole.outline for hole in self.holes))
+
+    @property
+    def domain(self) -> Domain:
+        return Domain(self.outline, self.cage, self.holes)
 
     def moved(self, factor: complex, shift: complex) -> "Holed":
         """Return the same shape elsewhere."""
@@ -82,7 +86,7 @@ def plate(count: int = 3, pieces: int = 12) -> Holed:
 def boundary_of(shape: str, count: int = 1) -> Boundary:
     """Return the boundary of the ring, or of the plate with so many holes."""
     domain = ring() if shape == "ring" else plate(count)
-    return Boundary.sample(domain.outline, domain.cage, domain.holes)
+    return Boundary.sample(domain.domain)
 
 
 def inner_points(shape: Holed, count: int = 300, seed: int = 0) -> Complexes:

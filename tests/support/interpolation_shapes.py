@@ -8,6 +8,7 @@ import shapely
 
 from engine.arrays import Complexes
 from engine.dirichlet import Extension, HilbertTransform
+from engine.geometry import Domain
 from engine.geometry.polygon import as_xy, box_diagonal, edges, sample_graded
 from engine.interpolation import (
     Inbetweens,
@@ -19,7 +20,7 @@ from engine.interpolation import (
     prepare_sites,
     sample_keyframes,
 )
-from engine.maps import Bounds
+from engine.maps import Boundary, Bounds
 from engine.maps.cauchy import evaluate
 from engine.maps.harmonic_map import HarmonicMap
 from engine.paths import root_sheets
@@ -81,6 +82,16 @@ def spiral(turns: float = 2.3) -> Shape:
     return outline, around(outline, 0.01)
 
 
+def boundary_of(shape: Shape) -> Boundary:
+    """Sample the boundary of a shape, once."""
+    return _boundary(*(z.tobytes() for z in shape))
+
+
+@cache
+def _boundary(outline: bytes, cage: bytes) -> Boundary:
+    return Boundary.sample(Domain(np.frombuffer(outline, complex), np.frombuffer(cage, complex)))
+
+
 @dataclass(frozen=True, eq=False)
 class Stage:
     """A shape and the points at which in-betweens are wanted, ready for any keyframes."""
@@ -90,7 +101,7 @@ class Stage:
     @property
     def transform(self) -> HilbertTransform:
         """Of the shape, made once."""
-        return _transform(self.sites.outline.tobytes(), self.sites.cage.tobytes())
+        return transform_of((self.sites.outline, self.sites.cage))
 
     @cached_property
     def extension(self) -> Extension:
@@ -107,18 +118,23 @@ class Stage:
         return prepare_inbetweens(variant, interval)
 
 
+def transform_of(shape: Shape) -> HilbertTransform:
+    """Prepare the Hilbert transform of a shape, once."""
+    return _transform(*(z.tobytes() for z in shape))
+
+
 @cache
 def _transform(outline: bytes, cage: bytes) -> HilbertTransform:
-    return HilbertTransform.on(np.frombuffer(outline, complex), np.frombuffer(cage, complex))
+    return HilbertTransform.on(_boundary(outline, cage).domain)
 
 
 @cache
 def _stage(
     outline: bytes, cage: bytes, points: bytes, values_at: bytes, anchor: complex | None
 ) -> Stage:
-    arrays = (np.frombuffer(each, complex) for each in (outline, cage, points))
-    beside = np.frombuffer(values_at, complex)
-    return Stage(prepare_sites(*arrays, anchor=anchor, values_at=beside))
+    places, beside = (np.frombuffer(each, complex) for each in (points, values_at))
+    boundary = _boundary(outline, cage)
+    return Stage(prepare_sites(boundary, places, anchor=anchor, values_at=beside))
 
 
 def stage_of(

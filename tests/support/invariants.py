@@ -10,7 +10,7 @@ from app.editor.actions import playback
 from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.timeline_view import frames_in
-from engine.domain.build import Domain
+from engine.domain.build import MeshedDomain
 from engine.domain.validity import require_domain
 from engine.maps.boundary import Boundary
 from engine.maps.bounds import Bounds
@@ -77,7 +77,7 @@ def check_pose(layer: Layer, pose: Pose) -> None:
 
 
 @lru_cache(maxsize=512)
-def _is_true(domain: Domain, pose: Pose) -> bool:
+def _is_true(domain: MeshedDomain, pose: Pose) -> bool:
     told: Certificate = pose.certificate
     allowed = Bounds(
         k=told.k + SLACK,
@@ -91,6 +91,6 @@ def _is_true(domain: Domain, pose: Pose) -> bool:
 
 
 @lru_cache(maxsize=8)
-def _boundary(domain: Domain) -> Boundary:
+def _boundary(domain: MeshedDomain) -> Boundary:
     require_domain(domain)
-    return Boundary.sample(domain.outline, domain.cage, domain.holes)
+    return Boundary.sample(domain)

@@ -3,12 +3,20 @@
 from functools import cache
 
 import numpy as np
-from interpolation_shapes import bar, inner_points, letter_l, narrow_u, outline_samples, spiral
+from interpolation_shapes import (
+    bar,
+    boundary_of,
+    inner_points,
+    letter_l,
+    narrow_u,
+    outline_samples,
+    spiral,
+)
 
 from engine.deform import Deformer, Handles
 from engine.geometry.polygon import box_diagonal
 from engine.interpolation import prepare
-from engine.maps import Boundary, Bounds
+from engine.maps import Bounds
 from engine.streaming import Positions, build_series, finish
 
 SHAPES = {"letter L": letter_l, "spiral": spiral, "bar": bar, "U": narrow_u}
@@ -21,8 +29,8 @@ LOOKED_AT = 200  # times between the samples of a series
 @cache
 def settled_poses(name, seed):
     """Drag the handles of a shape to two poses at the default bounds."""
-    outline, cage = SHAPES[name]()
-    size, boundary = box_diagonal(outline), Boundary.sample(outline, cage)
+    outline, _ = shape = SHAPES[name]()
+    size, boundary = box_diagonal(outline), boundary_of(shape)
     rng = np.random.default_rng(seed)
     places = inner_points(outline, HANDLES, seed, margin=0.01 * size)
     handles = Handles.place(boundary, places)
@@ -47,9 +55,9 @@ def series_of(name, seed, variant, *, count=1000):
     missed, stated : float
         The largest error that was found, and the one that the series tells; over the tolerance.
     """
-    outline, _ = SHAPES[name]()
-    points = np.concatenate([inner_points(outline, count, 1), outline_samples(SHAPES[name]())])
-    prepared = prepare(settled_poses(name, seed), points, outline=outline, variant=variant)
+    outline, _ = shape = SHAPES[name]()
+    points = np.concatenate([inner_points(outline, count, 1), outline_samples(shape)])
+    prepared = prepare(settled_poses(name, seed), boundary_of(shape), points, variant=variant)
     (interval,) = prepared.intervals
     channels = Positions.of(interval, prepared.sites)
     series = finish(build_series(channels))

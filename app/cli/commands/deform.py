@@ -13,6 +13,7 @@ from app.errors import LissomError
 from app.storage import check_writable, read_arrays, write_arrays
 from engine.arrays import Complexes
 from engine.deform import Deformer, Hand, Handles, require_held
+from engine.geometry import Domain
 from engine.maps import Boundary, Bounds, HarmonicMap, Limits
 
 LIMITS = ("k_max", "sigma_a_max", "sigma_b_min")
@@ -29,9 +30,9 @@ def run(arguments: argparse.Namespace) -> int:
     )
     k, sigma_a, sigma_b = (_scalar(case, name) for name in LIMITS)
     bounds: Limits = Bounds(k=k, sigma_a=sigma_a, sigma_b=sigma_b)
-    outline, cage, holes = case["outline"], case["cage"], read_holes(case)
-    points = require_held(case["handles"], outline, cage, holes)
-    boundary = Boundary.sample(outline, cage, holes)
+    domain = Domain(case["outline"], case["cage"], read_holes(case))
+    points = require_held(case["handles"], domain)
+    boundary = Boundary.sample(domain)
     if "stiffness" in case:
         boundary = boundary.stiffened(case["stiffness"])
     if _is_local(case):
@@ -45,7 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
     for wish in wishes[:-1]:
         state, count = deformer.follow(state, wish)
         tried += count
-    state, count = deformer.settle(state, wishes[-1])
+    state, count = deformer.settle(state, wishes[-1], throw=False)
     tried += count
     certificate = state.certificate
     write_arrays(

@@ -12,8 +12,9 @@ from app.document import NATURAL
 from app.errors import LissomError, tell
 from app.storage import check_writable, write_arrays
 from engine.baselines import Baseline, prepare_baseline
+from engine.geometry import Domain
 from engine.interpolation import Variant, prepare
-from engine.maps import Bounds
+from engine.maps import Boundary, Bounds
 
 UNFINISHED = 1e-8  # angle defect, in radians, that is worth a word
 NO_PRINCIPAL = "--principal is for arap and mesh-eta; leave it out"
@@ -47,8 +48,8 @@ def _harmonic(arguments: argparse.Namespace, given: Keyframes) -> dict[str, npt.
         )
     prepared = prepare(
         given.maps,
+        Boundary.sample(Domain(outline, given.maps[0].cage, given.maps[0].holes)),
         given.points,
-        outline=outline,
         variant=Variant(arguments.variant),
         triangles=given.triangles,
         anchor=given.anchor,

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from app.cli.figures.shapes import ShapePair
 from engine.baselines import Baseline, MeshFrame, prepare_baseline
 from engine.interpolation import Frame, Prepared, Variant, prepare
+from engine.maps import Boundary
 
 # With the positions of the vertices; fz and fzbar at vertices or in triangles, always the same.
 Inbetween = Frame | MeshFrame
@@ -36,8 +37,8 @@ def prepare_variant(pair: ShapePair, variant: Variant) -> Prepared:
     domain = pair.shape.domain
     return prepare(
         (pair.first, pair.second),
+        Boundary.sample(domain),
         domain.mesh.vertices,
-        outline=domain.outline,
         variant=variant,
         triangles=domain.mesh.triangles,
         anchor=pair.anchor,

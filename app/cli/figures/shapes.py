@@ -12,7 +12,7 @@ from scipy.interpolate import CubicSpline
 from app.storage import cut_picture, decode_picture, load_project, sample_images
 from engine.arrays import Bytes, Complexes, Floats
 from engine.deform import Deformer, Handles
-from engine.domain import Domain, build_domain, mesh_inside
+from engine.domain import Domain, MeshedDomain, build_domain
 from engine.geometry import edges
 from engine.maps import Boundary, Bounds, HarmonicMap
 
@@ -43,7 +43,7 @@ class Shape:
     """
 
     picture: Bytes
-    domain: Domain
+    domain: MeshedDomain
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -81,7 +81,7 @@ def letter_s(triangles: int) -> ShapePair:
     """
     shape = _sample_picture("s", triangles)
     domain = shape.domain
-    boundary = Boundary.sample(domain.outline, domain.cage)
+    boundary = Boundary.sample(domain)
     middle = _along(S_MIDDLE)
     places = _rails(middle, np.full(PLACES, S_RAIL))
     handles = Handles.place(boundary, places, np.full(len(places), SOFTNESS))
@@ -93,7 +93,7 @@ def letter_s(triangles: int) -> ShapePair:
         sizes = np.exp(share * S_GROWTH * np.linspace(-0.5, 0.5, PLACES))
         target = _rails(_turned(middle, turns, sizes, float(share)), sizes * S_RAIL)
         state, _ = deformer.follow(state, handles.wish(target))
-    state, _ = deformer.settle(state, handles.wish(target))
+    state, _ = deformer.settle(state, handles.wish(target), throw=False)
     return ShapePair(
         shape=shape,
         first=HarmonicMap.identity(domain.cage),
@@ -129,8 +129,7 @@ def sample(name: str, first: int, second: int, triangles: int) -> ShapePair:
     document = load_project(path)
     (figure,) = document.layers
     domain = figure.domain
-    mesh = mesh_inside(*domain.loops, triangles=triangles)
-    domain = Domain(outline=domain.outline, cage=domain.cage, mesh=mesh, holes=domain.holes)
+    domain = MeshedDomain.of(domain, triangles)
     picture = decode_picture(figure.picture.data, f"the picture of {path}")
     poses = [figure.keys[index].pose for index in (first, second)]
     return ShapePair(
@@ -194,7 +193,7 @@ def _block(width: int, height: int, *, cells: int, triangles: int) -> Shape:
     # A third of a side's length off.
     grown = corners + height / 16 * np.array([-1 - 1j, 1 - 1j, 1 + 1j, -1 + 1j])
     cage = _subdivided(grown, height / 5)
-    domain = Domain(outline=outline, cage=cage, mesh=mesh_inside(outline, triangles=triangles))
+    domain = MeshedDomain.of(Domain(outline, cage), triangles)
     return Shape(picture=picture, domain=domain)
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from app.document.checks import NOTHING, Unknown, require
 from engine.arrays import Floats, freeze
-from engine.domain import Domain
+from engine.domain import MeshedDomain
 from engine.domain.material import carried_stiffness
 from engine.maps import SOFTEST, STIFFEST
 
@@ -54,7 +54,9 @@ def usual_as_none(stiffness: Floats) -> Floats | None:
     return freeze(np.clip(stiffness, SOFTEST, STIFFEST))
 
 
-def carried_over(stiffness: Floats | None, domain: Domain, into: Domain) -> Floats | None:
+def carried_over(
+    stiffness: Floats | None, domain: MeshedDomain, into: MeshedDomain
+) -> Floats | None:
     """Return what is painted on a domain at the same places of another one."""
     if stiffness is None or into is domain:
         return stiffness

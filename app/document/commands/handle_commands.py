@@ -34,6 +34,7 @@ def add_handle(
         position=position,
         weight=weight,
     )
+    _require_on_shape(layer, handle)
     return _with_poses(layer, partial(_follow, layer, handle), (*layer.handles, handle))
 
 
@@ -42,6 +43,7 @@ def add_handles(layer: Layer, handles: Sequence[Handle]) -> Layer:
     """Add several handles at once; their ids are given anew, from `layer.next_handle` on."""
     for number, handle in enumerate(handles, start=layer.next_handle):
         added = replace(handle, id=number)
+        _require_on_shape(layer, added)
         layer = _with_poses(layer, partial(_follow, layer, added), (*layer.handles, added))
     return layer
 
@@ -52,6 +54,7 @@ def move_handle(layer: Layer, identity: int, position: complex) -> Layer:
     if layer.handle(identity).position == position:
         return layer
     handle = replace(layer.handle(identity), position=position)
+    _require_on_shape(layer, handle)
     handles = tuple(handle if handle.id == other.id else other for other in layer.handles)
     moved = with_moved_handle(layer, identity, position)
     return _with_poses(moved, partial(_follow, layer, handle), handles)
@@ -129,6 +132,11 @@ def _with_poses(layer: Layer, change: Callable[[Pose], Pose], handles: tuple[Han
         handles=handles,
         next_handle=max([layer.next_handle, *(handle.id + 1 for handle in handles)]),
     )
+
+
+def _require_on_shape(layer: Layer, handle: Handle) -> None:
+    """Refuse a handle that poses cannot take anywhere."""
+    layer.require_on_shape({f"handle {handle.name!r}": handle.position})
 
 
 def _follow(layer: Layer, handle: Handle, pose: Pose) -> Pose:

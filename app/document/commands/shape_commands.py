@@ -8,7 +8,7 @@ from app.document.commands.command import layer_command
 from app.document.keyframe import Pose
 from app.document.layer import Layer
 from app.document.settings import Meshing
-from engine.domain import CutOut, Domain, Slit, Stroke
+from engine.domain import CutOut, MeshedDomain, Slit, Stroke
 from engine.maps import Bounds
 from engine.variant import Variant
 
@@ -69,12 +69,14 @@ def set_cut_out(layer: Layer, cut_out: CutOut) -> Layer:
 
 
 @layer_command("Rebuild domain")
-def replace_domain(layer: Layer, domain: Domain, meshing: Meshing, poses: Sequence[Pose]) -> Layer:
+def replace_domain(
+    layer: Layer, domain: MeshedDomain, meshing: Meshing, poses: Sequence[Pose]
+) -> Layer:
     """Put another domain under the same handles and keys.
 
     Parameters
     ----------
-    domain : Domain
+    domain : MeshedDomain
         That of the layer's cut-out; it must contain every handle and the anchor.
     meshing : Meshing
         What it was built with.

@@ -10,7 +10,7 @@ from app.document.queries.clips import Clip
 from app.document.queries.passages import Leg, Moved, Passages, Value, slopes_on, value_on
 from app.document.queries.remembered import remembered
 from app.document.timing import LINEAR, Cycle, Spring, Track, TrackKey
-from engine.domain import Domain
+from engine.domain import MeshedDomain
 from engine.domain.meshing import find_distances
 
 # By how much two keys may differ that want the same: pixels, and radians.
@@ -151,6 +151,6 @@ def root_of(layer: Layer, spring: Spring) -> int | None:
 
 
 @remembered
-def _distances(domain: Domain, places: tuple[complex, ...]) -> tuple[float, ...]:
+def _distances(domain: MeshedDomain, places: tuple[complex, ...]) -> tuple[float, ...]:
     """Return how far it is along the drawing from the first of some places to the others."""
     return tuple(find_distances(domain.mesh, places[0], np.array(places[1:])).tolist())

@@ -6,7 +6,7 @@ from typing import Self
 
 from app.document import Document, GivenMotion, Layer
 from app.solving import Giving
-from engine.domain import Domain
+from engine.domain import MeshedDomain
 from engine.geometry.motions import (
     MOTIONS,
     BodyKind,
@@ -25,7 +25,7 @@ class MotionDraft:
     """What is to be given to a layer, before it is solved."""
 
     layer: int  # its id
-    domain: Domain  # of the layer then: joints are places in it
+    domain: MeshedDomain  # of the layer then: joints are places in it
     kind: str
     motion: str
     joints: JointPlaces

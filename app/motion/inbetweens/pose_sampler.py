@@ -15,7 +15,7 @@ from app.motion.inbetweens.pairs import Pair
 from engine.arrays import Complexes, freeze, held_bytes
 from engine.deform.correction import PointCorrector, corrector_of
 from engine.dirichlet import Extension, HilbertTransform
-from engine.domain import Domain
+from engine.domain import MeshedDomain
 from engine.interpolation import (
     BLENDS,
     CorrectionSeries,
@@ -106,7 +106,7 @@ class OutlineKnowledge:
         The bytes that `forget_transform` lets go.
     """
 
-    def __init__(self, domain: Domain) -> None:
+    def __init__(self, domain: MeshedDomain) -> None:
         self._domain = domain
         self._key = "transform", digest(*domain.loops, *domain.cages)
         # Of its own, so that others wait for the transform alone.
@@ -139,9 +139,7 @@ class OutlineKnowledge:
         with self._lock:
             if self._transform is None:
                 domain = self._domain
-                make = partial(
-                    HilbertTransform.on, domain.outline, domain.cage, domain.holes, progress=tell
-                )
+                make = partial(HilbertTransform.on, domain, progress=tell)
                 self._transform = _TRANSFORMS.find(self._key, make, _nbytes)
                 self.nbytes = self._transform.nbytes
             return self._transform
@@ -185,7 +183,7 @@ class PoseSampler:
 
     def __init__(
         self,
-        domain: Domain,
+        domain: MeshedDomain,
         *,
         anchor: complex | None,
         points: Complexes | None = None,
@@ -200,20 +198,19 @@ class PoseSampler:
         # What all that is sampled here depends on.
         content = digest(*domain.loops, *domain.cages, points, triangles, values_at)
         self._content = content, anchor
-        prepare = partial(
-            prepare_sites,
-            domain.outline,
-            domain.cage,
-            points,
-            holes=domain.holes,
-            triangles=triangles,
-            anchor=anchor,
-            values_at=() if values_at is None else values_at,
-            boundary=None if sibling is None else sibling.sites.boundary,
-        )
-        known = () if sibling is None else (sibling.sites.boundary,)
+        known = None if sibling is None else sibling.sites.boundary
+
+        def prepare() -> Sites:
+            return prepare_sites(
+                known or Boundary.sample(domain),
+                points,
+                triangles=triangles,
+                anchor=anchor,
+                values_at=() if values_at is None else values_at,
+            )
+
         self.sites: Sites = _SAMPLED.find(
-            ("sites", *self._content), prepare, partial(held_bytes, but=known)
+            ("sites", *self._content), prepare, partial(held_bytes, but=(known,))
         )
         self._lock = threading.RLock()
         self._samples: dict[Pose, KeyframeSamples] = {}

@@ -483,7 +483,7 @@ def _read_layer(fields: dict[str, Any], archive: Archive, shared: dict[str, Pict
 
 def _prover(domain: Domain, bounds: Bounds) -> Callable[[HarmonicMap], Certificate]:
     """Return what proves maps of a domain."""
-    boundary = Boundary.sample(domain.outline, domain.cage, domain.holes)
+    boundary = Boundary.sample(domain)
     return lambda f: certify(f, boundary, bounds)
 
 

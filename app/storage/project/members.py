@@ -19,7 +19,13 @@ from app.errors import LissomError
 from app.storage.pictures import stored_size
 from app.storage.project.archive import Archive, array_member
 from engine.arrays import Complexes, Floats, as_points
-from engine.domain import MOST_MESH_TRIANGLES, MOST_STROKE_POINTS, Domain, Mask, require_domain
+from engine.domain import (
+    MOST_MESH_TRIANGLES,
+    MOST_STROKE_POINTS,
+    Mask,
+    MeshedDomain,
+    require_domain,
+)
 from engine.domain.meshing import Mesh
 from engine.domain.outline import LARGEST_OUTLINE
 from engine.geometry import Hole
@@ -87,7 +93,7 @@ class LayerMembers:
             )
         return picture
 
-    def domain(self, *, parted: bool) -> Domain:
+    def domain(self, *, parted: bool) -> MeshedDomain:
         """Return the domain, which was parted by a knife or not."""
         outline, cage, vertices = (
             as_points(self._points(f"{name}.npy", most), name, at_least=3)
@@ -100,7 +106,7 @@ class LayerMembers:
         triangles = self._archive.triangles(
             f"{self._folder}/triangles.npy", most=MOST_MESH_TRIANGLES
         )
-        domain = Domain(
+        domain = MeshedDomain(
             outline=outline,
             cage=cage,
             mesh=Mesh(vertices=vertices, triangles=triangles),
@@ -111,7 +117,7 @@ class LayerMembers:
             require_domain(domain)
         return domain
 
-    def stiffness(self, domain: Domain) -> Floats:
+    def stiffness(self, domain: MeshedDomain) -> Floats:
         """Return what is painted on the vertices of the domain's loops."""
         most = sum(map(len, domain.loops))
         return self._archive.numbers(f"{self._folder}/{STIFFNESS}", most=most)
@@ -130,7 +136,7 @@ class LayerMembers:
             raise LissomError(f"the {kind} of a cut-out do not have as many points as there are")
         return np.split(points, np.cumsum(counts)[:-1])
 
-    def map(self, domain: Domain, kind: Literal["keys", "poses"], index: int) -> HarmonicMap:
+    def map(self, domain: MeshedDomain, kind: Literal["keys", "poses"], index: int) -> HarmonicMap:
         """Return the map of a key, or of a pose of the library."""
         phi, psi, logs = _of_map(kind, index)
         return HarmonicMap(

@@ -12,7 +12,7 @@ from app.render import Colour, Disc, HandleMark, Line, mark_anchor, mark_handles
 from app.ui.style import Palette, density, interface_scale
 from app.ui.viewport.paths import mark_path
 from engine.arrays import Booleans, Complexes
-from engine.domain import Domain
+from engine.domain import MeshedDomain
 from engine.geometry import deepest_point
 
 FAINT = 3.0  # pixels: the radius of a handle of another layer
@@ -133,7 +133,7 @@ def forget_places() -> None:
 
 
 @lru_cache(maxsize=64)
-def _deepest_point(domain: Domain) -> complex:
+def _deepest_point(domain: MeshedDomain) -> complex:
     return deepest_point(domain.outline, domain.loops[1:])
 
 

@@ -63,14 +63,15 @@ def solve_within(
     inside : float
         How far inside the bounds the samples end.
     """
-    found = solve(corrector, nodes, targets)
+    found = solve(corrector, nodes, targets, throw=False)
     own = extremes(corrector, samples, 0.0 * found.x)
     limits = limits_of(bounds, own + BEYOND, inside=inside)
     if (extremes(corrector, samples, found.x) <= limits - WIDTH).all():
         return found
     # From zero, where all that stays is where it is wanted: so it remains on the way.
     start = replace(found, x=0.0 * found.x, shift=0j)
-    near = solve(corrector, nodes, targets, start, LimitWalls(corrector, samples, limits))
+    walls = LimitWalls(corrector, samples, limits)
+    near = solve(corrector, nodes, targets, start, walls, throw=False)
     return replace(near, steps=found.steps + near.steps, is_held_back=True)
 
 

@@ -21,6 +21,7 @@ from engine.deform.correction.corrector import PointCorrector
 from engine.deform.correction.frame import BaseFrame, Bending, CorrectedFrame
 from engine.deform.correction.step_model import Rows, StepModel
 from engine.deform.correction.walls import LimitWalls, WallState
+from engine.errors import EngineError
 
 SMALL = 1e-6  # a step in h: where the iteration ends
 MET = 1e-9  # of the diagonal: points that are where they are wanted
@@ -33,6 +34,10 @@ CALM = 1e-4  # a step in h: where the iteration ends within walls
 GAINS, GAINS_AT_WALLS = 0.99, 0.999  # of the merit: what a part of a step leaves of it, at most
 ARM = 0.25  # of the diagonal: the distance at which a turn is as firm as a point
 TINY = 1e-300
+UNFINISHED = (
+    "The correction did not come to rest in {steps} steps: a point is still {miss:.3g} from its "
+    "target. Give targets nearer to the base, or take the correction as it is (throw=False)."
+)
 FIRMEST = 1.5  # times the largest pull: what the merit takes for each point off its target
 
 
@@ -78,6 +83,8 @@ class PointSolution:
     steps : int
     is_held_back : bool
         Whether it came near a limit, and walls took part.
+    is_finished : bool
+        Whether the steps came to an end; points out of reach may be off their targets then, too.
     """
 
     x: Floats
@@ -85,6 +92,7 @@ class PointSolution:
     misses: Floats
     steps: int
     is_held_back: bool = False
+    is_finished: bool = True
 
 
 def solve(
@@ -93,6 +101,8 @@ def solve(
     targets: Targets,
     start: PointSolution | None = None,
     walls: LimitWalls | None = None,
+    *,
+    throw: bool = True,
 ) -> PointSolution:
     """Find the correction of one frame.
 
@@ -106,6 +116,11 @@ def solve(
         Of a frame that is much the same.
     walls : LimitWalls, optional
         What the correction is to keep.
+
+    Raises
+    ------
+    EngineError
+        If the correction is not finished. With `throw=False` it is returned as it is then.
     """
     problem = _Problem(corrector, base, targets, walls)
     is_inside = walls is None or not walls.beyond.any()
@@ -116,7 +131,10 @@ def solve(
         at = problem.state(corrector.variables.nothing, 0j)
     else:
         at = problem.state(start.x, start.shift)
-    return problem.solved(at)
+    found = problem.solved(at)
+    if throw and not found.is_finished:
+        raise EngineError(UNFINISHED.format(steps=found.steps, miss=found.misses.max()))
+    return found
 
 
 class _State(NamedTuple):
@@ -200,7 +218,7 @@ class _Problem:
         """Take steps from a state until they are small."""
         size, firm = self.corrector.boundary.size, 0.0
         small = SMALL if self.walls is None else CALM
-        steps = 0
+        steps, is_finished = 0, True
         while steps < (MOST_STEPS if self.walls is None else MOST_STEPS_AT_WALLS):
             steps += 1
             rows = self.rows(at)
@@ -236,8 +254,12 @@ class _Problem:
                 continue
             if is_stuck or (moved < small and (off < MET * size or share < 1.0)):
                 break
+        else:
+            is_finished = False
         misses = np.abs(at.frame.places() + at.shift - self.wanted)[: self.count]
-        return PointSolution(x=at.frame.x, shift=at.shift, misses=misses, steps=steps)
+        return PointSolution(
+            x=at.frame.x, shift=at.shift, misses=misses, steps=steps, is_finished=is_finished
+        )
 
     def _bending(self, at: _State, pulls: Floats) -> Bending:
         """Return how the rows are curved that are pulled at."""

@@ -5,11 +5,17 @@ Out: an `Enclosure`: an outline and a cage of as many vertices, strictly apart.
 Imports: `engine.domain.picture`, `engine.geometry`.
 """
 
+from engine.domain.outline.cage import offset_cage as offset_cage
 from engine.domain.outline.enclosure import (
     LARGEST_OUTLINE as LARGEST_OUTLINE,
+    MARGINS as MARGINS,
     Detail as Detail,
     Enclosure as Enclosure,
     enclose as enclose,
 )
-from engine.domain.outline.holes import HoleMap as HoleMap, find_holes as find_holes
+from engine.domain.outline.holes import (
+    HoleMap as HoleMap,
+    find_holes as find_holes,
+    hole_in as hole_in,
+)
 from engine.domain.outline.knife import SLIT_WIDTH as SLIT_WIDTH

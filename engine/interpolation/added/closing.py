@@ -318,7 +318,7 @@ class HoleCloser:
                 if around.beyond.max() > FAR:
                     at((near + time) / 2)
                     return at(time)
-                found = solve(corrector, nodes, targets, start, around)
+                found = solve(corrector, nodes, targets, start, around, throw=False)
                 solved[time] = found.x / scale
             else:
                 solved[time] = nothing

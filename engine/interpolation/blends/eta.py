@@ -19,7 +19,7 @@ from engine.maps import Enclosures
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class EtaBlend(Blend):
-    """log f_z and η linear in the weights, Equations (3) and (6): Properties 1, 2 and 8.
+    """log f_z and η linear in the weights: Properties 1, 2 and 8.
 
     Parameters
     ----------
@@ -65,11 +65,11 @@ class EtaBlend(Blend):
         logarithm, logarithm_z = self.passage.log_fz(time)
         fz = np.exp(logarithm)
         inverse = 1.0 / fz
-        g = weighted(self.conj_eta, weights)
+        g = weighted(self.conj_eta, weights)  # Equation (6), conjugate
         gz = weighted(self.conj_eta_z, weights)
         gz -= g * logarithm_z
         gz *= inverse
-        g *= inverse
+        g *= inverse  # Equation (7): conj(f_z̄)
         return Derivatives(fz=fz, fzz=logarithm_z * fz, g=g, gz=gz)
 
     def at(self, which: Indices) -> Self:

@@ -1,9 +1,9 @@
 """The metric variant (Sections 6 and 7.4).
 
-The pullback metric of a map h has the matrix M_h = 𝒜 I + 2 [[Re η, Im η], [Im η, −Re η]], Equation
-(9), with 𝒜 = |h_z|² + |h_z̄|², so that blending it linearly means to blend 𝒜 and η. On the outline
-that gives |f_z^t|. It differs from the logarithmic blend by a residual that vanishes at both
-keyframes, is analytic in time, and takes few forms across the outline: as Σ_j c_j(t) U_j(ζ), a
+The pullback metric of a map h has the matrix M_h = 𝒜 I + 2 [[Re η, Im η], [Im η, −Re η]], of
+Equation (9), with 𝒜 = |h_z|² + |h_z̄|², so that blending it linearly means to blend 𝒜 and η. On the
+outline that gives |f_z^t|. It differs from the logarithmic blend by a residual that vanishes at
+both keyframes, is analytic in time, and takes few forms across the outline: as Σ_j c_j(t) U_j(ζ), a
 handful of Dirichlet problems serve every time.
 
 Around holes ln |f_z| differs from what Equation (13) asks for: by a constant on the boundary of

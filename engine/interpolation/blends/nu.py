@@ -15,7 +15,7 @@ from engine.maps import Enclosures
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class NuBlend(Blend):
-    """log f_z and ν linear in the weights, Equations (3) and (4): Properties 1 to 5 and 7.
+    """log f_z and ν linear in the weights: Properties 1 to 5 and 7.
 
     Parameters
     ----------
@@ -49,12 +49,12 @@ class NuBlend(Blend):
         keyframes, weights = self.passage.keyframes, self.passage.course(time)
         logarithm, logarithm_z = self.passage.log_fz(time)
         fz = np.exp(logarithm)
-        nu = weighted([key.nu for key in keyframes], weights)
+        nu = weighted([key.nu for key in keyframes], weights)  # Equation (4)
         nu_z = weighted([key.nu_z for key in keyframes], weights)
         nu_z += nu * logarithm_z
         nu_z *= fz
         logarithm_z *= fz
-        nu *= fz
+        nu *= fz  # Equation (5): conj(f_z̄)
         return Derivatives(fz=fz, fzz=logarithm_z, g=nu, gz=nu_z)
 
     @staticmethod

@@ -36,6 +36,7 @@ class OutlineMetric:
     @classmethod
     def of(cls, fz: Complexes, fzbar: Complexes, course: Course, bounds: Bounds) -> Self:
         """Work the metrics out from the derivatives (q, N) of the course's keyframes."""
+        # The entries of the metric tensor, Equation (9).
         trace, eta = np.abs(fz) ** 2 + np.abs(fzbar) ** 2, fz * fzbar.conj()
         return cls(
             course=course,
@@ -52,10 +53,9 @@ class OutlineMetric:
         """
         trace = self.trace.T @ course_of_trace(self.course).at(times)
         twice_eta = 2 * np.abs(self.eta.T @ self.course.at(times))
-        # σ_a² = 𝒜 + 2|η| and σ_b² = 𝒜 − 2|η|, Equations (10) and (11); K² is their quotient,
-        # Equation (12). The first is convex in time and the second concave: Properties 5' to 7'.
-        # Their product is the discriminant of (13), above 0 by Lemma 7; as a product it keeps its
-        # digits where the map is nearly singular.
+        # Equation (10): σ_a² = 𝒜 + 2|η|, convex in time. Equation (11): σ_b² = 𝒜 − 2|η|, concave.
+        # Equation (12): K² is their quotient. Hence Properties 5' to 7'. Their product is the
+        # discriminant, above 0 by Lemma 7, and keeps its digits where the map is nearly singular.
         discriminant = (trace + twice_eta) * (trace - twice_eta)
         squared = (trace + np.sqrt(discriminant)) / 2  # Equation (13), the larger root
         blend = self.log_modulus.T @ self.course.full.at(times)

@@ -105,7 +105,7 @@ def shortened_metric(
 
     length = _longest(is_within)
     left = curbed(trace, eta, Tangent(joint, length, 1.0), bounds)
-    weights = np.repeat(boundary.weights[:, None], PARTS + 1, axis=1)
+    weights = np.repeat(boundary.lengths[:, None], PARTS + 1, axis=1)
 
     def energy(by_trace: Floats, by_eta: Complexes) -> float:
         return float((weights * (by_trace**2 + 4 * np.abs(by_eta) ** 2)).sum())

@@ -101,7 +101,7 @@ class Passage:
         return replace(self, residuals=(*self.residuals, residual))
 
     def log_fz(self, time: float) -> tuple[Complexes, Complexes]:
-        """Return Σ w_i log f_z of the keyframes and its derivative, each (s,); Equation (3).
+        """Return Σ w_i log f_z of the keyframes and its derivative, each (s,).
 
         Residuals are included.
         """
@@ -113,6 +113,7 @@ class Passage:
     def plain_log_fz(self, time: float) -> tuple[Complexes, Complexes]:
         """Return the same without residuals."""
         weights = self.course(time)
+        # Equation (3), as a logarithm.
         logarithm = weighted([key.log_fz for key in self.keyframes], weights)
         logarithm.imag += 2 * np.pi * float(weights @ self.sheets)
         return logarithm, weighted([key.log_fz_z for key in self.keyframes], weights)

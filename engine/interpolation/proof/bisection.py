@@ -14,7 +14,7 @@ from math import inf
 
 import numpy as np
 
-from engine.arrays import Booleans, Floats
+from engine.arrays import Booleans, Floats, require_kind
 from engine.interpolation.enclosing import Subdivision
 from engine.interpolation.inbetweens import Inbetweens
 from engine.interpolation.proof.corrected_cells import CorrectedCellEnclosures
@@ -68,6 +68,7 @@ def prove(inbetweens: Inbetweens, time: float | None = None) -> Proof:
     time : float, optional
         In [0, 1]; the proof is of this frame alone.
     """
+    require_kind(inbetweens, Inbetweens, "what is proven")
     keyframes = inbetweens.passage.keyframes
     pieces = Subdivision.of([key.map.coefficients for key in keyframes], inbetweens.boundary)
     with np.errstate(over="ignore", invalid="ignore"):

@@ -98,7 +98,7 @@ class PointSamples:
         return replace(self, k=k, sigma_a=sigma_a, sigma_b=sigma_b)
 
     def ratios(self, weights: Floats) -> Floats:
-        """Return the largest scaling that each point allows at a time, Equations (16) to (18).
+        """Return the largest scaling that each point allows at a time.
 
         Departs from the paper: in these equations and in the denominators of Section 7.3 the bars
         were lost; the factor of ρ is |f_z̄|.
@@ -137,7 +137,13 @@ def allowed(
     """
     k, sigma_a, sigma_b = limits
     # ρ_k, ρ_a and ρ_b of Section 7.3 have the denominator |f_z̄| in common.
-    slack = np.minimum(k * a, np.minimum(sigma_a - a, a - sigma_b))
+    slack = np.minimum(
+        k * a,  # Equation (16)
+        np.minimum(
+            sigma_a - a,  # Equation (17)
+            a - sigma_b,  # Equation (18)
+        ),
+    )
     ratios = np.full(slack.shape, CEILING)
     np.divide(slack, b, out=ratios, where=b > np.maximum(NEGLIGIBLE * a, slack / CEILING))
     if d is not None:

@@ -39,7 +39,7 @@ def boned():
 
 def boundary_of(layer):
     domain = layer.domain
-    return stiffened(layer, Boundary.sample(domain.outline, domain.cage, domain.holes))
+    return stiffened(layer, Boundary.sample(domain))
 
 
 def test_a_stroke_is_painted_on_the_outline_it_reaches_and_cleared():

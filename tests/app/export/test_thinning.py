@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from app.export.thinning import TOLERANCE, Thinning
 from app.render.gpu import border_edges
 from engine.arrays import Complexes, Floats, Integers
-from engine.domain import Domain
+from engine.domain import MeshedDomain
 from engine.domain.meshing import Mesh, triangulate
 from engine.geometry import Hole
 
@@ -17,9 +17,11 @@ from engine.geometry import Hole
 BRACKET = np.array([0, 120, 120 + 90j, 80 + 90j, 80 + 30j, 40 + 30j, 40 + 90j, 90j]) + 0j
 
 
-def domain_of(outline: Complexes, triangles: int = 5_000, holes: tuple[Hole, ...] = ()) -> Domain:
+def domain_of(
+    outline: Complexes, triangles: int = 5_000, holes: tuple[Hole, ...] = ()
+) -> MeshedDomain:
     mesh = triangulate(outline, triangles, holes=[hole.outline for hole in holes])
-    return Domain(outline=outline, cage=outline, mesh=mesh, holes=holes)
+    return MeshedDomain(outline=outline, cage=outline, mesh=mesh, holes=holes)
 
 
 def bent(points: Complexes, amount: float) -> Complexes:

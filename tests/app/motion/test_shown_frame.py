@@ -8,7 +8,7 @@ from shapes import regular_polygon
 from app.document import clip_of
 from app.document.commands import handle_commands, key_commands, layer_commands
 from app.motion import IntervalStore, PosableMesh, show
-from engine.domain import Domain
+from engine.domain import MeshedDomain
 from engine.domain.meshing import triangulate
 
 
@@ -95,7 +95,7 @@ def test_a_mesh_with_something_in_front_goes_with_what_showed_it():
 def test_layers_that_are_drawn_together_share_the_coarse_triangles():
     outline = 100 * regular_polygon(30)
     mesh = triangulate(outline, 30_000)
-    domain = Domain(outline=outline, cage=1.2 * outline, mesh=mesh)
+    domain = MeshedDomain(outline=outline, cage=1.2 * outline, mesh=mesh)
     alone, one_of_two, one_of_ten = (
         len(PosableMesh.coarse(domain, among=among).domain.mesh.triangles) for among in (1, 2, 10)
     )

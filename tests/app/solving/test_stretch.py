@@ -36,7 +36,7 @@ def head():
 
 def pulled(domain, places, targets, bounds):
     """Return the map that brings handles to their targets as far as bounds let it, and the lags."""
-    boundary = Boundary.sample(domain.outline, domain.cage)
+    boundary = Boundary.sample(domain)
     handles = Handles.place(boundary, np.array(places, dtype=complex), [1.0] * len(places))
     deformer = Deformer(boundary=boundary, handles=handles, bounds=bounds)
     wish = handles.wish(np.array(targets, dtype=complex), [np.nan] * len(targets))

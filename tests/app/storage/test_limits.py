@@ -60,7 +60,7 @@ from app.storage import project_file
 from app.storage.autosave import Autosave, Origin, load_leftover
 from app.storage.project import archive
 from app.storage.project_file import load_project, save_project
-from engine.domain import Domain
+from engine.domain import MeshedDomain
 from engine.geometry.motions import Parameters
 from engine.maps import Bounds
 from tests.bench.opening import FILLINGS
@@ -142,7 +142,7 @@ def far_document():
     disc, corner = disc_domain(), complex(FARTHEST, FARTHEST)
     outline, cage = disc.outline / 200 + corner, disc.cage / 200 + corner
     mesh = replace(disc.mesh, vertices=outline)
-    domain = Domain(outline=outline, cage=cage, mesh=mesh)
+    domain = MeshedDomain(outline=outline, cage=cage, mesh=mesh)
     picture = PictureFile(data=blank_png(1, 1), suffix=".png", size=(1, 1))
     layer = replace(new_layer(picture, domain, Meshing()), corner=corner)
     return Document(layers=(layer,), size=(WIDEST, WIDEST))

@@ -468,7 +468,7 @@ def test_what_a_map_is_said_to_keep_is_not_believed(tmp_path, members):
     said = {"k": 0.1, "sigma_a": 1.0, "sigma_b": 1.0, "winding": 0, "certified": True}
     forged = with_json(members, "layers", 0, "keys", 1, "certificate", value=said)
     layer = load_project(pack(tmp_path / "a", forged)).layers[0]
-    boundary = Boundary.sample(layer.domain.outline, layer.domain.cage)
+    boundary = Boundary.sample(layer.domain)
     assert [key.pose.certificate.certified for key in layer.keys] == [True, False, True]
     for key in layer.keys:
         proven = certify(layer.map_of(key.pose), boundary, layer.bounds)

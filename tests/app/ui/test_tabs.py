@@ -28,7 +28,7 @@ def _stretched():
     """A disc with two handles: at rest at frame 0, stretched sideways at frame 24."""
     (empty,) = disc_document().layers
     domain, rest = empty.domain, empty.keys[0].pose
-    boundary = Boundary.sample(domain.outline, domain.cage)
+    boundary = Boundary.sample(domain)
     handles = (
         Handle(id=0, name="left", position=CENTRE - RADIUS / 2),
         Handle(id=1, name="right", position=CENTRE + RADIUS / 2),

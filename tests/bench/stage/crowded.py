@@ -10,7 +10,7 @@ from app.editor import Puppet
 from app.editor.actions import files, saving
 from app.storage import decode_picture, load_project, sample_images
 from engine.deform import MOST_HANDLES
-from engine.domain import Domain, mesh_inside
+from engine.domain import MeshedDomain, mesh_inside
 from tests.bench.stage.driver import Driver
 from tests.bench.table import Table, row_of
 
@@ -58,7 +58,7 @@ def _documents(sample: Document, count: int) -> dict[str, Document]:
         next_handle=handles,
         keys=(Keyframe(frame=0, pose=replace(pose, targets=targets)),),
     )
-    mesh = mesh_inside(*layer.domain.loops, triangles=TRIANGLES)
+    mesh = mesh_inside(layer.domain, triangles=TRIANGLES)
     small = replace(bare, domain=replace(layer.domain, mesh=mesh))
     copies = [replace(small, id=each, name=f"layer {each}", joints=()) for each in range(layers)]
     return {
@@ -81,7 +81,7 @@ def _documents(sample: Document, count: int) -> dict[str, Document]:
 
 def _opened(document: Document) -> files.Opened:
     """Return a document as files are opened; layers with the same domain share what is known."""
-    made: dict[Domain, Puppet] = {}
+    made: dict[MeshedDomain, Puppet] = {}
     for layer in document.layers:
         if layer.domain not in made:
             picture = decode_picture(layer.picture.data, layer.name)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
-from interpolation_shapes import bar, letter_l, random_map
+from interpolation_shapes import bar, boundary_of, letter_l, random_map
 from meshed_shapes import k_of, meshed_bar, s_to_u, stretched_pair
 from numpy.testing import assert_allclose
 
@@ -78,8 +78,8 @@ def test_it_lies_near_the_metric_variant():
     between = prepared(maps, mesh)
     metric = prepare(
         maps,
+        boundary_of(shape),
         mesh.vertices,
-        outline=shape[0],
         variant="metric",
         triangles=mesh.triangles,
         anchor=mesh.vertices[between.domain.anchor],

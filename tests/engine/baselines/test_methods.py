@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from interpolation_shapes import bar, bent
+from interpolation_shapes import bar, bent, boundary_of
 from meshed_shapes import k_of, meshed_bar, rigid, s_to_u, stretched_pair
 from messages import says
 from numpy.testing import assert_allclose
@@ -100,9 +100,8 @@ def test_arap_and_ffmp_leave_the_bounds_of_s_to_u(name, least, count):
 @pytest.mark.parametrize("variant", ["nu", "scaled-eta", "metric"])
 def test_our_variants_keep_the_bounds_of_s_to_u(variant):
     maps = s_to_u()
-    between = prepare(
-        maps, MESH.vertices, outline=OUTLINE, variant=variant, triangles=MESH.triangles
-    )
+    boundary = boundary_of(bar(0.25))
+    between = prepare(maps, boundary, MESH.vertices, variant=variant, triangles=MESH.triangles)
     ends = np.max([k_of(*f.derivatives(MESH.vertices)) for f in maps], axis=0)
     for time in np.linspace(0.2, 0.8, 4):
         frame = between.frame(time)
@@ -112,7 +111,7 @@ def test_our_variants_keep_the_bounds_of_s_to_u(variant):
 def test_linear_in_betweens_shrink_where_all_others_do_not():
     maps = [rigid(0.0, 0j), rigid(3.0, 0j)]
     linear = prepare(
-        maps, MESH.vertices, outline=OUTLINE, variant="linear", triangles=MESH.triangles
+        maps, boundary_of(bar(0.25)), MESH.vertices, variant="linear", triangles=MESH.triangles
     ).frame(0.5)
     assert np.abs(linear.fz).max() < 0.1
     for name in EXACT:

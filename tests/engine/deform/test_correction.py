@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from deform_shapes import BAR_POINTS, STAR_POINTS, bar_boundary, star_boundary
 from holed_shapes import ring
+from messages import says
 from numpy.testing import assert_allclose
 from scipy.optimize import minimize
 
@@ -24,6 +25,8 @@ from engine.deform.correction import (
     solve,
     solve_within,
 )
+from engine.deform.correction.solver import UNFINISHED
+from engine.errors import EngineError
 from engine.maps import Boundary, Bounds
 
 SHAPES = {"bar": (bar_boundary, BAR_POINTS), "star": (star_boundary, STAR_POINTS)}
@@ -39,7 +42,7 @@ def corrector(name):
 @cache
 def holed():
     shape = ring()
-    boundary = Boundary.sample(shape.outline, shape.cage, shape.holes)
+    boundary = Boundary.sample(shape.domain)
     return corrector_of(boundary, shape.anchor, np.array([0.75j, -0.75]))
 
 
@@ -269,6 +272,17 @@ def test_a_start_changes_nothing_but_the_steps():
     near = solve(known, base, targets, start=far)
     assert near.steps <= far.steps
     assert_allclose(near.x, far.x, atol=1e-7)
+
+
+def test_a_correction_that_is_not_finished_raises(monkeypatch):
+    monkeypatch.setattr("engine.deform.correction.solver.MOST_STEPS", 1)
+    known = corrector("star")
+    moves = moves_of(known.points, 0.2)
+    targets = Targets(moves, np.ones(6), is_anchored=True)
+    task = known, bent(known.paths.nodes), targets
+    with pytest.raises(EngineError, match=says(UNFINISHED, steps=1)):
+        solve(*task)
+    assert not solve(*task, throw=False).is_finished
 
 
 @pytest.mark.parametrize("sign", [-1, 1])

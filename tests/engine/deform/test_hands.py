@@ -263,7 +263,7 @@ def test_handles_that_one_hand_pulls_keep_their_formation_and_pull_as_one():
 
 def test_around_a_hole_a_hand_pulls_as_bounded():
     shape = plate(1)
-    boundary = Boundary.sample(shape.outline, shape.cage, shape.holes)
+    boundary = Boundary.sample(shape.domain)
     points = 0.97 * shape.outline[[0, len(shape.outline) // 3, 2 * len(shape.outline) // 3]]
     handles = Handles.place(boundary, points)
     far = points.copy()

@@ -22,6 +22,7 @@ from engine.deform.model.barrier import Barrier, Walls
 from engine.deform.model.hessian import projected_hessian
 from engine.deform.model.objective import Objective
 from engine.errors import EngineError
+from engine.geometry import Domain
 from engine.geometry.polygon import OUTSIDE_OUTLINE
 from engine.maps import Boundary, Bounds, HarmonicMap, Limits, certify
 
@@ -115,7 +116,7 @@ def test_a_hole_gives_where_a_filled_one_resists():
     points, targets = on_circle(0.8, [0, 180]), on_circle(0.55, [0, 180])
     energies = []
     for holes in (shape.holes, ()):
-        boundary = Boundary.sample(shape.outline, shape.cage, holes)
+        boundary = Boundary.sample(Domain(shape.outline, shape.cage, holes))
         deformer = Deformer(
             boundary=boundary, handles=Handles.place(boundary, points), bounds=Bounds()
         )
@@ -130,7 +131,7 @@ def test_a_tiny_hole_hardly_matters():
     placed = []
     tiny = ring(0.002)
     for holes in (tiny.holes, ()):
-        boundary = Boundary.sample(tiny.outline, tiny.cage, holes)
+        boundary = Boundary.sample(Domain(tiny.outline, tiny.cage, holes))
         deformer = Deformer(
             boundary=boundary, handles=Handles.place(boundary, points), bounds=Bounds()
         )
@@ -150,7 +151,7 @@ def test_a_shape_elsewhere_deforms_alike():
         (still, points, targets),
         (moved, factor * points + shift, factor * targets + shift),
     ):
-        boundary = Boundary.sample(shape.outline, shape.cage, shape.holes)
+        boundary = Boundary.sample(shape.domain)
         deformer = Deformer(boundary=boundary, handles=Handles.place(boundary, p), bounds=Bounds())
         state, _ = deformer.settle(deformer.start(), deformer.handles.wish(t))
         places = inner_points(still)

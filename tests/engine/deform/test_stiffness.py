@@ -20,6 +20,7 @@ from engine.deform import Deformer, Hand, Handles, Objective, limits_inside
 from engine.deform.model.inner_limits import _continued
 from engine.dirichlet import HilbertTransform
 from engine.errors import EngineError
+from engine.geometry import Domain
 from engine.maps import Boundary, Bounds, certify
 from engine.maps.stiffness import STIFFNESS_RANGE, STIFFNESS_SHAPE
 
@@ -149,7 +150,7 @@ def test_the_mean_around_a_point_is_that_of_what_is_near():
 def test_stiff_shapes_that_are_turned_and_enlarged_deform_alike():
     factor, shift = 3.0 * np.exp(0.7j), 5 - 2j
     stiffness = np.exp(np.log(30) * np.sin(np.arange(len(STAR.outline))))
-    larger = Boundary.sample(factor * STAR.outline + shift, factor * STAR.cage + shift)
+    larger = Boundary.sample(Domain(factor * STAR.outline + shift, factor * STAR.cage + shift))
     bounds = Bounds(k=0.3, sigma_a=1.8, sigma_b=0.5)
     placed = []
     for base, by, moved in ((STAR, 1.0, 0.0), (larger, factor, shift)):
@@ -204,7 +205,7 @@ def test_limits_where_it_is_stiff_hold_between_the_samples_too():
     assert (sigma_b >= np.log(SOME.sigma_b)).all()
     # They press somewhere, and the stiff half keeps less than is allowed elsewhere.
     assert max((k / SOME.k).max(), (sigma_a / np.log(SOME.sigma_a)).max()) > 0.9
-    transform = HilbertTransform.on(STAR.outline, STAR.cage)
+    transform = HilbertTransform.on(Domain(STAR.outline, STAR.cage))
     rng = np.random.default_rng(1)
     inside = np.concatenate([r * boundary.points for r in rng.uniform(0.05, 0.98, 4)])
     within = limits_inside(transform, boundary, SOME, inside)
@@ -228,7 +229,7 @@ def test_segments_keep_what_their_stiffer_end_allows():
 
 def test_logarithms_of_limits_go_on_into_shapes_with_holes():
     shape, boundary = plate(), boundary_of("plate", 3)
-    transform = HilbertTransform.on(boundary.outline, boundary.cage, boundary.holes)
+    transform = HilbertTransform.on(boundary.domain)
 
     def harmonic(z):
         return np.column_stack([np.log(np.abs(z - boundary.holes[1].centre)), (z**2).real])

@@ -15,7 +15,7 @@ from engine.dirichlet.hilbert import HilbertTransform
 from engine.dirichlet.panels import NODES, Panels
 from engine.dirichlet.product_integration import is_near, panel_weights
 from engine.dirichlet.refinement import Refinement
-from engine.geometry import contains
+from engine.geometry import Domain, contains
 from engine.geometry.polygon import box_diagonal, edges
 from engine.interpolation import Course
 from engine.interpolation.blends.outline import OutlineMetric
@@ -42,7 +42,7 @@ def entire(z):
 @given(polygon=star_polygons(largest=14), seed=st.integers(0, 100))
 @settings(max_examples=12)
 def test_holomorphic_functions_are_found_from_their_real_parts(polygon, seed):
-    transform = HilbertTransform.on(polygon, far_cage(polygon))
+    transform = HilbertTransform.on(Domain(polygon, far_cage(polygon)))
     points = inner_points(polygon, 60, seed)
     values, slopes, _ = transform.at(points).extend(entire(transform.nodes)[0].real)
     expected, expected_slopes = entire(points)
@@ -56,7 +56,7 @@ def test_holomorphic_functions_are_found_from_their_real_parts(polygon, seed):
 @pytest.mark.parametrize("shape", [bar(), letter_l(), narrow_u(0.1)])
 def test_values_are_accurate_on_the_outline_itself(shape):
     outline, cage = shape
-    transform = HilbertTransform.on(outline, cage)
+    transform = HilbertTransform.on(Domain(outline, cage))
     middles = outline + 0.5 * edges(outline)
     anywhere = outline + 0.123 * edges(outline)
     outside = middles * (1 + 1e-15)
@@ -75,7 +75,7 @@ def corner_function(z):
 
 def test_singularities_at_inward_corners_are_resolved():
     outline, cage = letter_l()
-    transform = HilbertTransform.on(outline, cage)
+    transform = HilbertTransform.on(Domain(outline, cage))
     points = inner_points(outline, 200, 0)
     values, _, _ = transform.at(points).extend(corner_function(transform.nodes).real[:, None])
     expected = corner_function(points)[:, None]
@@ -94,7 +94,7 @@ def solutions(shape, coarsenesses):
     maps = [random_map(shape, seed) for seed in (3, 4)]
     points = np.concatenate([inner_points(outline, 150, 0), outline + 0.3 * edges(outline)])
     for coarseness in coarsenesses:
-        panels = Panels.on(outline, cage, coarseness=coarseness)
+        panels = Panels.on(Domain(outline, cage), coarseness=coarseness)
         transform = HilbertTransform.of((outline,), panels)
         values, _, _ = transform.at(points).extend(metric_data(maps, transform.nodes))
         yield len(transform.nodes), without_constant(values)
@@ -121,12 +121,12 @@ def test_the_nodes_that_the_shape_asks_for_are_enough():
 def test_the_number_of_nodes_comes_from_the_shape():
     # The cage is far, so that the gap alone asks for more.
     wide, narrow = (
-        len(Panels.on(outline, far_cage(outline)))
+        len(Panels.on(Domain(outline, far_cage(outline))))
         for outline in (narrow_u(gap)[0] for gap in (0.2, 0.01))
     )
     assert narrow > 1.25 * wide
     outline, _ = letter_l()
-    far, near = (len(Panels.on(outline, around(outline, offset))) for offset in (0.2, 0.01))
+    far, near = (len(Panels.on(Domain(outline, around(outline, offset)))) for offset in (0.2, 0.01))
     assert near > 1.5 * far
 
 
@@ -137,7 +137,7 @@ def test_any_number_of_nodes_is_taken_and_memory_grows_with_it(coarseness, nodes
     # Four times the panels, four times the memory; a matrix would take sixteen times.
     outline, cage = spiral()
     coarse, fine = (
-        HilbertTransform.of((outline,), Panels.on(outline, cage, coarseness=each))
+        HilbertTransform.of((outline,), Panels.on(Domain(outline, cage), coarseness=each))
         for each in (8 * coarseness, coarseness)
     )
     more = len(fine.nodes) / len(coarse.nodes)
@@ -152,7 +152,7 @@ def test_any_number_of_nodes_is_taken_and_memory_grows_with_it(coarseness, nodes
 
 def test_panels_tile_the_outline():
     outline, cage = spiral()
-    panels = Panels.on(outline, cage)
+    panels = Panels.on(Domain(outline, cage))
     lengths = panels.differentials().sum(axis=1)
     assert_allclose(np.abs(lengths).sum(), np.abs(edges(outline)).sum(), rtol=1e-12, atol=0)
     starts = np.where(panels.forward, panels.origin, panels.origin + panels.span)
@@ -167,7 +167,7 @@ def test_panels_tile_the_outline():
 
 def test_halved_panels_tile_the_same_outline():
     outline, cage = spiral()
-    whole = Panels.on(outline, cage, coarseness=4.0)
+    whole = Panels.on(Domain(outline, cage), coarseness=4.0)
     chosen = np.random.default_rng(0).random(len(whole)) < 0.5
     chosen[~whole.forward] = True
     panels = whole.halved(chosen)
@@ -185,7 +185,7 @@ def test_halved_panels_tile_the_same_outline():
 
 @pytest.mark.parametrize("shape", [Holed(*letter_l(), holes=(), anchor=0.5 + 0.5j), ring()])
 def test_panels_that_are_cut_resolve_what_varies_fast_there(shape):
-    transform = HilbertTransform.on(shape.outline, shape.cage, shape.holes)
+    transform = HilbertTransform.on(shape.domain)
     panels, inner = transform.panels, points_of(shape, 60)
     points = np.concatenate([inner, *shape.loops])
     refinement = Refinement.of(transform)
@@ -233,7 +233,7 @@ def test_far_from_the_origin_nothing_is_lost_but_the_rounding_of_coordinates(sha
         replace(hole, outline=hole.outline + far, cage=hole.cage + far, centre=hole.centre + far)
         for hole in shape.holes
     ]
-    transform = HilbertTransform.on(shape.outline + far, shape.cage + far, holes)
+    transform = HilbertTransform.on(Domain(shape.outline + far, shape.cage + far, holes))
     middles = [loop + 0.5 * edges(loop) for loop in shape.loops]
     points = far + np.concatenate([*shape.loops, *middles, points_of(shape, 60)])
     values, slopes, _ = transform.at(points).extend(entire(transform.nodes - far)[0].real)
@@ -274,7 +274,7 @@ def test_far_from_a_panel_plain_quadrature_is_as_good():
 
 def test_fast_evaluation_agrees_with_the_sum_over_all_panels():
     outline, cage = narrow_u()
-    panels = Panels.on(outline, cage)
+    panels = Panels.on(Domain(outline, cage))
     # Smooth along the outline: the two differentiate what jumps between panels differently.
     densities = np.cos(
         panels.nodes.reshape(-1, 1).real * [3, 5, 7] + panels.nodes.reshape(-1, 1).imag
@@ -299,7 +299,7 @@ def test_fast_evaluation_agrees_with_the_sum_over_all_panels():
 
 def test_single_precision_keeps_close_weights_and_takes_half_the_memory():
     outline, cage = narrow_u()
-    panels = Panels.on(outline, cage)
+    panels = Panels.on(Domain(outline, cage))
     # Towards where two panels meet on an edge: the large weights of both cancel.
     straight = panels.power == 1
     ends, along = (panels.origin + panels.span)[straight], panels.span[straight]
@@ -336,7 +336,7 @@ def around_holes(shape):
 @pytest.mark.parametrize("shape", [ring(), plate(3)])
 def test_around_holes_functions_are_found_from_real_parts_but_for_a_constant_each(shape):
     # What is given is off by a constant around each hole: exactly that comes back as lacking.
-    transform = HilbertTransform.on(shape.outline, shape.cage, shape.holes)
+    transform = HilbertTransform.on(shape.domain)
     function, constants = around_holes(shape)
     given = function(transform.nodes).real
     for constant, mean in zip(constants, transform.means, strict=True):

@@ -9,11 +9,12 @@ from engine.dirichlet.hilbert import HilbertTransform
 from engine.dirichlet.panels import Panels
 from engine.dirichlet.partition import partition
 from engine.dirichlet.skeleton_solver import SkeletonSolver
+from engine.geometry import Domain
 
 
 def operator_on(shape, coarseness=4.0):
     loops = (shape.outline, shape.cage, shape.holes) if hasattr(shape, "holes") else shape
-    return BoundaryOperator.of(Panels.on(*loops, coarseness=coarseness))
+    return BoundaryOperator.of(Panels.on(Domain(*loops), coarseness=coarseness))
 
 
 @pytest.mark.parametrize("shape", [bar(), letter_l(), narrow_u(), spiral(1.2), ring(sides=24)])
@@ -62,7 +63,7 @@ def panels_on_a_line():
 
 
 @pytest.mark.parametrize("depth", [0, 1, 4])
-@pytest.mark.parametrize("panels", [Panels.on(*narrow_u()), panels_on_a_line()])
+@pytest.mark.parametrize("panels", [Panels.on(Domain(*narrow_u())), panels_on_a_line()])
 def test_boxes_share_all_panels_out(panels, depth):
     boxes = partition(panels, depth)
     assert len(boxes) == 2**depth
@@ -72,7 +73,7 @@ def test_boxes_share_all_panels_out(panels, depth):
 
 def test_a_factorisation_tells_how_far_it_is_and_can_be_ended():
     shares = []
-    HilbertTransform.on(*narrow_u(), progress=shares.append)
+    HilbertTransform.on(Domain(*narrow_u()), progress=shares.append)
     assert shares[0] == 0
     assert shares[-1] == 1
     assert (np.diff(shares) > 0).all()
@@ -84,7 +85,7 @@ def test_a_factorisation_tells_how_far_it_is_and_can_be_ended():
             raise TimeoutError
 
     with pytest.raises(TimeoutError):
-        HilbertTransform.on(*narrow_u(), progress=cancel)
+        HilbertTransform.on(Domain(*narrow_u()), progress=cancel)
 
 
 def wound(turns):

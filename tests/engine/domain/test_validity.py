@@ -8,7 +8,7 @@ from messages import says
 from pictures import blob, limbs, ring, star
 from shapes import regular_polygon
 
-from engine.domain import Domain, build_domain, require_domain
+from engine.domain import MeshedDomain, build_domain, require_domain
 from engine.domain.meshing import Mesh
 from engine.domain.picture.cut_out import CutOut
 from engine.domain.validity import (
@@ -32,7 +32,7 @@ TRIANGLES = np.array([[0, 1, 3], [1, 2, 3], [0, 3, 5], [3, 4, 5]], np.int32)
 
 def domain(outline=OUTLINE, cage=CAGE * 50 + 20 + 30j, vertices=OUTLINE, triangles=TRIANGLES):
     mesh = Mesh(vertices=vertices, triangles=np.array(triangles, np.int32).reshape(-1, 3))
-    return Domain(outline=outline, cage=cage, mesh=mesh)
+    return MeshedDomain(outline=outline, cage=cage, mesh=mesh)
 
 
 def test_a_domain_made_by_hand_is_one():
@@ -54,7 +54,6 @@ def test_every_domain_that_is_built_is_one(picture):
     [
         (domain(outline=OUTLINE[::-1]), "outline runs clockwise"),
         (domain(outline=OUTLINE[[0, 2, 1, 3, 4, 5]]), "outline crosses"),
-        (domain(outline=OUTLINE[:2]), says(VERTEX_COUNT, name="outline")),
         (domain(cage=(CAGE * 50 + 20 + 30j)[::-1]), says(CAGE_ORDER)),
         (domain(cage=0.5 * (OUTLINE - OUTLINE[3]) + OUTLINE[3]), says(CAGE_TOUCHES)),
         (domain(cage=CAGE * 50 + 500), says(CAGE_ORDER)),
@@ -94,7 +93,7 @@ def test_a_mesh_that_goes_twice_around_fills_nothing():
 
 
 @pytest.fixture(scope="module")
-def holed() -> Domain:
+def holed() -> MeshedDomain:
     built, _ = build_domain(ring(), triangles=1_000, detail="coarse", cut_out=CutOut(holes="keep"))
     assert len(built.holes) == 1
     return built
@@ -104,7 +103,7 @@ def test_a_domain_with_a_hole_is_one(holed):
     require_domain(holed)
 
 
-def altered(domain: Domain, **changes) -> Domain:
+def altered(domain: MeshedDomain, **changes) -> MeshedDomain:
     return replace(domain, holes=(replace(domain.holes[0], **changes),))
 
 
@@ -120,7 +119,7 @@ def test_what_is_wrong_with_a_hole_is_told(holed):
         (replace(holed, holes=(hole, hole)), "Hole 1 leaves the outline, or meets another hole"),
         (altered(holed, cage=hole.cage[::-1]), "cage of hole 0 runs counter-clockwise"),
         (altered(holed, cage=middle + 1.2 * (hole.cage - middle)), "cage of hole 0 is not inside"),
-        (altered(holed, cage=hole.cage[:2]), "cage must have 3 to"),
+        (altered(holed, cage=hole.cage[:2]), "cage of hole 0 needs at least 3"),
         (altered(holed, centre=middle + 100), "centre of hole 0 is not inside"),
         (altered(holed, outline=middle + 1.05 * (hole.outline - middle)), "does not fill"),
         (replace(holed, holes=()), "does not fill"),

@@ -12,6 +12,7 @@ from numpy.testing import assert_allclose
 from engine.deform import Status
 from engine.dirichlet import Extension, HilbertTransform
 from engine.errors import EngineError
+from engine.geometry import Domain
 from engine.interpolation import (
     Interval,
     Passage,
@@ -38,8 +39,9 @@ def keys(shape: Holed, seed: int = 0, size: float = 0.12) -> list[HarmonicMap]:
 
 def between(shape: Holed, maps, variant, points=None, **options):
     points = inner_points(shape, 120) if points is None else points
+    domain = Domain(shape.outline, maps[0].cage, maps[0].holes)
     return prepare(
-        maps, points, outline=shape.outline, variant=variant, anchor=shape.anchor, **options
+        maps, Boundary.sample(domain), points, variant=variant, anchor=shape.anchor, **options
     )
 
 
@@ -195,8 +197,8 @@ def pulled_on(name, count=5):
     circles = [h.centre + r * turn for h, r in zip(shape.holes, radii, strict=True)]
     edge = along(shape.loops, count)
     points = np.concatenate([*circles, edge])
-    sites = prepare_sites(shape.outline, shape.cage, points, holes=shape.holes, anchor=shape.anchor)
-    transform = HilbertTransform.on(shape.outline, shape.cage, shape.holes)
+    sites = prepare_sites(Boundary.sample(shape.domain), points, anchor=shape.anchor)
+    transform = HilbertTransform.on(shape.domain)
     return Pulled(shape, circles, edge, sites, transform.at(sites.paths.nodes))
 
 
@@ -338,7 +340,7 @@ def test_the_correction_is_the_smallest():
 
 def test_a_key_that_is_turned_inside_out_around_a_hole_is_told_as_that():
     shape = ring()
-    boundary = Boundary.sample(shape.outline, shape.cage, shape.holes)
+    boundary = Boundary.sample(shape.domain)
     inside = shape.holes[0].cage
     span = HarmonicMap.identity(shape.cage, shape.holes).span
     # 1/z folds nowhere, but f_z winds around the hole.

@@ -1,21 +1,20 @@
 """Motion through keyframes: its velocity, bounds and symmetries, and what a keyframe changes."""
 
-from functools import cache
-
 import numpy as np
 import pytest
 from interpolation_shapes import (
     bent,
+    boundary_of,
     distortion_of,
     inner_points,
     letter_l,
     random_map,
     scattered_on,
+    transform_of,
 )
 from messages import says
 from numpy.testing import assert_allclose, assert_array_equal
 
-from engine.dirichlet import HilbertTransform
 from engine.errors import EngineError
 from engine.interpolation import (
     BLENDS,
@@ -33,7 +32,7 @@ from engine.interpolation import (
     sample_keyframes,
 )
 from engine.interpolation.passage.derivatives import KEYFRAMES_OF_INTERVAL
-from engine.maps import Boundary, Bounds, HarmonicMap
+from engine.maps import Bounds, HarmonicMap
 from engine.paths import root_sheets
 
 OUTLINE, CAGE = SHAPE = letter_l()
@@ -43,21 +42,11 @@ WIDE = Bounds(k=0.9, sigma_a=50, sigma_b=0.02)
 STEP = 2e-4
 
 
-@cache
-def transform():
-    return HilbertTransform.on(OUTLINE, CAGE)
-
-
-@cache
-def boundary():
-    return Boundary.sample(OUTLINE, CAGE)
-
-
-def between(maps=MAPS, points=POINTS, **options):
+def between(maps=MAPS, points=POINTS, shape=SHAPE, **options):
     options = {"variant": "metric", "through": True, "anchor": 0.7 + 0.6j} | options
-    if options["variant"] == "metric" and "outline" not in options:
-        options["transform"] = transform()
-    return prepare(maps, points, outline=options.pop("outline", OUTLINE), **options)
+    if options["variant"] == "metric":
+        options["transform"] = transform_of(shape)
+    return prepare(maps, boundary_of(shape), points, **options)
 
 
 def velocity(place, step):
@@ -157,7 +146,7 @@ def test_two_keyframes_have_the_in_betweens_of_the_paper(variant):
     sites = plain.sites
     sheets = root_sheets(np.array([key.anchor_fz for key in plain.keyframes]))
     passage = Passage.of(plain.keyframes, sheets, Course.between(0.0, 0.0))
-    extension = transform().at(sites.paths.nodes) if variant == "metric" else None
+    extension = transform_of(SHAPE).at(sites.paths.nodes) if variant == "metric" else None
     stopped = prepare_inbetweens(variant, Interval(sites, passage, Bounds(), transform=extension))
     if not variant.is_scaled:  # whose ρ is for other bounds
         eased = plain.frame(0.3**2 * (3 - 2 * 0.3))
@@ -225,7 +214,7 @@ def test_the_motion_turns_moves_and_grows_with_its_keyframes(variant):
     grown = between(
         larger,
         7 * POINTS,
-        outline=7 * OUTLINE,
+        shape=(7 * OUTLINE, 7 * CAGE),
         anchor=7 * (0.7 + 0.6j),
         variant=variant,
         bounds=WIDE,
@@ -275,7 +264,7 @@ def test_a_tangent_is_the_same_in_any_unit_of_time_and_shrinks_with_the_bounds()
     three = [random_map(SHAPE, seed, k=0.5, bend=0.8) for seed in (1, 2, 3)]
 
     def length(joint, bounds):
-        return BLENDS[Variant.METRIC].tangent(three, joint, bounds, boundary()).length
+        return BLENDS[Variant.METRIC].tangent(three, joint, bounds, boundary_of(SHAPE)).length
 
     tight, tighter = (
         Bounds(k=0.8, sigma_a=3.2, sigma_b=0.2),
@@ -295,7 +284,7 @@ def test_a_frame_alone_is_the_same_as_among_the_others(variant, through):
     interval, sites = prepared.intervals[0], prepared.sites
     passage = interval.passage
     own = Passage.of(passage.keyframes, passage.sheets, passage.eta_course)
-    alone = Interval(sites, own, Bounds(), transform=transform().at(sites.paths.nodes))
+    alone = Interval(sites, own, Bounds(), transform=transform_of(SHAPE).at(sites.paths.nodes))
     for time in (0.0, 0.37, 1.0):
         frame = frame_at(time, variant, alone)
         expected = interval.frame(time)
@@ -310,7 +299,7 @@ def test_a_frame_alone_is_the_same_as_among_the_others(variant, through):
 
 
 def test_a_course_asks_for_its_keyframes():
-    sites = prepare_sites(OUTLINE, CAGE, POINTS)
+    sites = prepare_sites(boundary_of(SHAPE), POINTS)
     keys = sample_keyframes(MAPS[:2], sites)
     sheets = root_sheets(np.array([key.anchor_fz for key in keys]))
     course = Course.between(Tangent(Joint(1.0, 1.0), 1.0, 1.0), 1.0)
@@ -349,7 +338,7 @@ def test_tangents_apart_are_those_of_other_keyframes():
 @pytest.mark.parametrize("variant", ["nu", "scaled-eta", "metric"])
 @pytest.mark.parametrize("bounds", [WIDE, Bounds(k=0.3, sigma_a=2.2, sigma_b=0.5)])
 def test_what_leads_to_another_motion_keeps_the_bounds_and_is_proven(variant, bounds):
-    sites = prepare_sites(OUTLINE, CAGE, POINTS, anchor=0.7 + 0.6j)
+    sites = prepare_sites(boundary_of(SHAPE), POINTS, anchor=0.7 + 0.6j)
     # From the first to the second; in the motion that it leads to the third comes after that, and
     # the fourth before.
     keys = sample_keyframes(MAPS, sites)
@@ -360,7 +349,7 @@ def test_what_leads_to_another_motion_keeps_the_bounds_and_is_proven(variant, bo
     course = Course.between(1.0, tangent, apart=(False, True))
     sheets = root_sheets(np.array([key.anchor_fz for key in keys]))
     passage = Passage.of(keys, sheets, course)
-    extension = transform().at(sites.paths.nodes) if variant == "metric" else None
+    extension = transform_of(SHAPE).at(sites.paths.nodes) if variant == "metric" else None
     interval = prepare_inbetweens(Variant(variant), Interval(sites, passage, bounds, extension))
     assert_allclose(interval.frame(1.0).positions, keys[1].positions, rtol=0, atol=1e-9)
     proof = prove(interval)

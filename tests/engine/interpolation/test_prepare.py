@@ -2,14 +2,25 @@
 
 import numpy as np
 import pytest
-from interpolation_shapes import bar, bent, inner_points, letter_l, narrow_u, random_map, stage_of
+from interpolation_shapes import (
+    bar,
+    bent,
+    boundary_of,
+    inner_points,
+    letter_l,
+    narrow_u,
+    random_map,
+    stage_of,
+    transform_of,
+)
 from messages import says
 from numpy.testing import assert_allclose, assert_array_equal
 
+from engine.arrays import NOT_NUMBER, OTHER_KIND
 from engine.dirichlet.hilbert import HilbertTransform
 from engine.domain.meshing.triangulation import triangulate
 from engine.errors import EngineError
-from engine.geometry import polygon
+from engine.geometry import Domain, polygon
 from engine.interpolation import (
     Course,
     Interval,
@@ -23,9 +34,14 @@ from engine.interpolation.blends.metric import RESOLVED
 from engine.interpolation.blends.outline import OutlineMetric
 from engine.interpolation.passage.derivatives import KEYFRAMES_OF_INTERVAL
 from engine.interpolation.passage.keyframe_samples import FOLDS, sample_keyframes
-from engine.interpolation.preparation import OTHER_CAGE, TIME_RANGE, TWO_KEYFRAMES
+from engine.interpolation.preparation import (
+    OTHER_BOUNDARY,
+    OTHER_CAGE,
+    TIME_RANGE,
+    TWO_KEYFRAMES,
+)
 from engine.interpolation.sites import ONE_ANCHOR, OTHER_OUTLINE
-from engine.maps import Bounds
+from engine.maps import Bounds, distortion
 from engine.maps.harmonic_map import HarmonicMap, derivatives_of
 from engine.paths.complex_log import root_sheets
 
@@ -34,11 +50,11 @@ MAPS = [random_map(SHAPE, seed) for seed in (1, 2, 5)]
 POINTS = inner_points(OUTLINE, 25, 0)
 
 
-def between(maps=MAPS, points=POINTS, outline=OUTLINE, **options):
+def between(maps=MAPS, points=POINTS, shape=SHAPE, **options):
     options = {"variant": "nu"} | options
-    if options["variant"] == "metric" and outline is OUTLINE:
-        options.setdefault("transform", stage_of(SHAPE, POINTS).transform)
-    return prepare(maps, points, outline=outline, **options)
+    if options["variant"] == "metric":
+        options.setdefault("transform", transform_of(shape))
+    return prepare(maps, boundary_of(shape), points, **options)
 
 
 def test_frames_are_pure_and_their_inputs_frozen():
@@ -57,7 +73,7 @@ def test_frames_are_pure_and_their_inputs_frozen():
 @pytest.mark.parametrize("variant", list(Variant))
 def test_intervals_are_prepared_one_at_a_time_and_keyframes_shared(variant):
     whole = between(variant=variant)
-    sites = prepare_sites(OUTLINE, CAGE, POINTS)
+    sites = prepare_sites(boundary_of(SHAPE), POINTS)
     keys = sample_keyframes(MAPS[:2], sites)
     keys += sample_keyframes(MAPS[2:], sites)
     sheets = root_sheets(np.array([key.anchor_fz for key in keys]))
@@ -101,14 +117,14 @@ def test_scattered_points_and_a_mesh_give_the_same(variant):
 
 def test_the_default_anchor_is_the_centre_of_the_largest_disc():
     outline, _ = bar()
-    prepared = prepare([bent(bar()), bent(bar(), turn=1)], [0j], outline=outline, variant="nu")
+    prepared = prepare([bent(bar()), bent(bar(), turn=1)], boundary_of(bar()), [0j], variant="nu")
     assert abs(prepared.sites.anchor.imag) < 1e-3
     assert polygon.distance_to_boundary(outline, np.array([prepared.sites.anchor]))[0] > 0.499
 
 
 def test_a_full_turn_is_kept_and_flipped_by_its_integer():
     maps = [bent(bar()), bent(bar(), turn=3.0)]
-    options = {"outline": bar()[0], "anchor": 0, "points": np.array([1 + 0j])}
+    options = {"shape": bar(), "anchor": 0, "points": np.array([1 + 0j])}
     angles = [
         np.angle(between(maps, turns=turns, **options).frame(0.5).positions[0])
         for turns in (None, [0], [-1], [1])
@@ -129,10 +145,28 @@ def test_a_turn_only_rotates_eta_but_changes_the_shape_of_nu():
         assert np.allclose(*np.exp(1j * np.array(stretch)), atol=1e-9) is same
 
 
-@pytest.mark.parametrize("time", [-1e-9, 2.0001, float("nan"), float("inf")])
+@pytest.mark.parametrize("time", [-1e-9, 2.0000001, float("nan"), float("inf")])
 def test_times_out_of_range_are_refused(time):
-    with pytest.raises(EngineError, match=says(TIME_RANGE)):
+    with pytest.raises(EngineError, match=says(TIME_RANGE, time=time)):
         between().frame(time)
+
+
+@pytest.mark.parametrize("time", ["0.5", [0.5], 1j, None])
+def test_times_that_are_no_numbers_are_refused(time):
+    with pytest.raises(EngineError, match=says(NOT_NUMBER, name="time")):
+        between().frame(time)
+
+
+def test_prepare_refuses_anything_but_a_boundary():
+    with pytest.raises(EngineError, match=says(OTHER_KIND, name="boundary", given="ndarray")):
+        prepare(MAPS, POINTS, POINTS)
+
+
+def test_a_frame_tells_its_distortion():
+    frame = between().frame(0.5)
+    for name in ("k", "tau", "sigma_a", "sigma_b"):
+        expected = getattr(distortion, name)(frame.fz, frame.fzbar)
+        assert_array_equal(getattr(frame, name), expected)
 
 
 def test_folds_are_found_wherever_they_are():
@@ -141,11 +175,11 @@ def test_folds_are_found_wherever_they_are():
     # ν = 1.5 z vanishes in the middle and folds both ends.
     ends = HarmonicMap(cage=cage, phi=cage, psi=0.375 * cage**2 * 2)
     with pytest.raises(EngineError, match=r"Keyframe 1 folds: at \(-?2, .*sigma_b is -"):
-        prepare([conformal, ends], [0j], outline=bar()[0])
+        prepare([conformal, ends], boundary_of(bar()), [0j])
     # f_z = z has a zero in the middle, where nothing on the outline folds.
     zero = HarmonicMap(cage=cage, phi=cage**2 / 2, psi=0 * cage)
     with pytest.raises(EngineError, match=r"Keyframe 0 folds inside: f_z winds 1 times"):
-        prepare([zero, conformal], [1 + 0.1j], outline=bar()[0], anchor=1.5)
+        prepare([zero, conformal], boundary_of(bar()), [1 + 0.1j], anchor=1.5)
 
 
 @pytest.mark.parametrize(
@@ -154,6 +188,8 @@ def test_folds_are_found_wherever_they_are():
         ({"maps": MAPS[:1]}, says(TWO_KEYFRAMES, count=1)),
         ({"maps": []}, says(TWO_KEYFRAMES, count=0)),
         ({"maps": [MAPS[0], HarmonicMap.identity(1.01 * CAGE)]}, says(OTHER_CAGE)),
+        ({"maps": [CAGE, CAGE]}, says(OTHER_KIND, name="keyframe 0", given="ndarray")),
+        ({"shape": bar()}, says(OTHER_BOUNDARY)),
         ({"variant": "wobbly"}, "no variant 'wobbly'; there are metric, nu"),
         ({"anchor": [0.5, 0.6]}, says(ONE_ANCHOR, count=2)),
         ({"anchor": []}, says(ONE_ANCHOR, count=0)),
@@ -162,7 +198,6 @@ def test_folds_are_found_wherever_they_are():
         ({"points": OUTLINE * (1 + 1e-7)}, "outside"),
         ({"points": []}, "at least 1"),
         ({"turns": [1]}, "2 integers"),
-        ({"outline": np.append(OUTLINE, OUTLINE[:1])}, "repeats"),
         ({"triangles": [[0, 1]]}, "shape"),
     ],
 )
@@ -183,7 +218,7 @@ def test_points_on_the_outline_within_a_billionth_are_taken():
 
 
 def test_a_fold_between_the_samples_of_the_outline_is_found():
-    boundary = prepare_sites(OUTLINE, CAGE, POINTS).boundary
+    boundary = boundary_of(SHAPE)
     following = np.roll(boundary.points, -1)
     dense = (
         boundary.points[:, None] + (following - boundary.points)[:, None] * np.linspace(0, 1, 32)
@@ -201,17 +236,17 @@ def test_a_fold_between_the_samples_of_the_outline_is_found():
 
 
 def test_a_transform_of_another_outline_is_refused():
-    other = HilbertTransform.on(*bar())
+    other = HilbertTransform.on(Domain(*bar()))
     with pytest.raises(EngineError, match=says(OTHER_OUTLINE)):
         between(variant="metric", transform=other)
     # As many vertices, but elsewhere.
-    moved = HilbertTransform.on(OUTLINE * 1.01, CAGE * 1.01)
+    moved = HilbertTransform.on(Domain(OUTLINE * 1.01, CAGE * 1.01))
     with pytest.raises(EngineError, match=says(OTHER_OUTLINE)):
         between(variant="metric", transform=moved)
 
 
 def test_what_a_variant_needs_is_asked_for():
-    sites = prepare_sites(OUTLINE, CAGE, POINTS)
+    sites = prepare_sites(boundary_of(SHAPE), POINTS)
     keys = sample_keyframes(MAPS, sites)
     sheets = root_sheets(np.array([key.anchor_fz for key in keys]))
     with pytest.raises(
@@ -248,11 +283,13 @@ def test_the_metric_converges_with_the_nodes_that_the_keyframes_ask_for(monkeypa
     metric = OutlineMetric.of(*derivatives_of(maps, points), Course.straight(), Bounds())
     halves = np.full((2, 1), 0.5)
     expected = metric.residuals(halves[0]) + metric.log_modulus.T @ halves
-    transform = HilbertTransform.on(outline, cage)
+    shape = outline, cage
     errors = []
     for tolerance in (1.0, RESOLVED, RESOLVED / 10):
         monkeypatch.setattr("engine.interpolation.blends.metric.RESOLVED", tolerance)
-        motion = prepare(maps, points, outline=outline, variant="metric", transform=transform)
+        motion = prepare(
+            maps, boundary_of(shape), points, variant="metric", transform=transform_of(shape)
+        )
         errors.append(np.abs(np.log(np.abs(motion.frame(0.5).fz)) - expected[:, 0]).max())
     assert errors[0] > 20 * errors[1]
     assert errors[1] > 20 * errors[2]

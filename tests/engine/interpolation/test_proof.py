@@ -4,10 +4,19 @@ import numpy as np
 import pytest
 from holed_shapes import plate, random_map as holed_map
 from hypothesis import given, settings, strategies as st
-from interpolation_shapes import bar, inner_points, letter_l, random_map, scattered_on, stage_of
+from interpolation_shapes import (
+    bar,
+    boundary_of,
+    inner_points,
+    letter_l,
+    random_map,
+    scattered_on,
+    stage_of,
+)
 from messages import says
 
 from engine.errors import EngineError
+from engine.geometry import Domain
 from engine.interpolation import Course, Joint, Tangent, Variant, prepare
 from engine.interpolation.added.pins import CorrectionSeries
 from engine.interpolation.blends.eta import EtaBlend
@@ -23,7 +32,7 @@ from engine.maps import Boundary, Bounds, distortion
 from engine.maps.harmonic_map import HarmonicMap
 
 OUTLINE, CAGE = SHAPE = letter_l()
-BOUNDARY = Boundary.sample(OUTLINE, CAGE)
+BOUNDARY = Boundary.sample(Domain(OUTLINE, CAGE))
 POINTS = np.concatenate([inner_points(OUTLINE, 30, 0), scattered_on(OUTLINE, 150)])
 TIMES = np.concatenate([np.linspace(0, 1, 17), np.random.default_rng(3).uniform(0, 1, 4)])
 ACCURACY = 1e-4  # relative, of the metric variant's integral equation near a cage vertex
@@ -67,10 +76,10 @@ def test_nothing_is_beyond_what_is_proven_and_that_is_tight(variant, seed):
 def test_motion_through_keyframes_is_proven(variant):
     maps = [random_map(SHAPE, seed, k=0.3, bend=0.5) for seed in (1, 2, 5, 8)]
     bounds = Bounds(k=0.6, sigma_a=4, sigma_b=0.2)
-    options = {"outline": OUTLINE, "variant": variant, "through": True, "bounds": bounds}
+    options = {"variant": variant, "through": True, "bounds": bounds}
     if variant.needs_transform:
         options["transform"] = stage_of(SHAPE, POINTS).transform
-    prepared = prepare(maps, POINTS[::3], **options)
+    prepared = prepare(maps, BOUNDARY, POINTS[::3], **options)
     for interval in prepared.intervals:
         k, sigma_a, sigma_b = measured(interval, TIMES[::4])
         proof = prove(interval)
@@ -108,10 +117,10 @@ def test_motion_through_keyframes_is_proven(variant):
 )
 def test_in_betweens_around_holes_are_proven(variant, through):
     shape = plate(2, 8)
-    boundary = Boundary.sample(shape.outline, shape.cage, shape.holes)
+    boundary = Boundary.sample(shape.domain)
     maps = [holed_map(shape, seed, 0.1) for seed in range(3 if through else 2)]
     points = boundary.points[::9]
-    prepared = prepare(maps, points, outline=shape.outline, variant=variant, through=through)
+    prepared = prepare(maps, boundary, points, variant=variant, through=through)
     interval = prepared.intervals[0]
     assert interval.correction > 1e-3
     k, sigma_a, sigma_b = measured(interval, np.linspace(0, 1, 9))
@@ -141,11 +150,11 @@ def test_a_small_rho_is_proven_as_tightly_as_any_other():
 
 
 def test_what_folds_between_its_keyframes_is_not_proven():
-    outline, cage = bar()
+    _, cage = bar()
     maps = [HarmonicMap.identity(cage), HarmonicMap(cage=cage, phi=-1.0 * cage, psi=0.0 * cage)]
     points = np.array([0.1, -1.3])
     linearly, by_nu = (
-        prove(prepare(maps, points, outline=outline, variant=v).intervals[0])
+        prove(prepare(maps, boundary_of(bar()), points, variant=v).intervals[0])
         for v in (Variant.LINEAR, Variant.NU)
     )
     assert not linearly.never_folds
@@ -335,7 +344,7 @@ def correction_of(shape, holes=(), seed=0, size=0.05):
 def test_proof_of_a_corrected_frame_is_tight(variant, holed, through):
     shape = plate(2, 8) if holed else None
     outline, cage, holes = (shape.outline, shape.cage, shape.holes) if holed else (*SHAPE, ())
-    boundary = Boundary.sample(outline, cage, holes)
+    boundary = Boundary.sample(Domain(outline, cage, holes))
     draw = (
         (lambda seed: holed_map(shape, seed, 0.1))
         if holed
@@ -348,7 +357,7 @@ def test_proof_of_a_corrected_frame_is_tight(variant, holed, through):
     )
     bounds = Bounds(k=0.8, sigma_a=5, sigma_b=0.1)
     interval = prepare(
-        maps, points, outline=outline, variant=variant, through=through, bounds=bounds
+        maps, boundary, points, variant=variant, through=through, bounds=bounds
     ).intervals[0]
     # One after the other, as a track comes after handles that stay.
     for seed in range(2):

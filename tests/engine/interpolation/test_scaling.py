@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
-from interpolation_shapes import bar, bent, letter_l, random_map
+from interpolation_shapes import bar, bent, boundary_of, letter_l, random_map
 from numpy.testing import assert_allclose
 
 from engine.geometry.polygon import edges
@@ -12,6 +12,7 @@ from engine.interpolation.scaling import BESIDE_KEY, PointSamples, SharpScaling
 from engine.interpolation.scaling.smooth import FARTHEST, HALF_WINDOW, Scaling, time_of
 from engine.maps import Bounds, distortion
 from engine.maps.harmonic_map import HarmonicMap
+from engine.reference import Reference
 
 SHAPE = letter_l()
 STRAIGHT = Course.straight()
@@ -36,17 +37,9 @@ def grown(shape, k):
     return [HarmonicMap.identity(cage), HarmonicMap(cage=cage, phi=phi, psi=k * phi)]
 
 
-def ratios_by_the_book(maps, weights, points):
-    """Return ρ_k, ρ_a and ρ_b of Section 7.3 at points (3, p), written as they are printed."""
-    fz, fzbar = np.array([f.derivatives(points) for f in maps]).transpose(1, 0, 2)
-    a, b = np.abs(fz), np.abs(fzbar)
-    modulus = np.prod(a ** weights[:, None], axis=0)
-    eta = np.abs((weights[:, None] * fz * fzbar.conj()).sum(axis=0))
-    other = eta / modulus
-    rho_k = (b / a).max(axis=0) / (other / modulus)
-    rho_a = ((a + b).max(axis=0) - modulus) / other
-    rho_b = (modulus - (a - b).min(axis=0)) / other
-    return np.array([rho_k, rho_a, rho_b])
+def printed(maps, outline):
+    """Return the paper's own formulas; they have no need of the anchor here."""
+    return Reference(first=maps[0], second=maps[1], outline=outline, anchor=0j)
 
 
 def dense_samples(shape, count=1000):
@@ -59,7 +52,7 @@ def dense_samples(shape, count=1000):
 def test_rho_is_the_minimum_of_the_pointwise_ratios_over_the_outline(seed, time):
     maps = pair(seed)
     (rho,) = sharp_rho(maps, time)
-    ratios = ratios_by_the_book(maps, np.array([1 - time, time]), dense_samples(SHAPE))
+    ratios = printed(maps, SHAPE[0]).allowed(dense_samples(SHAPE), time)
     sampled = min(1.0, ratios.min())
     assert rho <= sampled + 1e-9
     # The samples, 1000 an edge, miss a little of what happens close to the cage's vertices.
@@ -83,7 +76,7 @@ def test_no_valley_of_the_ratios_is_missed_however_many_there_are():
     dense = dense_samples((outline, cage), 500)
     found = SharpScaling.of(maps, outline, STRAIGHT, Bounds())(times)
     for time, rho in zip(times, found, strict=True):
-        expected = ratios_by_the_book(maps, np.array([1 - time, time]), dense).min()
+        expected = printed(maps, outline).allowed(dense, time).min()
         assert rho <= min(1.0, expected) + 1e-9
 
 
@@ -98,7 +91,7 @@ def test_rho_of_affine_keyframes_follows_from_any_point():
         ]
         times = np.array([0.25, 0.5, 0.75])
         for time, rho in zip(times, sharp_rho(maps, times, bar()), strict=True):
-            ratios = ratios_by_the_book(maps, np.array([1 - time, time]), outline[:1])
+            ratios = printed(maps, outline).allowed(outline[:1], time)
             assert_allclose(rho, min(1.0, ratios.min()), rtol=3e-7, atol=0)
 
 
@@ -205,7 +198,7 @@ def test_rho_does_not_fall_at_once_beside_a_key_where_the_other_part_vanishes():
     ]
     # f_z̄ of the first vanishes at a corner: its own bounds would scale η by a third from the start.
     for time in (1e-6, 1e-4, 1e-2):
-        own = ratios_by_the_book(maps, np.array([1 - time, time]), outline[:1])
+        own = printed(maps, outline).allowed(outline[:1], time)
         assert own.min() < 0.75
     rho = smooth_rho(maps)
     assert rho(0.0) == rho(1.0) == 1.0
@@ -221,7 +214,7 @@ def test_rho_does_not_fall_at_once_beside_a_key_where_the_other_part_vanishes():
 def test_beside_a_key_the_bounds_are_the_worst_of_the_keyframes(seed):
     maps = pair(seed)
     dense = dense_samples(SHAPE, 500)
-    between = prepare(maps, SHAPE[0], outline=SHAPE[0], variant="scaled-eta")
+    between = prepare(maps, boundary_of(SHAPE), SHAPE[0], variant="scaled-eta")
     fz, fzbar = np.array([f.derivatives(dense) for f in maps]).transpose(1, 0, 2)
     for time in (0.003, 0.05, 0.15, 0.19, 0.93, 0.999):
         frame = between.frame(time)
@@ -255,7 +248,7 @@ def test_maps_of_very_different_size_keep_their_bounds_beside_the_keys():
     dense = dense_samples(SHAPE, 200)
     most = max(distortion.sigma_a(*f.derivatives(dense)).max() for f in maps)
     least = min(distortion.sigma_b(*f.derivatives(dense)).min() for f in maps)
-    between = prepare(maps, SHAPE[0], outline=SHAPE[0], variant="scaled-eta")
+    between = prepare(maps, boundary_of(SHAPE), SHAPE[0], variant="scaled-eta")
     for time in (1e-6, 1e-3, 0.1, 0.5, 0.9, 1 - 1e-3, 1 - 1e-6):
         frame = between.frame(time)
         assert distortion.sigma_a(frame.fz, frame.fzbar).max() <= most * (1 + 1e-6)

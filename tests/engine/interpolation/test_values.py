@@ -12,6 +12,7 @@ from numpy.testing import assert_allclose
 from engine.deform.correction import corrector_of
 from engine.dirichlet import HilbertTransform
 from engine.errors import EngineError
+from engine.geometry import Domain
 from engine.interpolation import (
     Interval,
     Passage,
@@ -44,7 +45,7 @@ SHORT |= {("one hole", Variant.NU), ("narrow", Variant.ETA)}
 def points_of(name):
     """Handles, and what pins need to know beside them."""
     shape, _ = CASES[name]
-    boundary = Boundary.sample(shape.outline, shape.cage, shape.holes)
+    boundary = Boundary.sample(shape.domain)
     handles = shape.anchor + 0.1 * np.array([0, 1, 1j, -1])
     corrector = corrector_of(boundary, shape.anchor, handles)
     return handles, value_points_for_corrections(corrector)
@@ -53,18 +54,13 @@ def points_of(name):
 @cache
 def transform_of(name):
     shape, _ = CASES[name]
-    return HilbertTransform.on(shape.outline, shape.cage, shape.holes)
+    return HilbertTransform.on(shape.domain)
 
 
 def between(name, variant, points, beside=()):
     shape, maps = CASES[name]
     sites = prepare_sites(
-        shape.outline,
-        shape.cage,
-        points,
-        holes=shape.holes,
-        anchor=shape.anchor,
-        values_at=beside,
+        Boundary.sample(shape.domain), points, anchor=shape.anchor, values_at=beside
     )
     keys = sample_keyframes(maps, sites)
     passage = Passage.of(keys, root_sheets(np.array([key.anchor_fz for key in keys])))
@@ -107,4 +103,6 @@ def test_values_are_those_of_full_paths_at_few_nodes(name, variant):
 def test_values_beside_triangles_are_refused():
     outline, cage = bar()
     with pytest.raises(EngineError, match=says(VALUES_OR_TRIANGLES)):
-        prepare_sites(outline, cage, outline, triangles=[[0, 1, 2]], values_at=[0j])
+        prepare_sites(
+            Boundary.sample(Domain(outline, cage)), outline, triangles=[[0, 1, 2]], values_at=[0j]
+        )

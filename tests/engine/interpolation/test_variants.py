@@ -228,10 +228,11 @@ def test_properties_5_to_8_hold_in_every_interval_of_four_keyframes(seed, time):
     around = maps[first : first + 2]
     mu0, mu1 = (distortion.mu(*f.derivatives(outline)) for f in around)
     for variant in BOUNDED:
-        options = {"variant": variant, "outline": SHAPES[name][0]}
+        options = {"variant": variant}
         if variant.needs_transform:
             options["transform"] = stage_of(SHAPES[name], outline).transform
-        frame = prepare(maps, outline, **options).frame(time)
+        boundary = stage_of(SHAPES[name], outline).sites.boundary
+        frame = prepare(maps, boundary, outline, **options).frame(time)
         for values, limit, sign in zip(
             distortions(frame), limits(around, outline), (1, -1, 1), strict=True
         ):

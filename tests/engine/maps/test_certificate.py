@@ -9,6 +9,7 @@ from scipy.linalg import eigh
 from engine.arrays import FEW_ENTRIES
 from engine.deform.deformer import UNCERTIFIED_START
 from engine.errors import EngineError
+from engine.geometry import Domain
 from engine.geometry.polygon import CAGE_ORDER, CAGE_TOUCHES
 from engine.maps import (
     Boundary,
@@ -79,7 +80,7 @@ def test_affine_maps_have_exact_certificates():
 
 def test_a_far_shape_loses_no_digits():
     shift = 1e6 - 3e6j
-    far = Boundary.sample(BOUNDARY.outline + shift, CAGE + shift)
+    far = Boundary.sample(Domain(BOUNDARY.outline + shift, CAGE + shift))
     f = noisy(1, 0.01)
     moved = HarmonicMap(cage=far.cage, phi=f.phi + shift, psi=f.psi - shift)
     near, there = certify(f, BOUNDARY, Bounds()), certify(moved, far, Bounds())
@@ -131,7 +132,7 @@ def test_a_fold_between_the_samples_is_found(monkeypatch):
     # With samples as sparse as the vertices the certificate must bisect its way to the fold.
     monkeypatch.setattr("engine.maps.boundary.SEGMENT_PER_DISTANCE", 1e9)
     monkeypatch.setattr("engine.maps.boundary.SEGMENT_PER_SIZE", 1e9)
-    sparse = Boundary.sample(BOUNDARY.outline, CAGE)
+    sparse = Boundary.sample(Domain(BOUNDARY.outline, CAGE))
     assert len(sparse.points) == len(BOUNDARY.outline)
     hidden = 0
     for height in np.geomspace(0.01, 10, 25):
@@ -258,7 +259,7 @@ def test_another_cage_is_refused():
 )
 def test_bad_shapes_are_refused(outline, cage, message):
     with pytest.raises(EngineError, match=message):
-        Boundary.sample(outline, cage)
+        Boundary.sample(Domain(outline, cage))
 
 
 @pytest.mark.parametrize(

@@ -125,3 +125,21 @@ def test_distortions_agree_with_each_other(seed):
 def test_bad_coefficients_are_refused(phi, message):
     with pytest.raises(EngineError, match=message):
         HarmonicMap(cage=CAGE, phi=phi, psi=CAGE)
+
+
+def test_outside_its_domain_a_map_is_nan():
+    shape = ring()
+    f = HarmonicMap.identity(shape.cage, shape.holes)
+    inside, outside = [0.75, -0.6 + 0.2j], [0.1, 3.0, -2.5j, 5 + 5j]
+    places, slopes = f([*inside, *outside]), f.derivatives([*inside, *outside])
+    assert_allclose(places[:2], inside, rtol=0, atol=1e-12)
+    assert_allclose(slopes[0][:2], 1, rtol=0, atol=1e-12)
+    assert all(np.isnan(values[2:]).all() for values in (places, *slopes))
+
+
+@pytest.mark.parametrize("points", [0.5, "0.5", [[0.5]], [np.nan]])
+def test_points_that_are_no_list_of_numbers_are_refused(points):
+    f = HarmonicMap.identity(regular_polygon(8))
+    for of in (f, f.derivatives):
+        with pytest.raises(EngineError, match="points must be"):
+            of(points)

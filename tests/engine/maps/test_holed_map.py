@@ -11,7 +11,7 @@ from shapes import regular_polygon
 
 from engine.arrays import NOT_FINITE
 from engine.errors import EngineError
-from engine.geometry import Hole
+from engine.geometry import Domain, Hole
 from engine.geometry.polygon import FEW_VERTICES, HOLE_LEAVES
 from engine.maps import Boundary, Bounds, HarmonicMap, Limits, Span, certify, distortion
 from engine.maps.certificate import OTHER_SPAN
@@ -186,7 +186,7 @@ def test_a_logarithm_near_the_boundary_is_enclosed():
     """Its second derivative is large there: 2 |a| / d³ must be counted."""
     hole = ring().holes[0]
     off_centre = Hole(outline=hole.outline, cage=hole.cage, centre=0.38)
-    boundary = Boundary.sample(ring().outline, ring().cage, [off_centre])
+    boundary = Boundary.sample(Domain(ring().outline, ring().cage, [off_centre]))
     f = replace(HarmonicMap.identity(ring().cage, (off_centre,)), logs=np.array([0.04j]))
     certificate = certify(f, boundary, LOOSE)
     dense = (
@@ -234,8 +234,8 @@ def test_a_ring_turned_inside_out_is_refused():
 def test_a_tiny_hole_changes_nothing():
     """The same map over the cage alone is certified alike."""
     tiny = ring(0.004)
-    boundary = Boundary.sample(tiny.outline, tiny.cage, tiny.holes)
-    whole = Boundary.sample(tiny.outline, tiny.cage)
+    boundary = Boundary.sample(tiny.domain)
+    whole = Boundary.sample(Domain(tiny.outline, tiny.cage))
     cage = tiny.cage
     alone = HarmonicMap(cage=cage, phi=cage + 0.1 * cage**2, psi=0.1 * cage)
     f = holed_map(tiny, np.append(alone.phi, np.zeros(36)), np.append(alone.psi, np.zeros(36)))
@@ -259,12 +259,12 @@ def test_a_tiny_hole_changes_nothing():
 def test_bad_holes_are_refused(change, message):
     hole = replace(round_hole(0, 0.5, 36), **change)
     with pytest.raises(EngineError, match=message):
-        Boundary.sample(ring().outline, ring().cage, [hole])
+        Boundary.sample(Domain(ring().outline, ring().cage, [hole]))
 
 
 @pytest.mark.parametrize("shape", SHAPES, ids=NAMES)
 def test_the_basis_spans_all_and_is_orthonormal_but_for_holes(shape):
-    boundary = Boundary.sample(shape.outline, shape.cage, shape.holes)
+    boundary = Boundary.sample(shape.domain)
     basis = boundary.basis
     # Logarithms are scaled, and mixed with nothing: ψ's are the conjugates of φ's.
     count = len(shape.holes)

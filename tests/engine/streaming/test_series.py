@@ -18,8 +18,9 @@ from interpolation_shapes import (
 from numpy.testing import assert_allclose, assert_array_equal
 
 from engine.errors import EngineError
+from engine.geometry import Domain
 from engine.interpolation import Variant, chebyshev, prepare
-from engine.maps import HarmonicMap, distortion
+from engine.maps import Boundary, HarmonicMap, distortion
 from engine.streaming import Distortions, Positions, build_series, finish
 from engine.streaming.cutting import MOST_ROWS, OF_PIECES
 from engine.streaming.functions import DEGREES, MOST_ATTEMPTS
@@ -357,7 +358,11 @@ def test_a_hole_alone_adds_no_rows(variant):
     rows = []
     for maps in (whole, holed):
         motion = prepare(
-            maps, holed_points(shape), outline=shape.outline, variant=variant, anchor=shape.anchor
+            maps,
+            Boundary.sample(Domain(shape.outline, maps[0].cage, maps[0].holes)),
+            holed_points(shape),
+            variant=variant,
+            anchor=shape.anchor,
         )
         series = finish(build_series(Positions.of(motion.intervals[0], motion.sites)))
         rows.append([len(piece.rows) for piece in series.pieces])

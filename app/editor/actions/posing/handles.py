@@ -18,7 +18,7 @@ from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.motion import Shown
 from engine import domain as domains
-from engine.domain import Domain
+from engine.domain import MeshedDomain
 from engine.geometry import box_diagonal, contains
 
 NEAR = 0.05  # of the diagonal: so near to a handle there is no other one suggested
@@ -122,7 +122,7 @@ def mirror_handles(session: Session, project: Project) -> None:
         session.tell("Every selected handle has its partner on the other side already.")
 
 
-def _is_inside(domain: Domain, place: complex) -> bool:
+def _is_inside(domain: MeshedDomain, place: complex) -> bool:
     outline, *holes = domain.loops
     return bool(contains(outline, np.array([place]), holes=holes)[0])
 

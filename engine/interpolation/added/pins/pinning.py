@@ -115,7 +115,7 @@ def pin(
         targets = pins.targets(time, base.places, base.anchor)
         near = min(solved, key=lambda other: abs(other - time), default=None)
         start = None if near is None else solved[near]
-        solved[time] = found = solve(corrector, base.nodes, targets, start)
+        solved[time] = found = solve(corrector, base.nodes, targets, start, throw=False)
         share = min(share, largest_share(corrector, base.samples, found.x, limits))
         return np.append(found.x, [found.shift.real / size, found.shift.imag / size])
 

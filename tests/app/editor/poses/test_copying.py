@@ -121,7 +121,7 @@ def test_a_pose_is_proven_against_the_limits_of_now(session):
     pasting.paste(session)
     layer = project.layer
     pose = layer.key(3).pose
-    boundary = Boundary.sample(layer.domain.outline, layer.domain.cage)
+    boundary = Boundary.sample(layer.domain)
     assert pose.certificate == certify(layer.map_of(pose), boundary, tighter)
     assert not pose.certificate.certified
 

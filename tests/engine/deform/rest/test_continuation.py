@@ -21,6 +21,7 @@ from engine.deform.rest.continuation import (
 )
 from engine.deform.rest.rungs import FIRST_REACH, is_same, rung
 from engine.deform.rest.samples import resolved
+from engine.geometry import Domain
 from engine.maps import Boundary, Bounds, segment_enclosures
 
 
@@ -116,7 +117,7 @@ def test_walls_open_from_rungs_that_do_not_depend_on_the_bounds():
 def test_a_cage_that_is_denser_than_it_is_far_comes_to_rest():
     # Its functions nearly depend on each other: steps along what they hardly show at the samples
     # bent so much between these that every search doubled its samples and got nowhere.
-    boundary = Boundary.sample(regular_polygon(40), regular_polygon(160, 1.4))
+    boundary = Boundary.sample(Domain(regular_polygon(40), regular_polygon(160, 1.4)))
     assert boundary.basis.shape[1] < 80
     handles = Handles.place(boundary, [-0.7, 0.0, 0.7])
     deformer = Deformer(boundary=boundary, handles=handles, bounds=Bounds())

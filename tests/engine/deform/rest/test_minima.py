@@ -17,20 +17,24 @@ from deform_shapes import (
     settled_star,
     star,
 )
+from messages import says
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.optimize import minimize, nnls
 from shapes import regular_polygon
 
 from engine.deform import Deformer, Handles, Objective, Status
+from engine.deform.deformer import UNSETTLED
 from engine.deform.model import MARGIN
 from engine.deform.rest import OPTIMAL, WORTH_A_JUMP, Way
+from engine.errors import EngineError
+from engine.geometry import Domain
 from engine.maps import Boundary, Bounds
 from engine.maps.cauchy import cauchy_coordinates, cauchy_derivatives
 
 
-def settled(deformer, targets, state=None):
+def settled(deformer, targets, state=None, **options):
     wish = deformer.handles.wish(targets)
-    return deformer.settle(deformer.start() if state is None else state, wish)[0]
+    return deformer.settle(deformer.start() if state is None else state, wish, **options)[0]
 
 
 @pytest.mark.parametrize(
@@ -77,7 +81,7 @@ def test_a_squeezed_disc_reaches_the_optimum_that_is_known_otherwise():
     # Two handles squeeze a disc along the real axis. With its symmetries φ and ψ are few numbers,
     # which a general optimiser finds with bounds on dense samples.
     outline, cage = regular_polygon(16), regular_polygon(16, 1.15)
-    boundary = Boundary.sample(outline, cage)
+    boundary = Boundary.sample(Domain(outline, cage))
     points, targets = np.array([-0.9, 0.9]), np.array([-0.55, 0.55])
     bounds = Bounds(k=0.3, sigma_a=1.15, sigma_b=0.75)
     handles = Handles.place(boundary, points)
@@ -297,7 +301,9 @@ def test_coming_to_rest_is_repeated_bit_for_bit():
 
 def test_a_search_that_is_given_up_says_so(monkeypatch):
     monkeypatch.setattr("engine.deform.settling.MOST_IN_ALL", 2)
-    state = settled(star(TIGHT), TWISTED)
+    with pytest.raises(EngineError, match=says(UNSETTLED, status=Status.UNFINISHED.value)):
+        settled(star(TIGHT), TWISTED)
+    state = settled(star(TIGHT), TWISTED, throw=False)
     assert state.status is Status.UNFINISHED
     assert state.status.is_final
     assert state.statistics.optimality > OPTIMAL

@@ -11,7 +11,7 @@ from messages import says
 from numpy.testing import assert_allclose
 
 from engine.arrays import Booleans, Complexes
-from engine.domain import CutOut, Domain, Slit, build_domain, find_seam, require_domain
+from engine.domain import CutOut, MeshedDomain, Slit, build_domain, find_seam, require_domain
 from engine.domain.meshing.mesh import signed_areas
 from engine.domain.outline import Enclosure, enclose
 from engine.domain.outline.knife import CUTS_OFF, SLIT_WIDTH, _drawn_area
@@ -87,7 +87,7 @@ def test_the_sides_meet_where_they_are_painted() -> None:
     assert_allclose(moved.imag, 0, rtol=0, atol=1e-6)
 
 
-def parted_domain(mask: Booleans, *lines: list[complex], triangles: int = 4000) -> Domain:
+def parted_domain(mask: Booleans, *lines: list[complex], triangles: int = 4000) -> MeshedDomain:
     slits = tuple(Slit(points=np.array(line)) for line in lines)
     domain, _ = build_domain(
         pictures.painted(mask), triangles=triangles, detail="normal", cut_out=CutOut(slits=slits)
