@@ -20,9 +20,11 @@ from engine.errors import EngineError
 
 NOT_COMPLEX = "{name} must be complex numbers, not {dtype}."
 NOT_FINITE = "{name} must be finite, but entry {index} is {value}."
+NOT_A_NUMBER = "{name} must be a {kind}{range}, not {value!r}."
+NO_WORD = "{name} is one of {words}, not {value!r}."
+TOO_LARGE = "{name} must be within {most:g} of the origin, but entry {index} is {value}."
 FEW_ENTRIES = "{name} must have at least {at_least} entries, not {count}."
 NOT_REAL = "{name} must be real numbers, not {dtype}."
-NOT_NUMBER = "{name} must be a number, not {value!r}."
 NOT_LISTED = "{name} must be a list, not {value!r}."
 OTHER_KIND = "{name} must be of the class {kind}, not {given}."
 NOT_WHOLE = "{name} must be a whole number, not {value!r}."
@@ -104,7 +106,37 @@ def ratio(numerator: Floats, denominator: Floats) -> Floats:
     return quotient
 
 
-def as_points(values: npt.ArrayLike, name: str, *, at_least: int = 0) -> Complexes:
+def as_number(
+    value: object,
+    name: str,
+    *,
+    least: float = -np.inf,
+    most: float = np.inf,
+    above: float = -np.inf,
+    is_whole: bool = False,
+) -> float:
+    """Return a finite number in a range, or raise an `EngineError` that names it."""
+    array = _as_array(value)  # type: ignore[arg-type]
+    if not array.ndim and array.dtype.kind in ("biu" if is_whole else "biuf"):
+        number = float(array)
+        if np.isfinite(number) and least <= number <= most and number > above:
+            return number
+    limits = [("above", above), ("at least", least), ("at most", most)]
+    words = " and".join(f" {word} {limit:,g}" for word, limit in limits if np.isfinite(limit))
+    kind = "whole number" if is_whole else "finite number"
+    raise EngineError(NOT_A_NUMBER.format(name=name, kind=kind, range=words, value=value))
+
+
+def require_word(value: object, words: Iterable[str], name: str) -> None:
+    """Raise an `EngineError` unless a value is one of some words."""
+    known = list(words)
+    if value not in known:
+        raise EngineError(NO_WORD.format(name=name, words=", ".join(map(repr, known)), value=value))
+
+
+def as_points(
+    values: npt.ArrayLike, name: str, *, at_least: int = 0, most: float = np.inf
+) -> Complexes:
     """Return `values` as read-only complex128 points of shape (n,).
 
     Parameters
@@ -115,11 +147,13 @@ def as_points(values: npt.ArrayLike, name: str, *, at_least: int = 0) -> Complex
         What the points are called in the error.
     at_least : int
         Smallest number of points that is accepted.
+    most : float
+        Largest distance from the origin that is.
 
     Raises
     ------
     EngineError
-        If the values are not numbers, not one-dimensional, too few or not finite.
+        If the values are not numbers, not one-dimensional, too few, not finite or too far away.
     """
     array = _as_array(values)
     if array.dtype.kind not in "biufc":
@@ -132,6 +166,9 @@ def as_points(values: npt.ArrayLike, name: str, *, at_least: int = 0) -> Complex
     if not np.isfinite(points).all():
         bad = int(np.flatnonzero(~np.isfinite(points))[0])
         raise EngineError(NOT_FINITE.format(name=name, index=bad, value=points[bad]))
+    if most < np.inf and (np.abs(points) > most).any():
+        bad = int(np.argmax(np.abs(points)))
+        raise EngineError(TOO_LARGE.format(name=name, most=most, index=bad, value=points[bad]))
     return points
 
 
@@ -141,14 +178,6 @@ def as_count(value: object, name: str) -> int:
         return operator.index(value)  # type: ignore[arg-type]
     except TypeError:
         raise EngineError(NOT_WHOLE.format(name=name, value=value)) from None
-
-
-def as_number(value: npt.ArrayLike, name: str) -> float:
-    """Return a real number, or raise `EngineError` if the value is none."""
-    array = _as_array(value)
-    if array.ndim or array.dtype.kind not in "biuf":
-        raise EngineError(NOT_NUMBER.format(name=name, value=value))
-    return float(array)
 
 
 def as_reals(values: npt.ArrayLike, name: str) -> Floats:

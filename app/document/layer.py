@@ -46,7 +46,7 @@ from app.errors import LissomError
 from engine.arrays import Booleans, Complexes, Floats, readonly
 from engine.deform import MOST_HANDLES
 from engine.domain import CutOut, MeshedDomain
-from engine.geometry import ON_OUTLINE, box_diagonal, contains
+from engine.geometry import ON_OUTLINE, contains, diameter
 from engine.maps import Bounds, Certificate, HarmonicMap, require_stiffness
 from engine.variant import Variant
 
@@ -388,7 +388,7 @@ class Layer:
             For the first of these.
         """
         points = np.array(list(places.values()), dtype=np.complex128)
-        inside = self.covers(points, tolerance=ON_OUTLINE * box_diagonal(self.domain.outline))
+        inside = self.covers(points, tolerance=ON_OUTLINE * diameter(self.domain.outline))
         for (name, place), is_inside in zip(places.items(), inside, strict=True):
             require(
                 bool(is_inside),

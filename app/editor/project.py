@@ -163,7 +163,7 @@ class Project:
     awaits_extent: bool = False  # whether the camera fits the motion once that is measured
     flip: Flip | None = None
     blend: PoseBlend | None = None
-    picked_pose: str | None = None  # of the library
+    picked_pose: tuple[int, str] | None = None  # whose, by its id, and its name in the library
     # The ids of layers that are chosen beside the one that is posed, and of those that alone are
     # looked at, if any.
     beside: frozenset[int] = frozenset()

@@ -13,7 +13,7 @@ from app.editor.dialogs import Dialog, FileDialog
 from app.editor.project import Project
 from app.editor.work import Jobs
 from app.errors import printable, shown_message
-from app.export import ExportPlan, Poses
+from app.export import ExportPlan, KeptPoses
 from app.motion import Box
 from app.storage import Autosave, Cancellation, Preferences, home_folder
 from engine.arrays import Bytes
@@ -194,7 +194,7 @@ class ExportRun:
 
     document: Document
     pictures: Mapping[int, Bytes]
-    poses: Mapping[int, Poses]
+    poses: Mapping[int, KeptPoses]
     plan: ExportPlan
     for_clipboard: bool = False
     done: int = 0

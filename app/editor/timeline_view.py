@@ -242,14 +242,19 @@ Shortfalls = Mapping[Pose, Mapping[int, float]]
 
 def measure_shortfalls(layer: Layer, earlier: Derived[Layer, Shortfalls]) -> Shortfalls:
     """Measure the poses of a layer; those that were measured before are not again."""
-    known, source = earlier.value, earlier.source
-    if source is None or layer.handles != source.handles or layer.domain is not source.domain:
-        known = {}
+    source = earlier.source
+    is_alike = source is not None and _measured_by(layer) == _measured_by(source)
+    known = earlier.value if is_alike else {}
     lags: dict[Pose, Mapping[int, float]] = {}
     for pose in (key.pose for key in layer.keys):
         usual = find_shortfall(layer, pose).lags if layer.handles and pose not in known else {}
         lags[pose] = known.get(pose, usual)
     return lags
+
+
+def _measured_by(layer: Layer) -> tuple[object, ...]:
+    """Return all of a layer, besides its poses, that shortfalls depend on."""
+    return layer.domain, layer.handles, layer.followers
 
 
 @dataclass(slots=True, kw_only=True, eq=False)

@@ -12,7 +12,7 @@ from app.document import Document, camera_at, clip_of, composed, is_visible
 from app.errors import EXPECTED_ERRORS, LissomError
 from app.export.framing import shown_box
 from app.export.plan import ExportPlan
-from app.export.poses import Poses
+from app.export.poses import KeptPoses
 from app.export.run import export
 from app.export.thinning import Thinning
 from app.motion import PaintOrder, Placed, box_around
@@ -67,7 +67,7 @@ class Painter:
         Current on the thread that draws.
     pictures : mapping of int to uint8, shape (h, w, 4)
         The layers' pictures, decoded, by their ids.
-    poses : mapping of int to Poses
+    poses : mapping of int to KeptPoses
         The layers', by their ids.
     plan : ExportPlan
 
@@ -82,7 +82,7 @@ class Painter:
         context: Context,
         document: Document,
         pictures: Mapping[int, Bytes],
-        poses: Mapping[int, Poses],
+        poses: Mapping[int, KeptPoses],
         plan: ExportPlan,
     ) -> None:
         self._context, self._document, self._plan = context, document, plan
@@ -172,7 +172,7 @@ class Painter:
             # A frame that fails says so when its turn comes.
             with suppress(*EXPECTED_ERRORS):
                 if thinning is not None:
-                    thinning.prepare([poses.positions(frame) for frame in looks])
+                    thinning.prepare([poses.keep(frame) for frame in looks])
 
     def draw(self, posed: PosedFrame) -> Bytes:
         """Return the picture of a posed frame, uint8 (h, w, 4) with straight alpha.

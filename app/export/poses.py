@@ -19,10 +19,10 @@ class Poses(Protocol):
 
 
 class KeptPoses:
-    """Poses each of which is worked out once though it is asked for twice, within a budget.
+    """Poses each of which is worked out once though it is asked for several times, in a budget.
 
-    The first time is for the framing, the second for the drawing. What is kept in between has the
-    single precision that is drawn.
+    First for the framing, then to choose triangles, and last for the drawing. What is kept in
+    between has the single precision that is drawn.
 
     Parameters
     ----------
@@ -43,8 +43,10 @@ class KeptPoses:
     def keep(self, frame: float) -> Complexes:
         """Return the positions, and keep them for when they are asked for again."""
         self._cancellation.check()
+        if frame in self._kept:
+            return self._kept[frame].astype(np.complex128)
         positions = self._poses.positions(frame)
-        if frame not in self._kept and 8 * len(positions) <= self._room:
+        if 8 * len(positions) <= self._room:
             self._room -= 8 * len(positions)
             self._kept[frame] = positions.astype(np.complex64)
         return positions

@@ -10,13 +10,13 @@ from app.document import Layer, Pose, Target
 from app.solving.drag import Rig, fit_map, pins_of
 from engine.arrays import Complexes
 from engine.deform import Way
-from engine.geometry import box_diagonal, contains
+from engine.geometry import contains, diameter
 from engine.maps import HarmonicMap, certify
 
 MOST_STEPS = 600  # for one pose
 # Of a shape that counts as like another one, the part at least that lies on that one's image.
 ALIKE = 0.9
-BESIDE = 0.005  # of the shape's diagonal: so near to it is on it
+BESIDE = 0.005  # of the shape's diameter: so near to it is on it
 ENOUGH = 2_000  # vertices by which that is told
 # A part is drawn mirrored where its handles are this far from the likeness that mirrors nothing,
 # over their spread, and this many times nearer to the one that does.
@@ -225,7 +225,7 @@ def is_alike(layer: Layer, source: Layer, likeness: Likeness) -> bool:
     """Tell whether nearly all of a layer lies on another one's image."""
     places = likeness.back(_some(layer.domain.mesh.vertices))
     # Many vertices of a coarse mesh are on its outline, and so beside the image of another one.
-    found = source.covers(places, tolerance=BESIDE * box_diagonal(source.domain.outline))
+    found = source.covers(places, tolerance=BESIDE * diameter(source.domain.outline))
     return bool(found.mean() >= ALIKE)
 
 

@@ -29,7 +29,7 @@ from engine.maps import Boundary, Certificate, HarmonicMap, certify
 LEEWAY = 0.02
 # How strongly a joint holds; handles usually weigh 1.
 PIN = 10.0
-# The joints of bones stay where they are with at most such a force, per the shape's diagonal, when
+# The joints of bones stay where they are with at most such a force, per the shape's diameter, when
 # a hand pulls beyond them.
 JOINT_PULL = 0.1
 

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from engine.arrays import Complexes, Floats, as_points, as_reals, readonly, require_kind
 from engine.deform.hands import Hand, Hands, Link, Links
 from engine.errors import EngineError
-from engine.geometry import Domain, box_diagonal, require_inside
+from engine.geometry import Domain, diameter, require_inside
 from engine.maps import Boundary
 
 # λ = STIFFNESS / L² for a handle of weight 1.
@@ -255,7 +255,7 @@ def require_held(points: npt.ArrayLike, domain: Domain) -> Complexes:
     if count > MOST_VERTICES:
         raise EngineError(MOST_CAGE.format(count=count, most=MOST_VERTICES))
     outline, *inner = domain.loops
-    near = OUTSIDE * box_diagonal(outline)
+    near = OUTSIDE * diameter(outline)
     require_inside(outline, points, "handle", holes=inner, tolerance=near)
     return points
 

@@ -83,7 +83,7 @@ class Hands(NamedTuple):
                 raise EngineError(FORCE_NOT_POSITIVE.format(pull=pull))
             if len(handles) == 0:
                 raise EngineError("A hand pulls at nothing; leave it out.")
-            if not all(0 <= handle < len(stiffness) for handle in handles):
+            if not all(handle in range(len(stiffness)) for handle in handles):
                 raise EngineError(HAND_HANDLES.format(handles=list(handles), count=len(stiffness)))
             weights[number, list(handles)] = stiffness[list(handles)]
         twice = np.flatnonzero(np.count_nonzero(weights, axis=0) > 1)
@@ -169,7 +169,7 @@ class Links(NamedTuple):
         if not links:
             return None
         for first, second, shortest, longest in links:
-            if first == second or not all(0 <= end < len(stiffness) for end in (first, second)):
+            if first == second or not all(end in range(len(stiffness)) for end in (first, second)):
                 raise EngineError(LINK_ENDS.format(first=first, second=second))
             if not 0 <= shortest <= longest:
                 raise EngineError(LINK_LENGTHS.format(shortest=shortest, longest=longest))

@@ -23,22 +23,31 @@ import numpy as np
 import shapely
 from scipy.spatial import cKDTree
 
-from engine.arrays import Complexes, Floats, held_bytes
+from engine.arrays import Complexes, Floats, as_points, held_bytes
 from engine.dirichlet.boundary_operator import BoundaryOperator
 from engine.dirichlet.cauchy_integral import CauchyIntegral
 from engine.dirichlet.panels import Panels
 from engine.dirichlet.skeleton_solver import SkeletonSolver
+from engine.errors import EngineError
 from engine.geometry import (
+    ON_OUTLINE,
     Domain,
     as_xy,
-    box_diagonal,
     contains,
+    diameter,
     distance_to_boundary,
     loop_ends,
     next_on_loop,
     region,
+    require_around,
+    require_simple,
 )
 
+OUTSIDE = (
+    "{count} of the points lie outside the domain, the first of them {distance:.3g} from its "
+    "boundary; leave them out."
+)
+PARTS_SHAPE = "Real parts must be of shape ({count}, j), one row for each node, not {shape}."
 EDGE_DEPTH, CORNER_DEPTH = 1e-9, 1e-13  # of points on the outline, over its size
 
 
@@ -92,7 +101,14 @@ class HilbertTransform:
         the outline comes near itself or near the cage. Time and memory grow with it, and somewhat
         faster where the outline fills an area. `progress` is called again and again with the share
         of the work that is done, from 0 to 1; what it raises ends the work.
+
+        Raises
+        ------
+        EngineError
+            If the outline is not simple, runs clockwise, or does not lie within the cage.
         """
+        require_simple(domain.outline, "outline")
+        require_around(domain.cage, domain.outline)
         centre = complex(domain.outline.mean())
         panels = Panels.on(domain.moved(-centre))
         return cls.of(domain.loops, panels, centre, progress)
@@ -128,7 +144,10 @@ class HilbertTransform:
         Time and memory grow with the number of points and nodes, and not with their product. In
         single precision, what is far from a point errs by 2e-7 of the largest density.
         """
-        inside = _strictly_inside([loop - self.centre for loop in self.loops], points - self.centre)
+        points = as_points(points, "points", at_least=1)
+        rounding = 4 * np.finfo(np.float64).eps * float(np.abs(points).max())
+        local = [loop - self.centre for loop in self.loops]
+        inside = _strictly_inside(local, points - self.centre, rounding)
         integral = CauchyIntegral.of(self.panels, inside, single=single)
         return Extension(transform=self, points=points, inside=inside, integral=integral)
 
@@ -180,11 +199,13 @@ class Extension:
         real_parts : float64, shape (N, j)
             At `nodes`.
         """
+        if np.ndim(real_parts) != 2 or len(real_parts) != len(self.nodes):
+            raise EngineError(PARTS_SHAPE.format(count=len(self.nodes), shape=np.shape(real_parts)))
         densities = self.transform.solver(real_parts)
         return Extended(*self.integral(densities), self.transform.means @ densities)
 
 
-def _strictly_inside(loops: Sequence[Complexes], points: Complexes) -> Complexes:
+def _strictly_inside(loops: Sequence[Complexes], points: Complexes, rounding: float) -> Complexes:
     """Move points on the boundary, or outside it by rounding, a hair's breadth inside.
 
     There the limit from inside is meant. Where two panels meet on an edge, the logarithms of both
@@ -192,15 +213,19 @@ def _strictly_inside(loops: Sequence[Complexes], points: Complexes) -> Complexes
     corner both panels start from the same point, and 1e-13 keeps the root of a distance small.
     """
     outline, *holes = loops
-    size = box_diagonal(outline)
+    size = diameter(outline)
     # Nearly all points are inside a region that is a little smaller.
     area = region(outline, holes)
     room = area.buffer(-2 * EDGE_DEPTH * size, join_style="mitre")
     shapely.prepare(room)
     doubtful = np.flatnonzero(~shapely.intersects_xy(room, points.real, points.imag))
     outer = points[doubtful]
-    near = distance_to_boundary(outline, outer, holes) < EDGE_DEPTH * size
-    close = doubtful[near | ~contains(outline, outer, holes=holes)]
+    distance = distance_to_boundary(outline, outer, holes)
+    is_outside = ~contains(outline, outer, holes=holes)
+    far = np.flatnonzero(is_outside & (distance > ON_OUTLINE * size + rounding))
+    if len(far):
+        raise EngineError(OUTSIDE.format(count=len(far), distance=distance[far[0]]))
+    close = doubtful[(distance < EDGE_DEPTH * size) | is_outside]
     moved = points.copy()
     z, corners, ends = points[close], np.concatenate(loops), loop_ends(loops)
     sides = ends - corners

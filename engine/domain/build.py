@@ -7,7 +7,7 @@ from typing import Self
 import numpy as np
 import numpy.typing as npt
 
-from engine.arrays import Bytes, Complexes, Floats, as_count, as_points, as_tuple
+from engine.arrays import Bytes, Complexes, Floats, as_count, as_number, as_points, as_tuple
 from engine.domain.meshing import Mesh, triangulate, with_limbs_on_top
 from engine.domain.outline import MARGINS, Detail, enclose, hole_in, offset_cage
 from engine.domain.picture import CutOut, Subject, matted, subject_mask
@@ -16,8 +16,8 @@ from engine.geometry import (
     Domain,
     Pieces,
     bisect,
-    box_diagonal,
     deepest_point,
+    diameter,
     edges,
     require_holes,
     require_simple,
@@ -169,7 +169,7 @@ def domain_of_polygon(
     )
     require_simple(around, "outline")
     require_holes(inner, around)
-    size = box_diagonal(around)
+    size = diameter(around)
     offset = MARGINS["normal"] * size
     around, *inner = (_with_short_edges(ring, LONGEST_EDGE * size) for ring in (around, *inner))
     cage = offset_cage(around, offset)
@@ -194,6 +194,8 @@ def _require_triangles(count: int) -> None:
 
 def rectangle_domain(width: float, height: float) -> MeshedDomain:
     """Return the domain that is all of a picture of this size, in two triangles."""
+    width = as_number(width, "The width of a picture", above=0)
+    height = as_number(height, "The height of a picture", above=0)
     corners = np.array([0, width, width + 1j * height, 1j * height])
     middle = corners.mean()
     return MeshedDomain(

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from engine.arrays import Complexes, Floats, Indices, Integers
 from engine.domain.build import MeshedDomain
-from engine.geometry import ON_OUTLINE, box_diagonal, loop_ends
+from engine.geometry import ON_OUTLINE, diameter, loop_ends
 
 FARTHEST = 8.0  # sizes of a triangle beyond it, that it tells of
 
@@ -64,7 +64,7 @@ def _on_sides(
         np.split(shifts, np.cumsum([len(loop) for loop in domain.loops])[:-1])
     )
     sides = np.flatnonzero((shifts != 0) | (shifts_at_ends != 0))
-    tolerance = ON_OUTLINE * box_diagonal(domain.outline)
+    tolerance = ON_OUTLINE * diameter(domain.outline)
     vertices = domain.mesh.vertices
     # In order of x, so that only few have to be looked at for each side.
     by_x = len(corners) + np.argsort(vertices.real[len(corners) :])

@@ -9,7 +9,7 @@ from engine.domain.outline import LARGEST_OUTLINE
 from engine.errors import EngineError
 from engine.geometry import (
     ON_OUTLINE,
-    box_diagonal,
+    diameter,
     distance_to_boundary,
     require_around,
     require_cages_in_holes,
@@ -22,10 +22,10 @@ MOST_MESH_TRIANGLES = 2 * MOST_TRIANGLES
 # Farther out than any picture goes that lies on a canvas, with the cage around it; squares still
 # have digits to spare. The corners of pictures are within half of that.
 OUTERMOST = 2e7
-# Of the diagonal: how near a vertex of the cage may come. Samples of the outline are graded towards
+# Of the diameter: how near a vertex of the cage may come. Samples of the outline are graded towards
 # it, so that this bounds their number; a built cage keeps 300 times that distance.
 NEAREST = 1e-6
-# Of the diagonal: how far from its vertices the outline is painted; a built one is within .0022.
+# Of the diameter: how far from its vertices the outline is painted; a built one is within .0022.
 FARTHEST_CLOSED = 0.01
 # Of the outline's area.
 SAME_AREA = 1e-9
@@ -64,14 +64,14 @@ def require_domain(domain: MeshedDomain) -> None:
     require_cages_in_holes(domain.holes, domain.outline)
     require_around(domain.cage, domain.outline)
     room = distance_to_boundary(domain.outline, np.concatenate(domain.cages), domain.loops[1:])
-    if room.min() < NEAREST * box_diagonal(domain.outline):
+    if room.min() < NEAREST * diameter(domain.outline):
         raise EngineError("The cage comes too near the outline; it must keep a distance.")
     if domain.closed is not None:
         corners = np.concatenate(domain.loops)
         away = np.inf
         if len(domain.closed) == len(corners):
             away = float(np.abs(domain.closed - corners).max())
-        if not away <= FARTHEST_CLOSED * box_diagonal(domain.outline):
+        if not away <= FARTHEST_CLOSED * diameter(domain.outline):
             raise EngineError("The slits are not closed beside the outline's own vertices.")
     _require_tiling(domain)
 
@@ -99,7 +99,7 @@ def _require_tiling(domain: MeshedDomain) -> None:
     area = sum(map(signed_area, domain.loops))
     spokes = [(last - hole.centre) / (first - hole.centre) for hole in domain.holes]
     if (
-        distances.max(initial=0.0) > ON_OUTLINE * box_diagonal(outline)
+        distances.max(initial=0.0) > ON_OUTLINE * diameter(outline)
         or abs(areas.sum() - area) > SAME_AREA * area
         or any(abs(np.angle(spoke).sum()) > 1.0 for spoke in spokes)
     ):

@@ -15,6 +15,7 @@ from engine.geometry.polygon import (
     box_diagonal as box_diagonal,
     constrained_delaunay as constrained_delaunay,
     contains as contains,
+    corners_of as corners_of,
     deepest_point as deepest_point,
     diameter as diameter,
     distance_to_boundary as distance_to_boundary,

@@ -2,9 +2,11 @@
 
 import numpy as np
 
-from engine.arrays import Complexes, Floats
+from engine.arrays import Complexes, Floats, as_points, as_reals
+from engine.errors import EngineError
 from engine.geometry.rigid import HERE, RigidMotion
 
+NEGATIVE_WEIGHTS = "weights must be finite and not negative, not {weights}."
 TOWARDS_REST = 1e-6  # how strongly all points together pull towards no motion
 
 
@@ -24,6 +26,10 @@ def best_rigid(
     pivot : complex, optional
         A point that stays.
     """
+    places, offsets = as_points(places, "places"), as_points(offsets, "offsets")
+    weights = as_reals(weights, "weights")
+    if not (np.isfinite(weights) & (weights >= 0)).all():
+        raise EngineError(NEGATIVE_WEIGHTS.format(weights=weights))
     if not len(places) or not weights.any():
         return HERE
     total = weights + TOWARDS_REST / len(places)

@@ -28,6 +28,7 @@ CAGE_TOUCHES = "The cage touches or crosses the outline; the outline must lie st
 CAGE_REPEATS = "The cage repeats a vertex, or nearly; give each vertex once."
 CAGE_FAR = "The cage lies too far from the outline; let it follow the outline."
 HOLE_LEAVES = "Hole {number} leaves the outline, or meets another hole; holes lie apart inside."
+SELF_TOUCHING = "The {name} crosses or touches itself; it must be a simple polygon."
 FEW_VERTICES = "The {name} needs at least 3 vertices, not {count}."
 FEW_DIGITS = (
     "The {name} is {size:.3g} large and lies {distance:.3g} from the origin, of which numbers keep "
@@ -60,15 +61,36 @@ def signed_area(polygon: Complexes) -> float:
 
 
 def box_diagonal(polygon: Complexes) -> float:
-    """Return L, the diagonal of the bounding box: the length scale of all relative tolerances."""
+    """Return the diagonal of the bounding box, by which pictures are measured."""
     return float(np.hypot(np.ptp(polygon.real), np.ptp(polygon.imag)))
 
 
 def diameter(polygon: Complexes) -> float:
-    """Return the largest distance between two vertices."""
-    hull = shapely.get_coordinates(shapely.convex_hull(shapely.MultiPoint(as_xy(polygon))))
-    z: Complexes = hull[:, 0] + 1j * hull[:, 1]
-    return float(np.abs(z[:, None] - z[None, :]).max())
+    """Return L, the largest distance between two vertices: the length scale of all tolerances.
+
+    Unlike the box, it does not change where the polygon is turned. Rotating calipers on the convex
+    hull: each edge is measured against the vertices farthest from its line.
+    """
+    # By a power of two, so that nothing is rounded: hulls of 1e200 are lost in squares.
+    spokes = polygon - polygon[0]
+    scale = float(np.exp2(np.floor(np.log2(max(np.abs(spokes).max(), 1e-300)))))
+    hull = shapely.convex_hull(shapely.MultiPoint(as_xy(spokes / scale)))
+    x, y = shapely.get_coordinates(hull.normalize())[::-1].T  # counter-clockwise
+    z: Complexes = x + 1j * y
+    if len(z) < 4:
+        return scale * float(np.abs(z[-1] - z[0]))
+    count, directions = len(z) - 1, np.unwrap(np.angle(np.diff(z)))
+    far = np.searchsorted(np.append(directions, directions + 2 * np.pi), directions + np.pi)
+    farthest = z[(far + np.array([[-1], [0], [1]])) % count]
+    return scale * float(max(np.abs(farthest - z[:-1]).max(), np.abs(farthest - z[1:]).max()))
+
+
+def corners_of(polygon: Complexes) -> Complexes:
+    """Return the vertices at which a polygon turns, without those on the way of straight edges."""
+    before, after = polygon - np.roll(polygon, 1), edges(polygon)
+    off = np.abs((before.conj() * after).imag)  # times the chord's length, from the chord
+    turns = off > ON_OUTLINE * diameter(polygon) * np.abs(before + after)
+    return polygon[turns | ((before.conj() * after).real < 0)]
 
 
 def as_xy(points: Complexes) -> Floats:
@@ -87,11 +109,11 @@ def require_simple(polygon: Complexes, name: str, *, clockwise: bool = False) ->
         raise EngineError(FEW_VERTICES.format(name=name, count=len(polygon)))
     if np.any(edges(polygon) == 0):
         raise EngineError(f"The {name} repeats a vertex; give each vertex once.")
-    size = box_diagonal(polygon)
+    size = diameter(polygon)
     if not SIZES[0] < size < SIZES[1] or np.abs(polygon).max() > FARTHEST * size:
         raise EngineError(FEW_DIGITS.format(name=name, size=size, distance=np.abs(polygon).max()))
     if not is_simple(polygon):
-        raise EngineError(f"The {name} crosses or touches itself; it must be a simple polygon.")
+        raise EngineError(SELF_TOUCHING.format(name=name))
     ways = ("counter-clockwise", "clockwise")
     if clockwise == (signed_area(polygon) > 0):
         raise EngineError(
@@ -128,9 +150,9 @@ def distance_to_boundary(
 
 
 def deepest_point(polygon: Complexes, holes: Sequence[Complexes] = ()) -> complex:
-    """Return the point inside that is farthest from the boundary, to 1e-4 of the box diagonal."""
+    """Return the point inside that is farthest from the boundary, to 1e-4 of the diameter."""
     radius = shapely.maximum_inscribed_circle(
-        region(polygon, holes), tolerance=1e-4 * box_diagonal(polygon)
+        region(polygon, holes), tolerance=1e-4 * diameter(polygon)
     )
     x, y = shapely.get_coordinates(radius)[0]
     return complex(x, y)
@@ -180,7 +202,7 @@ def require_around(cage: Complexes, outline: Complexes) -> None:
 
     Only that: published cages are known that cross themselves elsewhere.
     """
-    size = box_diagonal(outline)
+    size = diameter(outline)
     if np.abs(edges(cage)).min() <= SHORTEST_EDGE * size:
         raise EngineError(CAGE_REPEATS)
     if np.abs(cage - outline[0]).max() > FARTHEST_CAGE * size:
@@ -202,7 +224,15 @@ def constrained_delaunay(polygon: Complexes, holes: Sequence[Complexes] = ()) ->
 
     They are simple polygons inside and apart. The triangles, intp (t, 3), run counter-clockwise;
     their vertices are those of the polygon and then of the holes, without further ones.
+
+    Raises
+    ------
+    EngineError
+        If a polygon crosses or touches itself.
     """
+    for loop in (polygon, *holes):
+        if not is_simple(loop):
+            raise EngineError(SELF_TOUCHING.format(name="polygon"))
     parts = shapely.get_parts(shapely.constrained_delaunay_triangles(region(polygon, holes)))
     corners = shapely.get_coordinates(parts).reshape(-1, 4, 2)[:, :3] @ [1, 1j]
     vertices = np.concatenate([polygon, *holes])

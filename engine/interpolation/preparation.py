@@ -20,6 +20,7 @@ from engine.paths import root_sheets
 from engine.variant import Variant
 
 TWO_KEYFRAMES = "In-betweens need at least two keyframes, not {count}."
+NO_MAP = "Keyframe {number} is a {kind}, not a harmonic map."
 OTHER_CAGE = "Keyframe {number} has another cage than keyframe 0; they must share it."
 OTHER_BOUNDARY = (
     "The keyframes have another cage than the boundary; sample the boundary of their own domain."

@@ -11,7 +11,7 @@ from engine.arrays import Complexes, Floats, Indices, freeze, readonly, require_
 from engine.geometry import (
     Domain,
     Hole,
-    box_diagonal,
+    diameter,
     next_on_loop,
     require_around,
     require_cages_in_holes,
@@ -22,7 +22,7 @@ from engine.maps.span import Span
 from engine.maps.stiffness import along_loops, require_stiffness
 
 # Longest segments of the outline, over their distance to the nearest cage vertex, and over the
-# diagonal of the outline. Measured: the extremes on the samples are then within a few thousandths
+# diameter of the outline. Measured: the extremes on the samples are then within a few thousandths
 # of those on the whole outline.
 SEGMENT_PER_DISTANCE = 0.5
 SEGMENT_PER_SIZE = 1 / 200
@@ -40,7 +40,7 @@ class Boundary:
     span : Span
         The functions of maps: cage and holes.
     size : float
-        L, the diagonal of the outline's bounding box.
+        L, the diameter of the outline.
     points : complex128, shape (m,)
         Samples in order along the outline, then along the loop of each hole, the domain on the
         left; segment i leads from sample i to the next one on its loop.
@@ -101,7 +101,7 @@ class Boundary:
         require_around(cage, outline)
         require_cages_in_holes(holes, outline)
         span = Span(cage=cage, holes=holes)
-        size = box_diagonal(outline)
+        size = diameter(outline)
         singular, longest = np.concatenate([span.vertices, span.centres]), SEGMENT_PER_SIZE * size
         samples = [
             sample_graded(loop, singular, ratio=SEGMENT_PER_DISTANCE, longest=longest)

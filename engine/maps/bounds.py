@@ -5,7 +5,7 @@ from math import isfinite
 
 import numpy as np
 
-from engine.arrays import Floats, as_number
+from engine.arrays import Floats, as_reals
 from engine.errors import EngineError
 from engine.geometry import next_on_loop
 from engine.maps.boundary import Boundary
@@ -116,7 +116,7 @@ class Bounds(Limits):
 
     def __post_init__(self) -> None:
         for name in ("k", "sigma_a", "sigma_b"):
-            as_number(getattr(self, name), name)
+            as_reals(getattr(self, name), f"The bound on {name}")
         if not 0 < self.k < 1:
             raise EngineError(
                 IMPOSSIBLE_BOUND.format(name="k", allowed="between 0 and 1", value=self.k)

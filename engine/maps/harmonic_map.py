@@ -12,6 +12,7 @@ from engine.errors import EngineError
 from engine.geometry import Hole
 from engine.maps.span import Span
 
+NO_MAPS = "There is no map to take the derivatives of; give one at least."
 COEFFICIENT_COUNT = (
     "A map over a cage of {count} vertices needs as many coefficients, not {phi} phi and {psi} psi."
 )
@@ -143,6 +144,9 @@ def derivatives_of(maps: Sequence[HarmonicMap], points: Complexes) -> tuple[Comp
 
     The logarithms of the points serve all maps.
     """
+    if not maps:
+        raise EngineError(NO_MAPS)
+    points = as_points(points, "points")
     coefficients = np.hstack([f.coefficients for f in maps])
     (first,) = maps[0].span.evaluate(coefficients, points, orders=(1,))
     return first[:, ::2].T, first[:, 1::2].T.conj()

@@ -6,17 +6,17 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from engine.arrays import Booleans, Complexes, Indices, freeze
-from engine.geometry import Pieces, as_xy, bisect, box_diagonal
+from engine.geometry import Pieces, as_xy, bisect, diameter
 from engine.paths.path_network import Network
 from engine.paths.spanning_tree import SpanningTree, depth_first_numbering
 
-STEP_PER_SIZE = 1 / 125  # longest step, over the box diagonal of the outline
+STEP_PER_SIZE = 1 / 125  # longest step, over the diameter of the outline
 # The longest step over its distance to the nearest singularity of the integrand. The error of a
 # step of length h at the distance d from a logarithmic singularity of strength c is
 # c h (h/d)^4 / 120; nearer to the singularity steps are so much shorter that each errs as much.
 STEP_PER_DISTANCE = 0.25
-SHORTEST_PER_SIZE = 2e-5  # steps are not cut below this, over the box diagonal
-# Longest step where nothing is integrated, over the box diagonal: it serves only to go on with
+SHORTEST_PER_SIZE = 2e-5  # steps are not cut below this, over the diameter
+# Longest step where nothing is integrated, over the diameter: it serves only to go on with
 # branches of logarithms.
 PLAIN_STEP_PER_SIZE = 1 / 50
 
@@ -95,7 +95,7 @@ def lay_paths(network: Network, outline: Complexes, cage: Complexes) -> Integrat
     outline, cage : complex128, shapes (p,) and (n,)
         The vertices of all loops of the boundary, and of all cages.
     """
-    scale = box_diagonal(outline)
+    scale = diameter(outline)
     singular = cKDTree(as_xy(np.concatenate([cage, outline])))
     children = np.flatnonzero(network.parents >= 0)[1:]
     is_integrated = network.lead_to(network.places)[children]

@@ -19,8 +19,8 @@ from engine.errors import EngineError
 from engine.geometry import (
     ON_OUTLINE,
     as_xy,
-    box_diagonal,
     constrained_delaunay,
+    diameter,
     edges,
     loop_ends,
     region,
@@ -28,8 +28,8 @@ from engine.geometry import (
 from engine.paths.loops import Loops
 from engine.paths.spanning_tree import breadth_first_parents, shortest_parents
 
-CELL = 1 / 50  # longest edge of the triangles between scattered points, over the box diagonal
-MOST_CELLS = 2000  # over the box diagonal, by which segments near the boundary are looked for
+CELL = 1 / 50  # longest edge of the triangles between scattered points, over the diameter
+MOST_CELLS = 2000  # over the diameter, by which segments near the boundary are looked for
 NEIGHBOURS = 64  # nodes that are tried for a straight way to the anchor, or to a loop
 TRIES = 32  # places of a loop around a hole from which nodes are looked for
 
@@ -154,7 +154,7 @@ def scattered_network(
     corners, triangles = _refine(
         np.concatenate([outline, *holes]),
         constrained_delaunay(outline, holes),
-        CELL * box_diagonal(outline),
+        CELL * diameter(outline),
     )
     portals, sides = _portals(corners, triangles)
     ends = np.concatenate([anchor, points])
@@ -246,7 +246,7 @@ def leave_region(loops: Sequence[Complexes], starts: Complexes, ends: Complexes)
     """Tell for each segment whether it leaves the region by more than rounding."""
     if not len(starts):
         return np.empty(0, dtype=np.bool_)
-    tolerance = 2 * ON_OUTLINE * box_diagonal(loops[0])
+    tolerance = 2 * ON_OUTLINE * diameter(loops[0])
     # Nearly all segments stay away from the boundary; only the others need the exact test.
     near = np.flatnonzero(_near_boundary(loops, starts, ends))
     segments = shapely.linestrings(np.stack([as_xy(starts[near]), as_xy(ends[near])], axis=1))
@@ -269,7 +269,7 @@ def _near_boundary(loops: Sequence[Complexes], starts: Complexes, ends: Complexe
     points a cell apart, in those around them.
     """
     lengths = np.abs(ends - starts)
-    cell = max(2 * float(np.median(lengths)), box_diagonal(loops[0]) / MOST_CELLS)
+    cell = max(2 * float(np.median(lengths)), diameter(loops[0]) / MOST_CELLS)
     boundary = np.concatenate([_dense(loop, cell) for loop in loops])
     corner = complex(
         min(boundary.real.min(), starts.real.min()), min(boundary.imag.min(), starts.imag.min())

@@ -10,11 +10,14 @@ from itertools import pairwise
 
 import numpy as np
 
-from engine.arrays import Complexes, Floats, freeze
+from engine.arrays import Complexes, Floats, as_number, as_reals, freeze
+from engine.errors import EngineError
 
 # Shares of the tolerance: of what the basis leaves out, of the weights' way between their times,
 # and of the targets that are left out. Times cost little, targets much.
 OF_BASIS, OF_TIME, OF_RANK = 0.02, 0.1, 0.85
+NO_TIMES = "times must be finite numbers, one at least, not {times}."
+TIMES_FALL = "times must increase from one to the next."
 BLOCK = 256  # moments that are written out at once
 SHORTEST = 2.0**-6  # time that a jump of the motion may take: there no tolerance is kept
 
@@ -81,6 +84,12 @@ def build_targets(
     always 1, the others' weights are never negative: engines cut those off. At first it is left
     out where the motion allows it, as where it starts at the base.
     """
+    moments = as_reals(times, "times")
+    if moments.ndim != 1 or not len(moments) or not np.isfinite(moments).all():
+        raise EngineError(NO_TIMES.format(times=moments))
+    if (np.diff(moments) <= 0).any():
+        raise EngineError(TIMES_FALL)
+    as_number(tolerance, "The tolerance of targets", above=0)
     film = _Film(base, OF_BASIS * tolerance)
     film.append(times[0], film.take(sample(times[0])))
     yield times[0]

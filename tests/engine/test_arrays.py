@@ -8,12 +8,19 @@ from scipy.sparse import csr_array
 
 from engine.arrays import (
     FEW_ENTRIES,
+    NO_WORD,
+    NOT_A_NUMBER,
     NOT_COMPLEX,
     NOT_FINITE,
+    NOT_REAL,
+    TOO_LARGE,
+    as_number,
     as_points,
+    as_reals,
     freeze,
     held_bytes,
     readonly,
+    require_word,
 )
 from engine.errors import EngineError
 
@@ -87,3 +94,38 @@ def test_memory_is_counted_once_and_not_what_others_hold():
     # A view keeps all of what it looks at.
     assert held_bytes(whole[:1]) == held_bytes(whole, thing, but=(other, sparse)) == 800
     assert held_bytes(thing, but=(thing,)) == held_bytes() == 0
+
+
+@pytest.mark.parametrize("value", ["1", None, 1j, np.nan, np.inf, -1, 0, 5.5, np.ones(2), [1]])
+def test_number_is_refused_when_it_is_none_or_out_of_range(value) -> None:
+    with pytest.raises(EngineError, match=says(NOT_A_NUMBER, name="Speed")):
+        as_number(value, "Speed", above=0, most=5)
+
+
+@pytest.mark.parametrize("value", [1, 1.0, True, np.float64(1), np.float32(1), np.int32(1)])
+def test_number_may_be_of_any_real_type(value) -> None:
+    assert as_number(value, "Speed", least=1, most=1) == 1
+
+
+def test_number_is_refused_by_its_range_in_words() -> None:
+    with pytest.raises(EngineError, match="whole number at least 1,000 and at most 2,000, not 2"):
+        as_number(2, "The count", least=1000, most=2000, is_whole=True)
+
+
+def test_reals_may_be_infinite_but_not_text() -> None:
+    assert_array_equal(as_reals([1, np.inf, np.nan], "angles"), [1, np.inf, np.nan])
+    for values in (["a"], [1j], [None]):
+        with pytest.raises(EngineError, match=says(NOT_REAL, name="angles")):
+            as_reals(values, "angles")
+
+
+def test_points_are_refused_when_they_are_too_far_away() -> None:
+    with pytest.raises(EngineError, match=says(TOO_LARGE, most=10.0, index=1)):
+        as_points([1, -20, 3], "places", most=10)
+
+
+def test_word_is_refused_when_it_is_not_known() -> None:
+    require_word("keep", ("keep", "fill"), "Holes")
+    for word in ("maybe", ["keep"], None):
+        with pytest.raises(EngineError, match=says(NO_WORD, words="'keep', 'fill'")):
+            require_word(word, ("keep", "fill"), "Holes")

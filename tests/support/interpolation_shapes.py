@@ -9,7 +9,7 @@ import shapely
 from engine.arrays import Complexes
 from engine.dirichlet import Extension, HilbertTransform
 from engine.geometry import Domain
-from engine.geometry.polygon import as_xy, box_diagonal, edges, sample_graded
+from engine.geometry.polygon import as_xy, diameter, edges, sample_graded
 from engine.interpolation import (
     Inbetweens,
     Interval,
@@ -150,7 +150,7 @@ def stage_of(
 
 def outline_samples(shape: Shape) -> Complexes:
     outline, cage = shape
-    return sample_graded(outline, cage, ratio=0.3, longest=box_diagonal(outline) / 300)
+    return sample_graded(outline, cage, ratio=0.3, longest=diameter(outline) / 300)
 
 
 def scattered_on(outline: Complexes, count: int) -> Complexes:
@@ -197,7 +197,7 @@ def random_map(shape, seed, *, k=0.5, bend=1.0):
     """
     outline, cage = shape
     rng = np.random.default_rng(seed)
-    size = box_diagonal(outline)
+    size = diameter(outline)
     turn, shift = rng.uniform(-3, 3), complex(*rng.normal(size=2))
     base = bent(shape, bend=bend * rng.uniform(-1, 1), turn=turn, shift=shift)
     place = 2 * (cage - cage.mean()) / size

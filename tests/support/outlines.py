@@ -9,8 +9,8 @@ from engine.domain.outline.enclosure import Enclosure
 from engine.geometry import Hole
 from engine.geometry.polygon import (
     as_xy,
-    box_diagonal,
     contains,
+    diameter,
     distance_to_boundary,
     edges,
     is_simple,
@@ -29,7 +29,7 @@ def check_cage(outline: Complexes, cage: Complexes) -> None:
     nearest = min(
         distance_to_boundary(outline, cage).min(), distance_to_boundary(cage, outline).min()
     )
-    assert nearest >= 0.0003 * box_diagonal(outline)
+    assert nearest >= 0.0003 * diameter(outline)
 
 
 def check_hole(hole: Hole, size: float) -> None:
@@ -43,7 +43,7 @@ def check_hole(hole: Hole, size: float) -> None:
     nearest = min(
         distance_to_boundary(outline, cage).min(), distance_to_boundary(cage, outline).min()
     )
-    assert nearest >= 0.0003 * box_diagonal(outline)
+    assert nearest >= 0.0003 * diameter(outline)
     assert np.abs(edges(outline)).min() >= 0.001 * size
     # As of every outline, seen from the domain; there are no angles for the mesh to fail at.
     angles = interior_angles(outline) % 360

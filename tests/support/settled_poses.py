@@ -14,7 +14,7 @@ from interpolation_shapes import (
 )
 
 from engine.deform import Deformer, Handles
-from engine.geometry.polygon import box_diagonal
+from engine.geometry.polygon import diameter
 from engine.interpolation import prepare
 from engine.maps import Bounds
 from engine.streaming import Positions, build_series, finish
@@ -30,7 +30,7 @@ LOOKED_AT = 200  # times between the samples of a series
 def settled_poses(name, seed):
     """Drag the handles of a shape to two poses at the default bounds."""
     outline, _ = shape = SHAPES[name]()
-    size, boundary = box_diagonal(outline), boundary_of(shape)
+    size, boundary = diameter(outline), boundary_of(shape)
     rng = np.random.default_rng(seed)
     places = inner_points(outline, HANDLES, seed, margin=0.01 * size)
     handles = Handles.place(boundary, places)

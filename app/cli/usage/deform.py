@@ -22,8 +22,8 @@ CASE.npz holds the shape and what is asked of it:
                                   above 1: k, ln sigma_a and ln sigma_b are there those of the
                                   bounds over its square root
   path         (s, h) complex128  optional, positions of the handles on the way to the targets
-  pull         (h,) or scalar     optional, the strongest force of each handle over the diagonal of
-                                  the outline's box, infinite where it is held, as all are without;
+  pull         (h,) or scalar     optional, the strongest force of each handle over the diameter of
+                                  the outline, infinite where it is held, as all are without;
                                   a scalar is for those that are wanted elsewhere than at rest: 10
                                   moves a limb as far as it goes, and nothing else
 

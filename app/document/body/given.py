@@ -1,9 +1,10 @@
 """Ready motions that a layer was given, and from what they were made."""
 
-from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from types import MappingProxyType
+from typing import Self
 
 from app.document.checks import LAST_FRAME, NOTHING, Unknown, require
 from engine.geometry.motions import Parameters, kind_named, motion_named
@@ -51,6 +52,11 @@ class GivenMotion:
             f"A motion is there once to {MOST_ROUNDS:,} times, not {self.rounds:,} times.",
         )
         object.__setattr__(self, "joints", MappingProxyType(dict(self.joints)))
+
+    def moved(self, to: Callable[[int], int]) -> Self:
+        """Return the motion with its frames where a function has them."""
+        first, start, last = map(to, (self.first, self.start, self.last))
+        return replace(self, first=first, start=start, last=last)
 
     def overlaps(self, first: int, last: int) -> bool:
         """Tell whether some of its frames are strictly within others."""

@@ -9,9 +9,9 @@ from app.document.checks import require, require_distinct
 from app.document.keyframe import Handle
 from app.errors import LissomError
 from engine.arrays import Complexes
-from engine.geometry import box_diagonal
+from engine.geometry import diameter
 
-# Of the shape's diagonal: handles that mirror each other this nearly are pairs without names.
+# Of the shape's diameter: handles that mirror each other this nearly are pairs without names.
 NEAR = 0.03
 # Words, or whole names, that tell of one side and of the other.
 SidePairs = tuple[tuple[str, str], ...]
@@ -138,6 +138,6 @@ def partners_of(
     for handle in alone:
         away = np.abs(places - (2 * axis - handle.position.conjugate()))
         nearest = int(away.argmin())
-        if away[nearest] < NEAR * box_diagonal(outline):
+        if away[nearest] < NEAR * diameter(outline):
             partners[handle.id] = alone[nearest].id
     return partners

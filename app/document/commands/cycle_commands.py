@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import TypeVar
 
 from app.document.commands.command import command, layer_command
-from app.document.commands.keys_in_time import Row, in_order
+from app.document.commands.keys_in_time import Row, in_order, nearest_frame
 from app.document.keyframe import Keyframe
 from app.document.layer import Layer
 from app.document.layering import MoveKey, OpacityKey, repeated_joints
@@ -205,9 +205,8 @@ def stretched_to(layer: Layer, cycle: Cycle, frame: int) -> Cycle:
     last = max([frame, cycle.first + 1, *(each + 1 for each in own)])
     until = cycle.until
     if until is not None:
-        until = max(
-            last, cycle.first + round((until - cycle.first) * (last - cycle.first) / cycle.period)
-        )
+        longer = (until - cycle.first) * (last - cycle.first) / cycle.period
+        until = max(last, cycle.first + nearest_frame(longer))
     return replace(cycle, last=last, until=until)
 
 

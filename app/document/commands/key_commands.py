@@ -1,15 +1,22 @@
 """Commands on keys: posing, inserting, and moving them about in time."""
 
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
+from itertools import compress, pairwise
+from typing import TypeVar
 
+from app.document.body import GivenMotion
 from app.document.commands import keys_in_time
 from app.document.commands.command import layer_command
+from app.document.commands.keys_in_time import TimeScale
 from app.document.keyframe import Keyframe, Pose
 from app.document.layer import Layer
-from app.document.layering import moved_in_time
+from app.document.layering import Placing, Switch
+from app.document.queries import digest_of_keys, is_as_given
 from app.document.timing import LINEAR, Cycle, Easing, Passing
 from app.errors import LissomError
+
+Held = TypeVar("Held", Switch, Placing)
 
 
 @layer_command("Pose")
@@ -46,12 +53,9 @@ def put_keys(layer: Layer, keys: Sequence[Keyframe]) -> Layer:
 
 @layer_command("Move keys")
 def move_keys(layer: Layer, frames: Collection[int], by: int) -> Layer:
-    """Move the keys at some frames by a number of frames, and what repeats with all of its keys."""
-    return _with_keys(
-        layer,
-        keys_in_time.moved(layer.keys, frames, by),
-        _carried(layer, frames, lambda frame: frame + by),
-    )
+    """Move the keys at some frames; cycles and ready motions go with their keys."""
+    keys = keys_in_time.moved(layer.keys, frames, by)
+    return _rearranged(layer, keys, frames, lambda frame: frame + by)
 
 
 @layer_command("Copy keys")
@@ -101,14 +105,9 @@ def scale_keys(
     first : int, optional
         The frame that stays; by default that of the first key.
     """
-    keys, stays = keys_in_time.spread(layer.keys, frames, factor, first), first
-    if stays is None:
-        stays = min(frames, default=0)
-
-    def to(frame: int) -> int:
-        return keys_in_time.scaled(frame, stays, factor)
-
-    return _with_keys(layer, keys, _carried(layer, frames, to))
+    keys = keys_in_time.spread(layer.keys, frames, factor, first)
+    stays = min(frames, default=0) if first is None else first
+    return _rearranged(layer, keys, frames, TimeScale(stays, factor))
 
 
 @layer_command("Make last key equal first")
@@ -161,6 +160,50 @@ def _with_keys(
     return replace(layer, keys=keys, cycles=layer.cycles if cycles is None else cycles)
 
 
+def _rearranged(
+    layer: Layer,
+    keys: tuple[Keyframe, ...],
+    frames: Collection[int],
+    to: Callable[[int], int],
+) -> Layer:
+    """Return the layer with the keys at some frames elsewhere, and what goes with them."""
+    if keys is layer.keys:
+        return layer
+    changed = replace(layer, keys=keys, cycles=_carried(layer, frames, to), motions=())
+    return replace(changed, motions=_carried_motions(layer, changed, frames, to))
+
+
+def _carried_motions(
+    layer: Layer, changed: Layer, frames: Collection[int], to: Callable[[int], int]
+) -> tuple[GivenMotion, ...]:
+    """Return a layer's ready motions, whose ends go with the keys there.
+
+    A motion that would take in other keys or meet another motion is forgotten: to give it again
+    would delete what is not its own. One that is moved as a whole is still as it was given.
+    """
+    gone = {frame: to(frame) for frame in frames}
+    motions: list[GivenMotion] = []
+    for motion in layer.motions:
+        own = {frame for frame in layer.key_frames if motion.first <= frame <= motion.last}
+        is_whole = bool(own) and own <= gone.keys()
+        ends = (motion.first, motion.start, motion.last)
+        first, start, last = (to(end) if is_whole else gone.get(end, end) for end in ends)
+        if (first, start, last) == ends:
+            motions.append(motion)
+            continue
+        others = {gone.get(frame, frame) for frame in layer.key_frames - own}
+        if not first <= start < last or any(first <= frame <= last for frame in others):
+            continue
+        moved = replace(motion, first=first, start=start, last=last)
+        is_shifted = is_whole and len({to(frame) - frame for frame in {*own, *ends}}) == 1
+        if is_shifted and is_as_given(layer, motion):
+            moved = replace(moved, digest=digest_of_keys(changed, first, last))
+        motions.append(moved)
+    motions.sort(key=lambda motion: motion.first)
+    apart = [before.last <= after.first for before, after in pairwise(motions)]
+    return tuple(compress(motions, [True, *apart]))
+
+
 def _carried(layer: Layer, frames: Collection[int], to: Callable[[int], int]) -> tuple[Cycle, ...]:
     """Return a layer's cycles; those of which all keys are among some go with them."""
     cycles = []
@@ -170,32 +213,35 @@ def _carried(layer: Layer, frames: Collection[int], to: Callable[[int], int]) ->
     return tuple(sorted(cycles, key=lambda cycle: cycle.first))
 
 
-def stretched(layer: Layer, first: int, factor: float) -> Layer:
-    """Return the layer with all of its time stretched or shortened around a frame that stays.
-
-    Where it would be shown and hidden, or attached anew, at one frame, what comes later holds from
-    there on. Springs swing in seconds, and go on doing so.
-    """
-
-    def to(frame: int) -> int:
-        return keys_in_time.scaled(frame, first, factor)
-
-    def all_to(keys: Iterable[keys_in_time.Key]) -> tuple[keys_in_time.Key, ...]:
-        return keys_in_time.in_order(key.at_pace(to(key.frame), 1 / factor) for key in keys)
-
-    switches = {to(switch.frame): switch for switch in layer.switches}
-    joints = {max(to(joint.frame), 0): joint.moved(to) for joint in layer.joints}
+def stretched(layer: Layer, scale: TimeScale) -> Layer:
+    """Return the layer with all of its time scaled; springs go on swinging in seconds."""
+    of_layer = f"of {layer.name!r}"
     return replace(
         layer,
-        switches=tuple(replace(switch, frame=at) for at, switch in switches.items()),
-        joints=tuple(joints.values()),
-        keys=all_to(layer.keys),
-        cycles=tuple(cycle.moved(to) for cycle in layer.cycles),
+        switches=scale.retimed(layer.switches, f"visibility keys {of_layer}", _at_frame),
+        joints=scale.retimed(
+            layer.joints, f"attachments {of_layer}", lambda joint, _: joint.moved(scale)
+        ),
+        keys=scale.paced(layer.keys, f"keys {of_layer}"),
+        cycles=tuple(cycle.moved(scale) for cycle in layer.cycles),
+        motions=tuple(
+            motion.moved(scale)
+            for motion in layer.motions
+            if scale(motion.start) < scale(motion.last)
+        ),
         tracks=tuple(
-            replace(track, keys=all_to(track.keys), delay=round(factor * track.delay))
+            replace(
+                track,
+                keys=scale.paced(track.keys, f"track keys {of_layer}"),
+                delay=keys_in_time.nearest_frame(scale.factor * track.delay),
+            )
             for track in layer.tracks
         ),
-        movement=all_to(layer.movement),
-        opacities=all_to(layer.opacities),
-        placings=moved_in_time(layer.placings, to),
+        movement=scale.paced(layer.movement, f"movement keys {of_layer}"),
+        opacities=scale.paced(layer.opacities, f"opacity keys {of_layer}"),
+        placings=scale.retimed(layer.placings, f"draw order keys {of_layer}", _at_frame),
     )
+
+
+def _at_frame(key: Held, frame: int) -> Held:
+    return replace(key, frame=frame)

@@ -4,10 +4,11 @@ A row is in the order of its frames, and has at most one key at each.
 """
 
 from collections import Counter
-from collections.abc import Collection, Iterable, Mapping
-from dataclasses import replace
+from collections.abc import Callable, Collection, Iterable, Mapping
+from dataclasses import dataclass, replace
 from itertools import chain, pairwise
-from typing import TypeVar
+from math import floor
+from typing import Protocol, TypeVar
 
 from app.document.keyframe import Keyframe
 from app.document.layer import NO_KEY
@@ -17,8 +18,68 @@ from app.errors import LissomError
 
 Key = TypeVar("Key", Keyframe, TrackKey, CameraKey, MoveKey, OpacityKey)
 Row = tuple[Key, ...]
+
+
+class AtFrame(Protocol):
+    """A key of any kind, or a marker."""
+
+    @property
+    def frame(self) -> int:
+        """The frame that it stands at."""
+
+
+Timed = TypeVar("Timed", bound=AtFrame)
 TWO_KEYS = "Two keys would be at frame {frame}; move or delete the one there first."
+KEYS_MEET = (
+    "The {keys} at frames {one} and {other} would both be at frame {frame}. Delete one of them "
+    "first, or shorten the time less."
+)
 TIME_SCALE = "Time can be scaled by more than 0 and up to 1000, not by {factor:g}."
+
+
+@dataclass(frozen=True, slots=True)
+class TimeScale:
+    """Time stretched or shortened around a frame that stays."""
+
+    stays: int
+    factor: float
+
+    def __post_init__(self) -> None:
+        if not 0 < self.factor <= 1000:
+            raise LissomError(TIME_SCALE.format(factor=self.factor))
+
+    def __call__(self, frame: int) -> int:
+        """Return where a frame comes, never before frame 0."""
+        return max(self.stays + nearest_frame((frame - self.stays) * self.factor), 0)
+
+    def paced(self, keys: Iterable[Key], named: str) -> Row[Key]:
+        """Return keys at their new frames, and the motion through them as much faster."""
+        return self.retimed(keys, named, lambda key, at: key.at_pace(at, 1 / self.factor))
+
+    def retimed(
+        self, keys: Iterable[Timed], named: str, at_frame: Callable[[Timed, int], Timed]
+    ) -> tuple[Timed, ...]:
+        """Return keys, in their order, at their new frames, as a function has one at a frame.
+
+        Two that meet are refused. Of those that hold before the frame that stays, where nothing is
+        seen, the last one counts.
+        """
+        placed: dict[int, Timed] = {}
+        for key in keys:
+            at = self(key.frame)
+            if at in placed and key.frame > self.stays:
+                one, other = placed[at].frame, key.frame
+                raise LissomError(KEYS_MEET.format(keys=named, one=one, other=other, frame=at))
+            placed[at] = key
+        return tuple(at_frame(key, at) for at, key in placed.items())
+
+
+def nearest_frame(time: float) -> int:
+    """Return the frame nearest to a time, of two the later one, so that no two steps differ.
+
+    `round` takes the even one, so that times .5, 1.5 and 2.5 come to frames 0, 2 and 2.
+    """
+    return floor(time + 0.5)
 
 
 def at_frames(keys: Row[Key], frames: Iterable[int]) -> list[Key]:
@@ -110,14 +171,12 @@ def spread(
 ) -> Row[Key]:
     """Return a row with the keys at some frames moved apart or together around one that stays."""
     chosen = at_frames(keys, frames)
-    require_factor(factor)
+    stays = min(frames, default=0) if first is None else first
+    scale = TimeScale(stays, factor)
     if factor == 1 or not chosen:
         return keys
-    first = chosen[0].frame if first is None else first
-    return exchanged(
-        keys,
-        {key.frame: key.at_pace(scaled(key.frame, first, factor), 1 / factor) for key in chosen},
-    )
+    changed = {key.frame: key.at_pace(scale(key.frame), 1 / factor) for key in chosen}
+    return exchanged(keys, changed)
 
 
 def eased(keys: Row[Key], frames: Collection[int], easing: Easing) -> Row[Key]:
@@ -138,14 +197,3 @@ def passed(keys: Row[Key], frames: Collection[int], passing: Passing) -> Row[Key
             easing = LINEAR if key.easing == HOLD else key.easing
             changed[key.frame] = replace(key, easing=easing, passing=passing)
     return exchanged(keys, changed)
-
-
-def scaled(frame: int, first: int, factor: float) -> int:
-    """Return where a frame comes when time is stretched from the first frame on."""
-    return first + round((frame - first) * factor)
-
-
-def require_factor(factor: float) -> None:
-    """Refuse a factor by which time cannot be scaled."""
-    if not 0 < factor <= 1000:
-        raise LissomError(TIME_SCALE.format(factor=factor))

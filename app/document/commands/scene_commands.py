@@ -1,13 +1,14 @@
 """Commands on the scene: how long it is, what of it plays and is exported, and its markers."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from itertools import pairwise
+from typing import Any
 
 from app.document.body import GivenMotion, SidePairs
 from app.document.commands.command import command, numbered
 from app.document.commands.key_commands import stretched
-from app.document.commands.keys_in_time import in_order, require_factor, scaled
+from app.document.commands.keys_in_time import TimeScale
 from app.document.layer import Layer
 from app.document.model import Document
 from app.document.settings import ExportSettings, FrameRange, Marker
@@ -27,7 +28,7 @@ def set_fps(document: Document, fps: float) -> Document:
 
 @command("Set frames")
 def set_frames(document: Document, frames: FrameRange) -> Document:
-    """Set the first and last frame, which cut the preview range; no key may be left outside."""
+    """Set the first and last frame, which cut the ranges in them; no key may be left outside."""
     if frames == document.frames:
         return document
     ends = [frame for layer in document.layers for frame in layer.ends]
@@ -35,12 +36,29 @@ def set_frames(document: Document, frames: FrameRange) -> Document:
     outside = next((frame for frame in ends if frame not in frames), None)
     if outside is not None:
         raise LissomError(KEY_OUTSIDE.format(frame=outside, first=frames.first, last=frames.last))
-    preview = document.preview
-    if preview is not None:
-        apart = preview.last < frames.first or preview.first > frames.last
-        cut = FrameRange(frames.clamp(preview.first), frames.clamp(preview.last))
-        preview = None if apart else cut
-    return replace(document, frames=frames, preview=preview)
+
+    def cut(part: FrameRange) -> FrameRange | None:
+        if part.last < frames.first or part.first > frames.last:
+            return None
+        return FrameRange(frames.clamp(part.first), frames.clamp(part.last))
+
+    return _with_ranges(document, frames, cut)
+
+
+def _with_ranges(
+    document: Document,
+    frames: FrameRange,
+    to: Callable[[FrameRange], FrameRange | None],
+    **changes: Any,
+) -> Document:
+    """Return a document with other frames, each range in them where a function has it."""
+
+    def moved(part: FrameRange | None) -> FrameRange | None:
+        return None if part is None else to(part)
+
+    export = replace(document.export, frames=moved(document.export.frames))
+    preview = moved(document.preview)
+    return replace(document, frames=frames, preview=preview, export=export, **changes)
 
 
 @command("Set preview range")
@@ -75,31 +93,34 @@ def set_canvas(document: Document, size: tuple[int, int]) -> Document:
 
 @command("Scale time")
 def scale_time(document: Document, factor: float) -> Document:
-    """Make the whole animation longer or shorter: keys, markers, frames and preview range."""
-    require_factor(factor)
+    """Make the whole animation longer or shorter: keys, markers and all ranges of frames."""
+    scale = TimeScale(document.frames.first, factor)
     if factor == 1:
         return document
-    first = document.frames.first
 
-    def scale(frames: FrameRange) -> FrameRange:
-        return FrameRange(scaled(frames.first, first, factor), scaled(frames.last, first, factor))
+    def scaled(frames: FrameRange) -> FrameRange:
+        return FrameRange(scale(frames.first), scale(frames.last))
 
-    return replace(
+    return _with_ranges(
         document,
-        layers=tuple(stretched(layer, first, factor) for layer in document.layers),
-        frames=scale(document.frames),
-        preview=None if document.preview is None else scale(document.preview),
-        markers=tuple(
-            replace(marker, frame=scaled(marker.frame, first, factor))
-            for marker in document.markers
+        scaled(document.frames),
+        scaled,
+        layers=tuple(stretched(layer, scale) for layer in document.layers),
+        markers=scale.retimed(
+            document.markers, "markers", lambda marker, at: replace(marker, frame=at)
         ),
         choices=tuple(
-            choice.at_frames(lambda frame: scaled(frame, first, factor))
+            replace(
+                choice,
+                turns=scale.retimed(
+                    choice.turns,
+                    f"switch keys of {choice.name!r}",
+                    lambda turn, at: turn._replace(frame=at),
+                ),
+            )
             for choice in document.choices
         ),
-        camera=in_order(
-            key.at_pace(scaled(key.frame, first, factor), 1 / factor) for key in document.camera
-        ),
+        camera=scale.paced(document.camera, "camera keys"),
     )
 
 
@@ -164,7 +185,8 @@ def give_motion(document: Document, moved: Layer, given: GivenMotion) -> Documen
     document = document.with_layer(moved)
     if is_new and given.first == document.frames.first:
         loop = not given.parameters.travel and given.start == given.first
-        return replace(document, frames=FrameRange(given.first, given.last), loop=loop)
+        own = set_frames(FrameRange(given.first, given.last))(document)
+        return replace(own, loop=loop)
     return document
 
 

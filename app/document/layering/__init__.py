@@ -27,7 +27,6 @@ from app.document.layering.moves import (
     MoveKey as MoveKey,
     OpacityKey as OpacityKey,
     Placing as Placing,
-    moved_in_time as moved_in_time,
     require_rising as require_rising,
 )
 from app.document.layering.sight import (

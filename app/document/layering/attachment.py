@@ -64,9 +64,9 @@ class Attachment:
         return self.frame if self.since is None else self.since
 
     def moved(self, to: Callable[[int], int]) -> Self:
-        """Return the joint with its frames where a function has them, from frame 0 on."""
-        since = None if self.since is None else max(to(self.since), 0)
-        return replace(self, frame=max(to(self.frame), 0), since=since)
+        """Return the joint with its frames where a function has them."""
+        since = None if self.since is None else to(self.since)
+        return replace(self, frame=to(self.frame), since=since)
 
 
 def require_joints(joints: tuple[Attachment, ...]) -> None:

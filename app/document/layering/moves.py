@@ -1,7 +1,7 @@
 """Keys of the camera, and of layers moved as a whole, of their opacity and of their order."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 from math import tau
 from typing import Final
@@ -76,12 +76,6 @@ def require_rising(keys: Sequence[MovingKey] | Sequence[Placing], what: str) -> 
     for before, after in pairwise(key.frame for key in keys):
         if before >= after:
             raise LissomError(f"{what} has a key at frame {after} after that at frame {before}.")
-
-
-def moved_in_time(placings: Sequence[Placing], to: Callable[[int], int]) -> tuple[Placing, ...]:
-    """Return placings at other frames; of two at one frame the later one holds."""
-    placed = {max(to(placing.frame), 0): placing for placing in placings}
-    return tuple(replace(placing, frame=at) for at, placing in sorted(placed.items()))
 
 
 def _require_turn(turn: float) -> None:

@@ -1,11 +1,10 @@
 """When layers are seen: each by itself, or one of several that take turns."""
 
 from bisect import bisect_right
-from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from itertools import pairwise
 from operator import attrgetter
-from typing import NamedTuple, Self
+from typing import NamedTuple
 
 from app.document.checks import NOTHING, Unknown, require, require_distinct, require_frame
 from app.errors import LissomError
@@ -69,11 +68,6 @@ class Choice:
                     f"The choice {self.name!r} is made at frame {after.frame} after frame "
                     f"{before.frame}."
                 )
-
-    def at_frames(self, to: Callable[[int], int]) -> Self:
-        """Return the choice with its turns at other frames; of two at one frame the later holds."""
-        turns = {to(turn.frame): turn.layer for turn in self.turns}
-        return replace(self, turns=tuple(Turn(*turn) for turn in sorted(turns.items())))
 
     def at(self, frame: float) -> int:
         """Return the id of the layer that is seen at a frame."""

@@ -13,6 +13,7 @@ from app.document.queries.auto_pins import (
 from app.document.queries.clips import (
     Clip as Clip,
     clip_of as clip_of,
+    motion_source as motion_source,
 )
 from app.document.queries.given import (
     digest_of_keys as digest_of_keys,
@@ -51,6 +52,7 @@ from app.document.queries.stage import (
     alternates as alternates,
     camera_at as camera_at,
     carried_by as carried_by,
+    change_frame as change_frame,
     composed as composed,
     fronts_at as fronts_at,
     in_order as in_order,

@@ -1,15 +1,38 @@
 """A layer in the time of its scene."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from operator import attrgetter
 
-from app.document.keyframe import Keyframe
+from app.document.keyframe import Handle, Keyframe
 from app.document.layer import Layer
 from app.document.model import Document
+from app.document.queries.remembered import remembered
 from app.document.settings import FrameRange
 from engine.variant import Baseline
 
+# Fields of a layer, and of its handles, that its motion does not follow from. All others count.
+UNMOVING = {
+    *("name", "next_handle", "library", "mirror", "motions", "unread_motions", "reference"),
+    *("locked", "hidden", "switches", "opacity", "opacities", "blend", "clipped", "group"),
+    *("placings", "unknown"),
+}
+UNMOVING_OF_HANDLES = {"name", "group", "unknown"}
+_of_layer = attrgetter(
+    *(each.name for each in fields(Layer) if each.name not in UNMOVING | {"handles", "stiffness"})
+)
+_of_handle = attrgetter(
+    *(each.name for each in fields(Handle) if each.name not in UNMOVING_OF_HANDLES)
+)
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+
+@remembered
+def motion_source(layer: Layer) -> tuple[object, ...]:
+    """Return all of a layer that its motion follows from; equal where the motion is."""
+    stiffness = None if layer.stiffness is None else layer.stiffness.tobytes()
+    return (*_of_layer(layer), tuple(map(_of_handle, layer.handles)), stiffness)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Clip:
     """A layer in the time of its scene: all that its motion follows from.
 
@@ -25,6 +48,22 @@ class Clip:
     # Those of the layers that it hangs on at some time, by themselves, where springs and planted
     # tracks follow from them.
     carriers: "tuple[Clip, ...]" = ()
+
+    def __eq__(self, other: object) -> bool:
+        """Tell whether the motion of two clips is the same, whatever else the layers are like."""
+        if not isinstance(other, Clip):
+            return NotImplemented
+        return self._time == other._time and (
+            self.layer is other.layer or motion_source(self.layer) == motion_source(other.layer)
+        )
+
+    def __hash__(self) -> int:
+        return hash(self._time)
+
+    @property
+    def _time(self) -> tuple[object, ...]:
+        own = (self.layer.id, self.frames, self.loop, self.fps)
+        return (*own, self.baseline, self.carriers)
 
     @property
     def keys(self) -> tuple[Keyframe, ...]:

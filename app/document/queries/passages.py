@@ -4,7 +4,7 @@ Between two keys, what moves is a cubic Hermite polynomial of the eased time.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf, isfinite
 from typing import Generic, NamedTuple, Protocol, TypeVar
 
@@ -133,7 +133,7 @@ def passed(
         if 0.0 in (end_pace, start_pace):
             return stops
         if isfinite(end_pace) and isfinite(start_pace):
-            joint = joint._replace(end_pace=end_pace, start_pace=start_pace)
+            joint = replace(joint, end_pace=end_pace, start_pace=start_pace)
             return joint, joint
         return 1.0, 1.0
     resting = {Passing.STOP, Passing.THROUGH} if is_end else {Passing.STOP}

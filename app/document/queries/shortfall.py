@@ -10,10 +10,10 @@ from app.document.layer import Layer
 from app.document.queries.material import spends_local_limits
 from app.document.queries.remembered import remembered
 from engine.arrays import Complexes
-from engine.geometry import box_diagonal
+from engine.geometry import diameter
 from engine.maps import Bounds, distortion
 
-# Of the diagonal of the outline's box: a handle this far from its target falls short. A free handle
+# Of the outline's diameter: a handle this far from its target falls short. A free handle
 # always gives in a little, since it pulls against the stiffness of the shape.
 LAG = 0.005
 AT_LIMIT = 0.97  # of a limit: so much of it is used where a pose cannot go on
@@ -121,7 +121,7 @@ def falls_short(layer: Layer, lag: float) -> bool:
 
 @remembered
 def _least_lag(layer: Layer) -> float:
-    return LAG * box_diagonal(layer.domain.outline)
+    return LAG * diameter(layer.domain.outline)
 
 
 @remembered

@@ -1,8 +1,9 @@
 """Which two keys a moment lies between, and how far it is from one to the other."""
 
+from collections.abc import Iterable
 from fractions import Fraction
 from itertools import pairwise
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 from app.document.keyframe import Pose
 from app.document.layer import Layer
@@ -30,6 +31,19 @@ class Moment(NamedTuple):
     weight: float
 
 
+class _HasFrame(Protocol):
+    @property
+    def frame(self) -> int: ...
+
+
+class _Key(NamedTuple):
+    """A key, and whose it is."""
+
+    whose: int | str
+    frame: int
+    key: object
+
+
 def time_of(clip: Clip, frame: float) -> Moment:
     """Return the moment that a frame shows.
 
@@ -54,7 +68,7 @@ def resting_pose(clip: Clip, moment: Moment) -> Pose | None:
 
 
 def changed_stretches(before: Document, after: Document) -> list[FrameRange]:
-    """Return where in time two documents differ: keys, the ways from them, tracks, and markers.
+    """Return where in time two documents differ: keys of all kinds, the ways from poses, markers.
 
     A change of everything that is shown, such as of handles or of a domain, is nowhere.
     """
@@ -70,8 +84,21 @@ def changed_stretches(before: Document, after: Document) -> list[FrameRange]:
             stretches += [FrameRange(each.first, each.until or each.last) for each in changed]
             frames = {after.frames.clamp(frame) for frame in _changed_in_tracks(other, layer)}
             stretches += [FrameRange(frame, frame) for frame in sorted(frames)]
-    marks = set(before.markers) ^ set(after.markers)
-    return stretches + [FrameRange(marker.frame, marker.frame) for marker in marks]
+    frames = {key.frame for key in _keys_beside(before) ^ _keys_beside(after)}
+    return stretches + [FrameRange(frame, frame) for frame in sorted(frames)]
+
+
+def _keys_beside(document: Document) -> set[_Key]:
+    """Return all that stands at a frame but keys of poses and of tracks, and whose it is."""
+    rows: list[tuple[int | str, Iterable[_HasFrame]]] = [
+        ("markers", document.markers),
+        ("camera", document.camera),
+        *((choice.name, choice.turns) for choice in document.choices),
+    ]
+    for layer in document.layers:
+        moved = layer.movement, layer.opacities, layer.placings, layer.switches, layer.joints
+        rows += [(layer.id, row) for row in moved]
+    return {_Key(whose, key.frame, key) for whose, row in rows for key in row}
 
 
 def _changed_keys(before: Layer, after: Layer) -> list[FrameRange]:

@@ -1,6 +1,6 @@
 """How the motion of a clip leaves its keys and reaches them, by their passings and easings."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
 from typing import NamedTuple
 
@@ -183,7 +183,7 @@ def _end(clip: Clip, number: int, at: KeyPassing, *, side: int) -> Passed:
     if not 0.0 < pace < inf:
         return 1.0
     lengthened = pace * other.frames / own.frames
-    return end._replace(start_pace=lengthened) if side else end._replace(end_pace=lengthened)
+    return replace(end, start_pace=lengthened) if side else replace(end, end_pace=lengthened)
 
 
 def _leg(span: KeySpan) -> Leg:

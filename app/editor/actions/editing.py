@@ -47,6 +47,7 @@ class KeyVerb(NamedTuple):
         return None if self.to_tracks is None else self.to_tracks(*row, frames, *args)
 
 
+FIRST_KEY_STAYS = "The first key of {layers} stays: a layer has at least one key."
 DELETE = KeyVerb(key_commands.delete_keys, track_commands.delete_track_keys)
 
 
@@ -263,11 +264,24 @@ def delete(session: Session, project: Project) -> None:
     if project.draft is not None and project.draft.chosen is not None:
         placing.leave_out(session, project.draft.chosen)
     elif project.chosen_of:
-        edit(session, change_keys(DELETE, project.chosen_of))
+        _delete_keys(session, project)
     elif session.in_timeline and project.chosen_track is not None:
         edit_layer(session, track_commands.remove_tracks, (project.chosen_track,))
     elif project.selected:
         posing.remove_handles(session, project.selected)
+
+
+def _delete_keys(session: Session, project: Project) -> None:
+    """Delete the chosen keys; a layer of which all keys are chosen keeps its first one."""
+    chosen_of, keeping = dict(project.chosen_of), list[str]()
+    for row, chosen in project.chosen_of.items():
+        if not isinstance(row, TrackRow) and chosen >= frames_in(project.document, row):
+            chosen_of[row] = chosen - {min(chosen)}
+            keeping.append(repr(project.document.layer(row).name))
+    left = {row: frames for row, frames in chosen_of.items() if frames}
+    edit(session, change_keys(DELETE, left or project.chosen_of))
+    if keeping:
+        session.tell(FIRST_KEY_STAYS.format(layers=", ".join(keeping)))
 
 
 def follow_layers(project: Project) -> None:

@@ -29,7 +29,7 @@ def _keep(session: Session, project: Project, layer: Layer, pose: Pose) -> None:
     taken = [Keyframe(frame=0, pose=pose)]
     (key,) = putting.fitted(project, project.active, taken, layer.bounds)
     editing.edit(session, pose_commands.keep_pose(project.active, key.pose))
-    project.picked_pose = project.layer.library[-1].name
+    project.picked_pose = (project.active, project.layer.library[-1].name)
 
 
 class PoseOffer(NamedTuple):
@@ -85,7 +85,7 @@ def _put(session: Session, project: Project, offer: PoseOffer, frame: int) -> No
     if landing.hindrance:
         session.tell(landing.hindrance)
         return
-    project.picked_pose = offer.kept.name
+    project.picked_pose = (offer.owner.id, offer.kept.name)
     pasting.bring(session, project, [landing], "as it is", frame, label="Use pose")
 
 
@@ -145,7 +145,7 @@ def _between(one: Target, other: Target, share: float) -> Target:
 def rename(session: Session, project: Project, name: str, to: str) -> None:
     """Give a pose of the library another name."""
     editing.edit_layer(session, pose_commands.rename_pose, name, to)
-    project.picked_pose = to
+    project.picked_pose = (project.active, to)
 
 
 def delete(session: Session, name: str) -> None:

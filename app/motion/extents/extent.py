@@ -5,7 +5,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.document import Document, FrameRange, clip_of, exported_frames, framed_frames
+from app.document import (
+    Document,
+    FrameRange,
+    clip_of,
+    exported_frames,
+    framed_frames,
+    motion_source,
+)
 from app.errors import LissomError
 from app.motion.corrected_frames import CorrectedFrames
 from app.motion.extents.long_extent import farthest_reach
@@ -38,21 +45,7 @@ def box_around(points: Complexes) -> Box:
 
 def extent_source(document: Document) -> tuple[object, ...]:
     """Return all of a document that its extent depends on; equal where the extent is."""
-    motions = [
-        (
-            layer.domain,
-            layer.keys,
-            layer.cycles,
-            layer.anchor,
-            layer.variant,
-            layer.bounds,
-            layer.joints,
-            layer.movement,
-            layer in document.exported,
-            (layer.stillness, layer.handles, layer.tracks, layer.springs),
-        )
-        for layer in document.layers
-    ]
+    motions = [(motion_source(each), each in document.exported) for each in document.layers]
     frames = framed_frames(document, exported_frames(document))
     return (*motions, document.frames, document.loop, document.fps, frames)
 

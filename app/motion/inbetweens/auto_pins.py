@@ -16,7 +16,7 @@ from app.motion.inbetweens.pairs import pair_of
 from app.motion.inbetweens.pose_sampler import PoseSampler, prepare_corrector
 from engine.arrays import Complexes, Floats
 from engine.deform.correction import PointCorrector
-from engine.geometry import box_diagonal
+from engine.geometry import diameter
 from engine.interpolation import (
     CorrectionSeries,
     Frame,
@@ -25,7 +25,7 @@ from engine.interpolation import (
     solve_pins,
 )
 
-BESIDE = 0.03  # of the diagonal: nearer to an anchor or a handle that stays, handles give way
+BESIDE = 0.03  # of the diameter: nearer to an anchor or a handle that stays, handles give way
 FIRM = 0.01  # of full firmness: a handle that lacks less is held fully
 # The one-sided difference of fourth order: in time, in-betweens are analytic between keys. Around
 # holes they may jump at the key itself, where nothing is looked at.
@@ -145,11 +145,11 @@ class AutoPins:
         near = np.where(rank > rank[:, None], apart, np.inf).min(axis=1)
         if anchor is not None:
             near = np.minimum(near, np.abs(places - anchor))
-        return firmness_at(near / box_diagonal(layer.domain.outline))
+        return firmness_at(near / diameter(layer.domain.outline))
 
 
 def firmness_at(distances: Floats) -> Floats:
-    """Return how firmly handles are held at distances, over the diagonal, from what stays more."""
+    """Return how firmly handles are held at distances, over the diameter, from what stays more."""
     far = -np.expm1(-((distances / BESIDE) ** 2))
     firmness: Floats = np.where(far > 1 - FIRM, 1.0, far)
     return firmness

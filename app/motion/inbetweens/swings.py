@@ -8,10 +8,10 @@ import numpy as np
 
 from app.document import Clip, Spring, root_of, time_of
 from engine.arrays import Complexes
-from engine.geometry import HERE, RigidMotion, box_diagonal
+from engine.geometry import HERE, RigidMotion, diameter
 from engine.geometry.kinematics import FADE, Swing, frames_to_settle, swing, turn_arm
 
-FARTHEST_SWING: Final = 0.3  # of the layer's diagonal
+FARTHEST_SWING: Final = 0.3  # of the layer's diameter
 PIECE: Final = 64  # frames of a swing, at least
 KEPT_PIECES: Final = 1_024
 KEPT_PLACES: Final = 2**14
@@ -130,7 +130,7 @@ class Swings:
             frequency=spring.frequency,
             damping=spring.damping,
             strength=spring.strength,
-            limit=FARTHEST_SWING * box_diagonal(clip.layer.domain.outline),
+            limit=FARTHEST_SWING * diameter(clip.layer.domain.outline),
             loop=loop,
         )
         return swung(), None if root is None else swung(roots=places[root])

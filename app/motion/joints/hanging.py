@@ -8,7 +8,7 @@ from app.motion.joints.chain import Hinge, hinge_at
 from app.motion.joints.joints import Joints
 from engine.arrays import Complexes
 from engine.errors import EngineError
-from engine.geometry import box_diagonal, contains, deepest_point
+from engine.geometry import contains, deepest_point, diameter
 from engine.interpolation import Frame
 
 # Newton steps towards the point of a parent that is at a place; each squares the error.
@@ -148,7 +148,7 @@ def _source(joints: Joints, layer: Layer, place: complex, frame: float) -> compl
     middles = _middles(layer)
     moved = _moved(joints, layer, middles, frame)
     source = complex(middles[np.argmin(np.abs(moved.positions - place))])
-    size = box_diagonal(layer.domain.outline)
+    size = diameter(layer.domain.outline)
     for _ in range(MOST_STEPS):
         try:
             at = _moved(joints, layer, np.array([source]), frame)

@@ -19,11 +19,11 @@ from app.errors import LissomError
 from app.solving.moving.wholes import points_of_whole
 from engine.arrays import Complexes
 from engine.errors import EngineError
-from engine.geometry import box_diagonal
+from engine.geometry import diameter
 from engine.geometry.motions import Body, Motion, Parameters, facing_of, kind_named, motion_named
 from engine.maps import Bounds
 
-# Of the diagonal of the drawing: a joint is the handle that is so near to it, and one that is so
+# Of the diameter of the drawing: a joint is the handle that is so near to it, and one that is so
 # little outside comes to the outline.
 SAME_JOINT, BESIDE = 0.004, 0.01
 TRUNK = ("neck", "head", "chest")
@@ -96,7 +96,7 @@ def body_of(layer: Layer, order: MotionOrder) -> Body:
 
 def _on_drawing(layer: Layer, joints: Mapping[str, complex]) -> dict[str, complex]:
     """Return joints on a layer; those that are hardly beside it come to its outline."""
-    tolerance = BESIDE * box_diagonal(layer.domain.outline)
+    tolerance = BESIDE * diameter(layer.domain.outline)
     points: Complexes = np.array(list(joints.values()), dtype=np.complex128)
     covered = layer.covers(points, tolerance=tolerance)
     for (name, place), is_on_it in zip(joints.items(), covered, strict=True):
@@ -146,7 +146,7 @@ def _with_handle(
     known = order.handles.get(name)
     if known is not None and any(each.id == known for each in layer.handles):
         return handle_commands.move_handle(identity, known, place)(document), known
-    near = SAME_JOINT * box_diagonal(layer.domain.outline)
+    near = SAME_JOINT * diameter(layer.domain.outline)
     free = [each for each in layer.handles if each.id not in others.values()]
     beside = min(free, key=lambda each: abs(each.position - place), default=None)
     if beside is not None and abs(beside.position - place) <= near:

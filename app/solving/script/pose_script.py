@@ -78,7 +78,7 @@ class PoseKey:
 
     frame: int
     targets: Mapping[str, complex]
-    pull: float = inf  # how strongly each of them is pulled at most, over the shape's diagonal
+    pull: float = inf  # how strongly each of them is pulled at most, over the shape's diameter
     ease: Easing = LINEAR
     passing: Passing = Passing.THROUGH
     fronts: Mapping[str, float] = field(default_factory=dict)

@@ -6,7 +6,7 @@ from app.document import USUAL_EXTENT, Handle, Keyframe, Layer, layer_commands
 from app.editor import Action, Project, Session, do
 from app.editor.actions import editing, playback, viewing
 from app.ui.style import Look, Scale, heading, label, slider, small, tip
-from engine.geometry import box_diagonal
+from engine.geometry import diameter
 
 DEPTHS = Scale(left=-1.0, right=1.0)
 
@@ -43,7 +43,7 @@ def _depth(session: Session, look: Look, project: Project, handle: Handle) -> li
 
 def _extent(look: Look, layer: Layer, handle: Handle) -> list[Action]:
     label(look, "Extent")
-    usual = USUAL_EXTENT * box_diagonal(layer.domain.outline)
+    usual = USUAL_EXTENT * diameter(layer.domain.outline)
     extents = Scale(left=0.1 * usual, right=8 * usual, logarithmic=True)
     hint = "How far around the handle that holds, in pixels along the drawing"
     entered = slider(look, "extent", handle.extent or usual, extents, text="%.0f", hint=hint)

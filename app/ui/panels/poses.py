@@ -122,7 +122,7 @@ def _tile(
     draw_list.add_rect_filled(low, high, ink(palette.desk), 0.4 * em)
     if texture is not None:
         _show(texture, low, high, 0.4 * em)
-    is_picked = kept.name == project.picked_pose
+    is_picked = (owner.id, kept.name) == project.picked_pose
     if hot or is_picked:
         draw_list.add_rect(low, high, ink(palette.accent, 1.0 if hot else 0.6), 0.4 * em, 1.5)
     with sized(SMALL):

@@ -32,7 +32,7 @@ def size_fields(name: str, size: tuple[int, int], room: float) -> EnteredSize | 
             imgui.same_line(0, gap)
             imgui.text_disabled("×")
             imgui.same_line(0, gap)
-    wide, high = (min(side, LARGEST) for side in entered)
-    if not any(ended) or min(wide, high) < 1:
+    if not any(ended):
         return None
+    wide, high = (min(max(side, 1), LARGEST) for side in entered)
     return EnteredSize((wide, high), ended[0])

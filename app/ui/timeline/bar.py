@@ -4,7 +4,6 @@ from collections.abc import Callable
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
-from app.document import LAST_FRAME
 from app.editor import Action, Project, Session, do
 from app.editor.actions import keys, playback, tracking, viewing
 from app.storage import LARGEST_GHOST_STEP, MOST_GHOSTS
@@ -135,7 +134,7 @@ def _frame(session: Session, look: Look, project: Project) -> list[Action]:
     flags = imgui.InputTextFlags_.enter_returns_true
     changed, last = imgui.input_int("##last", document.frames.last, 0, 0, flags)
     tip("The last frame: type it, or drag the end on the track")
-    if changed and document.frames.first < last <= LAST_FRAME:
+    if changed:
         actions.append(do(keys.set_last_frame, last))
     imgui.same_line(0, 0.8 * look.em)
     imgui.text_disabled(in_seconds(frame, document.fps))
@@ -177,7 +176,7 @@ def _fps(project: Project) -> list[Action]:
     fps = project.document.fps
     changed, wanted = imgui.drag_float("##fps", fps, 0.1, SLOWEST, FASTEST, "%.4g fps")
     tip("Frames per second: drag, or click to type")
-    return [do(keys.set_fps, round(wanted, 3))] if changed and wanted > 0 else []
+    return [do(keys.set_fps, round(wanted, 3))] if changed else []
 
 
 def _speed(project: Project) -> list[Action]:

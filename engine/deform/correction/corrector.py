@@ -2,9 +2,12 @@
 
 from dataclasses import dataclass
 
-from engine.arrays import Complexes, held_bytes
+import numpy as np
+
+from engine.arrays import Complexes, as_points, held_bytes
 from engine.deform.correction.paths import PointPaths
 from engine.deform.correction.variables import Variables
+from engine.geometry import ON_OUTLINE, require_inside
 from engine.maps import Boundary
 
 
@@ -33,7 +36,21 @@ class PointCorrector:
 
 
 def corrector_of(boundary: Boundary, anchor: complex, points: Complexes) -> PointCorrector:
-    """Prepare corrections with targets for points (m,); the anchor is where integrals begin."""
+    """Prepare corrections with targets for points (m,); the anchor is where integrals begin.
+
+    Raises
+    ------
+    EngineError
+        If a point or the anchor is outside the domain.
+    """
+    points = as_points(points, "points")
+    require_inside(
+        boundary.outline,
+        np.append(points, as_points([anchor], "anchor")),
+        "point of a correction",
+        holes=[hole.outline for hole in boundary.holes],
+        tolerance=ON_OUTLINE * boundary.size,
+    )
     paths = PointPaths.of(boundary, anchor, points)
     return PointCorrector(
         boundary=boundary,

@@ -14,7 +14,7 @@ from engine.paths import Loops, leave_region, scattered_network
 
 GAUSS = 5  # nodes of a piece
 # Longest piece, over the distance of its nearest place to a singularity, and the least distance
-# that is looked at, over the domain's diagonal: values then err by some 1e-6 of it.
+# that is looked at, over the domain's diameter: values then err by some 1e-6 of it.
 PIECE_PER_DISTANCE, LEAST_DISTANCE = 1.5, 2e-3
 LOOKED_AT = 9  # places of a leg that tell how many pieces it takes
 SPANS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96)  # corners from which to which legs are tried

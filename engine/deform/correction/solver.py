@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from engine.arrays import Complexes, Floats
+from engine.arrays import Complexes, Floats, as_points
 from engine.deform.correction.corrector import PointCorrector
 from engine.deform.correction.frame import BaseFrame, Bending, CorrectedFrame
 from engine.deform.correction.step_model import Rows, StepModel
@@ -24,7 +24,7 @@ from engine.deform.correction.walls import LimitWalls, WallState
 from engine.errors import EngineError
 
 SMALL = 1e-6  # a step in h: where the iteration ends
-MET = 1e-9  # of the diagonal: points that are where they are wanted
+MET = 1e-9  # of the diameter: points that are where they are wanted
 LONGEST, LONGEST_AT_WALLS = 1.0, 0.3  # step in h
 MOST_STEPS, MOST_STEPS_AT_WALLS, MOST_HALVINGS, MOST_RETURNS = 25, 60, 7, 3
 # The barrier is lowered after a step of which so much was taken, and that is no longer.
@@ -32,12 +32,13 @@ ENOUGH, CLOSE = 0.5, 0.15
 NEARER = 0.7  # of the gap: what a step back to the points leaves of it, at most
 CALM = 1e-4  # a step in h: where the iteration ends within walls
 GAINS, GAINS_AT_WALLS = 0.99, 0.999  # of the merit: what a part of a step leaves of it, at most
-ARM = 0.25  # of the diagonal: the distance at which a turn is as firm as a point
+ARM = 0.25  # of the diameter: the distance at which a turn is as firm as a point
 TINY = 1e-300
 UNFINISHED = (
     "The correction did not come to rest in {steps} steps: a point is still {miss:.3g} from its "
     "target. Give targets nearer to the base, or take the correction as it is (throw=False)."
 )
+BAD_TARGETS = "The {name} of targets for {count} points cannot be {values}."
 FIRMEST = 1.5  # times the largest pull: what the merit takes for each point off its target
 
 
@@ -120,8 +121,10 @@ def solve(
     Raises
     ------
     EngineError
-        If the correction is not finished. With `throw=False` it is returned as it is then.
+        If targets are not of as many points as the corrector has, not finite or out of range, or
+        the correction is not finished. With `throw=False` it is returned as it is then.
     """
+    _require_targets(targets, len(corrector.points))
     problem = _Problem(corrector, base, targets, walls)
     is_inside = walls is None or not walls.beyond.any()
     if not problem.is_asked and is_inside and (walls is None or start is None or not start.x.any()):
@@ -135,6 +138,20 @@ def solve(
     if throw and not found.is_finished:
         raise EngineError(UNFINISHED.format(steps=found.steps, miss=found.misses.max()))
     return found
+
+
+def _require_targets(targets: Targets, count: int) -> None:
+    """Raise an `EngineError` unless targets are some that points can have."""
+    as_points(targets.moves, "The moves of targets")
+    for name, values, fits in (
+        ("moves", targets.moves, True),
+        ("weights", targets.weights, (targets.weights >= 0) & (targets.weights <= 1)),
+        ("forces", targets.forces, targets.forces is None or targets.forces >= 0),
+        ("turns", targets.turns, targets.turns is None or ~np.isinf(targets.turns)),
+        ("give", targets.give, targets.give is None or targets.give >= 0),
+    ):
+        if values is not None and (len(values) != count or not np.all(fits)):
+            raise EngineError(BAD_TARGETS.format(name=name, count=count, values=values))
 
 
 class _State(NamedTuple):

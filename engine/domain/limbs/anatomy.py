@@ -7,7 +7,7 @@ import numpy as np
 from engine.arrays import Complexes, Floats, Indices
 from engine.domain.limbs.medial_axis import medial_axis
 from engine.domain.limbs.skeleton import Skeleton
-from engine.geometry import box_diagonal
+from engine.geometry import diameter
 
 # Of the largest radius, which may be that of a head: what belongs to the body.
 THICK = 0.4
@@ -44,7 +44,7 @@ class Anatomy:
         self.holes = len(loops) - 1
         bottom, top = loops[0].imag.min(), loops[0].imag.max()
         self.ground = float(bottom + GROUND * (top - bottom))
-        self.skeleton = Skeleton(medial_axis(loops), box_diagonal(loops[0]))
+        self.skeleton = Skeleton(medial_axis(loops), diameter(loops[0]))
         if opened:
             self.skeleton.open_rings(self.ground)
         else:

@@ -137,6 +137,8 @@ class BodyPlan:
         out = lengths[-1] - radii[-1]
         thin, thick = np.interp([0.25 * out, 0.75 * out], lengths, radii)
         lowest = float((places.imag - radii).min())
+        if out < lengths[0]:
+            return None, lowest  # a corner: it does not leave the disc at its root
         radius = float(np.median(radii[lengths <= out]))
 
         def reaches(height: float) -> int:

@@ -18,6 +18,7 @@ from engine.geometry import (
     bisect,
     constrained_delaunay,
     contains,
+    corners_of,
     distance_to_boundary,
     edges,
 )
@@ -48,8 +49,9 @@ def medial_axis(loops: Sequence[Complexes]) -> MedialAxis:
     triangle: at its circumcentre, which is as far from the boundary as from the corners if the
     circle is empty. Where the samples are too far apart for that, it is between the midpoints of
     the sides that the triangle shares. The triangulation has no inner points, so that without holes
-    the graph is a tree.
+    the graph is a tree. Vertices on the way of straight edges change nothing.
     """
+    loops = [corners_of(loop) for loop in loops]
     step = STEP * sum(float(abs(edges(loop)).sum()) for loop in loops)
 
     def is_short(pieces: Pieces) -> Booleans:

@@ -11,7 +11,7 @@ from engine.arrays import Floats, Indices
 from engine.domain.limbs.medial_axis import MedialAxis
 
 # A limb reaches out of the body by so much of the body's half width where it leaves it, and of the
-# diagonal of the box. Corners of a square reach out by 0.41, those of a regular triangle by 1.
+# diameter. Corners of a square reach out by 0.41, those of a regular triangle by 1.
 LEAST_REACH, LEAST_SHARE = 0.6, 0.05
 # The handle of a sharp tip, of which this many radii of the largest disc lie before its middle, is
 # at this share of the limb; that of a round one is where discs further inwards, within so many
@@ -39,13 +39,13 @@ class Skeleton:
     Parameters
     ----------
     axis : MedialAxis
-    diagonal : float
-        Of the shape's box.
+    diameter : float
+        Of the shape.
     """
 
-    def __init__(self, axis: MedialAxis, diagonal: float) -> None:
+    def __init__(self, axis: MedialAxis, diameter: float) -> None:
         self.axis = axis
-        self.diagonal = diagonal
+        self.diameter = diameter
         self.near: dict[int, set[int]] = {node: set() for node in range(len(axis.places))}
         for one, other in axis.links.tolist():
             self.near[one].add(other)
@@ -68,7 +68,7 @@ class Skeleton:
             # It forks nowhere: each end reaches out of the middle.
             at = int(np.searchsorted(lengths, lengths[-1] / 2))
         radius = float(self.axis.radii[path[at]])
-        needed = max(LEAST_REACH * radius, LEAST_SHARE * self.diagonal)
+        needed = max(LEAST_REACH * radius, LEAST_SHARE * self.diameter)
         return Branch(path, lengths, lengths[at] - radius, needed)
 
     def cut_spurs(self) -> dict[int, Branch]:

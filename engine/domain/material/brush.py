@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 import shapely
 
-from engine.arrays import Complexes, Floats
-from engine.geometry import ON_OUTLINE, box_diagonal, loop_ends, next_on_loop, region
+from engine.arrays import Complexes, Floats, as_number, as_points
+from engine.geometry import ON_OUTLINE, diameter, loop_ends, next_on_loop, region
 
 TINY = 1e-9
 
@@ -35,9 +35,12 @@ def brushed(
     float64, shape (p,)
         All 0 where the stroke reaches no outline.
     """
+    places = as_points(places, "The dabs of a stroke")
+    radius = as_number(radius, "The radius of a brush", above=0)
+    softness = as_number(softness, "The softness of a brush", least=0, most=1)
     corners, ends = np.concatenate(loops), loop_ends(loops)
     sides = ends - corners
-    area = region(loops[0], loops[1:]).buffer(ON_OUTLINE * box_diagonal(loops[0]))
+    area = region(loops[0], loops[1:]).buffer(ON_OUTLINE * diameter(loops[0]))
     shapely.prepare(area)
     shares = np.zeros(len(corners))
     starts = np.cumsum([0, *map(len, loops[:-1])])

@@ -5,12 +5,16 @@ from collections.abc import Sequence
 import numpy as np
 import shapely
 
-from engine.arrays import Complexes, Floats
-from engine.geometry import as_xy, box_diagonal, loop_ends, next_on_loop
+from engine.arrays import Complexes, Floats, as_reals
+from engine.errors import EngineError
+from engine.geometry import as_xy, diameter, loop_ends, next_on_loop
 
-# Of the old outline's diagonal: what is so far from it has nothing of its stiffness, and from half
+# Of the old outline's diameter: what is so far from it has nothing of its stiffness, and from half
 # of that on less.
 FAR = 0.06
+NO_STIFFNESS = (
+    "stiffness must be {count} finite numbers above 0, one for each vertex, not {stiffness}."
+)
 
 
 def carried_stiffness(loops: Sequence[Complexes], stiffness: Floats, points: Complexes) -> Floats:
@@ -26,6 +30,9 @@ def carried_stiffness(loops: Sequence[Complexes], stiffness: Floats, points: Com
         Such as the vertices of the new ones.
     """
     corners, ends = np.concatenate(loops), loop_ends(loops)
+    stiffness = as_reals(stiffness, "stiffness")
+    if stiffness.shape != corners.shape or not ((stiffness > 0) & np.isfinite(stiffness)).all():
+        raise EngineError(NO_STIFFNESS.format(count=len(corners), stiffness=stiffness))
     starts = np.cumsum([0, *map(len, loops[:-1])])
     following = next_on_loop(starts, len(corners))
     both = np.column_stack([corners, ends])
@@ -37,6 +44,6 @@ def carried_stiffness(loops: Sequence[Complexes], stiffness: Floats, points: Com
     distances = np.abs(points - corners[nearest] - along * sides)
     logarithms = np.log(stiffness)
     there = (1 - along) * logarithms[nearest] + along * logarithms[following[nearest]]
-    share = np.clip(2 - 2 * distances / (FAR * box_diagonal(loops[0])), 0.0, 1.0)
+    share = np.clip(2 - 2 * distances / (FAR * diameter(loops[0])), 0.0, 1.0)
     carried: Floats = np.exp(share * there)
     return carried

@@ -10,9 +10,9 @@ from collections.abc import Sequence
 import numpy as np
 import shapely
 
-from engine.arrays import Booleans, Complexes, Floats
+from engine.arrays import Booleans, Complexes, Floats, as_points
 from engine.errors import EngineError
-from engine.geometry import ON_OUTLINE, as_xy, box_diagonal, region
+from engine.geometry import ON_OUTLINE, as_xy, diameter, region
 
 # Places along a bone at which its limb is measured.
 PLACES = 48
@@ -49,8 +49,9 @@ def limb_around(
     EngineError
         If the bone is a point, or leaves the drawing or crosses a hole.
     """
+    as_points([start, end], "The ends of a bone")
     length = abs(end - start)
-    area = region(loops[0], loops[1:]).buffer(ON_OUTLINE * box_diagonal(loops[0]))
+    area = region(loops[0], loops[1:]).buffer(ON_OUTLINE * diameter(loops[0]))
     if not length > 0:
         raise EngineError("A bone leads from one point to another one.")
     bone = shapely.LineString([(start.real, start.imag), (end.real, end.imag)])
@@ -74,7 +75,7 @@ def _widths(loops: Sequence[Complexes], start: complex, end: complex) -> Floats:
     outlines = shapely.MultiLineString([shapely.LinearRing(as_xy(loop)) for loop in loops])
     shapely.prepare(outlines)
     feet = np.array(start + (np.arange(PLACES) + 0.5) / PLACES * (end - start), complex)
-    size = box_diagonal(loops[0])
+    size = diameter(loops[0])
     aside = 1j * (end - start) / abs(end - start) * size
     found = []
     for direction in (aside, -aside):

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.spatial import cKDTree
 
-from engine.arrays import Booleans, Complexes, Floats, Indices
+from engine.arrays import Booleans, Complexes, Floats, Indices, as_number
 from engine.domain.meshing.half_edges import OUTLINE, SEAM, HalfEdgeMesh
 from engine.domain.meshing.lattice import lattice_inside, lattice_triangles
 from engine.domain.meshing.mesh import Mesh
@@ -18,7 +18,7 @@ from engine.domain.meshing.refinement import SHORTEST_EDGE, refine
 from engine.domain.meshing.smoothing import smooth_mesh
 from engine.domain.meshing.strip import cut_edges, triangulate_strip
 from engine.errors import EngineError
-from engine.geometry import as_xy, box_diagonal, edges, require_holes, require_simple, signed_area
+from engine.geometry import as_xy, diameter, edges, require_holes, require_simple, signed_area
 
 # Least distance of a lattice point from the outline, in spacings. It must exceed the lattice's
 # circumradius, 0.577, so that no part of the outline comes between the corners of a unit triangle,
@@ -64,18 +64,19 @@ def triangulate(outline: Complexes, count: int, *, holes: Sequence[Complexes] = 
     second, 100,000 about 0.1 s. The mean of the smallest angles is above 59° for 100,000 triangles
     in an ordinary drawing's outline, 52° to 57° for 1,000.
     """
+    as_number(count, "The number of triangles", least=1, is_whole=True)
     require_simple(outline, "outline")
     require_holes(holes, outline)
     loops = (outline, *holes)
     shortest = min(float(np.abs(edges(loop)).min()) for loop in loops)
-    if shortest < SHORTEST_EDGE * box_diagonal(outline):
+    if shortest < SHORTEST_EDGE * diameter(outline):
         raise EngineError(
             f"The outline has an edge of length {shortest:.3g}, which is too short for its size of "
-            f"{box_diagonal(outline):.3g}; leave out one of its ends."
+            f"{diameter(outline):.3g}; leave out one of its ends."
         )
     centre = outline[0]
     # A power of two, so that scaling rounds nothing.
-    scale = float(np.exp2(np.ceil(np.log2(box_diagonal(outline)))))
+    scale = float(np.exp2(np.ceil(np.log2(diameter(outline)))))
     mesh = _fill_to_count([(loop - centre) / scale for loop in loops], count)
     vertices = mesh.vertices * scale + centre
     corners = np.concatenate(loops)

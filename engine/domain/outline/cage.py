@@ -7,11 +7,11 @@ from engine.domain.outline.crossings import edges_that_cross, edges_that_meet
 from engine.domain.outline.curve import arc_lengths, limit_growth
 from engine.domain.outline.gaps import empty_disc_radius
 from engine.errors import EngineError
-from engine.geometry import box_diagonal, distance_to_boundary, edges, require_simple
+from engine.geometry import diameter, distance_to_boundary, edges, require_simple
 
 MITER_LIMIT = 2.0  # of the offset: how far a sharp corner of the cage stands out
 ROOM = 0.7  # of the way to the middle of a gap
-LEAST_DISTANCE = 0.0003  # of the diagonal
+LEAST_DISTANCE = 0.0003  # of the diameter
 LEAST_ALONG = 0.1  # cosine between an edge of the cage and of the outline
 SLOPE = 0.5  # by which the offset may change per length of an edge
 SHRINKING = 0.8
@@ -41,7 +41,7 @@ def offset_cage(outline: Complexes, offset: float, *, hole: bool = False) -> Com
     -------
     complex128, shape (n,)
         Simple, in the direction of the outline, strictly on its other side than the domain, nowhere
-        closer to it than 0.03 % of the diagonal of its box.
+        closer to it than 0.03 % of its diameter.
 
     Raises
     ------
@@ -63,7 +63,7 @@ def offset_cage(outline: Complexes, offset: float, *, hole: bool = False) -> Com
         offsets[faulty | np.roll(faulty, 1)] *= SHRINKING
     # Two polygons that do not cross are closest at a vertex of one of them.
     ways = distance_to_boundary(outline, cage), distance_to_boundary(cage, outline)
-    if faulty.any() or np.min(ways) < LEAST_DISTANCE * box_diagonal(outline):
+    if faulty.any() or np.min(ways) < LEAST_DISTANCE * diameter(outline):
         raise EngineError(CLOSE_OUTLINE.format(count=len(outline)))
     return readonly(cage)
 

@@ -6,13 +6,13 @@ from typing import Literal
 
 import numpy as np
 
-from engine.arrays import Booleans, Complexes, Indices, readonly
+from engine.arrays import Booleans, Complexes, Indices, readonly, require_word
 from engine.domain.outline.cage import offset_cage
 from engine.domain.outline.fitting import Candidates, fit_polygon
 from engine.domain.outline.holes import SMALLEST_HOLE, hole_in, seen_holes, trace_hole
 from engine.domain.outline.knife import part
 from engine.domain.outline.margin import DistanceField, MarginCurve, curve_at_margin, distance_field
-from engine.domain.picture import Holes, WholePiece, join_parts, working_grid
+from engine.domain.picture import HOLES, Holes, WholePiece, join_parts, working_grid
 from engine.errors import EngineError
 from engine.geometry import Hole, require_holes
 
@@ -119,6 +119,8 @@ def enclose(
         If the subject falls into too many parts, or is too intricate for an outline; if a slit
         cuts off a part of it, or parts nothing.
     """
+    require_word(detail, MARGINS, "The detail")
+    require_word(holes, HOLES, "What is done with holes")
     grid = working_grid(mask)
     piece = join_parts(grid.mask, grid.diagonal)
     margin = max(MARGINS[detail] * grid.diagonal, LEAST_MARGIN * max(1.0, 1 / grid.cell))

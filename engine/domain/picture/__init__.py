@@ -7,6 +7,7 @@ Imports: nothing above `engine.arrays`.
 """
 
 from engine.domain.picture.cut_out import (
+    HOLES as HOLES,
     MOST_STROKE_POINTS as MOST_STROKE_POINTS,
     BackgroundColour as BackgroundColour,
     CutOut as CutOut,

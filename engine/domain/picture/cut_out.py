@@ -2,15 +2,16 @@
 
 from dataclasses import dataclass, field
 from math import sqrt
-from typing import Literal, Self
+from typing import Literal, Self, get_args
 
 import numpy as np
 
-from engine.arrays import Booleans, Bytes, Complexes, as_points, readonly
+from engine.arrays import Booleans, Bytes, Complexes, as_points, readonly, require_word
 from engine.errors import EngineError
 
 BackgroundColour = tuple[int, int, int]  # red, green, blue, each 0 to 255
 Holes = Literal["keep", "fill"]
+HOLES: tuple[Holes, ...] = get_args(Holes)
 Enclosed = Literal["auto", "keep", "remove"]
 
 SMALLEST_RADIUS, LARGEST_RADIUS = 0.5, 4096.0  # pixels of a stroke
@@ -154,16 +155,11 @@ class CutOut:
                 raise EngineError(
                     f"The levels of a background's colour are three of 0 to 255, not {levels}."
                 )
-        elif self.background not in {"auto", "none"}:
-            raise EngineError(
-                f"The background is 'auto', 'none' or a colour, not {self.background!r}."
-            )
-        if self.enclosed not in {"auto", "keep", "remove"}:
-            raise EngineError(
-                f"Enclosed parts are one of 'auto', 'keep' and 'remove', not {self.enclosed!r}."
-            )
-        if self.holes not in {"fill", "keep"}:
-            raise EngineError(f"Holes are one of 'fill' and 'keep', not {self.holes!r}.")
+        else:
+            require_word(self.background, ("auto", "none"), "A background that is no colour")
+        require_word(self.enclosed, ("auto", "keep", "remove"), "What is done with enclosed parts")
+        require_word(self.holes, HOLES, "What is done with holes")
+        as_points(self.swapped, "The points of swapped holes")
         points = sum(len(line.points) for line in self.lines)
         if points > MOST_STROKE_POINTS or sum(stroke.rows for stroke in self.strokes) > MOST_ROWS:
             raise EngineError("There are too many strokes; save the mask and load it instead.")

@@ -10,10 +10,12 @@ from functools import reduce
 import numpy as np
 
 from engine.arrays import Booleans, Complexes
+from engine.errors import EngineError
 
 LONGEST = 1024  # cells along the subject's longer side: larger subjects are worked on in blocks
 ENLARGED = 640  # cells that small subjects are enlarged to, at most
 MOST_ENLARGED = 16  # cells per pixel
+EMPTY_MASK = "The mask has no pixel of a subject; give one with a drawing."
 PADDING = 0.06  # of the diagonal: free space around the subject
 
 
@@ -53,6 +55,8 @@ def working_grid(mask: Booleans) -> WorkingGrid:
     Large subjects are taken in blocks that count as soon as one of their pixels does, so that
     the grid's subject covers the picture's; each pixel of small ones becomes several cells.
     """
+    if not mask.any():
+        raise EngineError(EMPTY_MASK)
     rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
     cut = mask[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1][::-1]
     corner = complex(columns[0], mask.shape[0] - 1 - rows[-1])

@@ -84,6 +84,8 @@ def subject_mask(rgba: Bytes, cut_out: CutOut | None = None) -> Subject:
         mask has another size.
     """
     cut_out = cut_out or CutOut()
+    if not isinstance(rgba, np.ndarray):
+        raise EngineError(PICTURE_TYPE.format(dtype="a", shape=type(rgba).__name__))
     if rgba.ndim != 3 or rgba.shape[2] != 4 or rgba.dtype != np.uint8:
         raise EngineError(PICTURE_TYPE.format(dtype=rgba.dtype, shape=rgba.shape))
     if rgba.size == 0:

@@ -7,8 +7,9 @@ import numpy as np
 import numpy.typing as npt
 from scipy.linalg import solveh_banded
 
-from engine.arrays import Complexes, Floats, Indices, as_points
+from engine.arrays import Complexes, Floats, Indices, as_number, as_points, as_reals
 from engine.errors import EngineError
+from engine.geometry.kinematics.springs import FARTHEST
 
 # Frames between two places beyond which the way from one to the other counts as recorded.
 GAP = 1.0
@@ -19,7 +20,13 @@ TIE = 1e-6
 APART = 8
 SLACK = 1.05  # by what factor more may be missed where the tolerance cannot be kept
 REACH = 3  # intervals on either side of a key that is dropped in which much changes
-TOLERANCE = "The tolerance of a recording is 0 pixels or more, not {tolerance:g}."
+# Frames that a recording may span, whose memory grows with them, and the last one that it may have.
+MOST_FRAMES, LATEST = 1_000_000, 1e9
+TOO_LONG = (
+    "A recording spans at most {most:,} frames, not those from {first:g} to {last:g}; give it in "
+    "parts."
+)
+TOLERANCE = "The tolerance of a recording, in pixels,"
 
 
 class FittedKeys(NamedTuple):
@@ -61,7 +68,8 @@ def fit_keys(
     Raises
     ------
     EngineError
-        If something is not finite, if times go back, or if the tolerance is below 0.
+        If something is not finite, if times go back or are too far apart, or if the tolerance is
+        below 0.
 
     Notes
     -----
@@ -70,7 +78,8 @@ def fit_keys(
     motion misses most, until it is within the tolerance; then the one that is least needed goes,
     again and again, far from each other many at once.
     """
-    when, where = np.asarray(times, dtype=np.float64), as_points(places, "Recorded places")
+    when = as_reals(times, "The times of a recording")
+    where = as_points(places, "Recorded places", most=FARTHEST)
     if when.shape != where.shape or not len(where):
         raise EngineError(
             f"A recording has a time for each place and at least one, not {when.shape} times and "
@@ -80,8 +89,9 @@ def fit_keys(
         raise EngineError("The times of a recording must be finite.")
     if (np.diff(when) < 0).any():
         raise EngineError("The times of a recording must not go back.")
-    if not tolerance >= 0:
-        raise EngineError(TOLERANCE.format(tolerance=tolerance))
+    if np.abs(when).max() > LATEST or when[-1] - when[0] > MOST_FRAMES:
+        raise EngineError(TOO_LONG.format(most=MOST_FRAMES, first=when[0], last=when[-1]))
+    as_number(tolerance, TOLERANCE, least=0)
     is_last = np.append(np.diff(when) > 0, True)
     when, where = _filled(when[is_last], where[is_last])
     first, last = int(np.ceil(when[0] - EARLY)), int(np.floor(when[-1] + EARLY))
@@ -89,8 +99,9 @@ def fit_keys(
         middle = round((when[0] + when[-1]) / 2)
         nearest = np.array([first if first == last else middle], dtype=np.intp)
         return FittedKeys(nearest, _along(nearest, when, where), np.zeros(1, dtype=np.complex128))
+    wanted = [int(as_number(frame, "A frame with a key", is_whole=True)) for frame in required]
     recording = _Recording(when, where, first, last, tolerance)
-    fixed = sorted({first, last, *(frame for frame in required if first < frame < last)})
+    fixed = sorted({first, last, *(each for each in wanted if first < each < last)})
     frames = recording.split(np.array(fixed, dtype=np.intp))
     if tolerance:
         frames = recording.thin(frames, fixed)

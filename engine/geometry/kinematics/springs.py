@@ -7,9 +7,10 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from engine.arrays import Complexes, Floats, Indices, as_points, freeze
+from engine.arrays import Complexes, Floats, Indices, as_number, as_points, freeze
 from engine.errors import EngineError
 
+FARTHEST = 1e100  # pixels: the squares of farther places are no numbers
 GONE = 0.01  # pixels: a swing that stays below is not seen, and ends
 FADE = 6  # frames in which it ends
 # Pixels to which a jump of the base's velocity would make it swing: less is what rounding leaves.
@@ -150,21 +151,14 @@ def swing(
     and nothing drives it for `FADE` frames: in so many it fades by a cubic, and is exactly 0 until
     q's velocity changes again. A cost of some microseconds a frame is paid once.
     """
-    q = as_points(places, "The places that drive a spring", at_least=1)
-    _require(np.isfinite(fps) and fps > 0, f"A spring needs frames a second above 0, not {fps:g}.")
-    _require(
-        np.isfinite(frequency) and frequency > 0,
-        f"The frequency of a spring is finite and above 0 Hz, not {frequency:g}.",
-    )
-    _require(
-        np.isfinite(damping) and damping >= 0,
-        f"The damping of a spring is finite and 0 or more, not {damping:g}.",
-    )
-    _require(
-        np.isfinite(lag) and lag >= 0, f"The lag of a spring is finite and 0 or more, not {lag:g}."
-    )
-    _require(np.isfinite(strength), f"The strength of a spring is finite, not {strength:g}.")
-    _require(limit > 0, f"The limit of a spring is above 0 pixels, not {limit:g}.")
+    q = as_points(places, "The places that drive a spring", at_least=1, most=FARTHEST)
+    fps = as_number(fps, "The frames a second of a spring", above=0)
+    frequency = as_number(frequency, "The frequency of a spring, in Hz,", above=0)
+    damping = as_number(damping, "The damping of a spring", least=0)
+    lag = as_number(lag, "The lag of a spring", least=0)
+    strength = as_number(strength, "The strength of a spring")
+    if limit != np.inf:
+        limit = as_number(limit, "The limit of a spring, in pixels,", above=0)
     _require(
         not loop or damping > 0,
         "A spring without damping swings on forever and never comes round in a loop; give it some.",
@@ -172,7 +166,9 @@ def swing(
     angle = 2 * np.pi * frequency / fps
     jumps = _jumps(q, loop=loop) * (strength / angle)
     if roots is not None:
-        jumps = _across(jumps, q - as_points(roots, "The roots of a spring", at_least=len(q)))
+        jumps = _across(
+            jumps, q - as_points(roots, "The roots of a spring", at_least=len(q), most=FARTHEST)
+        )
     jumps[np.abs(jumps) <= SILENT] = 0
     step = flow(np.array(angle), damping)
     run = _round(jumps, step) if loop else _run(jumps, step, _until_next(jumps))

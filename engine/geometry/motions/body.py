@@ -7,9 +7,12 @@ from typing import Self
 
 import numpy as np
 
+from engine.arrays import as_points
 from engine.errors import EngineError
 from engine.geometry.motions.kinds import BodyKind
 
+JOINTS_MEET = "The joints {one} and {other} are at one place; move them apart."
+NO_BOX = "The box of a body leads from {low} to {high}, and has no width or no height."
 SIDES = {"L": "R", "R": "L"}
 
 
@@ -42,7 +45,8 @@ class Body:
     Raises
     ------
     EngineError
-        If the kind has no such joint.
+        If the kind has no such joint, a place is not finite, two joints of a limb are at one place,
+        or the box of a kind without joints has no width or no height.
     """
 
     kind: BodyKind
@@ -57,6 +61,14 @@ class Body:
             self.kind.require_joints(self.joints)
             joints = {name: joints[name] for name in self.kind.parents if name in joints}
             parents = {name: self.kind.parent(name, joints) for name in joints}
+        as_points(list(joints.values()), "The joints of a body")
+        for name, parent in parents.items():
+            if parent and joints[name] == joints[parent]:
+                raise EngineError(JOINTS_MEET.format(one=parent, other=name))
+        low, high = as_points(self.box, "The corners of a body's box").tolist()
+        is_flat = not (low.real < high.real and low.imag < high.imag)
+        if is_flat and not self.kind.parents:
+            raise EngineError(NO_BOX.format(low=low, high=high))
         object.__setattr__(self, "joints", MappingProxyType(joints))
         object.__setattr__(self, "parents", MappingProxyType(parents))
 
@@ -73,6 +85,7 @@ class Body:
 
     def limb(self, tip: str) -> tuple[str, ...]:
         """Return the joints of an arm or a leg from its root, which is on the trunk, to its tip."""
+        self.require([tip], "A limb")
         path = [tip]
         while path[-1] and plain(path[-1]) not in {"hip", "shoulder", "hips", "chest"}:
             path.append(self.parents[path[-1]])
@@ -80,5 +93,7 @@ class Body:
 
     def length(self, joints: Iterable[str]) -> float:
         """Return how long the way is from joint to joint."""
-        places = np.array([self.joints[name] for name in joints])
+        names = list(joints)
+        self.require(names, "A length")
+        places = np.array([self.joints[name] for name in names])
         return float(np.abs(np.diff(places)).sum())

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from engine.arrays import Complexes
+from engine.arrays import Complexes, as_points
 from engine.geometry.motions.body import other_side
 from engine.geometry.motions.kinds import BodyKind
 
@@ -24,6 +24,8 @@ def facing_of(kind: BodyKind, joints: Mapping[str, complex], outline: Complexes)
     outline : complex128, shape (n,)
         Of the drawing.
     """
+    outline = as_points(outline, "outline", at_least=3)
+    as_points(list(joints.values()), "The joints of a body")
     if kind.name == "chain" and len(joints) > 1:
         # The first joint leads.
         places = [joints[name] for name in kind.parents if name in joints]

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+from engine.arrays import as_number
 from engine.errors import EngineError
 from engine.geometry.motions.body import Body, other_side
 
@@ -118,6 +119,7 @@ class Motion:
 
     def frames(self, parameters: Parameters, fps: float) -> int:
         """Return how many frames a cycle takes."""
+        fps = as_number(fps, "The speed of a motion", above=0)
         return max(LEAST_FRAMES, round(self.seconds * fps / parameters.speed))
 
     def moments(
@@ -131,8 +133,10 @@ class Motion:
         ------
         EngineError
             If the motion does not fit the kind, needs joints that are not there, or has no steps
-            to travel by.
+            to travel by; if a share is not finite.
         """
+        for share in shares:
+            as_number(share, "A share of a motion's cycle")
         course = self.course(body.kind.name)
         if parameters.travel and not course.travels:
             raise EngineError(f"{self.name!r} has no steps to travel by")

@@ -6,15 +6,16 @@ too. Bernstein weights are convex: where the control values obey a convex bound,
 in-between. The paper blends two keyframes only.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import NamedTuple, Self
 
 import numpy as np
 
-from engine.arrays import Floats, freeze
+from engine.arrays import Floats, as_number, freeze
 
 
-class Joint(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Joint:
     """Where the motion passes a keyframe between two others at one velocity.
 
     Parameters
@@ -30,6 +31,10 @@ class Joint(NamedTuple):
     after: float
     end_pace: float = 1.0
     start_pace: float = 1.0
+
+    def __post_init__(self) -> None:
+        for each in fields(self):
+            as_number(getattr(self, each.name), f"The {each.name} of a joint", above=0)
 
     @property
     def velocity(self) -> Floats:
@@ -106,6 +111,9 @@ class Course:
     @classmethod
     def between(cls, start: End, end: End, *, apart: tuple[bool, bool] = (False, False)) -> Self:
         """Return the course of an interval that leaves one keyframe and reaches the next one so."""
+        for share in (start, end):
+            if not isinstance(share, Tangent):
+                as_number(share, "The share of a straight velocity", least=0)
         if start == end == 1.0:
             return cls.straight()
         first = int(isinstance(start, Tangent))

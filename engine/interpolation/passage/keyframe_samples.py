@@ -85,6 +85,8 @@ def sample_keyframes(maps: Sequence[HarmonicMap], sites: Sites) -> tuple[Keyfram
     EngineError
         If a map folds anywhere in the domain, or cannot be proven not to.
     """
+    if not maps:
+        raise EngineError("There is no keyframe to sample; give one at least.")
     paths = sites.paths
     for i, f in enumerate(maps):
         _require_unfolded(f, sites, i)

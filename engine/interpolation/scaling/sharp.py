@@ -7,7 +7,7 @@ from typing import Self, TypeVar
 import numpy as np
 
 from engine.arrays import Booleans, Complexes, Floats, Indices
-from engine.geometry import box_diagonal, sample_graded
+from engine.geometry import diameter, sample_graded
 from engine.interpolation.added import Closing
 from engine.interpolation.courses import Course
 from engine.interpolation.scaling.outline_curves import (
@@ -22,7 +22,7 @@ from engine.interpolation.series import PiecewiseSeries
 from engine.maps import Bounds, HarmonicMap
 
 # Segments between the samples of the outline, over the distance to the nearest cage vertex and over
-# the box diagonal. Interpolation between them is then right to 1e-7.
+# the diameter. Interpolation between them is then right to 1e-7.
 SEGMENT_PER_DISTANCE = 0.2
 SEGMENT_PER_SIZE = 1 / 400
 GAIN = 1e-7  # by which a stretch must promise to lower ρ to be looked at
@@ -80,7 +80,7 @@ class SharpScaling:
     ) -> Self:
         """Sample the keyframes of a course along the outline (p,), and along their holes."""
         span = maps[0].span
-        longest = SEGMENT_PER_SIZE * box_diagonal(outline)
+        longest = SEGMENT_PER_SIZE * diameter(outline)
         sampled = [
             sample_graded(loop, span.vertices, ratio=SEGMENT_PER_DISTANCE, longest=longest)
             for loop in (outline, *(hole.outline for hole in span.holes))

@@ -23,7 +23,7 @@ from app.document import (
     scene_commands as settings,
     shape_commands as layers,
 )
-from app.document.commands.keys_in_time import TIME_SCALE, TWO_KEYS
+from app.document.commands.keys_in_time import KEYS_MEET, TIME_SCALE, TWO_KEYS
 from app.document.commands.scene_commands import KEY_OUTSIDE
 from app.document.keyframe import MOST_TURNS, Handle, Keyframe, Target
 from app.document.layer import NO_HANDLE, NO_KEY, POSE_COUNT, PictureFile
@@ -244,11 +244,23 @@ def test_settings():
     assert layers.set_bounds(0, Bounds(k=0.5))(document).layers[0].bounds.k == 0.5
 
 
-def test_a_shorter_animation_cuts_its_preview_range():
-    document = settings.set_preview(FrameRange(5, 30))(animated(0, 10))
-    assert settings.set_frames(FrameRange(0, 20))(document).preview == FrameRange(5, 20)
-    document = settings.set_preview(FrameRange(25, 30))(document)
-    assert settings.set_frames(FrameRange(0, 20))(document).preview is None
+def set_exported(frames):
+    return settings.set_export(ExportSettings(frames=frames))
+
+
+@pytest.mark.parametrize(
+    ("set_range", "range_of"),
+    [
+        (settings.set_preview, lambda document: document.preview),
+        (set_exported, lambda document: document.export.frames),
+    ],
+)
+def test_ranges_of_frames_follow_the_animation(set_range, range_of):
+    document = set_range(FrameRange(5, 30))(animated(0, 10))
+    assert range_of(settings.set_frames(FrameRange(0, 20))(document)) == FrameRange(5, 20)
+    assert range_of(settings.scale_time(0.5)(document)) == FrameRange(3, 15)
+    document = set_range(FrameRange(25, 30))(document)
+    assert range_of(settings.set_frames(FrameRange(0, 20))(document)) is None
 
 
 def test_bounds_and_a_new_domain_come_with_solved_poses():
@@ -343,7 +355,7 @@ OTHER_CAGE = random_pose(np.random.default_rng(0), DOCUMENT, disc_domain(13))
         (keys.scale_keys(0, {0, 10}, 2.0), TWO_KEYS.format(frame=20)),
         (keys.scale_keys(0, {0, 10}, 0.0), says(TIME_SCALE)),
         (keys.scale_keys(0, {0, 10}, float("nan")), says(TIME_SCALE)),
-        (settings.scale_time(0.01), TWO_KEYS.format(frame=0)),
+        (settings.scale_time(0.01), says(KEYS_MEET, one=0, other=10, frame=0)),
         (settings.scale_time(-1.0), says(TIME_SCALE)),
         (keys.match_ends(0), None),
         (keys.set_easing(0, {5}, LINEAR), says(NO_KEY, frame=5)),

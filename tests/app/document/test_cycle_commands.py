@@ -9,12 +9,20 @@ from key_rows import row
 from messages import says
 from numpy.testing import assert_allclose
 
-from app.document.commands import cycle_commands, key_commands, scene_commands, track_commands
+from app.document.commands import (
+    cycle_commands,
+    filming_commands,
+    key_commands,
+    layer_commands,
+    scene_commands,
+    track_commands,
+)
 from app.document.commands.cycle_commands import TWO_POSES_SHOWN
 from app.document.keyframe import Handle, Target
-from app.document.layering import Switch
+from app.document.layering import Placing, Switch
 from app.document.queries.clips import clip_of
 from app.document.queries.stage.fronts import fronts_at
+from app.document.queries.stage.moves import placing_at
 from app.document.queries.stage.sight import is_visible
 from app.document.queries.tracks import track_at
 from app.document.settings import FrameRange
@@ -166,6 +174,50 @@ def test_what_a_frame_shows_is_keyed_where_it_repeats():
     assert [layer.source_of(frame) for frame in (4, 20, 43, 44, 50, 67, 68, 80)] == [
         *(4, 20, 43, 20, 26, 43, 68, 80)
     ]
+
+
+def switched(document, frame, *, to):
+    return layer_commands.switch_at(0, frame, visible=to)(document)
+
+
+def placed(document, frame, *, to):
+    if to is None:
+        return filming_commands.unplace_at(0, frame)(document)
+    return filming_commands.place_at(0, Placing(frame, None, to))(document)
+
+
+def is_in_front(document, layer, frame):
+    placing = placing_at(document, layer, frame)
+    return placing is None or placing.in_front
+
+
+@pytest.mark.parametrize(
+    ("change", "is_on"), [(switched, is_visible), (placed, is_in_front)], ids=["seen", "order"]
+)
+def test_changes_in_one_repeat_are_made_in_all(change, is_on):
+    document = with_keys(0, 20, 28, 36, 44, 80, last=100)
+    document = cycle_commands.repeat(0, 20, 44, 68)(document)
+
+    def states(document, frames):
+        return [is_on(document, document.layers[0], frame) for frame in frames]
+
+    changed = change(change(document, 30, to=False), 40, to=True)
+    assert states(changed, (29, 30, 53, 54, 64)) == [True, False, True, False, True]
+    earlier = change(changed, 48, to=False)
+    assert states(earlier, (23, 24, 47, 48, 64, 68)) == [True, False, True, False, True, True]
+    assert states(change(earlier, 48, to=None), (24, 48)) == [True, True]
+    # Beside the repeats, and at the frame where they end, a change is made where it is asked for.
+    for frame in (10, 68, 90):
+        beside = change(changed, frame, to=False)
+        assert not is_on(beside, beside.layers[0], frame)
+        assert states(beside, (40, 64)) == [True, True]
+
+
+def test_a_repeat_keeps_a_change_of_its_own_until_it_is_edited():
+    switches = tuple(Switch(at, visible=at % 4 == 0) for at in (0, 30, 40, 50))
+    document = cycle_commands.repeat(0, 20, 44, 68)(with_keys(0, 20, 28, 36, 44, 80))
+    document = switched(altered(document, switches=switches), 50, to=None)
+    assert document.layers[0].switches == switches[:3]
 
 
 def test_cycle_is_refused_in_words_over_another_cycle():

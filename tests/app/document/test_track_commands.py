@@ -16,7 +16,7 @@ from app.document import (
     shape_commands,
     track_commands as tracks,
 )
-from app.document.commands.keys_in_time import TWO_KEYS
+from app.document.commands.keys_in_time import KEYS_MEET, TWO_KEYS
 from app.document.commands.scene_commands import KEY_OUTSIDE
 from app.document.history import History
 from app.document.keyframe import Keyframe
@@ -374,7 +374,7 @@ def test_tracks_are_stretched_with_the_scene():
     assert frames(longer) == [8, 20]
     assert only(longer).delay == 6
     assert longer.layers[0].springs == (SPRING,)
-    with pytest.raises(LissomError, match=TWO_KEYS.format(frame=r"\d+")):
+    with pytest.raises(LissomError, match=says(KEYS_MEET, one=30, other=31)):
         scene_commands.scale_time(0.1)(tracked(row(30, 31)))
     assert only(scene_commands.set_fps(12)(document)) == only(document)
 

@@ -1,9 +1,13 @@
+import pkgutil
+import re
 import subprocess
 import sys
 import threading
+from importlib import import_module
 
 import pytest
 
+import app.editor
 from app.editor.work.jobs import Job, Jobs, Kind
 from app.errors import CANCELLED, tell
 
@@ -370,6 +374,7 @@ use_one_thread()
 import threading
 import numpy as np
 import scipy.linalg
+import app.editor
 from app.editor.work.jobs import Job, Jobs, Kind
 from app.errors import CANCELLED, tell
 
@@ -436,3 +441,11 @@ def test_what_tells_how_far_it_is_does_not_hold_up_the_end_of_the_program():
     jobs.put(job("endless", work, []))
     assert told.wait(HANGS)
     assert jobs.close()
+
+
+def test_labels_of_work_are_plain_words():
+    names = [each.name for each in pkgutil.walk_packages(app.editor.__path__, "app.editor.")]
+    values = [value for name in names for value in vars(import_module(name)).values()]
+    words = [value.label for value in values if isinstance(value, Kind)]
+    assert len(words) > 20
+    assert [label for label in words if not re.fullmatch("[A-Z][a-z -]+", label)] == []

@@ -41,13 +41,17 @@ def plan_of(document: Document, poses: Poses, **settings: object) -> ExportPlan:
 def drawing(
     gl: moderngl.Context, document: Document, poses: Poses, **settings: object
 ) -> Iterator[Callable[[float], Bytes]]:
-    painter = Painter(gl, document, {0: BLOB}, {0: poses}, plan_of(document, poses, **settings))
+    painter = Painter(
+        gl, document, {0: BLOB}, {0: KeptPoses(poses)}, plan_of(document, poses, **settings)
+    )
     yield lambda frame: painter.draw(painter.pose(frame))
     painter.release()
 
 
 def notices(gl: moderngl.Context, document: Document, poses: Poses, **settings: object):
-    painter = Painter(gl, document, {0: BLOB}, {0: poses}, plan_of(document, poses, **settings))
+    painter = Painter(
+        gl, document, {0: BLOB}, {0: KeptPoses(poses)}, plan_of(document, poses, **settings)
+    )
     for frame in range(11):
         painter.pose(frame)
     painter.release()
@@ -165,7 +169,9 @@ def test_fewer_triangles_draw_the_same(gl, monkeypatch):
     painters = []
     for many in (24, 1_000_000):
         monkeypatch.setattr("app.export.painting._MANY", many)
-        painters.append(Painter(gl, document, {0: BLOB}, {0: poses}, plan_of(document, poses)))
+        painters.append(
+            Painter(gl, document, {0: BLOB}, {0: KeptPoses(poses)}, plan_of(document, poses))
+        )
     for frame in (0.0, 13.0, 48.0):
         posed = [painter.pose(frame) for painter in painters]
         fewer, whole = (len(each.vertices[0].triangles) for each in posed)
@@ -247,7 +253,7 @@ def test_a_view_that_is_turned_shows_what_a_turned_camera_does(gl, document):
     poses = Sliding(document, 0)
     plan = plan_of(document, poses)
     view = replace(plan.view, turn=complex(np.exp(0.3j)))
-    painter = Painter(gl, document, {0: BLOB}, {0: poses}, replace(plan, view=view))
+    painter = Painter(gl, document, {0: BLOB}, {0: KeptPoses(poses)}, replace(plan, view=view))
     frame = painter.draw(painter.pose(0.0)).astype(int)
     painter.release()
     assert np.abs(frame - still(gl, filmed(document, key))).max() <= 2

@@ -27,7 +27,9 @@ class Counted:
         return self._poses.positions(frame)
 
 
-def test_a_fitted_export_works_every_frame_out_once(gl, tmp_path):
+@pytest.mark.parametrize("is_thinned", [False, True])
+def test_a_fitted_export_works_every_frame_out_once(gl, tmp_path, monkeypatch, is_thinned):
+    monkeypatch.setattr("app.export.painting._pays", lambda *_: is_thinned)
     document = moving_document()
     (layer,) = document.layers
     animation = Animation(clip_of(document, layer.id))
@@ -67,6 +69,7 @@ def test_what_is_kept_has_its_budget():
     for _ in range(2):
         for frame in range(4):
             poses.keep(frame)
+    assert counted.asked == [0, 1, 2, 3, 2, 3]
     counted.asked.clear()
     for frame in range(4):
         poses.positions(frame)

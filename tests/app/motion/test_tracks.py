@@ -42,7 +42,7 @@ from app.motion.corrected_frames import CorrectedFrames
 from app.motion.inbetweens.swings import FARTHEST_SWING, PIECE, Swings
 from app.reports import Verdict, certify_clip, corrected_frames
 from app.reports.acting_frames import acting_frames
-from engine.geometry import HERE, box_diagonal
+from engine.geometry import HERE, diameter
 from engine.geometry.kinematics import swing, turn_arm
 
 IDS = {name: number for number, name in enumerate(PLACES)}
@@ -361,7 +361,7 @@ def test_pieces_of_a_swing_are_those_of_the_whole(loop, stretch):
     swings = Swings(clip, lambda _: HERE)
     assert PIECE < swings.run_up < 300 - 2 * PIECE
     settings = {"frequency": spring.frequency, "damping": spring.damping, "lag": spring.lag}
-    limit = FARTHEST_SWING * box_diagonal(clip.layer.domain.outline)
+    limit = FARTHEST_SWING * diameter(clip.layer.domain.outline)
     root = places[:, root_of(clip.layer, spring)]
     roots = None if stretch else root
     whole = swing(places[:, IDS["top"]], clip.fps, limit=limit, loop=loop, roots=roots, **settings)

@@ -337,3 +337,32 @@ def test_others_stay_and_limits_hold_out_of_reach(name, sign):
     free = solve(known, nodes, targets)
     share = largest_share(known, samples, free.x, limits_of(bounds))
     assert size - found.misses[1] > share * (size - free.misses[1])
+
+
+@pytest.mark.parametrize("outside", [5 + 5j, np.nan])
+def test_points_outside_the_domain_are_refused(outside):
+    with pytest.raises(EngineError):
+        corrector_of(star_boundary(), 0.05 + 0.02j, np.array([0.1, outside]))
+    with pytest.raises(EngineError):
+        corrector_of(star_boundary(), outside, np.array([0.1 + 0j]))
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"moves": np.full(6, np.nan + 0j)},
+        {"moves": np.full(6, np.inf + 0j)},
+        {"moves": np.zeros(5, complex)},
+        {"weights": np.full(6, np.nan)},
+        {"weights": np.full(6, 1.5)},
+        {"weights": np.full(6, -0.1)},
+        {"forces": np.full(6, np.nan)},
+        {"turns": np.full(6, np.inf)},
+        {"give": np.full(6, -1.0)},
+    ],
+)
+def test_targets_are_refused_that_no_point_can_have(changes):
+    known = corrector("star")
+    given = {"moves": np.zeros(6, complex), "weights": np.ones(6), "is_anchored": True} | changes
+    with pytest.raises(EngineError):
+        solve(known, bent(known.paths.nodes), Targets(**given))

@@ -35,7 +35,7 @@ def missed(maps, direction):
     """Return what is missing of the step of the whole Hessian, in its norm."""
     objective, jet, _ = maps
     exact = list(newton_models(objective, jet))[-1].direction()
-    return np.sqrt(1.0 - direction.derivative / exact.derivative)
+    return np.sqrt(max(0.0, 1.0 - direction.derivative / exact.derivative))
 
 
 def test_a_step_by_the_factor_of_another_map_tends_to_the_same(maps, monkeypatch):

@@ -16,7 +16,7 @@ from engine.dirichlet.panels import NODES, Panels
 from engine.dirichlet.product_integration import is_near, panel_weights
 from engine.dirichlet.refinement import Refinement
 from engine.geometry import Domain, contains
-from engine.geometry.polygon import box_diagonal, edges
+from engine.geometry.polygon import diameter, edges
 from engine.interpolation import Course
 from engine.interpolation.blends.outline import OutlineMetric
 from engine.maps import Bounds
@@ -25,7 +25,7 @@ from engine.maps import Bounds
 def far_cage(outline):
     """Return a cage that asks for no refinement of its own."""
     centre = outline.mean()
-    return centre + 3 * box_diagonal(outline) * np.exp(2j * np.pi * np.arange(8) / 8)
+    return centre + 3 * diameter(outline) * np.exp(2j * np.pi * np.arange(8) / 8)
 
 
 def without_constant(values):

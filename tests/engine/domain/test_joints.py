@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
+import shapely
 from silhouettes import BODIES, CHILD, FISH, HORSE, KANGAROO, SNAKE, WALKER, dot, drawn
 
 from engine.domain import guessed_kind, suggested_joints
-from engine.geometry import contains
+from engine.geometry import contains, signed_area
 from engine.geometry.motions import KINDS, kind_named
 
 
@@ -93,3 +94,28 @@ def test_a_chain_begins_at_its_head(strokes, head):
 
 def test_what_is_anything_has_no_joints():
     assert suggested(drawn(*CHILD), "anything") == {}
+
+
+@pytest.mark.parametrize("name", BODIES)
+def test_joints_are_the_same_however_densely_edges_are_sampled(name):
+    kind, strokes = BODIES[name]
+    loops = drawn(*strokes)
+    joints = suggested(loops, kind)
+    shares = np.arange(3) / 3
+    fine = [
+        (loop[:, None] + shares * (np.roll(loop, -1) - loop)[:, None]).ravel() for loop in loops
+    ]
+    assert guessed_kind(fine).name == kind
+    others = suggested(fine, kind)
+    assert others.keys() == joints.keys()
+    for joint, place in joints.items():
+        assert abs(others[joint] - place) < 1e-6
+
+
+def test_corner_that_stays_in_a_disc_of_the_body_is_no_leg():
+    body = shapely.Point(0, 0).buffer(34).union(shapely.LineString([(0, 0), (23, -33)]).buffer(5))
+    rings = body.exterior, shapely.Point(11, -10).buffer(8).exterior
+    outline, hole = (np.array(ring.coords)[:-1] @ [1, 1j] for ring in rings)
+    assert signed_area(outline) * signed_area(hole) > 0
+    loops = [outline[::-1], hole] if signed_area(outline) < 0 else [outline, hole[::-1]]
+    assert guessed_kind(loops).name == "anything"

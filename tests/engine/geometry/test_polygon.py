@@ -11,6 +11,7 @@ from engine.geometry import (
     constrained_delaunay,
     contains,
     deepest_point,
+    diameter,
     distance_to_boundary,
     distance_to_segments,
     require_around,
@@ -140,3 +141,32 @@ def test_constrained_delaunay_leaves_holes_out() -> None:
     areas = ((b - a).conj() * (c - a)).imag / 2
     assert areas.min() > 0
     assert_allclose(areas.sum(), signed_area(RING) + signed_area(HOLES[0]), rtol=1e-12, atol=0)
+
+
+@given(polygon=star_polygons())
+def test_diameter_is_the_largest_distance_of_vertices(polygon: Complexes) -> None:
+    largest = np.abs(polygon[:, None] - polygon).max()
+    assert_allclose(diameter(polygon), largest, rtol=1e-14, atol=0)
+
+
+@pytest.mark.parametrize("count", [3, 4, 5, 6, 100])
+def test_diameter_is_right_where_many_edges_are_parallel(count: int) -> None:
+    corners = regular_polygon(count)
+    polygon = np.exp(0.3j) * np.column_stack([corners, (corners + np.roll(corners, -1)) / 2])
+    largest = np.abs(corners[:, None] - corners).max()
+    assert_allclose(diameter(polygon.ravel()), largest, rtol=1e-14, atol=0)
+
+
+@pytest.mark.parametrize("scale", [1e-200, 1e-40, 1e40, 1e200])
+def test_diameter_grows_with_the_polygon_at_any_scale(scale: float) -> None:
+    polygon = np.exp(0.3j) * np.array([0, 1, 1 + 1j, 1j])
+    assert_allclose(diameter(scale * polygon), scale * np.sqrt(2), rtol=1e-14, atol=0)
+
+
+def test_diameter_of_points_on_a_line_is_its_length() -> None:
+    assert diameter(np.array([1.0 + 1j, 3 + 3j, 2 + 2j])) == pytest.approx(2 * np.sqrt(2))
+    assert diameter(np.array([5.0 + 0j])) == 0
+
+
+def test_diameter_of_very_many_vertices_takes_little_memory() -> None:
+    assert_allclose(diameter(np.exp(2j * np.pi * np.arange(20_000) / 20_000)), 2, rtol=1e-14)

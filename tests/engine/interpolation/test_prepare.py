@@ -16,7 +16,7 @@ from interpolation_shapes import (
 from messages import says
 from numpy.testing import assert_allclose, assert_array_equal
 
-from engine.arrays import NOT_NUMBER, OTHER_KIND
+from engine.arrays import NOT_A_NUMBER, OTHER_KIND
 from engine.dirichlet.hilbert import HilbertTransform
 from engine.domain.meshing.triangulation import triangulate
 from engine.errors import EngineError
@@ -145,15 +145,15 @@ def test_a_turn_only_rotates_eta_but_changes_the_shape_of_nu():
         assert np.allclose(*np.exp(1j * np.array(stretch)), atol=1e-9) is same
 
 
-@pytest.mark.parametrize("time", [-1e-9, 2.0000001, float("nan"), float("inf")])
+@pytest.mark.parametrize("time", [-1e-9, 2.0000001])
 def test_times_out_of_range_are_refused(time):
     with pytest.raises(EngineError, match=says(TIME_RANGE, time=time)):
         between().frame(time)
 
 
-@pytest.mark.parametrize("time", ["0.5", [0.5], 1j, None])
+@pytest.mark.parametrize("time", ["0.5", [0.5], 1j, None, float("nan"), float("inf")])
 def test_times_that_are_no_numbers_are_refused(time):
-    with pytest.raises(EngineError, match=says(NOT_NUMBER, name="time")):
+    with pytest.raises(EngineError, match=says(NOT_A_NUMBER, name="time")):
         between().frame(time)
 
 
@@ -268,7 +268,7 @@ def test_the_metric_converges_with_the_nodes_that_the_keyframes_ask_for(monkeypa
     # by 7e-3 in ln |f_z| beside a vertex of the cage.
     outline, cage = narrow_u(0.1)
     points = polygon.sample_graded(
-        outline, cage, ratio=0.3, longest=polygon.box_diagonal(outline) / 100
+        outline, cage, ratio=0.3, longest=polygon.diameter(outline) / 100
     )
     points = points[np.abs(points[:, None] - outline).min(axis=1) > 1e-3]
     rng = np.random.default_rng(38)

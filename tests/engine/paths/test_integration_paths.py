@@ -9,7 +9,7 @@ from shapes import regular_polygon, star_polygons
 
 from engine.domain.meshing.triangulation import triangulate
 from engine.errors import EngineError
-from engine.geometry.polygon import as_xy, box_diagonal, contains, edges
+from engine.geometry.polygon import as_xy, contains, diameter, edges
 from engine.maps.cauchy import evaluate
 from engine.paths import integration_paths
 from engine.paths.integration_paths import lay_paths
@@ -109,7 +109,7 @@ def test_steps_are_short_near_singularities():
         paths = lay_paths(network, outline, cage)
         middles = paths.nodes - paths.steps / 2
         lengths = np.abs(paths.steps)
-        scale = box_diagonal(outline)
+        scale = diameter(outline)
         to_cage = np.abs(middles[:, None] - cage).min(axis=1)
         assert lengths.max() <= integration_paths.STEP_PER_SIZE * scale
         assert np.all(lengths <= integration_paths.STEP_PER_DISTANCE * to_cage)

@@ -10,7 +10,7 @@ from app.document.commands.keys_in_time import Row
 from app.document.layer import Layer
 from app.document.layering import CameraKey, MoveKey, OpacityKey, Placing
 from app.document.model import Document
-from app.document.queries import keyed_frame, repeating
+from app.document.queries import change_frame, keyed_frame, repeating
 from app.document.settings import FrameRange
 
 Key = TypeVar("Key", CameraKey, MoveKey, OpacityKey)
@@ -73,7 +73,12 @@ def delete_movement_key(layer: Layer, frame: int) -> Layer:
 
 @layer_command("Set order from here on")
 def place_at(layer: Layer, placing: Placing) -> Layer:
-    """Paint a layer right in front of another one, or behind it, from a frame on."""
+    """Paint a layer right in front of another one, or behind it, from a frame on.
+
+    In repeats, from that frame on in all of them.
+    """
+    at = change_frame(layer.placings, layer.cycles, placing.frame)
+    placing = replace(placing, frame=at)
     others = [each for each in layer.placings if each.frame != placing.frame]
     placings = tuple(sorted([*others, placing], key=lambda each: each.frame))
     return layer if placings == layer.placings else replace(layer, placings=placings)
@@ -82,7 +87,8 @@ def place_at(layer: Layer, placing: Placing) -> Layer:
 @layer_command("Change no order here")
 def unplace_at(layer: Layer, frame: int) -> Layer:
     """Take back what is said of a layer's order from a frame on."""
-    placings = tuple(each for each in layer.placings if each.frame != frame)
+    at = change_frame(layer.placings, layer.cycles, frame)
+    placings = tuple(each for each in layer.placings if each.frame != at)
     return layer if placings == layer.placings else replace(layer, placings=placings)
 
 

@@ -14,6 +14,7 @@ from app.document.keyframe import Pose, Target
 from app.document.layer import Layer
 from app.document.layering import Attachment, BlendMode, Switch, paths_to, shared_path
 from app.document.model import Document
+from app.document.queries import change_frame
 from app.errors import ImportSummary, LissomError
 
 LAST_LAYER = "A document has at least one layer; add another one first."
@@ -164,9 +165,11 @@ def set_reference(document: Document, identity: int, *, reference: bool) -> Docu
 def switch_at(document: Document, identity: int, frame: int, *, visible: bool | None) -> Document:
     """Show or hide a layer from a frame on; None takes back what was said at that frame.
 
-    One that was hidden at all times is shown there, and hidden until then.
+    In repeats, from that frame on in all of them. One that was hidden at all times is shown there,
+    and hidden until then.
     """
     layer = document.layer(identity)
+    frame = change_frame(layer.switches, layer.cycles, frame)
     switches = layer.switches
     if visible and (layer.hidden or document.is_in_hidden(layer)):
         document = revealed(document, identity)

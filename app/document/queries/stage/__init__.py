@@ -33,6 +33,7 @@ from app.document.queries.stage.moves import (
     repeating as repeating,
 )
 from app.document.queries.stage.sight import (
+    change_frame as change_frame,
     is_visible as is_visible,
     repeated as repeated,
     sights_of as sights_of,

@@ -4,9 +4,9 @@ from typing import NamedTuple
 
 from app.document.layer import Layer
 from app.document.queries.clips import Clip
-from engine.geometry import box_diagonal
+from engine.geometry import diameter
 
-# Of the drawing's diagonal: how far a depth reaches that is given no extent.
+# Of the drawing's diameter: how far a depth reaches that is given no extent.
 USUAL_EXTENT = 0.15
 
 
@@ -35,7 +35,7 @@ def fronts_at(clip: Clip, frame: float) -> tuple[Front, ...]:
             depths.update(key.fronts)
     if not any(depths.values()):
         return ()
-    usual = USUAL_EXTENT * box_diagonal(layer.domain.outline)
+    usual = USUAL_EXTENT * diameter(layer.domain.outline)
     return tuple(
         Front(handle.position, depths[handle.id], handle.extent or usual)
         for handle in layer.handles

@@ -132,6 +132,21 @@ def _repeated(
     return changes
 
 
+def change_frame(
+    changes: tuple[Switch, ...] | tuple[Placing, ...], cycles: tuple[Cycle, ...], frame: int
+) -> int:
+    """Return the frame at which switches or placings say what a frame shows: another in repeats.
+
+    What a repeat has of its own is said there.
+    """
+    frames = [each.frame for each in changes]
+    if frame not in frames:
+        for cycle in cycles:
+            if cycle.covers(frame) and frame != cycle.until and changes_in(frames, cycle):
+                return int(cycle.source(frame))
+    return frame
+
+
 def _moved(change: Change, frame: int) -> Change:
     if isinstance(change, Turn):
         return change._replace(frame=frame)

@@ -19,9 +19,9 @@ from app.editor.session import Session, with_project
 from app.motion import Shown
 from engine import domain as domains
 from engine.domain import MeshedDomain
-from engine.geometry import box_diagonal, contains
+from engine.geometry import contains, diameter
 
-NEAR = 0.05  # of the diagonal: so near to a handle there is no other one suggested
+NEAR = 0.05  # of the diameter: so near to a handle there is no other one suggested
 
 
 @with_project
@@ -59,7 +59,7 @@ def suggest_handles(session: Session, project: Project) -> None:
     """Put handles on the body, at tips and joints of limbs, where there are none yet."""
     layer = project.layer
     suggested = domains.suggest_handles(layer.domain.loops)
-    near = NEAR * box_diagonal(layer.domain.outline)
+    near = NEAR * diameter(layer.domain.outline)
     taken = np.array([handle.position for handle in layer.handles], dtype=np.complex128)
     free = [handle for handle in suggested if not (np.abs(taken - handle.place) < near).any()]
     if not free:

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 from app.document import (
+    LAST_FRAME,
     Command,
     Easing,
     FrameRange,
@@ -18,7 +19,11 @@ from app.editor.actions.timing import tracks
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.timeline_view import KeysOf, frames_in, keys_in, own_frame
+from app.errors import LissomError
 
+NO_LAST_FRAME = (
+    "The last frame comes after frame {first} and is at most {most:,}, not {last:,}; type another."
+)
 EASE = editing.KeyVerb(key_commands.set_easing, track_commands.set_track_easing)
 PASS = editing.KeyVerb(key_commands.set_passing, track_commands.set_track_passing)
 REVERSE = editing.KeyVerb(key_commands.reverse_keys, track_commands.reverse_track_keys)
@@ -157,8 +162,10 @@ def set_fps(session: Session, fps: float) -> None:
 @with_project
 def set_last_frame(session: Session, project: Project, last: int) -> None:
     """Set where the animation ends."""
-    frames = FrameRange(project.document.frames.first, last)
-    retime(session, scene_commands.set_frames(frames))
+    first = project.document.frames.first
+    if not first < last <= LAST_FRAME:
+        raise LissomError(NO_LAST_FRAME.format(first=first, most=LAST_FRAME, last=last))
+    retime(session, scene_commands.set_frames(FrameRange(first, last)))
 
 
 def play_all(session: Session) -> None:

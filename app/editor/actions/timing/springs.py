@@ -14,11 +14,11 @@ from app.editor.session import Session, with_project
 from app.editor.work import Kind
 from app.motion import PoseSampler, animation_at, carried_in
 from engine.arrays import Complexes, Indices
-from engine.geometry import box_diagonal
+from engine.geometry import diameter
 from engine.geometry.kinematics import fit_keys
 
 KEYING = Kind("Making keys of a spring", "The swing could not be made into keys")
-NEAR = 4e-4  # of the layer's diagonal: that the keys' motion may be beside the swing
+NEAR = 4e-4  # of the layer's diameter: that the keys' motion may be beside the swing
 AT_REST = 0.01  # pixels
 
 
@@ -76,7 +76,7 @@ def _put(session: Session, project: Project, identity: int, spring: Spring, swin
     # It begins and ends at rest, where there is room for that.
     first, last = max(moves[0] - 1, 0), min(moves[-1] + 1, len(swing.frames) - 1)
     part = slice(first, last + 1)
-    near = NEAR * box_diagonal(layer.domain.outline)
+    near = NEAR * diameter(layer.domain.outline)
     fitted = fit_keys(swing.frames[part], swing.offsets[part], near)
     keys = [
         TrackKey(frame=frame, place=place, velocity=velocity)

@@ -12,7 +12,7 @@ from app.motion import CorrectedFrames, FoundCorrections
 
 COMPLAINT = "The handles cannot follow their tracks"
 CORRECTING = Kind("Corrections", COMPLAINT)
-FOLLOWING = Kind("FrameCorrection", COMPLAINT, "hand")
+FOLLOWING = Kind("Frame correction", COMPLAINT, "hand")
 # What the tracks of handles that a hand may carry are relative to.
 GROUNDING = Kind("Places on tracks", COMPLAINT, "hand")
 

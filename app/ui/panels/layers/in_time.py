@@ -4,7 +4,15 @@ import math
 
 from imgui_bundle import imgui
 
-from app.document import Document, Layer, keyed_frame, movement_at, opacity_at, placing_at
+from app.document import (
+    Document,
+    Layer,
+    change_frame,
+    keyed_frame,
+    movement_at,
+    opacity_at,
+    placing_at,
+)
 from app.editor import Action, do, layering
 from app.ui.style import FILL, Look, Scale, label, number, slider, small, text_button, tip
 
@@ -99,7 +107,8 @@ def draw_order(document: Document, look: Look, layer: Layer, frame: int) -> list
             ]
         imgui.end_combo()
     tip(f"From frame {frame} on, until it is said otherwise")
-    if any(each.frame == frame for each in layer.placings) and text_button(
+    keyed = change_frame(layer.placings, layer.cycles, frame)
+    if any(each.frame == keyed for each in layer.placings) and text_button(
         f"No change of order at frame {frame}", FILL, "What was said before it holds on"
     ):
         actions.append(do(layering.unplace_here, layer.id))

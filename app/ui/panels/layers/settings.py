@@ -2,7 +2,16 @@
 
 from imgui_bundle import ImVec2, imgui
 
-from app.document import BLENDS, Choice, Document, Group, Layer, is_visible, with_repeats
+from app.document import (
+    BLENDS,
+    Choice,
+    Document,
+    Group,
+    Layer,
+    change_frame,
+    is_visible,
+    with_repeats,
+)
 from app.editor import Action, Project, do, layering
 from app.ui.panels.layers.in_time import draw_movement, draw_opacity, draw_order
 from app.ui.style import (
@@ -98,7 +107,8 @@ def _switch(document: Document, look: Look, layer: Layer, frame: int) -> list[Ac
     )
     if text_button(text, FILL, hint):
         actions.append(do(layering.switch_here, layer.id))
-    is_switched = any(switch.frame == frame for switch in layer.switches)
+    keyed = change_frame(layer.switches, layer.cycles, frame)
+    is_switched = any(switch.frame == keyed for switch in layer.switches)
     if is_switched and imgui.button(f"No change at frame {frame}", ImVec2(FILL, 0)):
         actions.append(do(layering.unswitch_here, layer.id))
     if layer.switches:

@@ -27,7 +27,7 @@ def layer_and_pose(*, lag, share):
 def least(layer):
     low, high = layer.domain.outline.real.min(), layer.domain.outline.real.max()
     assert high - low == pytest.approx(2 * RADIUS, rel=0.05)
-    return LAG * np.sqrt(2) * (high - low)
+    return LAG * (high - low)
 
 
 @pytest.mark.parametrize("share", [0.02, 0.9, 0.99])

@@ -5,7 +5,7 @@ from animations import moving_document
 from invariants import check_pose
 from sessions import go, session_of, settle
 
-from app.document.commands import handle_commands
+from app.document.commands import handle_commands, layer_commands
 from app.editor.actions import editing
 from app.editor.poses import library
 from app.storage import Preferences
@@ -78,3 +78,14 @@ def test_names_are_not_given_twice(session):
     assert (one.name, other.name) == ("Pose 1", "Pose 2")
     library.delete(session, "Pose 1")
     assert keep(session, 0).name == "Pose 3"
+
+
+def test_picked_pose_is_that_of_one_layer_when_names_are_alike(session):
+    project = session.project
+    keep(session, 6)
+    first, name = project.picked_pose
+    editing.edit(session, layer_commands.duplicate_layer(first))
+    second = project.document.layers[-1].id
+    assert project.document.layer(second).library[0].name == name
+    library.apply(session, name, second)
+    assert project.picked_pose == (second, name)

@@ -12,7 +12,7 @@ from app.editor.actions import editing, playback, posing
 from app.editor.actions.posing.stopping import STOPPED_AT_LIMIT
 from app.editor.actions.upkeep import maintain
 from app.editor.tools import Spot, pointing
-from engine.geometry import box_diagonal
+from engine.geometry import diameter
 
 MOVES = 12  # of the pointer, a picture for each
 
@@ -74,7 +74,7 @@ def outwards(project):
     """Return the first handle, and the way from all others to it, as long as the drawing."""
     places = [handle.position for handle in project.layer.handles]
     away = places[0] - np.mean(places[1:])
-    size = box_diagonal(project.layer.domain.outline)
+    size = diameter(project.layer.domain.outline)
     return project.layer.handles[0].id, complex(size * away / abs(away))
 
 
@@ -114,7 +114,7 @@ def drag_too_far(session, **rests):
 
 
 def per_mille(session, lengths):
-    size = box_diagonal(session.project.layer.domain.outline)
+    size = diameter(session.project.layer.domain.outline)
     return 1000 * float(np.max(np.abs(lengths))) / size
 
 
@@ -184,7 +184,7 @@ def test_the_next_drag_does_not_pull_on_at_what_the_hand_has_left(session, rests
     pointing.end(session, asked)
     for _ in range(rests):
         picture(session)
-    other, way = project.layer.handles[1].id, 0.03 * box_diagonal(project.layer.domain.outline)
+    other, way = project.layer.handles[1].id, 0.03 * diameter(project.layer.domain.outline)
     pointing.end(session, drag(session, other, way, rests=rests))
     settle(session)
     after, _ = where(project)
@@ -240,7 +240,7 @@ def test_a_joint_that_gave_in_is_wanted_where_it_came_to(tmp_path):
 @pytest.mark.parametrize("session", ["person"], indirect=True)
 def test_all_handles_together_take_the_whole_drawing_along(session):
     project = session.project
-    way = 0.8 * box_diagonal(project.layer.domain.outline) * np.exp(1j)
+    way = 0.8 * diameter(project.layer.domain.outline) * np.exp(1j)
     _, before = where(project)
     handles = [handle.id for handle in project.layer.handles]
     start = complex(where(project)[0][handles[0]])

@@ -12,8 +12,8 @@ from engine.errors import EngineError
 from engine.geometry.polygon import (
     HOLE_LEAVES,
     as_xy,
-    box_diagonal,
     contains,
+    diameter,
     edges,
     is_simple,
     signed_area,
@@ -95,7 +95,7 @@ def limbs(draw: st.DrawFn) -> Complexes:
 def uneven_polygons(draw: st.DrawFn) -> Complexes:
     """Draw star-shaped polygons with extra vertices very near to others."""
     polygon = draw(star_polygons(largest=60))
-    gap = draw(st.sampled_from([1e-3, 1e-2])) * box_diagonal(polygon)
+    gap = draw(st.sampled_from([1e-3, 1e-2])) * diameter(polygon)
     rng = np.random.default_rng(len(polygon))
     tilt = 1 + 0.3j * rng.standard_normal(len(polygon))
     near = polygon + gap * tilt * edges(polygon) / np.abs(edges(polygon))
@@ -164,7 +164,7 @@ def assert_conforming(outline: Complexes, mesh: Mesh, holes: tuple[Complexes, ..
         edge = np.searchsorted(corner, np.arange(len(loop)), side="right") - 1
         offset = (vertices[loop] - polygon[edge]) * edges(polygon)[edge].conj()
         height = np.abs(offset.imag / np.abs(edges(polygon)[edge]))
-        assert height.max() < 1e-12 * (box_diagonal(outline) + np.abs(outline).max())
+        assert height.max() < 1e-12 * (diameter(outline) + np.abs(outline).max())
         first, walked = first + len(polygon), walked + len(loop)
     assert walked == border.sum()
 

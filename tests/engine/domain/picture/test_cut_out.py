@@ -125,7 +125,7 @@ def test_a_mask_keeps_every_pixel(size):
         (lambda: CutOut(background=(0, 0, 256)), "levels"),
         (lambda: CutOut(background=(0, 0)), "levels"),
         (lambda: CutOut(background="red"), "background"),
-        (lambda: CutOut(holes="open"), "Holes"),
+        (lambda: CutOut(holes="open"), "holes"),
         (
             lambda: CutOut(
                 strokes=(Stroke(points=np.array([-1e5, 1e5] * 5000), radius=4000.0, keeps=True),)

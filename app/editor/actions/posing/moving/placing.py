@@ -10,10 +10,10 @@ from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work import MotionDraft
 from engine.domain import suggested_joints
-from engine.geometry import box_diagonal
+from engine.geometry import diameter
 from engine.geometry.motions import kind_named, other_side
 
-NEAR = 0.035  # of the diagonal: so near to a joint a handle is one
+NEAR = 0.035  # of the diameter: so near to a joint a handle is one
 # Where a joint that was not found is put: so far from the joint that it hangs on, in heights.
 BELOW = 0.12
 BESIDE: Mapping[str, complex] = {
@@ -34,7 +34,7 @@ def joints_in(layer: Layer, kind: str) -> dict[str, complex]:
     """Return the joints of a kind in a layer: its handles where these are, or by their names."""
     body = kind_named(kind)
     joints = dict(suggested_joints(layer.domain.loops, body))
-    near = NEAR * box_diagonal(layer.domain.outline)
+    near = NEAR * diameter(layer.domain.outline)
     named = {h.name: h.position for h in layer.handles if h.name in body.parents}
     free = [h.position for h in layer.handles if h.name not in named]
     for name, place in joints.items():

@@ -1,0 +1,94 @@
+"""Clips, which are equal where the motion is."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from documents import altered, disc_document
+
+from app.document.body import Bone, UnreadMotion
+from app.document.commands import handle_commands
+from app.document.keyframe import KeptPose
+from app.document.layering import Group, OpacityKey, Placing, Switch
+from app.document.queries.clips import UNMOVING, UNMOVING_OF_HANDLES, clip_of, motion_source
+from app.document.timing import Spring
+from app.motion.extents.extent import extent_source
+from engine.maps.bounds import Bounds
+
+DOCUMENT = disc_document()
+for place in (80 + 100j, 120 + 100j):
+    DOCUMENT = handle_commands.add_handle(0, place)(DOCUMENT)
+DOCUMENT = replace(DOCUMENT, groups=(Group(name="all"),))
+POSE = DOCUMENT.layers[0].keys[0].pose
+UNSEEN = {
+    "name": "other",
+    "next_handle": 9,
+    "library": (KeptPose(name="Pose 1", pose=POSE),),
+    "mirror": 10.0,
+    "motions": (),
+    "unread_motions": (UnreadMotion(index=0, content={}, reason="It is new."),),
+    "reference": True,
+    "locked": True,
+    "hidden": True,
+    "switches": (Switch(4, visible=False),),
+    "opacity": 0.5,
+    "opacities": (OpacityKey(frame=3, opacity=0.5),),
+    "blend": "multiply",
+    "clipped": True,
+    "group": "all",
+    "placings": (Placing(4, None),),
+    "unknown": {"later": 1},
+}
+SEEN = {
+    "bones": (Bone(ends=(0, 1)),),
+    "stiffness": np.full(12, 2.0),
+    "bounds": Bounds(k=0.4),
+    "springs": (Spring(handle=0, frequency=2, damping=0.2),),
+    "stillness": False,
+    "anchor": 90 + 90j,
+}
+
+
+def test_every_field_without_motion_is_tried():
+    assert set(UNSEEN) == UNMOVING
+
+
+@pytest.mark.parametrize("field", UNSEEN)
+def test_clips_are_equal_where_only_other_things_change(field):
+    changed = altered(DOCUMENT, **{field: UNSEEN[field]})
+    assert clip_of(changed, 0) == clip_of(DOCUMENT, 0)
+    assert hash(clip_of(changed, 0)) == hash(clip_of(DOCUMENT, 0))
+    if field not in {"reference", "hidden"}:  # which is not exported
+        assert extent_source(changed) == extent_source(DOCUMENT)
+
+
+@pytest.mark.parametrize("field", SEEN)
+def test_clips_differ_where_the_motion_does(field):
+    changed = altered(DOCUMENT, **{field: SEEN[field]})
+    assert clip_of(changed, 0) != clip_of(DOCUMENT, 0)
+    assert extent_source(changed) != extent_source(DOCUMENT)
+
+
+def test_clips_are_equal_where_stiffness_is_painted_alike():
+    one, other = (altered(DOCUMENT, stiffness=np.full(12, 2.0)) for _ in range(2))
+    assert clip_of(one, 0) == clip_of(other, 0)
+
+
+def test_names_and_groups_of_handles_are_no_motion():
+    handle, *others = DOCUMENT.layers[0].handles
+    assert {"name", "group", "unknown"} == UNMOVING_OF_HANDLES
+    for change, is_same in (
+        ({"name": "nose"}, True),
+        ({"group": "face"}, True),
+        ({"unknown": {"later": 1}}, True),
+        ({"free": True}, False),
+        ({"position": 70 + 100j}, False),
+    ):
+        handles = (replace(handle, **change), *others)
+        changed = altered(DOCUMENT, handles=handles).layers[0]
+        assert (motion_source(changed) == motion_source(DOCUMENT.layers[0])) == is_same
+
+
+def test_clips_differ_in_time():
+    assert clip_of(replace(DOCUMENT, fps=12.0), 0) != clip_of(DOCUMENT, 0)
+    assert clip_of(DOCUMENT, 0) != DOCUMENT

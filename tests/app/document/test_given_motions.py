@@ -1,0 +1,99 @@
+"""Ready motions of a layer, and where their frames go as keys are moved and time is scaled."""
+
+from dataclasses import replace
+
+import pytest
+from documents import altered, disc_document
+
+from app.document.body import GivenMotion
+from app.document.commands import key_commands, scene_commands
+from app.document.keyframe import Keyframe
+from app.document.queries import digest_of_keys, is_as_given
+from app.document.settings import FrameRange
+from app.document.timing import Cycle
+from engine.geometry.motions import Parameters
+
+POSE = disc_document().layers[0].keys[0].pose
+BREATHE = GivenMotion(
+    motion="breathe",
+    kind="anything",
+    joints={},
+    facing=1,
+    parameters=Parameters(),
+    first=10,
+    start=10,
+    last=30,
+)
+
+
+def breathing(*frames, motions=(BREATHE,), cycles=()):
+    """Return a document whose layer has keys at some frames, and motions as they were given."""
+    keys = tuple(Keyframe(frame=frame, pose=POSE) for frame in frames)
+    document = altered(disc_document(), keys=keys, cycles=cycles, frames=FrameRange(0, 100))
+    layer = document.layers[0]
+    given = (replace(each, digest=digest_of_keys(layer, each.first, each.last)) for each in motions)
+    return altered(document, motions=tuple(given))
+
+
+def moved(document, frames, by):
+    return key_commands.move_keys(0, frames, by)(document).layers[0]
+
+
+def ranges(layer):
+    return [(each.first, each.start, each.last) for each in layer.motions]
+
+
+def test_a_motion_goes_with_all_of_its_keys_as_it_was_given():
+    layer = moved(breathing(0, 10, 20, 30, 80), {10, 20, 30}, 40)
+    assert ranges(layer) == [(50, 50, 70)]
+    assert is_as_given(layer, layer.motions[0])
+
+
+def test_a_motion_that_repeats_goes_with_its_cycle():
+    cycle = Cycle(first=10, last=20, until=30)
+    document = breathing(10, 14, cycles=(cycle,))
+    layer = moved(document, {10, 14}, 5)
+    assert layer.cycles == (Cycle(first=15, last=25, until=35),)
+    assert ranges(layer) == [(15, 15, 35)]
+    assert is_as_given(layer, layer.motions[0])
+
+
+def test_a_motion_that_was_edited_stays_edited_when_it_is_moved():
+    document = key_commands.delete_keys(0, {20})(breathing(10, 20, 30))
+    layer = moved(document, {10, 30}, 5)
+    assert ranges(layer) == [(15, 15, 35)]
+    assert not is_as_given(layer, layer.motions[0])
+
+
+@pytest.mark.parametrize(
+    ("frames", "by", "expected"),
+    [({30}, 5, (10, 10, 35)), ({10}, -5, (5, 5, 30)), ({20}, 5, (10, 10, 30))],
+)
+def test_the_ends_of_a_motion_go_with_the_keys_there(frames, by, expected):
+    layer = moved(breathing(0, 10, 20, 30, 80), frames, by)
+    assert ranges(layer) == [expected]
+    assert not is_as_given(layer, layer.motions[0])
+
+
+def test_a_motion_is_forgotten_when_it_takes_in_another_key():
+    assert ranges(moved(breathing(10, 20, 30, 40), {30}, 20)) == []
+
+
+def test_motions_that_meet_at_a_key_are_both_moved_by_it():
+    later = replace(BREATHE, first=30, start=30, last=50)
+    layer = moved(breathing(10, 20, 30, 40, 50, motions=(BREATHE, later)), {30}, 3)
+    assert ranges(layer) == [(10, 10, 33), (33, 33, 50)]
+
+
+def test_a_motion_is_scaled_with_its_keys():
+    document = breathing(0, 10, 20, 30, 80)
+    layer = key_commands.scale_keys(0, {10, 20, 30}, 2.0)(document).layers[0]
+    assert ranges(layer) == [(10, 10, 50)]
+    assert not is_as_given(layer, layer.motions[0])
+
+
+def test_a_motion_is_scaled_with_the_scene():
+    assert ranges(scene_commands.scale_time(0.5)(breathing(0, 10, 20, 30)).layers[0]) == [
+        (5, 5, 15)
+    ]
+    assert ranges(scene_commands.scale_time(0.01)(breathing(20)).layers[0]) == []
