@@ -23,19 +23,19 @@ from engine.errors import EngineError
 # What Lissom can do with a library that it does not always have: extras of the package.
 Extra = Literal["video", "psd", "figures"]
 LIBRARIES: Final[dict[Extra, str]] = {"video": "av", "psd": "psd-tools", "figures": "matplotlib"}
-Listener = Callable[[float], None]
-_listener: ContextVar[Listener | None] = ContextVar("listener", default=None)
+ProgressListener = Callable[[float], None]
+_listener: ContextVar[ProgressListener | None] = ContextVar("listener", default=None)
 CANCELLED: Final = "it was cancelled"
 REINSTALL: Final = "install Lissom again"
 # What Python makes of the bytes of a file's name that are no UTF-8, on Linux.
 _UNREADABLE = re.compile("[\ud800-\udfff]")
-LONGEST_SHOWN: Final = 120  # characters of a text that others wrote
-LONGEST_MESSAGE: Final = 1_000  # characters
-MOST_SHOWN: Final = 10  # names in a row, and notices
+MAX_TEXT_LENGTH: Final = 120  # characters of a text that others wrote
+MAX_MESSAGE_LENGTH: Final = 1_000  # characters
+MAX_LISTED: Final = 10  # names in a row, and notices
 _CUT: Final = "\N{HORIZONTAL ELLIPSIS}"
 # A text in quotes within a message, of more characters than are shown.
 _LONG_QUOTED: Final = re.compile(
-    rf"""(?<!\w)(['"])((?:(?!\1).){{{LONGEST_SHOWN - 1}}})(?:(?!\1).){{2,}}\1(?!\w)"""
+    rf"""(?<!\w)(['"])((?:(?!\1).){{{MAX_TEXT_LENGTH - 1}}})(?:(?!\1).){{2,}}\1(?!\w)"""
 )
 # Beside all that Python counts as printable: spaces of every width, and joiners within words.
 _PRINTABLE: Final = re.compile("[\u00a0\u1680\u2000-\u200a\u202f\u205f\u3000\u200c\u200d]")
@@ -50,55 +50,55 @@ EXPECTED_ERRORS = (LissomError, EngineError)
 
 
 @dataclass(frozen=True, slots=True)
-class ImportSummary:
+class ImportLog:
     """What opening a drawing told, a line each, with the names of the layers that it is about."""
 
-    losses: tuple[str, ...] = ()  # what does not look as it does elsewhere
-    matters: tuple[str, ...] = ()  # what was done, and looks the same
+    warnings: tuple[str, ...] = ()  # what does not look as it does elsewhere
+    notes: tuple[str, ...] = ()  # what was done, and looks the same
 
     def __bool__(self) -> bool:
         """Tell whether there is anything to be told."""
-        return bool(self.losses or self.matters)
+        return bool(self.warnings or self.notes)
 
     @property
     def lines(self) -> tuple[str, ...]:
         """All of it, losses first."""
-        return self.losses + self.matters
+        return self.warnings + self.notes
 
-    def __add__(self, other: "ImportSummary") -> "ImportSummary":
+    def __add__(self, other: "ImportLog") -> "ImportLog":
         """Return both."""
-        return ImportSummary(self.losses + other.losses, self.matters + other.matters)
+        return ImportLog(self.warnings + other.warnings, self.notes + other.notes)
 
 
-NOTHING_TOLD = ImportSummary()
+EMPTY_IMPORT_LOG = ImportLog()
 
 
-class Told:
+class NoticeCollector:
     """What is found while a drawing is read: told once, with the names of all that it is about."""
 
     def __init__(self) -> None:
         self._losses: dict[str, list[str]] = {}
         self._matters: dict[str, list[str]] = {}
 
-    def lose(self, name: str, what: str) -> None:
+    def add_warning(self, name: str, what: str) -> None:
         """Tell what of something is not shown as it is elsewhere."""
         self._losses.setdefault(what, []).append(name)
 
-    def note(self, name: str, what: str) -> None:
+    def add_note(self, name: str, what: str) -> None:
         """Tell what was done to something, which looks the same."""
         self._matters.setdefault(what, []).append(name)
 
     @property
-    def summary(self) -> ImportSummary:
+    def import_log(self) -> ImportLog:
         """All that was told."""
         losses, matters = (
-            tuple(f"{listed(names)}: {what}" for what, names in found.items())
+            tuple(f"{join_names(names)}: {what}" for what, names in found.items())
             for found in (self._losses, self._matters)
         )
-        return ImportSummary(losses, matters)
+        return ImportLog(losses, matters)
 
 
-def shown_name(name: object) -> str:
+def display_name(name: object) -> str:
     """Return a file's name, or a text with names in it, with a � for each byte that is no UTF-8.
 
     Neither a window nor a file of text takes such a name as it is.
@@ -117,37 +117,37 @@ def printable(text: object, *, keeps_lines: bool = False) -> str:
             return letter
         return letter.encode("unicode_escape").decode("ascii")
 
-    text = shown_name(text)
+    text = display_name(text)
     return text if text.isprintable() else "".join(map(escaped, text))
 
 
 def shortened(text: object) -> str:
     """Return a text that others wrote as it stands in a sentence: printable, and cut if long."""
-    shown = printable(str(text)[: LONGEST_SHOWN + 1])
-    return shown if len(shown) <= LONGEST_SHOWN else shown[: LONGEST_SHOWN - 1] + _CUT
+    shown = printable(str(text)[: MAX_TEXT_LENGTH + 1])
+    return shown if len(shown) <= MAX_TEXT_LENGTH else shown[: MAX_TEXT_LENGTH - 1] + _CUT
 
 
-def shown_message(message: object) -> str:
+def display_message(message: object) -> str:
     """Return a message as it is printed: on one line, printable, and what is long in it cut."""
     shown = _LONG_QUOTED.sub(rf"\1\2{_CUT}\1", printable(" ".join(str(message).split())))
-    half = LONGEST_MESSAGE // 2
-    return shown if len(shown) <= LONGEST_MESSAGE else f"{shown[:half]}{_CUT}{shown[-half:]}"
+    half = MAX_MESSAGE_LENGTH // 2
+    return shown if len(shown) <= MAX_MESSAGE_LENGTH else f"{shown[:half]}{_CUT}{shown[-half:]}"
 
 
-def listed(names: Sequence[object]) -> str:
+def join_names(names: Sequence[object]) -> str:
     """Return names in a row, and how many more there are."""
-    few = ", ".join(map(shortened, names[:MOST_SHOWN]))
-    more = len(names) - MOST_SHOWN
+    few = ", ".join(map(shortened, names[:MAX_LISTED]))
+    more = len(names) - MAX_LISTED
     return f"{few} and {more:,} more" if more > 0 else few
 
 
 def few_notices(notices: Sequence[str]) -> list[str]:
     """Return the first notices, and how many more there are."""
-    more = len(notices) - MOST_SHOWN
-    return [*notices[:MOST_SHOWN], *([f"and {more:,} more"] if more > 0 else [])]
+    more = len(notices) - MAX_LISTED
+    return [*notices[:MAX_LISTED], *([f"and {more:,} more"] if more > 0 else [])]
 
 
-def missing(extra: Extra) -> str:
+def install_hint(extra: Extra) -> str:
     """Return how to install the library of an extra here; empty where it is there."""
     is_there = find_spec(LIBRARIES[extra].replace("-", "_")) is not None
     return "" if is_there else _how_to_install(extra)
@@ -186,7 +186,7 @@ def _quoted(word: str) -> str:
 
 
 @contextmanager
-def told_to(listener: Listener) -> Iterator[None]:
+def listen_to_progress(listener: ProgressListener) -> Iterator[None]:
     """Let somebody listen to what this thread does in a `with` block.
 
     Parameters
@@ -201,7 +201,7 @@ def told_to(listener: Listener) -> Iterator[None]:
         _listener.reset(before)
 
 
-def tell(share: float) -> None:
+def report_progress(share: float) -> None:
     """Tell how far the work is, if somebody listens."""
     listener = _listener.get()
     if listener is not None:

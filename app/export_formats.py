@@ -14,7 +14,7 @@ from typing import Any, Final
 from app.errors import Extra, LissomError
 
 
-def full_colour(text: str) -> str:
+def expand_colour(text: str) -> str:
     """Return a colour as it is kept, "#rrggbb", where "#rgb" is told; else the text as it is."""
     is_short = re.fullmatch("#[0-9a-fA-F]{3}", text) is not None
     return "#" + "".join(2 * digit for digit in text[1:]) if is_short else text
@@ -40,13 +40,13 @@ class Option:
     label: str
     tip: str = ""
     flag: str
-    about: str
-    words: tuple[tuple[bool | float | None, str], ...] = ()
-    least: float = 0
-    most: float = 1
+    description: str
+    choices: tuple[tuple[bool | float | None, str], ...] = ()
+    minimum: float = 0
+    maximum: float = 1
 
 
-def _asked(usual: Any, **option: Any) -> Any:
+def _option(usual: Any, **option: Any) -> Any:
     """Return a field of options, with what is asked for it."""
     return field(default=usual, metadata={"option": Option(**option)})
 
@@ -56,31 +56,31 @@ class FormatOptions:
     """What some formats ask; the base of all such."""
 
     def __post_init__(self) -> None:
-        for name, option in self.asked().items():
+        for name, option in self.option_fields().items():
             value = getattr(self, name)
-            if value is not None and not option.least <= value <= option.most:
+            if value is not None and not option.minimum <= value <= option.maximum:
                 raise LissomError(
-                    f"{name.capitalize()} must be {option.least:,} to {option.most:,}, not {value}."
+                    f"{name.capitalize()} must be {option.minimum:,} to {option.maximum:,}, not {value}."
                 )
 
     @classmethod
-    def asked(cls) -> dict[str, Option]:
+    def option_fields(cls) -> dict[str, Option]:
         """Return what is asked, by the names of the fields."""
         return {each.name: each.metadata["option"] for each in fields(cls)}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SheetLayout(FormatOptions):
+class SpriteSheetOptions(FormatOptions):
     """How the frames lie on a sprite sheet."""
 
-    trimmed: bool = _asked(
+    trimmed: bool = _option(
         True,  # noqa: FBT003 - the usual value
         label="Frames are",
         words=((True, "Trimmed"), (False, "All alike")),
         flag="trim",
         about="keep only what is seen of a frame on a sprite sheet (default: the project's, yes)",
     )
-    padding: int = _asked(
+    padding: int = _option(
         2,
         label="Padding",
         tip="Transparent pixels between frames and at the border",
@@ -88,7 +88,7 @@ class SheetLayout(FormatOptions):
         about="pixels between frames of a sprite sheet",
         most=256,
     )
-    power_of_two: bool = _asked(
+    power_of_two: bool = _option(
         False,  # noqa: FBT003 - the usual value
         label="Sheet sides",
         words=((False, "Any"), (True, "Powers of two")),
@@ -98,13 +98,13 @@ class SheetLayout(FormatOptions):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ShapeDetail(FormatOptions):
+class MeshOptions(FormatOptions):
     """How closely an export of shapes follows the motion, in how many triangles of each layer.
 
     Without a tolerance it is half a pixel, with no more shapes than every viewer shows.
     """
 
-    triangles: int = _asked(
+    triangles: int = _option(
         4_000,
         label="Triangles",
         tip="Of each layer, about: more of them bend more smoothly, in a larger file",
@@ -113,7 +113,7 @@ class ShapeDetail(FormatOptions):
         least=100,
         most=2_000_000,  # as many as a domain may have
     )
-    tolerance: float | None = _asked(
+    tolerance: float | None = _option(
         None,
         label="Within",
         tip="How far the shapes may be from the motion, in pixels. As usual, it takes at most 8 of "
@@ -131,8 +131,8 @@ class ShapeDetail(FormatOptions):
 class FormatSettings:
     """All options; an export uses those that its format asks, by `ExportFormat.options`."""
 
-    sheet: SheetLayout = SheetLayout()
-    shapes: ShapeDetail = ShapeDetail()
+    sheet: SpriteSheetOptions = SpriteSheetOptions()
+    shapes: MeshOptions = MeshOptions()
 
     def options(self) -> dict[str, Any]:
         """Return the options by the names of the fields."""
@@ -320,7 +320,7 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
 )
 
 # Of one frame.
-STILL: Final = next(name for name, format_ in EXPORT_FORMATS.items() if format_.is_still)
+STILL_FORMAT: Final = next(name for name, format_ in EXPORT_FORMATS.items() if format_.is_still)
 
 
 def format_by_suffix() -> dict[str, str]:

@@ -10,17 +10,17 @@ from numpy.testing import assert_allclose
 from PIL import Image
 
 from app.document import Document, FrameRange
-from app.document.queries.shortfall import Extremes
-from app.document.queries.stage.sight import is_visible
-from app.document.queries.timeline import clip_of, exported_frames
-from app.motion import Animation, Joints, PaintOrder
-from app.motion.interval_store import IntervalStore
-from app.motion.posable_mesh import PosableMesh
+from app.document.queries.layers.visibility import is_visible
+from app.document.queries.target_error import DistortionRange
+from app.document.queries.timeline import clip_of, export_frame_range
+from app.motion import Animation, ParentTransforms, TriangleOrder
+from app.motion.deform_mesh import DeformMesh
+from app.motion.inbetween_cache import InbetweenCache
 from app.reports.certification import Verdict, certify_clip
 from app.solving.script import load_pose_script
 from app.storage.pictures import read_openraster
 from app.storage.project_file import load_project
-from app.ui.welcome import MOMENTS
+from app.ui.welcome import SAMPLE_FPS
 
 SAMPLES = Path(__file__).parent.parent / "sample_images"
 LAYERED = ("friend",)
@@ -46,17 +46,21 @@ def test_a_sample_is_what_its_script_says(name):
     }
     assert [key.frame for key in document.layers[0].keys] == [key.frame for key in script.keys]
     assert [key.easing for key in document.layers[0].keys] == [key.ease for key in script.keys]
-    assert [key.passing for key in document.layers[0].keys] == [key.passing for key in script.keys]
+    assert [key.tangent_mode for key in document.layers[0].keys] == [
+        key.passing for key in script.keys
+    ]
     names = {handle.name: handle.id for handle in document.layers[0].handles}
-    assert [dict(key.fronts) for key in document.layers[0].keys] == [
+    assert [dict(key.depths) for key in document.layers[0].keys] == [
         {names[name]: front for name, front in key.fronts.items()} for key in script.keys
     ]
-    assert {(handle.front, handle.extent) for handle in document.layers[0].handles} == {
+    assert {(handle.depth, handle.extent) for handle in document.layers[0].handles} == {
         (handle.front, handle.extent) for handle in script.handles.values()
     }
     assert document.layers[0].bounds == script.bounds
     lags = [
-        lag for key in document.layers[0].keys for lag in document.layers[0].lags(key.pose).values()
+        lag
+        for key in document.layers[0].keys
+        for lag in document.layers[0].target_errors(key.pose).values()
     ]
     assert max(lags) < 2.0, "handles arrive, to two pixels"
 
@@ -67,9 +71,9 @@ def test_the_welcome_view_shows_all_of_a_samples_motion(name):
     with Image.open(SAMPLES / "moving" / f"{name}.webp") as moving:
         assert document.loop
         seconds = document.frames.last / document.fps
-        assert abs(moving.n_frames - seconds * MOMENTS) < 1
+        assert abs(moving.n_frames - seconds * SAMPLE_FPS) < 1
         moving.load()
-        assert moving.info["duration"] == 1000 / MOMENTS
+        assert moving.info["duration"] == 1000 / SAMPLE_FPS
 
 
 @pytest.mark.parametrize("name", LAYERED)
@@ -86,13 +90,23 @@ def test_a_sample_on_layers_is_what_its_script_says(name):
         if part is None:
             continue
         assert [key.frame for key in layer.keys] == [key.frame for key in part.keys]
-        assert [names[each.to] for each in layer.joints] == [each.to for each in part.attach]
-        assert max([0.0, *(lag for key in layer.keys for lag in layer.lags(key.pose).values())]) < 2
+        assert [names[each.parent] for each in layer.attachments] == [
+            each.to for each in part.attach
+        ]
+        assert (
+            max(
+                [
+                    0.0,
+                    *(lag for key in layer.keys for lag in layer.target_errors(key.pose).values()),
+                ]
+            )
+            < 2
+        )
     # Mouths and lids take turns, and the joints of the whole chain stay closed.
-    joints = Joints(document)
+    joints = ParentTransforms(document)
     laugh, head = (next(f for f in document.layers if f.name == n) for n in ("laugh", "head"))
     assert [is_visible(document, laugh, frame) for frame in (29, 30, 52)] == [True, False, True]
-    at, frame = np.array([laugh.joints[0].at]), 9.5
+    at, frame = np.array([laugh.attachments[0].parent_point]), 9.5
     carrier = joints.placement(head.id, frame)
     moved = Animation(clip_of(document, head.id), points=at).positions(frame)
     own = Animation(clip_of(document, laugh.id), points=np.array([laugh.anchor]))
@@ -106,7 +120,7 @@ def test_the_octopus_crosses_its_arms_one_way_and_then_the_other():
     places = {handle.name: handle.position for handle in document.layers[0].handles}
     higher = []
     for frame in (16, 48):
-        order = PaintOrder(mesh).triangles(clip, frame)
+        order = TriangleOrder(mesh).triangles(clip, frame)
         middles = mesh.vertices[order].mean(axis=1)
         left, right = (
             np.flatnonzero(np.abs(middles - places[name]) < 20) for name in ("left 4", "right 4")
@@ -123,14 +137,14 @@ def test_a_sample_begins_and_ends_as_it_was_drawn(name):
     vertices = document.layers[0].domain.mesh.vertices
     for key in (document.layers[0].keys[0], document.layers[0].keys[-1]):
         assert_allclose(document.layers[0].map_of(key.pose)(vertices), vertices, rtol=0, atol=1e-2)
-    assert exported_frames(document).last == document.frames.last - 1
+    assert export_frame_range(document).last == document.frames.last - 1
     assert document.export.framing == "fit"
 
 
 @pytest.mark.parametrize("name", [*NAMES, *LAYERED])
 def test_no_pose_of_a_sample_sits_at_its_limits(name):
     for layer in sample(name).layers:
-        uses = (use for pose in layer.poses for use in Extremes.of(pose).uses(layer.bounds))
+        uses = (use for pose in layer.poses for use in DistortionRange.of(pose).uses(layer.bounds))
         assert max(use.share for use in uses) < 0.9, layer.name
 
 
@@ -146,9 +160,9 @@ def test_limits_do_not_slow_down_a_motion_of_the_friend(name):
     moving = {layer.name: layer for layer in document.layers if len(layer.keys) > 2}
     assert set(moving) == {"left arm", "right arm", "body", "head"}
     layer = moving[name]
-    store = IntervalStore(mesh=PosableMesh.coarse(layer.domain))
+    store = InbetweenCache(mesh=DeformMesh.coarse(layer.domain))
     clip = clip_of(document, layer.id)
-    store.take(store.preparing(clip, store.missing(clip, 0))())
+    store.add(store.segments_job(clip, store.missing_segments(clip, 0))())
     assert min(store.velocity_shares(clip).values(), default=1.0) > 0.6
 
 
@@ -156,9 +170,9 @@ def test_head_of_the_friend_keeps_its_bounds_between_two_keys():
     head = next(layer for layer in sample("friend").layers if layer.name == "head")
     keys = tuple(key for key in head.keys if 22 <= key.frame <= 50)
     assert len(keys) == 2
-    alone = Document(layers=(replace(head, keys=keys, joints=()),), frames=FrameRange(22, 50))
+    alone = Document(layers=(replace(head, keys=keys, attachments=()),), frames=FrameRange(22, 50))
     report = certify_clip(clip_of(alone, head.id))
-    (interval,) = report.intervals
+    (interval,) = report.segments
     assert interval.verdict is Verdict.PROVEN
     assert report.corrected is None
 
@@ -167,4 +181,4 @@ def test_head_of_the_friend_keeps_its_bounds_between_two_keys():
 def test_character_keeps_its_bounds():
     report = certify_clip(clip_of(sample("character"), 0))
     assert report.verdict is Verdict.PROVEN
-    assert all(np.isfinite(interval.reached.sigma_a) for interval in report.intervals)
+    assert all(np.isfinite(interval.reached.sigma_a) for interval in report.segments)

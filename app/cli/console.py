@@ -6,7 +6,7 @@ import time
 from collections.abc import Sequence
 from typing import NoReturn, Self
 
-from app.errors import few_notices, printable, shown_message
+from app.errors import display_message, few_notices, printable
 
 EXIT_ERROR = 2
 PATIENCE = 0.5  # seconds before a person is told how far a computation is
@@ -17,29 +17,29 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Report bad usage and leave."""
-        fail(f"{message} (see '{self.prog} --help')")
+        exit_with_error(f"{message} (see '{self.prog} --help')")
 
 
-def fail(message: str) -> NoReturn:
+def exit_with_error(message: str) -> NoReturn:
     """Print one line of error and leave with the exit status of bad input."""
-    print(f"lissom: error: {shown_message(message)}", file=sys.stderr)
+    print(f"lissom: error: {display_message(message)}", file=sys.stderr)
     raise SystemExit(EXIT_ERROR)
 
 
-def say(message: str) -> None:
+def print_line(message: str) -> None:
     """Print what a command found or made, on one line or several."""
     print(printable(message, keeps_lines=True))
 
 
-def notice(message: str) -> None:
+def print_notice(message: str) -> None:
     """Tell the person what was done on their behalf."""
-    print(f"lissom: {shown_message(message)}", file=sys.stderr)
+    print(f"lissom: {display_message(message)}", file=sys.stderr)
 
 
-def give_notices(messages: Sequence[str]) -> None:
+def print_notices(messages: Sequence[str]) -> None:
     """Tell the person several things; of many the first ones, and how many more there are."""
     for message in few_notices(messages):
-        notice(message)
+        print_notice(message)
 
 
 class StatusLine:
@@ -61,9 +61,9 @@ class StatusLine:
     def show(self, text: str) -> None:
         """Put a text in place of the one before."""
         if self._is_seen:
-            print(f"\r\x1b[K{shown_message(text)}", end="", file=sys.stderr, flush=True)
+            print(f"\r\x1b[K{display_message(text)}", end="", file=sys.stderr, flush=True)
 
-    def tell(self, share: float) -> None:
+    def show_progress(self, share: float) -> None:
         """Tell how much of what takes long is done, from 0 to 1."""
         if time.monotonic() - self._begun > PATIENCE:
             self.show(f"preparing the outline: {share:.0%}" if share < 1.0 else "")

@@ -6,7 +6,7 @@ from app.storage import decode_mask, read_file
 from engine.domain import CutOut
 
 
-def read_cut_out(arguments: argparse.Namespace) -> CutOut:
+def parse_cut_out(arguments: argparse.Namespace) -> CutOut:
     """Return what tells the subject from its picture, as the options have it."""
     path = arguments.mask
     return CutOut(

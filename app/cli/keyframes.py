@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from app.cli.console import notice
+from app.cli.console import print_notice
 from app.cli.hole_arrays import HOLE_ARRAYS, read_holes
 from app.cli.meshes import read_mesh_keyframes
 from app.errors import LissomError
@@ -119,7 +119,7 @@ def _from_boundary(path: Path) -> Keyframes:
         )
     maps, error = harmonic_coordinate_maps(data["outline"], data["cage"], list(boundary))
     if error > NEAR:
-        notice(
+        print_notice(
             "the keyframes take the outline where it was wanted within "
             f"{100 * error:.2g} % of the diameter"
         )

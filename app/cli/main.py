@@ -8,16 +8,16 @@ from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
 
-from app.cli.console import Parser, StatusLine, fail, notice
+from app.cli.console import Parser, StatusLine, exit_with_error, print_notice
 from app.cli.process import (
-    Endings,
-    drop_output,
-    has_threads_left,
-    mend_streams,
+    SignalHandler,
+    discard_output,
+    has_running_threads,
+    reopen_std_streams,
     require_memory,
     use_one_thread,
 )
-from app.errors import EXPECTED_ERRORS, REINSTALL, told_to
+from app.errors import EXPECTED_ERRORS, REINSTALL, listen_to_progress
 
 EXIT_FAILED, EXIT_PIPE_CLOSED = 1, 141
 
@@ -47,14 +47,14 @@ COMMANDS = {
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command of the program and return its exit status."""
     use_one_thread()
-    mend_streams()
+    reopen_std_streams()
     words = list(sys.argv[1:] if argv is None else argv)
     if not words or (words[0] not in COMMANDS and not words[0].startswith("-")):
         words = ["window", *words]
-    endings = Endings()
+    endings = SignalHandler()
     try:
         require_memory()
-        with endings, StatusLine() as status_line, told_to(status_line.tell):
+        with endings, StatusLine() as status_line, listen_to_progress(status_line.show_progress):
             try:
                 arguments = build_parser(words).parse_args(words)
                 command = importlib.import_module(f"app.cli.commands.{arguments.command}")
@@ -63,26 +63,30 @@ def main(argv: Sequence[str] | None = None) -> int:
                 # Here, and not when Python ends, where nobody could answer for a closed pipe.
                 sys.stdout.flush()
     except EXPECTED_ERRORS as error:
-        fail(str(error))
+        exit_with_error(str(error))
     except ImportError as error:
-        fail(f"a library cannot be loaded ({error}); give it more memory, or {REINSTALL}")
+        exit_with_error(
+            f"a library cannot be loaded ({error}); give it more memory, or {REINSTALL}"
+        )
     except (MemoryError, RuntimeError) as error:
         if isinstance(error, RuntimeError) and "start new thread" not in str(error):
             return _report(error, words)
-        fail(TOO_LITTLE_MEMORY)
+        exit_with_error(TOO_LITTLE_MEMORY)
     except KeyboardInterrupt:
-        print(f"lissom: interrupted by {endings.name}", file=sys.stderr, flush=True)
-        if has_threads_left():
+        print(f"lissom: interrupted by {endings.signal_name}", file=sys.stderr, flush=True)
+        if has_running_threads():
             # What was under way may take long, and must not be taken down under its threads.
-            os._exit(endings.status)
-        return endings.status
+            os._exit(endings.exit_status)
+        return endings.exit_status
     except BrokenPipeError:
         # Whoever read the output has seen enough.
-        drop_output()
+        discard_output()
         return EXIT_PIPE_CLOSED
     except OSError as error:
-        drop_output()
-        fail(f"cannot use {error.filename or 'standard output'}: {error.strerror or error}")
+        discard_output()
+        exit_with_error(
+            f"cannot use {error.filename or 'standard output'}: {error.strerror or error}"
+        )
     except Exception as error:  # noqa: BLE001 - the command line: what nobody thought of
         return _report(error, words)
     return status
@@ -94,7 +98,9 @@ def _report(error: Exception, words: Sequence[str]) -> int:
     files = [Path(word) for word in words if {".", os.sep}.intersection(word)]
     trace = reports.trace_in_words(error, files)
     print(reports.problem_report(graphics="", actions=(), trace=trace), file=sys.stderr)
-    notice("this command failed, as told above; nothing is sent, and names of files are left out")
+    print_notice(
+        "this command failed, as told above; nothing is sent, and names of files are left out"
+    )
     return EXIT_FAILED
 
 

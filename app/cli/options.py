@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from app.errors import LissomError
-from app.export_formats import full_colour
+from app.export_formats import expand_colour
 from engine.variant import Baseline, Variant
 
 DETAILS = ("coarse", "normal", "fine")
@@ -171,7 +171,7 @@ def add_cut_out_options(parser: argparse.ArgumentParser) -> None:
 def _background(text: str) -> str | tuple[int, int, int]:
     if text in {"auto", "none"}:
         return text
-    colour = full_colour(text)
+    colour = expand_colour(text)
     if re.fullmatch("#[0-9a-fA-F]{6}", colour) is None:
         raise argparse.ArgumentTypeError(
             f"expected auto, none, or a colour such as #fff or #ffffff, not {text!r}"

@@ -21,10 +21,10 @@ from typing import Final, Self
 if sys.platform != "win32":
     import resource
 
-ENDINGS: Final = ("SIGINT", "SIGTERM", "SIGHUP")
+SIGNALS: Final = ("SIGINT", "SIGTERM", "SIGHUP")
 # Seconds after which a worker hands Python's lock over. A frame takes it some twenty times; with
 # the usual 5 ms a job that seldom lets go would leave two frames a second.
-SWITCH: Final = 0.0005
+SWITCH_INTERVAL: Final = 0.0005
 PATIENCE: Final = 10.0  # seconds that a process has to end by itself
 # Bytes of addresses. With 300 MB OpenBLAS asks for more again and again, and never ends.
 LEAST_MEMORY: Final = 400_000_000
@@ -54,7 +54,7 @@ def require_memory() -> None:
         raise MemoryError
 
 
-def mend_streams() -> None:
+def reopen_std_streams() -> None:
     """Let what is said go nowhere where a standard stream is closed, and never fail at a letter.
 
     A file that is opened later would take the place of the closed one, and what libraries say would
@@ -72,17 +72,17 @@ def mend_streams() -> None:
             stream.reconfigure(errors="replace")
 
 
-def drop_output() -> None:
+def discard_output() -> None:
     """Let Python not try at its end to write what standard output has not taken."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
-def share_interpreter() -> None:
+def set_switch_interval() -> None:
     """Let workers and the window take turns often."""
-    sys.setswitchinterval(SWITCH)
+    sys.setswitchinterval(SWITCH_INTERVAL)
 
 
-class Endings:
+class SignalHandler:
     """Hears the signals that end the program while a `with` block lasts; one of them is enough.
 
     Signals that whoever started the program lets it ignore, as `nohup` does, stay ignored.
@@ -102,17 +102,17 @@ class Endings:
         self._wakeup = -1
 
     @property
-    def has_come(self) -> bool:
+    def is_signalled(self) -> bool:
         """Whether a signal has come."""
         return self._number is not None
 
     @property
-    def name(self) -> str:
+    def signal_name(self) -> str:
         """What the signal is called; empty before there is one."""
         return "" if self._number is None else signal.Signals(self._number).name
 
     @property
-    def status(self) -> int:
+    def exit_status(self) -> int:
         """The exit status that tells of the signal."""
         return _INTERRUPTED + (self._number or signal.SIGINT)
 
@@ -124,7 +124,7 @@ class Endings:
         if os.name != "nt":
             os.set_blocking(self._pipe[1], False)
         self._wakeup = signal.set_wakeup_fd(self._pipe[1], warn_on_full_buffer=False)
-        for name in ENDINGS:
+        for name in SIGNALS:
             number = getattr(signal, name, signal.SIGINT)  # Windows has no SIGHUP
             if signal.getsignal(number) is not signal.SIG_IGN:
                 self._before[number] = signal.signal(number, self._note)
@@ -164,19 +164,19 @@ class Endings:
             try:
                 name = signal.Signals(told[0]).name
                 words = f"lissom: interrupted by {name}, while something was still at work\n"
-                end_within(PATIENCE, _INTERRUPTED + told[0], "" if self._wake else words)
+                exit_within(PATIENCE, _INTERRUPTED + told[0], "" if self._wake else words)
             except RuntimeError:  # there is no memory for another thread
                 os._exit(_INTERRUPTED + told[0])
             # A signal that comes just before the main thread begins to wait does not end that wait.
-            while not self.has_come and os.name != "nt":
+            while not self.is_signalled and os.name != "nt":
                 signal.pthread_kill(main_thread, told[0])
-                time.sleep(SWITCH)
+                time.sleep(SWITCH_INTERVAL)
         while os.read(pipe, 1):  # where Python tells of more signals, which change nothing
             pass
         os.close(pipe)
 
 
-def at_lost_display(keep: Callable[[], None], status: int) -> object:
+def on_display_lost(keep: Callable[[], None], status: int) -> object:
     """Let something be done when the X server goes away, before the process ends with a status.
 
     Xlib ends it at once otherwise. What is returned must live as long as the window.
@@ -197,7 +197,7 @@ def at_lost_display(keep: Callable[[], None], status: int) -> object:
 
 
 @contextmanager
-def faults_told_to(descriptor: int) -> Iterator[None]:
+def redirect_faulthandler(descriptor: int) -> Iterator[None]:
     """Let Python tell in a file where it is if the process crashes while a `with` block lasts.
 
     Where it is to tell somewhere else already, it does so.
@@ -213,13 +213,13 @@ def faults_told_to(descriptor: int) -> Iterator[None]:
         os.close(descriptor)
 
 
-def has_threads_left() -> bool:
+def has_running_threads() -> bool:
     """Tell whether Python would wait for other threads, as of an export that was cancelled."""
     others = set(threading.enumerate()) - {threading.main_thread()}
     return any(not thread.daemon for thread in others)
 
 
-def end_within(seconds: float, status: int, words: str = "") -> None:
+def exit_within(seconds: float, status: int, words: str = "") -> None:
     """End the process after so many seconds at the latest, whatever hangs in it; then say why."""
 
     def end() -> None:

@@ -6,11 +6,11 @@ from typing import Any
 
 from app.errors import LissomError
 
-WIDEST = 65_535
+MAX_PICTURE_SIDE = 65_535
 # Pixels. There is nothing to be seen so far out, and squares would run out of digits.
-FARTHEST = 1e7
+MAX_COORDINATE = 1e7
 LAST_FRAME = 999_999
-LARGEST_ID = 2**31 - 1  # as much as the window takes
+MAX_ID = 2**31 - 1  # as much as the window takes
 # Fields of a project file that this version does not know and hands on.
 Unknown = Mapping[str, Any]
 NOTHING: Unknown = MappingProxyType({})
@@ -37,24 +37,22 @@ def require_frame(frame: int, what: str) -> None:
         raise LissomError(f"{what} is at a frame from 0 to {LAST_FRAME:,}, not at {frame}.")
 
 
-def require_identity(identity: int, what: str) -> None:
+def require_id(identity: int, what: str) -> None:
     """Raise a `LissomError` unless a number can be an id."""
-    require(
-        0 <= identity <= LARGEST_ID, f"The id of {what} is 0 to {LARGEST_ID:,}, not {identity}."
-    )
+    require(0 <= identity <= MAX_ID, f"The id of {what} is 0 to {MAX_ID:,}, not {identity}.")
 
 
-def require_place(place: complex, name: str) -> None:
+def require_point(place: complex, name: str) -> None:
     """Raise a `LissomError` unless the place, in pixels, is no farther than one can go."""
     require(
-        abs(place.real) <= FARTHEST and abs(place.imag) <= FARTHEST,
-        f"{name} must be within {FARTHEST:,.0f} pixels, not at {place:g}.",
+        abs(place.real) <= MAX_COORDINATE and abs(place.imag) <= MAX_COORDINATE,
+        f"{name} must be within {MAX_COORDINATE:,.0f} pixels, not at {place:g}.",
     )
 
 
 def require_size(size: tuple[int, int], what: str) -> None:
     """Raise a `LissomError` unless both sides are whole numbers that a picture can have."""
     require(
-        len(size) == 2 and all(1 <= pixels <= WIDEST for pixels in size),
-        f"The size of the {what} must be 1 to {WIDEST:,} pixels each way, not {size}.",
+        len(size) == 2 and all(1 <= pixels <= MAX_PICTURE_SIDE for pixels in size),
+        f"The size of the {what} must be 1 to {MAX_PICTURE_SIDE:,} pixels each way, not {size}.",
     )

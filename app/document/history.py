@@ -2,19 +2,19 @@
 
 from dataclasses import dataclass, replace
 
-from app.document.commands import Command, Settled, exchanged, retargeted
+from app.document.commands import Command, PoseReplacement, with_all_targets, with_replaced_pose
 from app.document.keyframe import Pose
 from app.document.layer import Layer, PictureFile
 from app.document.model import Document
 
-MEMORY = 512 * 1024 * 1024
+HISTORY_BYTES = 512 * 1024 * 1024
 # Tuples, names and numbers of a snapshot, roughly, and those of each pose.
 SNAPSHOT_BYTES = 2_000
 POSE_BYTES = 1_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class UnkeyedPose:
+class PreviewPose:
     """A pose of a layer at a frame that no key holds: undone like all else, but not saved."""
 
     layer: int
@@ -23,11 +23,11 @@ class UnkeyedPose:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Step:
+class UndoStep:
     """What one action led to."""
 
     document: Document
-    unkeyed: UnkeyedPose | None
+    preview_pose: PreviewPose | None
     label: str
     gesture: object = None
 
@@ -45,15 +45,15 @@ class History:
         Bytes that undoing may keep; beyond them the oldest steps are forgotten.
     """
 
-    def __init__(self, document: Document, *, saved: bool, memory: int = MEMORY) -> None:
-        self._steps = [Step(document, None, "")]
+    def __init__(self, document: Document, *, saved: bool, memory: int = HISTORY_BYTES) -> None:
+        self._steps = [UndoStep(document, None, "")]
         # _bytes[i]: bytes that only steps up to i keep alive, freed by forgetting step i.
         self._bytes = [0]
         self._now = 0
         self._forgotten = 0  # steps before them
         self._gesture: object = None
         # What the gesture's first command took the place of.
-        self._undone: list[Step] = []
+        self._undone: list[UndoStep] = []
         self._saved = document if saved else None
         self._memory = memory
 
@@ -63,9 +63,9 @@ class History:
         return self._steps[self._now].document
 
     @property
-    def unkeyed(self) -> UnkeyedPose | None:
+    def preview_pose(self) -> PreviewPose | None:
         """The pose that no key holds, if there is one."""
-        return self._steps[self._now].unkeyed
+        return self._steps[self._now].preview_pose
 
     @property
     def undo_label(self) -> str | None:
@@ -118,12 +118,12 @@ class History:
             If the command is not possible; then nothing has changed.
         """
         document = command(self.document)
-        unkeyed = _fitting(self.unkeyed, self.document, document)
-        self._go_on(Step(document, unkeyed, command.label, gesture))
+        unkeyed = _fitting(self.preview_pose, self.document, document)
+        self._go_on(UndoStep(document, unkeyed, command.label, gesture))
 
-    def pose(self, unkeyed: UnkeyedPose | None, *, gesture: object = None) -> None:
+    def set_preview_pose(self, unkeyed: PreviewPose | None, *, gesture: object = None) -> None:
         """Hold a pose outside of all keys in place of the one before, or none any more."""
-        self._go_on(Step(self.document, unkeyed, "Pose", gesture))
+        self._go_on(UndoStep(self.document, unkeyed, "Pose", gesture))
 
     def extend_step(self, command: Command) -> None:
         """Run a command that belongs to the last step; what can be done again stays so.
@@ -133,9 +133,9 @@ class History:
         step = self._steps[self._now]
         document = command(step.document)
         if document is not step.document:
-            self._put(self._now, replace(step, document=document, unkeyed=None))
+            self._put(self._now, replace(step, document=document, preview_pose=None))
 
-    def amend(self, gesture: object, old: Pose, new: Settled) -> bool:
+    def amend(self, gesture: object, old: Pose, new: PoseReplacement) -> bool:
         """Let what a gesture has led to go on to another pose, as if it had led there at once.
 
         In its step and in all that came after it, those that can be done again among them, the
@@ -161,15 +161,18 @@ class History:
         changed: dict[Layer, Layer] = {}
         for index in indices[begun:]:
             step = self._steps[index]
-            document, unkeyed = exchanged(step.document, old, new, changed), step.unkeyed
+            document, unkeyed = (
+                with_replaced_pose(step.document, old, new, changed),
+                step.preview_pose,
+            )
             for layer in document.layers:
                 if unkeyed and unkeyed.layer == layer.id and unkeyed.pose.phi is old.phi:
                     unkeyed = replace(unkeyed, pose=new(layer, unkeyed.pose))
-            if document is not step.document or unkeyed is not step.unkeyed:
-                self._put(index, replace(step, document=document, unkeyed=unkeyed))
+            if document is not step.document or unkeyed is not step.preview_pose:
+                self._put(index, replace(step, document=document, preview_pose=unkeyed))
         return True
 
-    def take_back(self, gesture: object) -> None:
+    def revert(self, gesture: object) -> None:
         """Undo what a gesture did last, as if it had never begun; if it did nothing, stay."""
         if gesture is None or gesture is not self._gesture:
             return
@@ -191,18 +194,18 @@ class History:
         if self._now + 1 < len(self._steps):
             self._now += 1
 
-    def _put(self, index: int, step: Step) -> None:
+    def _put(self, index: int, step: UndoStep) -> None:
         self._steps[index] = step
         for around in range(max(index - 1, 0), min(index + 1, len(self._steps) - 1)):
             self._bytes[around] = _bytes_only_in(self._steps[around], self._steps[around + 1])
 
-    def _go_on(self, step: Step) -> None:
+    def _go_on(self, step: UndoStep) -> None:
         gesture = step.gesture
         if _is_same(step, self._steps[self._now]):
             return
         if gesture is not None and gesture is self._gesture:
             if _is_same(step, self._steps[self._now - 1]):
-                self.take_back(gesture)
+                self.revert(gesture)
                 return
             del self._steps[-1], self._bytes[-1]
             self._now -= 1
@@ -214,7 +217,7 @@ class History:
         self._now += 1
         self._forget()
 
-    def _append(self, step: Step) -> None:
+    def _append(self, step: UndoStep) -> None:
         self._bytes[-1] = _bytes_only_in(self._steps[-1], step)
         self._steps.append(step)
         self._bytes.append(0)
@@ -230,7 +233,7 @@ class History:
         self._forgotten += count
 
 
-def _fitting(unkeyed: UnkeyedPose | None, before: Document, after: Document) -> UnkeyedPose | None:
+def _fitting(unkeyed: PreviewPose | None, before: Document, after: Document) -> PreviewPose | None:
     """Return a pose of a document as a later one can have it, with a target for each handle.
 
     Returns None where that has the layer no more, or another domain. A handle that is put
@@ -250,21 +253,21 @@ def _fitting(unkeyed: UnkeyedPose | None, before: Document, after: Document) -> 
         for handle in was.handles
         if places.get(handle.id) == handle.position
     }
-    return replace(unkeyed, pose=retargeted(now, replace(unkeyed.pose, targets=targets)))
+    return replace(unkeyed, pose=with_all_targets(now, replace(unkeyed.pose, targets=targets)))
 
 
-def _is_same(step: Step, other: Step) -> bool:
-    return step.document is other.document and step.unkeyed is other.unkeyed
+def _is_same(step: UndoStep, other: UndoStep) -> bool:
+    return step.document is other.document and step.preview_pose is other.preview_pose
 
 
-def _bytes_only_in(old: Step, new: Step) -> int:
+def _bytes_only_in(old: UndoStep, new: UndoStep) -> int:
     """Return the bytes of `old` that `new` does not share."""
     layers = {layer.id: layer for layer in new.document.layers}
     size = SNAPSHOT_BYTES + sum(
         _layer_bytes_only_in(layer, layers.get(layer.id)) for layer in old.document.layers
     )
-    if old.unkeyed is not None and old.unkeyed is not new.unkeyed:
-        size += POSE_BYTES + old.unkeyed.pose.nbytes
+    if old.preview_pose is not None and old.preview_pose is not new.preview_pose:
+        size += POSE_BYTES + old.preview_pose.pose.nbytes
     return size
 
 

@@ -9,29 +9,29 @@ from typing import Self
 import numpy as np
 
 from app.document.checks import (
-    FARTHEST,
+    MAX_COORDINATE,
     NOTHING,
     Unknown,
     require,
     require_frame,
-    require_identity,
-    require_place,
+    require_id,
+    require_point,
 )
-from app.document.timing import HOLD, LINEAR, Easing, Passing, require_passing
+from app.document.timing import HOLD, LINEAR, Easing, TangentMode, require_tangent_mode
 from engine.arrays import Complexes, as_points, freeze
 from engine.maps import Certificate, HarmonicMap
 
-HEAVIEST = 1e6
+MAX_WEIGHT = 1e6
 # How firmly a handle holds, in words: the weights that they stand for.
-HOLDS = {"Soft": 0.1, "Normal": 1.0, "Firm": 10.0}
+WEIGHT_PRESETS = {"Soft": 0.1, "Normal": 1.0, "Firm": 10.0}
 # A locked handle pulls so many times as strongly: a free one that is dragged as far as the limits
 # let it moves it by less than a tenth of a pixel.
-LOCK = 1e4
-MOST_TURNS = 20
+LOCKED_WEIGHT = 1e4
+MAX_REVOLUTIONS = 20
 # Pixels. No pose between targets that are within `FARTHEST` comes near; beyond, what is seen of a
 # pose would run out of digits.
 LARGEST_COEFFICIENT = 1e12
-NO_FRONTS: Mapping[int, float] = MappingProxyType({})
+NO_DEPTHS: Mapping[int, float] = MappingProxyType({})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,39 +44,39 @@ class Handle:
     weight: float = 1.0  # how strongly it pulls, relative to others
     # What the drawing is painted in around it where it lies over itself: −1 behind, 1 in front, 0
     # in its usual order. Keys may say otherwise.
-    front: float = 0.0
+    depth: float = 0.0
     # How far around it that holds, in pixels; None is the usual part of the drawing.
     extent: float | None = None
     # Whether it holds its place: it is not dragged, and hardly gives in to others.
     locked: bool = False
     group: str = ""  # those of one group are taken together; "" is none
     # Whether it moves as it likes between two keys that have it at one place; else it stays there.
-    free: bool = False
+    is_unpinned: bool = False
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
-        require_identity(self.id, "a handle")
+        require_id(self.id, "a handle")
         require(bool(self.name.strip()), "A handle needs a name.")
-        require_place(self.position, f"The position of handle {self.name!r}")
+        require_point(self.position, f"The position of handle {self.name!r}")
         require(
-            0 < self.weight <= HEAVIEST,
-            f"The weight of handle {self.name!r} must be above 0 and at most {HEAVIEST:,.0f}, "
+            0 < self.weight <= MAX_WEIGHT,
+            f"The weight of handle {self.name!r} must be above 0 and at most {MAX_WEIGHT:,.0f}, "
             f"not {self.weight:g}.",
         )
-        require_front(self.front)
+        require_depth(self.depth)
         require(
-            self.extent is None or 0 < self.extent <= FARTHEST,
-            f"The extent of handle {self.name!r} must be above 0 and at most {FARTHEST:,.0f} "
+            self.extent is None or 0 < self.extent <= MAX_COORDINATE,
+            f"The extent of handle {self.name!r} must be above 0 and at most {MAX_COORDINATE:,.0f} "
             f"pixels, not {self.extent}.",
         )
 
     @property
-    def pull(self) -> float:
+    def effective_weight(self) -> float:
         """How strongly it pulls when a pose is solved."""
-        return self.weight * (LOCK if self.locked else 1.0)
+        return self.weight * (LOCKED_WEIGHT if self.locked else 1.0)
 
 
-def require_front(front: float) -> None:
+def require_depth(front: float) -> None:
     """Raise a `LissomError` unless a depth lies between behind and in front."""
     require(
         -1 <= front <= 1,
@@ -94,7 +94,7 @@ class Target:
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
-        require_place(self.position, "The target of a handle")
+        require_point(self.position, "The target of a handle")
         require(
             self.rotation is None or math.isfinite(self.rotation),
             f"The rotation of a handle must be finite, not {self.rotation}.",
@@ -146,7 +146,7 @@ class Pose:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class KeptPose:
+class LibraryPose:
     """A pose in a layer's library, under a name that is unique there."""
 
     name: str
@@ -165,36 +165,36 @@ class Keyframe:
     pose: Pose
     easing: Easing = LINEAR  # how time runs until the next key
     # How the motion passes the pose, other than by a hold, which is an easing.
-    passing: Passing = Passing.THROUGH
+    tangent_mode: TangentMode = TangentMode.SMOOTH
     # Whole turns, counter-clockwise, that the anchor makes on the way beyond the shorter way.
-    turns: int = 0
+    revolutions: int = 0
     # What is in front from here on, by the ids of handles; the others stay as they were.
-    fronts: Mapping[int, float] = field(default_factory=lambda: NO_FRONTS)
+    depths: Mapping[int, float] = field(default_factory=lambda: NO_DEPTHS)
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
         require_frame(self.frame, "A key")
         require(
-            abs(self.turns) <= MOST_TURNS,
-            f"There may be {MOST_TURNS} whole turns on the way to a key, not {self.turns}.",
+            abs(self.revolutions) <= MAX_REVOLUTIONS,
+            f"There may be {MAX_REVOLUTIONS} whole turns on the way to a key, not {self.revolutions}.",
         )
-        require_passing(self.passing)
-        object.__setattr__(self, "passing", Passing(self.passing))
-        object.__setattr__(self, "fronts", MappingProxyType(dict(self.fronts)))
-        for front in self.fronts.values():
-            require_front(front)
+        require_tangent_mode(self.tangent_mode)
+        object.__setattr__(self, "tangent_mode", TangentMode(self.tangent_mode))
+        object.__setattr__(self, "depths", MappingProxyType(dict(self.depths)))
+        for front in self.depths.values():
+            require_depth(front)
 
     @property
-    def shown_passing(self) -> Passing:
+    def shown_tangent_mode(self) -> TangentMode:
         """How the motion passes the key, by a hold too."""
-        return Passing.HOLD if self.easing == HOLD else self.passing
+        return TangentMode.HOLD if self.easing == HOLD else self.tangent_mode
 
-    def with_way(self, other: Self, *, backwards: bool = False) -> Self:
+    def with_easing_of(self, other: Self, *, backwards: bool = False) -> Self:
         """Return the key with the way on from another one, or with that way run backwards."""
         if backwards:
-            return replace(self, easing=other.easing.reversed(), turns=-other.turns)
-        return replace(self, easing=other.easing, turns=other.turns)
+            return replace(self, easing=other.easing.reversed(), revolutions=-other.revolutions)
+        return replace(self, easing=other.easing, revolutions=other.revolutions)
 
-    def at_pace(self, frame: int, pace: float) -> Self:  # noqa: ARG002 - a pose has no velocity
+    def retimed(self, frame: int, pace: float) -> Self:  # noqa: ARG002 - a pose has no velocity
         """Return the key at another frame of a motion that runs so many times as fast."""
         return self if frame == self.frame else replace(self, frame=frame)

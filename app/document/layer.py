@@ -10,38 +10,38 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from app.document.body import (
-    SIDES,
-    Bone,
-    GivenMotion,
-    UnreadMotion,
-    pairs_by_name,
-    require_motions,
-)
 from app.document.checks import (
     NOTHING,
     Unknown,
     require,
     require_distinct,
-    require_identity,
-    require_place,
+    require_id,
+    require_point,
     require_size,
 )
-from app.document.keyframe import Handle, KeptPose, Keyframe, Pose, Target
-from app.document.layering import (
+from app.document.keyframe import Handle, Keyframe, LibraryPose, Pose, Target
+from app.document.layers import (
     BLENDS,
     Attachment,
     BlendMode,
-    MoveKey,
+    DrawOrderKey,
     OpacityKey,
-    Placing,
-    Switch,
-    require_in_order,
-    require_joints,
-    require_rising,
+    TransformKey,
+    VisibilityKey,
+    require_ascending_keys,
+    require_ascending_visibility_keys,
+    require_attachments,
+)
+from app.document.rig import (
+    SIDES,
+    AppliedMotion,
+    Bone,
+    UnreadMotion,
+    mirrored_handles_by_name,
+    require_motions,
 )
 from app.document.settings import NATURAL, VARIANTS, Meshing
-from app.document.timing import Cycle, Spring, Track, require_apart, require_repeatable
+from app.document.timing import Cycle, Spring, Track, require_no_overlap, require_repeatable_cycle
 from app.errors import LissomError
 from engine.arrays import Booleans, Complexes, Floats, readonly
 from engine.deform import MOST_HANDLES
@@ -50,10 +50,10 @@ from engine.geometry import ON_OUTLINE, contains, diameter
 from engine.maps import Bounds, Certificate, HarmonicMap, require_stiffness
 from engine.variant import Variant
 
-Posed = TypeVar("Posed", Keyframe, KeptPose)
+Posed = TypeVar("Posed", Keyframe, LibraryPose)
 NO_KEY = "There is no key at frame {frame}."
 NO_HANDLE = "There is no handle with the id {identity}."
-BONES_IN_ONE_PLACE = "Two bones are between handles {!r}."
+DUPLICATE_BONES = "Two bones are between handles {!r}."
 POSE_COUNT = "The layer has {count} poses, not {given}."
 
 
@@ -93,7 +93,7 @@ class Layer:
     # choose it.
     anchor: complex | None = None
     # Whether handles that two keys have at one place stay there in between.
-    stillness: bool = True
+    has_auto_pins: bool = True
     tracks: tuple[Track, ...] = ()  # no handle has two
     springs: tuple[Spring, ...] = ()  # no handle has two
     cycles: tuple[Cycle, ...] = ()  # in the order of their frames
@@ -103,11 +103,11 @@ class Layer:
     bones: tuple[Bone, ...] = ()
     # Ready motions that its keys were made by, in the order of their frames; they tell nothing of
     # keys that were edited since.
-    motions: tuple[GivenMotion, ...] = ()
+    motions: tuple[AppliedMotion, ...] = ()
     unread_motions: tuple[UnreadMotion, ...] = ()  # in the order of their places
     variant: Variant = Variant.METRIC  # it may be given by its name
     bounds: Bounds = NATURAL.bounds  # distortion that the solver allows in new poses
-    library: tuple[KeptPose, ...] = ()  # poses that are kept to be used again
+    library: tuple[LibraryPose, ...] = ()  # poses that are kept to be used again
     # Where the upright axis crosses the picture at which flipped poses are mirrored, in pixels from
     # its left edge; None takes the middle of the handles that are pairs, or of the shape.
     mirror: float | None = None
@@ -123,40 +123,42 @@ class Layer:
     hidden: bool = False  # whether it is seen at no time
     # When it comes to be seen or hidden, in the order of their frames; it begins as the first one
     # says. Always seen without any.
-    switches: tuple[Switch, ...] = ()
+    visibility_keys: tuple[VisibilityKey, ...] = ()
     opacity: float = 1.0  # in [0, 1]; where it has keys, they hold instead
-    opacities: tuple[OpacityKey, ...] = ()
+    opacity_keys: tuple[OpacityKey, ...] = ()
     blend: BlendMode = "normal"
     # Whether it is seen only where that is which lies below it in its group: a layer, or a group.
     clipped: bool = False
     group: str = ""  # the path of the innermost group that it is in; "" outside of all groups
     # The joints by which it hangs on others, each from its frame on; its anchor is then given.
-    joints: tuple[Attachment, ...] = ()
+    attachments: tuple[Attachment, ...] = ()
     # By which it moves as a whole, a rigid motion after its map, while it hangs on nothing.
-    movement: tuple[MoveKey, ...] = ()
-    placings: tuple[Placing, ...] = ()  # before the first one it lies where it is in the document
+    transform_keys: tuple[TransformKey, ...] = ()
+    draw_order_keys: tuple[
+        DrawOrderKey, ...
+    ] = ()  # before the first one it lies where it is in the document
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
-        require_identity(self.id, "a layer")
+        require_id(self.id, "a layer")
         require(bool(self.name.strip()), "A layer needs a name.")
-        require_place(self.corner, f"The corner of {self.name!r}")
+        require_point(self.corner, f"The corner of {self.name!r}")
         require(0 <= self.opacity <= 1, f"Opacity is between 0 and 1, not {self.opacity:g}.")
         require(
             self.blend in BLENDS,
             f"The blend of {self.name!r} is one of {', '.join(BLENDS)}, not {self.blend!r}.",
         )
-        require_in_order(self.switches)
+        require_ascending_visibility_keys(self.visibility_keys)
         require(
-            not self.joints or self.anchor is not None,
+            not self.attachments or self.anchor is not None,
             f"{self.name!r} is attached, but has no anchor.",
         )
-        require_joints(self.joints)
-        require_rising(self.movement, f"The movement of {self.name!r}")
-        require_rising(self.opacities, f"The opacity of {self.name!r}")
-        require_rising(self.placings, f"The order of {self.name!r}")
+        require_attachments(self.attachments)
+        require_ascending_keys(self.transform_keys, f"The movement of {self.name!r}")
+        require_ascending_keys(self.opacity_keys, f"The opacity of {self.name!r}")
+        require_ascending_keys(self.draw_order_keys, f"The order of {self.name!r}")
         require(
-            all(placing.beside != self.id for placing in self.placings),
+            all(placing.beside != self.id for placing in self.draw_order_keys),
             f"{self.name!r} cannot be in front of itself, nor behind.",
         )
         require(
@@ -171,10 +173,10 @@ class Layer:
         self._check_handles()
         self._check_keys()
         self._check_library()
-        self._check_clocks()
-        self._check_material()
+        self._check_secondary_motion()
+        self._check_stiffness()
         if self.mirror is not None:
-            require_place(complex(self.mirror), "The axis of mirroring")
+            require_point(complex(self.mirror), "The axis of mirroring")
         require(
             self.variant in VARIANTS,
             f"The variant is one of {', '.join(VARIANTS)}, not {str(self.variant)!r}.",
@@ -188,12 +190,12 @@ class Layer:
         return frozenset(key.frame for key in self.keys)
 
     @property
-    def ends(self) -> tuple[int, int]:
+    def keyed_range(self) -> tuple[int, int]:
         """The first and the last frame of what is keyed, or repeats."""
         frames = [key.frame for key in self.keys]
         frames += [key.frame for track in self.tracks for key in track.keys]
-        frames += [key.frame for key in self.movement]
-        frames += [key.frame for key in self.opacities]
+        frames += [key.frame for key in self.transform_keys]
+        frames += [key.frame for key in self.opacity_keys]
         for cycle in self.cycles:
             frames += [cycle.first, cycle.last if cycle.until is None else cycle.until]
         return min(frames), max(frames)
@@ -205,15 +207,17 @@ class Layer:
         near = self.cycles[max(count - 2, 0) : count]
         return next((cycle for cycle in near if cycle.covers(frame)), None)
 
-    def cycle_having(self, frame: float) -> Cycle | None:
+    def cycle_containing(self, frame: float) -> Cycle | None:
         """Return the cycle in whose stretch itself a frame is."""
         count = bisect_right(self.cycles, frame, key=lambda cycle: cycle.first)
-        return next((cycle for cycle in self.cycles[:count][-1:] if cycle.has(frame)), None)
+        return next((cycle for cycle in self.cycles[:count][-1:] if cycle.contains(frame)), None)
 
     def source_of(self, frame: int) -> int:
         """Return the frame at which what a frame shows is keyed: another one where it repeats."""
         cycle = self.cycle_at(frame)
-        return frame if cycle is None or frame in self.key_frames else int(cycle.source(frame))
+        return (
+            frame if cycle is None or frame in self.key_frames else int(cycle.source_frame(frame))
+        )
 
     @property
     def pivot(self) -> complex:
@@ -233,7 +237,7 @@ class Layer:
         """Where the upright axis crosses the picture at which flipped poses are mirrored."""
         if self.mirror is not None:
             return self.mirror
-        paired = pairs_by_name(self.handles, SIDES)
+        paired = mirrored_handles_by_name(self.handles, SIDES)
         places = [self.handle(identity).position.real for identity in paired]
         if not places:
             places = [float(self.domain.outline.real.min()), float(self.domain.outline.real.max())]
@@ -254,7 +258,7 @@ class Layer:
         outline, *holes = self.domain.loops
         return contains(outline, points, holes=holes, tolerance=tolerance)
 
-    def kept_pose(self, name: str) -> KeptPose:
+    def library_pose(self, name: str) -> LibraryPose:
         """Return the pose of the library with this name."""
         for kept in self.library:
             if kept.name == name:
@@ -268,7 +272,7 @@ class Layer:
                 return handle
         raise LissomError(NO_HANDLE.format(identity=identity))
 
-    def together_with(self, identity: int) -> frozenset[int]:
+    def grouped_handles(self, identity: int) -> frozenset[int]:
         """Return the ids of the handles that are taken together with one, its own among them."""
         groups = {handle.id: handle.group for handle in self.handles}
         own = groups.get(identity)
@@ -283,32 +287,33 @@ class Layer:
         return next((spring for spring in self.springs if spring.handle == identity), None)
 
     @property
-    def hangs(self) -> bool:
+    def has_parent(self) -> bool:
         """Whether it hangs on another layer at some time."""
-        return any(joint.to is not None for joint in self.joints)
+        return any(joint.parent is not None for joint in self.attachments)
 
-    def keyed_joint(self, frame: int) -> Attachment | None:
+    def attachment_key_at(self, frame: int) -> Attachment | None:
         """Return the joint that says what holds at a frame; None before the first."""
         at = self.joint_frame(frame)
-        return next((joint for joint in reversed(self.joints) if joint.frame <= at), None)
+        return next((joint for joint in reversed(self.attachments) if joint.frame <= at), None)
 
     def joint_frame(self, frame: int) -> int:
         """Return the frame at which it is said what holds at a frame: another one in repeats."""
         for cycle in self.cycles:
             in_repeats = cycle.last <= frame and cycle.covers(frame) and frame != cycle.until
             if in_repeats and all(
-                not cycle.covers(joint.frame) or joint.frame <= cycle.last for joint in self.joints
+                not cycle.covers(joint.frame) or joint.frame <= cycle.last
+                for joint in self.attachments
             ):
-                return int(cycle.source(frame))
+                return int(cycle.source_frame(frame))
         return frame
 
     @property
-    def followers(self) -> frozenset[int]:
+    def sprung_handles(self) -> frozenset[int]:
         """The ids of the handles that follow by springs, which poses are not held by.
 
         A track of a handle comes first, and so does the joint where it sits.
         """
-        joint = self.anchor if self.hangs else None
+        joint = self.anchor if self.has_parent else None
         held = {handle.id for handle in self.handles if handle.position == joint}
         held |= {i for track in self.tracks if track.enabled for i in track.handles}
         return frozenset(each.handle for each in self.springs if each.enabled) - held
@@ -346,7 +351,7 @@ class Layer:
             k=proven.k, sigma_a=proven.sigma_a, sigma_b=proven.sigma_b
         )
 
-    def lags(self, pose: Pose) -> Mapping[int, float]:
+    def target_errors(self, pose: Pose) -> Mapping[int, float]:
         """Return by how many pixels each handle, by its id, falls short of its target.
 
         A pose that is shown may be older than the newest handles: those are left out.
@@ -365,7 +370,7 @@ class Layer:
             f"{self.name!r} has {len(handles):,} handles, more than the {MOST_HANDLES:,} that a "
             "drawing may have.",
         )
-        require_identity(self.next_handle, "the next handle")
+        require_id(self.next_handle, "the next handle")
         require_distinct((handle.id for handle in handles), "Two handles have the id {!r}.")
         require_distinct((handle.name for handle in handles), "Two handles have the name {!r}.")
         require_distinct((each.position for each in handles), "Two handles have the place {!r}.")
@@ -375,7 +380,7 @@ class Layer:
         )
         places = {f"handle {handle.name!r}": handle.position for handle in self.handles}
         if self.anchor is not None:
-            require_place(self.anchor, "The anchor")
+            require_point(self.anchor, "The anchor")
             places["anchor"] = self.anchor
         self.require_on_shape(places)
 
@@ -404,20 +409,20 @@ class Layer:
         for key in self.keys:
             self._check_pose(key.pose, f"The key at frame {key.frame}")
             require(
-                key.fronts.keys() <= key.pose.targets.keys(),
+                key.depths.keys() <= key.pose.targets.keys(),
                 f"The key at frame {key.frame} puts a handle in front that is not there.",
             )
         frames = [key.frame for key in self.keys]
-        require_apart(self.cycles)
+        require_no_overlap(self.cycles)
         for cycle in self.cycles:
-            require_repeatable(cycle, frames)
+            require_repeatable_cycle(cycle, frames)
 
     def _check_library(self) -> None:
         require_distinct((kept.name for kept in self.library), "Two poses have the name {!r}.")
         for kept in self.library:
             self._check_pose(kept.pose, f"The pose {kept.name!r}")
 
-    def _check_clocks(self) -> None:
+    def _check_secondary_motion(self) -> None:
         known = {handle.id for handle in self.handles}
         tracked = [identity for track in self.tracks for identity in track.handles]
         following = [spring.handle for spring in self.springs]
@@ -431,7 +436,7 @@ class Layer:
             require(root in known, f"A spring swings about the handle {root}, which is not there.")
         require_motions(self.motions, known)
 
-    def _check_material(self) -> None:
+    def _check_stiffness(self) -> None:
         if self.stiffness is not None:
             count = sum(map(len, self.domain.loops))
             object.__setattr__(
@@ -445,7 +450,7 @@ class Layer:
         for bone in self.bones:
             for end in bone.ends:
                 require(end in known, f"A bone ends at the handle {end}, which is not there.")
-        require_distinct((tuple(sorted(bone.ends)) for bone in self.bones), BONES_IN_ONE_PLACE)
+        require_distinct((tuple(sorted(bone.ends)) for bone in self.bones), DUPLICATE_BONES)
 
     def _check_pose(self, pose: Pose, what: str) -> None:
         require(
@@ -467,7 +472,7 @@ def _with_pose(each: Posed, pose: Pose) -> Posed:
     return each if each.pose is pose else replace(each, pose=pose)
 
 
-def pose_as_drawn(domain: MeshedDomain, handles: Iterable[Handle]) -> Pose:
+def rest_pose(domain: MeshedDomain, handles: Iterable[Handle]) -> Pose:
     """Return the pose of a drawing as it was drawn, with its handles where they grip."""
     rest = HarmonicMap.identity(domain.cage, domain.holes)
     targets = {each.id: Target(position=each.position) for each in handles}
@@ -479,7 +484,7 @@ def new_layer(
     picture: PictureFile, domain: MeshedDomain, meshing: Meshing, cut_out: CutOut = CutOut()
 ) -> Layer:
     """Return the layer of a picture just opened: one key at frame 0, as it was drawn."""
-    pose = pose_as_drawn(domain, ())
+    pose = rest_pose(domain, ())
     return Layer(
         picture=picture,
         domain=domain,

@@ -14,26 +14,26 @@ from itertools import groupby, pairwise
 from operator import itemgetter
 from typing import NoReturn
 
-from app.document.body import PAIRS, SidePairs, require_pairs
 from app.document.checks import NOTHING, Unknown, require, require_distinct, require_size
 from app.document.layer import Layer
-from app.document.layering import (
+from app.document.layers import (
     Attachment,
     CameraKey,
-    Choice,
     Group,
-    paths_to,
+    SwitchGroup,
+    ancestor_paths,
     repeated_joints,
-    require_rising,
+    require_ascending_keys,
 )
+from app.document.rig import PAIRS, SidePairs, require_pairs
 from app.document.settings import ExportSettings, FrameRange, Marker, require_fps
-from app.document.timing import count_changes
-from app.errors import NOTHING_TOLD, ImportSummary, LissomError
+from app.document.timing import count_repeated_changes
+from app.errors import EMPTY_IMPORT_LOG, ImportLog, LissomError
 
 NO_LAYER = "There is no layer with the id {identity}."
-HANGS_ON_ITSELF = "{name!r} would hang on itself{when}: {links}; detach one of them first."
+PARENT_CIRCLE = "{name!r} would hang on itself{when}: {links}; detach one of them first."
 # Of all layers, in the repeats of their cycles, too.
-MOST_CHANGES = 100_000
+MAX_CHANGES = 100_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -45,7 +45,9 @@ class Document:
     frames: FrameRange = FrameRange(0, 48)  # all frames of the animation; every key lies in it
     # The part of them that plays, to look at it; None plays everything. Exports do not heed it.
     preview: FrameRange | None = None
-    choices: tuple[Choice, ...] = ()  # between layers that take turns; none is in two of them
+    switch_groups: tuple[
+        SwitchGroup, ...
+    ] = ()  # between layers that take turns; none is in two of them
     markers: tuple[Marker, ...] = ()  # in the order of their frames, of which each has one at most
     fps: float = 24.0  # frames per second
     # Whether the last frame leads back to the first one: both are the same moment.
@@ -56,7 +58,7 @@ class Document:
     # Fields of the project file that this version does not know and hands on.
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
     # Likewise its members, by their names.
-    attachments: Mapping[str, bytes] = field(
+    unknown_members: Mapping[str, bytes] = field(
         default_factory=lambda: NOTHING, repr=False, hash=False
     )
     # Width and height of the canvas; None takes those of the picture behind all others.
@@ -66,17 +68,17 @@ class Document:
     # Keys of what frames show of the plane; without any, it is the canvas.
     camera: tuple[CameraKey, ...] = ()
     # What was told when drawings on layers were brought in.
-    told: ImportSummary = NOTHING_TOLD
+    import_log: ImportLog = EMPTY_IMPORT_LOG
     # Layers by their ids, choices by those of their layers, groups by their paths.
     _layers: Mapping[int, Layer] = field(init=False, repr=False)
-    _choices: Mapping[int, Choice] = field(init=False, repr=False)
+    _switch_groups: Mapping[int, SwitchGroup] = field(init=False, repr=False)
     _groups: Mapping[str, Group] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        chosen = {identity: each for each in self.choices for identity in each.layers}
+        chosen = {identity: each for each in self.switch_groups for identity in each.layers}
         for name, found in (
             ("_layers", {each.id: each for each in self.layers}),
-            ("_choices", chosen),
+            ("_switch_groups", chosen),
             ("_groups", {each.name: each for each in self.groups}),
         ):
             object.__setattr__(self, name, found)
@@ -90,13 +92,13 @@ class Document:
         for before, after in pairwise(marker.frame for marker in self.markers):
             require(after != before, f"Two markers are at frame {before}.")
             require(after > before, f"The markers at frames {before} and {after} are mixed up.")
-        require_rising(self.camera, "The camera")
+        require_ascending_keys(self.camera, "The camera")
         for key in self.camera:
             self._require_inside(key.frame)
         require_fps(self.fps, "The speed")
 
     @property
-    def played(self) -> FrameRange:
+    def played_frames(self) -> FrameRange:
         """The frames that play: the preview range, or all."""
         return self.preview or self.frames
 
@@ -106,13 +108,13 @@ class Document:
         return self.layers[0].picture.size if self.size is None else self.size
 
     @property
-    def exported(self) -> tuple[Layer, ...]:
+    def exported_layers(self) -> tuple[Layer, ...]:
         """The layers that exports show at some time, from back to front."""
         return tuple(
             each
             for each in self.layers
             if not (each.reference or self.is_in_hidden(each))
-            and (each.id in self._choices or not each.hidden)
+            and (each.id in self._switch_groups or not each.hidden)
         )
 
     def is_in_hidden(self, layer: Layer) -> bool:
@@ -127,7 +129,7 @@ class Document:
 
     def groups_around(self, path: str) -> tuple[Group, ...]:
         """Return the group with this path after those that it is in, the outermost first."""
-        return tuple(self.group(each) for each in paths_to(path))
+        return tuple(self.group(each) for each in ancestor_paths(path))
 
     def layer(self, identity: int) -> Layer:
         """Return the layer with this id."""
@@ -135,16 +137,16 @@ class Document:
             raise LissomError(NO_LAYER.format(identity=identity))
         return self._layers[identity]
 
-    def choice(self, name: str) -> Choice:
+    def switch_group(self, name: str) -> SwitchGroup:
         """Return the choice with this name."""
-        for choice in self.choices:
+        for choice in self.switch_groups:
             if choice.name == name:
                 return choice
         raise LissomError(f"There is no choice {name!r}.")
 
-    def choice_of(self, identity: int) -> Choice | None:
+    def switch_group_of(self, identity: int) -> SwitchGroup | None:
         """Return the choice that decides when the layer with this id is seen, if there is one."""
-        return self._choices.get(identity)
+        return self._switch_groups.get(identity)
 
     def marker(self, frame: int) -> Marker:
         """Return the marker at this frame."""
@@ -157,26 +159,30 @@ class Document:
         """Return the document with another layer of the same id, and with room for its keys."""
         if changed is self.layer(changed.id):
             return self
-        first, last = changed.ends
+        first, last = changed.keyed_range
         frames = FrameRange(min(self.frames.first, first), max(self.frames.last, last))
         layers = tuple(changed if layer.id == changed.id else layer for layer in self.layers)
         return replace(self, layers=layers, frames=frames)
 
-    def joints_of(self, layer: Layer) -> tuple[Attachment, ...]:
+    def attachments_of(self, layer: Layer) -> tuple[Attachment, ...]:
         """Return the joints of a layer, with those in the repeats of its cycles."""
-        if not (layer.cycles and layer.joints):
-            return layer.joints  # asked for often
-        return repeated_joints(layer.joints, layer.cycles, self.frames.last)
+        if not (layer.cycles and layer.attachments):
+            return layer.attachments  # asked for often
+        return repeated_joints(layer.attachments, layer.cycles, self.frames.last)
 
-    def joint_at(self, layer: Layer, frame: float, *, before: bool = False) -> Attachment | None:
+    def attachment_at(
+        self, layer: Layer, frame: float, *, before: bool = False
+    ) -> Attachment | None:
         """Return the joint that holds at a frame, or until just before; None before the first."""
-        joints = self.joints_of(layer)
+        joints = self.attachments_of(layer)
         count = (bisect_left if before else bisect_right)(
             joints, frame, key=lambda each: each.frame
         )
         return joints[count - 1] if count else None
 
-    def carriers(self, identity: int, frame: float, *, before: bool = False) -> tuple[Layer, ...]:
+    def parent_chain(
+        self, identity: int, frame: float, *, before: bool = False
+    ) -> tuple[Layer, ...]:
         """Return the layer with this id, the one that it hangs on at a frame, and so on.
 
         Parameters
@@ -186,29 +192,31 @@ class Document:
         before : bool
             Whether what hangs just before the frame counts, and not from it on.
         """
-        frame = self.in_time(frame)
+        frame = self.loop_frame(frame)
         layer = self.layer(identity)
         chain = {layer.id: layer}
-        while (joint := self.joint_at(layer, frame, before=before)) and joint.to is not None:
-            layer = self.layer(joint.to)
+        while (
+            joint := self.attachment_at(layer, frame, before=before)
+        ) and joint.parent is not None:
+            layer = self.layer(joint.parent)
             if layer.id in chain:
                 found = [*chain.values()]
                 self._refuse_circle((*found[found.index(layer) :], layer), frame)
             chain[layer.id] = layer
         return tuple(chain.values())
 
-    def all_carriers(self, identity: int) -> tuple[Layer, ...]:
+    def all_ancestors(self, identity: int) -> tuple[Layer, ...]:
         """Return the others on which a layer hangs at some time, directly or by others."""
         found = [self.layer(identity)]
         known = {identity}
         for layer in found:
-            for joint in layer.joints:
-                if joint.to is not None and joint.to not in known:
-                    known.add(joint.to)
-                    found.append(self.layer(joint.to))
+            for joint in layer.attachments:
+                if joint.parent is not None and joint.parent not in known:
+                    known.add(joint.parent)
+                    found.append(self.layer(joint.parent))
         return tuple(found[1:])
 
-    def in_time(self, frame: float) -> float:
+    def loop_frame(self, frame: float) -> float:
         """Return a frame as it comes round in a loop; of what does not loop it is itself."""
         first, period = self.frames.first, self.frames.last - self.frames.first
         is_beyond = self.loop and period and frame not in self.frames
@@ -222,37 +230,41 @@ class Document:
         require_distinct((layer.name for layer in self.layers), "Two layers are called {!r}.")
         self._check_groups()
         for layer in self.layers:
-            for frame in layer.ends:
+            for frame in layer.keyed_range:
                 self._require_inside(frame)
-            for placing in layer.placings:
+            for placing in layer.draw_order_keys:
                 if placing.beside is not None:
                     self.layer(placing.beside)
-        self._check_choices()
+        self._check_switch_groups()
         self._check_repeats()
-        self._check_joints()
+        self._check_attachments()
         for layer in self.layers:
-            self._check_clocks(layer)
+            self._check_loop(layer)
 
     def _check_repeats(self) -> None:
         """Refuse more changes than can be told in a moment, those in repeats among them."""
         end, count = self.frames.last, 0
         for layer in self.layers:
-            for changes in (layer.switches, layer.placings, layer.joints):
-                count += count_changes([each.frame for each in changes], layer.cycles, end)
-        for choice in self.choices:
+            for changes in (layer.visibility_keys, layer.draw_order_keys, layer.attachments):
+                count += count_repeated_changes([each.frame for each in changes], layer.cycles, end)
+        for choice in self.switch_groups:
             cycles = set.intersection(*({*self.layer(each).cycles} for each in choice.layers))
-            count += count_changes([turn.frame for turn in choice.turns], cycles, end)
+            count += count_repeated_changes([turn.frame for turn in choice.keys], cycles, end)
         require(
-            count <= MOST_CHANGES,
+            count <= MAX_CHANGES,
             f"With their repeats, layers are shown, hidden, ordered and attached {count:,} times, "
-            f"more than {MOST_CHANGES:,}; let the repeats end earlier.",
+            f"more than {MAX_CHANGES:,}; let the repeats end earlier.",
         )
 
-    def _check_joints(self) -> None:
+    def _check_attachments(self) -> None:
         """Refuse layers that hang on each other in a circle at any frame."""
-        hung = [each for each in self.layers if each.joints]
+        hung = [each for each in self.layers if each.attachments]
         links = {
-            each.id: {self.layer(joint.to).id for joint in each.joints if joint.to is not None}
+            each.id: {
+                self.layer(joint.parent).id
+                for joint in each.attachments
+                if joint.parent is not None
+            }
             for each in hung
         }
         try:
@@ -268,9 +280,14 @@ class Document:
         first, last = self.frames.first, self.frames.last
         changes = sorted(
             # What a loop has before its first frame holds there.
-            (max(joint.frame, first) if self.loop else joint.frame, joint.frame, place, joint.to)
+            (
+                max(joint.frame, first) if self.loop else joint.frame,
+                joint.frame,
+                place,
+                joint.parent,
+            )
             for place, each in enumerate(hung)
-            for joint in self.joints_of(each)
+            for joint in self.attachments_of(each)
             if not (self.loop and joint.frame > last)
         )
         parents: dict[int, int | None] = {}
@@ -279,7 +296,7 @@ class Document:
             parents |= attached
             if any(_leads_back(parents, identity) for identity in attached):
                 for layer in hung:
-                    self.carriers(layer.id, frame)  # tells the circle
+                    self.parent_chain(layer.id, frame)  # tells the circle
 
     def _require_inside(self, frame: int) -> None:
         require(
@@ -288,10 +305,12 @@ class Document:
             f"{self.frames.last}.",
         )
 
-    def _check_choices(self) -> None:
-        require_distinct((choice.name for choice in self.choices), "Two choices are called {!r}.")
+    def _check_switch_groups(self) -> None:
+        require_distinct(
+            (choice.name for choice in self.switch_groups), "Two choices are called {!r}."
+        )
         taken: dict[int, str] = {}
-        for choice in self.choices:
+        for choice in self.switch_groups:
             for identity in choice.layers:
                 layer = self.layer(identity)
                 require(
@@ -300,7 +319,7 @@ class Document:
                     f"{choice.name!r}; take it out of one.",
                 )
                 require(
-                    not layer.switches,
+                    not layer.visibility_keys,
                     f"The layer {layer.name!r} is shown and hidden at frames of its own, and is "
                     f"in the choice {choice.name!r}, which alone decides that; leave out one.",
                 )
@@ -309,16 +328,16 @@ class Document:
     def _refuse_circle(self, circle: Sequence[Layer], frame: float) -> NoReturn:
         """Refuse layers each of which hangs on the next one, the last one being the first."""
         links = ", ".join(f"{one.name!r} on {other.name!r}" for one, other in pairwise(circle))
-        changes = any(joint.frame > 0 for layer in circle for joint in layer.joints)
+        changes = any(joint.frame > 0 for layer in circle for joint in layer.attachments)
         when = f" at frame {frame:g}" if changes else ""
-        raise LissomError(HANGS_ON_ITSELF.format(name=circle[0].name, when=when, links=links))
+        raise LissomError(PARENT_CIRCLE.format(name=circle[0].name, when=when, links=links))
 
     def _check_groups(self) -> None:
         known: set[str] = set()
         for group in self.groups:
             require(group.name not in known, f"Two groups are called {group.name!r}.")
             require(
-                known.issuperset(paths_to(group.name)[:-1]),
+                known.issuperset(ancestor_paths(group.name)[:-1]),
                 f"The group {group.name!r} comes before the one that it is in.",
             )
             known.add(group.name)
@@ -328,13 +347,13 @@ class Document:
                 f"{layer.name!r} is in the group {layer.group!r}, which is not there.",
             )
 
-    def _check_clocks(self, layer: Layer) -> None:
+    def _check_loop(self, layer: Layer) -> None:
         """Refuse what does not come round in a loop."""
         period = self.frames.last - self.frames.first
         for cycle in layer.cycles if self.loop and len(layer.keys) > 1 else ():
             require(
-                any(cycle.has(key.frame) for key in layer.keys),
-                f"There is no key of {layer.name!r} in {cycle.told} that could repeat in a loop; "
+                any(cycle.contains(key.frame) for key in layer.keys),
+                f"There is no key of {layer.name!r} in {cycle.description} that could repeat in a loop; "
                 "insert one there first.",
             )
         for track in layer.tracks if self.loop else ():

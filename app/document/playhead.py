@@ -32,7 +32,7 @@ class Playhead:
         """
         if self.since is None:
             return self.frame
-        played = document.played
+        played = document.played_frames
         run = self.frame + self._gone(document, now)
         if not document.loop:
             return played.clamp(run)
@@ -44,11 +44,15 @@ class Playhead:
         if self.since is None or document.loop:
             return False
         run = self.frame + self._gone(document, now)
-        return run >= document.played.last if self.speed > 0 else run <= document.played.first
+        return (
+            run >= document.played_frames.last
+            if self.speed > 0
+            else run <= document.played_frames.first
+        )
 
     def play(self, document: Document, now: float) -> Self:
         """Return the playhead that starts now, from the beginning if it stands at the end."""
-        played = document.played
+        played = document.played_frames
         begin, end = (played.first, played.last)[:: 1 if self.speed > 0 else -1]
         frame = self.frame_at(document, now)
         starts_over = frame not in played or frame == end

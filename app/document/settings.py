@@ -12,7 +12,7 @@ from app.document.checks import (
     require_frame,
     require_size,
 )
-from app.export_formats import EXPORT_FORMATS, FormatSettings, full_colour
+from app.export_formats import EXPORT_FORMATS, FormatSettings, expand_colour
 from engine.domain import MOST_TRIANGLES
 from engine.domain.outline import Detail
 from engine.maps import Bounds
@@ -23,7 +23,7 @@ VARIANTS = tuple(Variant)
 FRAMINGS: tuple[Framing, ...] = get_args(Framing)
 
 
-class Stretch(NamedTuple):
+class DistortionLimitPreset(NamedTuple):
     """How far a drawing gives in to a pull, as a person chooses it: a word for three bounds."""
 
     name: str
@@ -35,32 +35,32 @@ class Stretch(NamedTuple):
 # right angle, be they a third as thick as long; with three handles on a head, a fourth that is
 # pulled by a third of its width moves what is around it, and the head stays a head, while at
 # σ_a ≤ 2.5 already it follows as a whole. Stiff ones let limbs bend that are a seventh as thick.
-STIFF: Final = Stretch(
+STIFF: Final = DistortionLimitPreset(
     name="Stiff",
     bounds=Bounds(k=0.35, sigma_a=1.5, sigma_b=0.67),
     hint="It bends a little, and keeps its size",
 )
-NATURAL: Final = Stretch(
+NATURAL: Final = DistortionLimitPreset(
     name="Natural",
     bounds=Bounds(k=0.5, sigma_a=2.0, sigma_b=0.5),
     hint="Limbs bend and stretch, and a head stays a head",
 )
-RUBBERY: Final = Stretch(
+RUBBERY: Final = DistortionLimitPreset(
     name="Rubbery",
     bounds=Bounds(k=0.8, sigma_a=5.0, sigma_b=0.2),
     hint="It follows far pulls, which may draw it out of shape",
 )
-STRETCHES: Final = (STIFF, NATURAL, RUBBERY)
+LIMIT_PRESETS: Final = (STIFF, NATURAL, RUBBERY)
 
 
-def stretch_of(bounds: Bounds) -> Stretch | None:
+def find_limit_preset(bounds: Bounds) -> DistortionLimitPreset | None:
     """Return the word for some bounds, if there is one."""
-    return next((stretch for stretch in STRETCHES if stretch.bounds == bounds), None)
+    return next((stretch for stretch in LIMIT_PRESETS if stretch.bounds == bounds), None)
 
 
-def loosened(bounds: Bounds) -> Bounds | None:
+def relax_limits(bounds: Bounds) -> Bounds | None:
     """Return the next wider bounds; None where they allow all that the widest do."""
-    for stretch in STRETCHES:
+    for stretch in LIMIT_PRESETS:
         wider = Bounds(
             k=max(bounds.k, stretch.bounds.k),
             sigma_a=max(bounds.sigma_a, stretch.bounds.sigma_a),
@@ -121,7 +121,7 @@ class Marker:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class FormatPictures:
+class PictureSettings:
     """What the pictures of a format are like that was chosen before: size and background."""
 
     format: str
@@ -129,7 +129,7 @@ class FormatPictures:
     background: str
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "background", full_colour(self.background))
+        object.__setattr__(self, "background", expand_colour(self.background))
         _require_pictures(self.format, self.size, self.background)
 
 
@@ -165,7 +165,7 @@ class ExportSettings(FormatSettings):
     names : str
         Of the files of frames, without their ending: "#" for each digit of the frame's number, and
         "{name}" for that of the project.
-    earlier : tuple of FormatPictures
+    earlier : tuple of PictureSettings
         What other formats had when they were chosen last.
     sheet, shapes
         What single formats ask.
@@ -177,10 +177,10 @@ class ExportSettings(FormatSettings):
     framing: Framing = "fit"
     frames: FrameRange | None = None
     names: str = FRAME_NAMES
-    earlier: tuple[FormatPictures, ...] = ()
+    earlier: tuple[PictureSettings, ...] = ()
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "background", full_colour(self.background))
+        object.__setattr__(self, "background", expand_colour(self.background))
         _require_pictures(self.format, self.size, self.background)
         require(
             self.framing in FRAMINGS,
@@ -202,13 +202,13 @@ class ExportSettings(FormatSettings):
         if name == self.format:
             return self
         others = {each.format: each for each in self.earlier}
-        others[self.format] = FormatPictures(
+        others[self.format] = PictureSettings(
             format=self.format, size=self.size, background=self.background
         )
         is_needed = not EXPORT_FORMATS[self.format].is_transparent
         is_let_go = is_needed and EXPORT_FORMATS[name].is_transparent
         background = "transparent" if is_let_go else self.background
-        usual = FormatPictures(format=name, size=self.size, background=background)
+        usual = PictureSettings(format=name, size=self.size, background=background)
         chosen = others.pop(name, usual)
         return replace(
             self,

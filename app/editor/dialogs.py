@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from app.editor.action import Action
-from app.storage import Origin
+from app.storage import SourceInfo
 
 
 def _no_file(_: str) -> bool:
@@ -60,7 +60,7 @@ class Leftover(NamedTuple):
     """Unsaved work of an earlier time: its file, its origin, when it was kept, and its bytes."""
 
     path: Path
-    origin: Origin
+    origin: SourceInfo
     kept: float
     size: int
 

@@ -11,15 +11,15 @@ from app.editor.dialogs import FileDialog, ProblemReport, Recovery
 from app.editor.session import Session
 from app.editor.work import Job, Kind
 from app.errors import EXPECTED_ERRORS
-from app.reports import problem_report, trace_in_words, without_names
+from app.reports import format_problem_report, format_trace, redact_names
 from app.storage import (
     check_writable,
-    keep_report,
-    kept_report,
+    load_report,
+    mark_report_seen,
+    read_fault_log,
     remove_report,
-    take_faults,
-    take_news,
     write_atomically,
+    write_report,
 )
 
 Result = TypeVar("Result")
@@ -81,7 +81,7 @@ def surprise(session: Session, text: str, error: Exception, *, topic: str = "") 
 
 def trace_of(session: Session, error: Exception) -> str:
     """Return the traceback of a surprise, without what a report does not name."""
-    return trace_in_words(error, _hidden(session))
+    return format_trace(error, _hidden(session))
 
 
 def note(session: Session, action: Action) -> None:
@@ -96,23 +96,25 @@ def note(session: Session, action: Action) -> None:
 
 def report_of(session: Session) -> str:
     """Return the text of a report about what went on here, and about what failed last."""
-    return problem_report(graphics=session.graphics, actions=session.noted, trace=session.trouble)
+    return format_problem_report(
+        graphics=session.graphics, actions=session.noted, trace=session.trouble
+    )
 
 
 def keep_report_of(session: Session, error: Exception) -> str:
     """Keep a report of what ends the window beside unsaved work, and return it."""
     session.trouble = trace_of(session, error)
     text = report_of(session)
-    keep_report(session.folder, text)
+    write_report(session.folder, text)
     return text
 
 
 def keep_faults(session: Session) -> None:
     """Keep a report of what Python told when it crashed before, as in a driver, if it did."""
-    told = take_faults(session.folder)
+    told = read_fault_log(session.folder)
     if told:
-        trace = without_names(told, _hidden(session))
-        keep_report(session.folder, problem_report(graphics="", actions=(), trace=trace))
+        trace = redact_names(told, _hidden(session))
+        write_report(session.folder, format_problem_report(graphics="", actions=(), trace=trace))
 
 
 def show_report(session: Session) -> None:
@@ -122,7 +124,7 @@ def show_report(session: Session) -> None:
 
 def ask_report(session: Session) -> None:
     """Show the report of what ended Lissom before, or else one of what went on here."""
-    text = kept_report(session.folder)
+    text = load_report(session.folder)
     if text:
         session.dialog = ProblemReport(text=text, is_kept=True, behind=_behind(session))
     else:
@@ -131,7 +133,7 @@ def ask_report(session: Session) -> None:
 
 def tell_of_kept(session: Session) -> None:
     """Tell once of a report of what ended Lissom before, unless something is asked now."""
-    if session.dialog is None and take_news(session.folder):
+    if session.dialog is None and mark_report_seen(session.folder):
         session.tell(
             "Lissom ended unexpectedly the last time. A report of it was kept here, and sent "
             "nowhere.",

@@ -18,14 +18,14 @@ from app.document import (
     PictureFile,
     Playhead,
     Pose,
+    PreviewPose,
     Track,
     TreeRow,
-    UnkeyedPose,
     Variant,
     camera_at,
     clip_of,
     layer_tree,
-    movement_at,
+    transform_at,
 )
 from app.editor.timeline_view import KeyRow, KeysOf, Timing, TrackRow, row_of
 from app.editor.work import (
@@ -41,16 +41,16 @@ from app.editor.work import (
     Twin,
 )
 from app.motion import (
-    Box,
-    Joints,
+    BoundingBox,
     MotionPaths,
+    ParentTransforms,
     PoseSampler,
-    joints_source,
+    parenting_key,
 )
 from app.render import View, fit_view
 from app.reports import Curves
-from app.solving import Renewal
-from app.storage import Hold, Origin, Picture
+from app.solving import KeyResolver
+from app.storage import FileLock, Picture, SourceInfo
 from engine.geometry import RigidMotion
 from engine.maps import Bounds
 
@@ -96,14 +96,14 @@ class Project:
     # The files that its pictures were read from, which nothing is written over.
     drawings: set[Path] = field(default_factory=set)
     shows_summary: bool = False  # whether the panel of layers shows what was told of them
-    hold: Hold | None = None  # by which other windows see that the file is open here
+    hold: FileLock | None = None  # by which other windows see that the file is open here
     # What the file held when it was opened or saved here last; None for a new one.
     read_as: str | None = None
     # Whether it is unsaved work of an earlier time, not saved before the person has seen where.
     is_recovered: bool = False
     # The document and the pose that no key holds, as the autosave has them, and the clock's seconds
     # when it got them, and when what is here was first seen to differ.
-    autosaved: tuple[Document, UnkeyedPose | None] | None = None
+    autosaved: tuple[Document, PreviewPose | None] | None = None
     autosaved_at: float = 0.0
     changed_at: float | None = None
 
@@ -127,11 +127,11 @@ class Project:
     # Of the active layer's handles; they are traced while they are shown.
     paths: Derived[Clip, MotionPaths | None] = field(default_factory=lambda: Derived(None))
     # Of the layers that hang on others; `hung` has those of the document as it is now.
-    joints: Derived[tuple[object, ...], Joints | None] = field(
+    joints: Derived[tuple[object, ...], ParentTransforms | None] = field(
         default_factory=lambda: Derived(None)
     )
     # Of the motion; where the settings of an export are shown it is measured first, else last.
-    extent: Derived[tuple[object, ...], Box | None] = field(
+    extent: Derived[tuple[object, ...], BoundingBox | None] = field(
         default_factory=lambda: Derived(None, remembers=EXTENTS)
     )
 
@@ -184,9 +184,9 @@ class Project:
         return self.history.document
 
     @property
-    def origin(self) -> Origin:
+    def origin(self) -> SourceInfo:
         """What is kept with its changes, so that they are found again under their name."""
-        return Origin(self.name, self.path)
+        return SourceInfo(self.name, self.path)
 
     @property
     def layer(self) -> Layer:
@@ -313,7 +313,7 @@ class Project:
     @property
     def unkeyed(self) -> Pose | None:
         """The pose that is shown though no key holds it; None where there is none at this frame."""
-        unkeyed = self.history.unkeyed
+        unkeyed = self.history.preview_pose
         if unkeyed is None or unkeyed.layer != self.active or self.playhead.since is not None:
             return None
         here = self.layer.source_of(self.playhead.frame)
@@ -344,7 +344,7 @@ class Project:
         return any(pull.is_in(self.history) for pull in self.pulls)
 
     @property
-    def renewal(self) -> Renewal | None:
+    def renewal(self) -> KeyResolver | None:
         """Keys that are being solved again, as far as that is."""
         return next((promise.renewal for promise in self.pending if promise.renewal), None)
 
@@ -361,9 +361,9 @@ class Project:
         return None if stale is self.unbuildable else stale
 
     @property
-    def hung(self) -> Joints | None:
+    def hung(self) -> ParentTransforms | None:
         """The joints of the document as it is now; None where there are none, or not yet."""
-        follows = self.joints.follows(joints_source(self.document))
+        follows = self.joints.follows(parenting_key(self.document))
         return self.joints.value if follows else None
 
     def placements(self, frames: Iterable[int], unknown: RigidMotion) -> list[RigidMotion]:
@@ -377,8 +377,8 @@ class Project:
         While it is posed itself, it hangs as before: its joint holds.
         """
         own, joints = self.document.layer(layer), self.hung
-        if not own.joints:
-            return [movement_at(self.document, own, frame) for frame in frames]
+        if not own.attachments:
+            return [transform_at(self.document, own, frame) for frame in frames]
         if joints is None and (before := self.joints.value) is not None:
             joints = before if self._hangs_as_in(before.document, own) else None
         return None if joints is None else [joints.placement(layer, frame) for frame in frames]
@@ -390,9 +390,9 @@ class Project:
         return (
             own is not None
             and (before.frames, before.loop) == (document.frames, document.loop)
-            and (own.joints, own.anchor, own.domain, own.movement, own.cycles)
-            == (layer.joints, layer.anchor, layer.domain, layer.movement, layer.cycles)
-            and all(was.get(each.id) is each for each in document.all_carriers(layer.id))
+            and (own.attachments, own.anchor, own.domain, own.transform_keys, own.cycles)
+            == (layer.attachments, layer.anchor, layer.domain, layer.transform_keys, layer.cycles)
+            and all(was.get(each.id) is each for each in document.all_ancestors(layer.id))
         )
 
     def pair_up(self, method: Variant | Baseline | None) -> None:
@@ -412,7 +412,7 @@ class Project:
 
     def view(self, screen: tuple[int, int]) -> View:
         """Return what the viewport shows on a screen of this size in pixels."""
-        whole = view_around(Box(0j, complex(*self.document.canvas)), screen)
+        whole = view_around(BoundingBox(0j, complex(*self.document.canvas)), screen)
         shown = self.puppet.shown
         shot = camera_at(self.document, self.playhead.frame if shown is None else shown.frame)
         if self.looks_through and shot is not None:
@@ -421,6 +421,6 @@ class Project:
         return whole if self.camera is None else replace(self.camera, size=screen)
 
 
-def view_around(box: Box, screen: tuple[int, int]) -> View:
+def view_around(box: BoundingBox, screen: tuple[int, int]) -> View:
     """Return the view of a box on a screen of this size in pixels, with some room around it."""
     return fit_view(*box, screen, margin=FIT_MARGIN * min(screen))

@@ -12,9 +12,9 @@ from app.editor.action import Action
 from app.editor.dialogs import Dialog, FileDialog
 from app.editor.project import Project
 from app.editor.work import Jobs
-from app.errors import printable, shown_message
-from app.export import ExportPlan, KeptPoses
-from app.motion import Box
+from app.errors import display_message, printable
+from app.export import CachedVertices, ExportPlan
+from app.motion import BoundingBox
 from app.storage import Autosave, Cancellation, Preferences, home_folder
 from engine.arrays import Bytes
 
@@ -194,7 +194,7 @@ class ExportRun:
 
     document: Document
     pictures: Mapping[int, Bytes]
-    poses: Mapping[int, KeptPoses]
+    poses: Mapping[int, CachedVertices]
     plan: ExportPlan
     for_clipboard: bool = False
     done: int = 0
@@ -245,7 +245,7 @@ class Session:
     named_layer: int | None = None  # for which a name is asked
     pointed_layer: int | None = None  # on whose row in the list the pointer is
     wanted_panel: str = ""  # is brought to the front by the next frame of the window
-    export_frame: Box | None = None  # shown in the viewport while the export's settings are
+    export_frame: BoundingBox | None = None  # shown in the viewport while the export's settings are
     keeps_aspect: bool = True  # of an export whose size is entered
     curves: CurveKind = "relative"
     split: Split | None = None  # None shows the drawing alone
@@ -320,7 +320,7 @@ class Session:
         action: Action | None = None,
     ) -> None:
         """Show a message; one that shows already starts its time again."""
-        text, details = shown_message(text), printable(details, keeps_lines=True)
+        text, details = display_message(text), printable(details, keeps_lines=True)
         self.toasts = [
             toast
             for toast in self.toasts

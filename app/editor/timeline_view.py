@@ -14,7 +14,7 @@ from app.document import (
     Pose,
     Track,
     TrackKey,
-    find_shortfall,
+    measure_target_errors,
 )
 from app.editor.work import Derived
 
@@ -69,7 +69,7 @@ def seen_at(document: Document, track: Track | None, frame: int) -> int:
     seen = frame + (0 if track is None else track.delay)
     cycle = None if track is None else _cycle_of(document, track)
     if cycle is not None:
-        return seen if seen <= cycle.last else int(cycle.source(seen))
+        return seen if seen <= cycle.last else int(cycle.source_frame(seen))
     first, last = document.frames.first, document.frames.last
     return seen - (last - first) if document.loop and seen > last else seen
 
@@ -78,7 +78,7 @@ def _cycle_of(document: Document, track: Track) -> Cycle | None:
     """Return the cycle with which a track repeats, if there is one."""
     layer = next((each for each in document.layers if track in each.tracks), None)
     cycles = () if layer is None else layer.cycles
-    return next((cycle for cycle in cycles if cycle.takes(track.keys)), None)
+    return next((cycle for cycle in cycles if cycle.repeats_keys(track.keys)), None)
 
 
 def own_frame(document: Document, track: Track, seen: int) -> int | None:
@@ -86,7 +86,7 @@ def own_frame(document: Document, track: Track, seen: int) -> int | None:
     first, last = document.frames.first, document.frames.last
     own, cycle = seen - track.delay, _cycle_of(document, track)
     if cycle is not None and cycle.covers(seen):
-        return own if own in track.key_frames else int(cycle.source(own))
+        return own if own in track.key_frames else int(cycle.source_frame(own))
     if own < first and document.loop:
         own += last - first
     return None if own < first else own
@@ -247,14 +247,16 @@ def measure_shortfalls(layer: Layer, earlier: Derived[Layer, Shortfalls]) -> Sho
     known = earlier.value if is_alike else {}
     lags: dict[Pose, Mapping[int, float]] = {}
     for pose in (key.pose for key in layer.keys):
-        usual = find_shortfall(layer, pose).lags if layer.handles and pose not in known else {}
+        usual = (
+            measure_target_errors(layer, pose).errors if layer.handles and pose not in known else {}
+        )
         lags[pose] = known.get(pose, usual)
     return lags
 
 
 def _measured_by(layer: Layer) -> tuple[object, ...]:
     """Return all of a layer, besides its poses, that shortfalls depend on."""
-    return layer.domain, layer.handles, layer.followers
+    return layer.domain, layer.handles, layer.sprung_handles
 
 
 @dataclass(slots=True, kw_only=True, eq=False)

@@ -13,20 +13,23 @@ from app.export.destination import (
     FRAMES as FRAMES,
     PROJECT as PROJECT,
     FrameNames as FrameNames,
+    choose_frame_folder as choose_frame_folder,
     data_file as data_file,
-    folder_within as folder_within,
-    suited as suited,
+    with_suffix_for as with_suffix_for,
 )
-from app.export.framing import frame_view as frame_view, shown_box as shown_box
-from app.export.moving_shape import with_light_meshes as with_light_meshes
-from app.export.painting import Painter as Painter
+from app.export.frame_renderer import FrameRenderer as FrameRenderer
+from app.export.frame_vertices import (
+    CachedVertices as CachedVertices,
+    FrameVertices as FrameVertices,
+)
+from app.export.framing import find_shown_box as find_shown_box, frame_view as frame_view
+from app.export.mesh_export import MeshExport as MeshExport
+from app.export.morph_mesh import with_reduced_meshes as with_reduced_meshes
 from app.export.plan import (
     ExportPlan as ExportPlan,
     ExportRequest as ExportRequest,
     check_request as check_request,
+    list_overwritten_files as list_overwritten_files,
     plan_export as plan_export,
-    replaced_files as replaced_files,
 )
-from app.export.poses import KeptPoses as KeptPoses, Poses as Poses
-from app.export.run_shapes import ShapeExport as ShapeExport
 from app.export.writers import sheet_grid as sheet_grid

@@ -139,7 +139,7 @@ def data_file(out: Path, name: str) -> Path | None:
     return out.parent / f"{stem}{format_.data_suffix}" if format_.data_suffix else None
 
 
-def suited(out: Path, name: str) -> Path:
+def with_suffix_for(out: Path, name: str) -> Path:
     """Return a path with the ending of a format, in place of that of another one.
 
     A folder of frames ends in a word. Any other dot belongs to the name: a folder `shot.010` stays
@@ -155,7 +155,7 @@ def suited(out: Path, name: str) -> Path:
     return out.with_name(stem + (suffixes[0] if suffixes else FRAMES))
 
 
-def folder_within(chosen: Path, name: str, is_frame: Callable[[str], bool]) -> Path:
+def choose_frame_folder(chosen: Path, name: str, is_frame: Callable[[str], bool]) -> Path:
     """Return the folder for frames where a person chose an existing one and a name was proposed.
 
     It is the chosen one if that is empty, holds frames alone or has the name; else it is a folder
@@ -172,12 +172,12 @@ def folder_within(chosen: Path, name: str, is_frame: Callable[[str], bool]) -> P
     return chosen / name if others and chosen.name != name else chosen
 
 
-def replaced(out: Path, name: str, frames: Sequence[str]) -> list[str]:
+def find_overwritten_files(out: Path, name: str, frames: Sequence[str]) -> list[str]:
     """Return the names of the files that an export would take the place of."""
     return [file.name for file in _files(out, name, frames) if file.exists()]
 
 
-def left_frames(out: Path, names: FrameNames, frames: list[str]) -> list[str]:
+def find_stale_frames(out: Path, names: FrameNames, frames: list[str]) -> list[str]:
     """Return the names of the frames in a folder that an export will not write again, in order."""
     if not out.is_dir():
         return []

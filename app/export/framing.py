@@ -4,20 +4,20 @@ import math
 from typing import Final
 
 from app.document import Document, ExportSettings
-from app.motion import Box
+from app.motion import BoundingBox
 from app.render import View, canvas_view, fit_view
 
 # Room at each side of a motion that is fitted, as a share of its longer side.
 MARGIN: Final = 0.02
 
 
-def shown_box(view: View) -> Box:
+def find_shown_box(view: View) -> BoundingBox:
     """Return the part of the plane that a view shows."""
     half = complex(*view.size) / (2 * view.scale)
-    return Box(view.centre - half, view.centre + half)
+    return BoundingBox(view.centre - half, view.centre + half)
 
 
-def frame_view(settings: ExportSettings, document: Document, motion: Box) -> View:
+def frame_view(settings: ExportSettings, document: Document, motion: BoundingBox) -> View:
     """Return the view of every frame of an export.
 
     With a camera, which shows what it does on the canvas, it is the canvas.
@@ -27,7 +27,7 @@ def frame_view(settings: ExportSettings, document: Document, motion: Box) -> Vie
     settings : ExportSettings
         Its framing and size.
     document : Document
-    motion : Box
+    motion : BoundingBox
         Around the whole motion.
 
     Notes

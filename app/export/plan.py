@@ -12,16 +12,22 @@ from app.document import (
     Document,
     ExportSettings,
     FrameRange,
-    exported_frames,
+    export_frame_range,
     frame_times,
-    framed_frames,
+    frames_for_fit,
 )
-from app.errors import LIBRARIES, LissomError, missing
-from app.export.destination import FrameNames, check_destination, check_room, left_frames, replaced
+from app.errors import LIBRARIES, LissomError, install_hint
+from app.export.destination import (
+    FrameNames,
+    check_destination,
+    check_room,
+    find_overwritten_files,
+    find_stale_frames,
+)
+from app.export.frame_vertices import CachedVertices
 from app.export.framing import frame_view
-from app.export.poses import KeptPoses
 from app.export_formats import EXPORT_FORMATS, FormatSettings
-from app.motion import Box, box_around, motion_box
+from app.motion import BoundingBox, bounding_box, motion_bounding_box
 from app.render import View
 
 # Bytes that a pixel of a frame takes at least: an empty PNG has about as many.
@@ -58,7 +64,7 @@ class ExportRequest:
         return FrameNames(pattern=self.settings.names, project=self.project)
 
 
-class Tag(NamedTuple):
+class FrameTag(NamedTuple):
     """A name for some pictures of an export, from the index of the first to that of the last."""
 
     name: str
@@ -94,7 +100,7 @@ class ExportPlan(FormatSettings):
         Whether an animation plays for ever, or once.
     frame_names : FrameNames
         Of the pictures, where each is a file of its own.
-    tags : tuple of Tag
+    tags : tuple of FrameTag
         Parts of the motion, from marker to marker; all of it where there is none.
     sheet, shapes
         What single formats ask.
@@ -113,7 +119,7 @@ class ExportPlan(FormatSettings):
     canvas: tuple[int, int]
     loop: bool
     frame_names: FrameNames
-    tags: tuple[Tag, ...]
+    tags: tuple[FrameTag, ...]
     notices: tuple[str, ...] = ()
 
     @property
@@ -132,7 +138,7 @@ def check_request(document: Document, request: ExportRequest) -> None:
         format cannot be written.
     """
     settings = request.settings
-    if not document.exported:
+    if not document.exported_layers:
         raise LissomError("there is nothing to export: every layer is hidden or a reference")
     frames = _frames(document, settings)
     if frames.first not in document.frames or frames.last not in document.frames:
@@ -164,31 +170,31 @@ def check_request(document: Document, request: ExportRequest) -> None:
             f"{name} has no transparency: choose a background colour such as #ffffff, or the "
             "format apng or webp"
         )
-    if format_.extra and (remedy := missing(format_.extra)):
+    if format_.extra and (remedy := install_hint(format_.extra)):
         raise LissomError(
             f"{name} needs the library {LIBRARIES[format_.extra]}, which is not installed: {remedy}"
         )
 
 
-def replaced_files(document: Document, request: ExportRequest) -> list[str]:
+def list_overwritten_files(document: Document, request: ExportRequest) -> list[str]:
     """Return the names of the files that an export would take the place of."""
-    return replaced(request.out, request.settings.format, _names(document, request))
+    return find_overwritten_files(request.out, request.settings.format, _names(document, request))
 
 
 def plan_export(
     document: Document,
     request: ExportRequest,
-    poses: Mapping[int, KeptPoses],
-    extent: Box | None = None,
+    poses: Mapping[int, CachedVertices],
+    extent: BoundingBox | None = None,
 ) -> ExportPlan:
     """Settle an export whose request has passed `check_request`.
 
     Parameters
     ----------
     request : ExportRequest
-    poses : mapping of int to KeptPoses
+    poses : mapping of int to CachedVertices
         One for each layer, by its id; looked at only where the framing depends on the motion.
-    extent : Box, optional
+    extent : BoundingBox, optional
         Around all of the motion, where that is known already.
 
     Raises
@@ -199,17 +205,17 @@ def plan_export(
     settings = request.settings
     frames = _frames(document, settings)
     times = tuple(frame_times(document, frames, request.fps))
-    rest = np.concatenate([layer.domain.mesh.vertices for layer in document.exported])
+    rest = np.concatenate([layer.domain.mesh.vertices for layer in document.exported_layers])
     if settings.framing == "fit" and not document.camera and extent is None:
-        extent = motion_box(
+        extent = motion_bounding_box(
             document,
-            framed_frames(document, frames),
-            lambda layer, frame: poses[layer].keep(frame),
+            frames_for_fit(document, frames),
+            lambda layer, frame: poses[layer].cache_positions(frame),
         )
     plan = ExportPlan(
         out=request.out,
         format=settings.format,
-        view=frame_view(settings, document, extent or box_around(rest)),
+        view=frame_view(settings, document, extent or bounding_box(rest)),
         background=_colour(settings.background),
         times=times,
         first=frames.first,
@@ -245,19 +251,21 @@ def _names(document: Document, request: ExportRequest) -> list[str]:
 
 
 def _frames(document: Document, settings: ExportSettings) -> FrameRange:
-    frames = settings.frames or exported_frames(document)
+    frames = settings.frames or export_frame_range(document)
     is_still = EXPORT_FORMATS[settings.format].is_still
     return FrameRange(frames.first, frames.first) if is_still else frames
 
 
-def _tags(document: Document, request: ExportRequest, times: tuple[float, ...]) -> tuple[Tag, ...]:
+def _tags(
+    document: Document, request: ExportRequest, times: tuple[float, ...]
+) -> tuple[FrameTag, ...]:
     found = []
     ends = [*(marker.frame for marker in document.markers[1:]), math.inf]
     for marker, end in zip(document.markers, ends, strict=False):
         inside = [index for index, time in enumerate(times) if marker.frame <= time < end]
         if inside:
-            found.append(Tag(marker.name, inside[0], inside[-1]))
-    return tuple(found) or (Tag(request.project, 0, len(times) - 1),)
+            found.append(FrameTag(marker.name, inside[0], inside[-1]))
+    return tuple(found) or (FrameTag(request.project, 0, len(times) - 1),)
 
 
 def _end(document: Document, settings: ExportSettings, frames: FrameRange) -> int:
@@ -288,7 +296,7 @@ def _left_frames(plan: ExportPlan) -> tuple[str, ...]:
     others = (
         []
         if EXPORT_FORMATS[plan.format].suffixes
-        else left_frames(plan.out, plan.frame_names, plan.names)
+        else find_stale_frames(plan.out, plan.frame_names, plan.names)
     )
     if not others:
         return ()

@@ -20,14 +20,14 @@ AHEAD: Final = 4  # frames that are posed but not yet drawn
 QUEUED_BYTES, MOST_QUEUED = 2**26, 8
 
 
-class _Due(NamedTuple):
+class _InFlight(NamedTuple):
     """A frame that is to be written, and what is done when it is."""
 
     encoded: Future[Any]
     written: Future[None]
 
 
-def export(
+def export_frames(
     plan: ExportPlan,
     pose: Callable[[float], T],
     draw: Callable[[T], Bytes],
@@ -77,26 +77,26 @@ def export(
     posed: deque[Future[T]] = deque()
     written: deque[Future[None]] = deque()
     opened: Future[FrameWriter] = Future()
-    due: SimpleQueue[_Due | None] = SimpleQueue()
+    due: SimpleQueue[_InFlight | None] = SimpleQueue()
     poses, encoders, writers = (ThreadPoolExecutor(count) for count in (1, ENCODERS, 1))
     end = writers.submit(_write, plan, cancellation, opened, due)
     is_idle, finishes_frames = False, waits and not EXPORT_FORMATS[plan.format].suffixes
     try:
-        yield from come(opened, end, count=0, waits=waits)
+        yield from wait_some(opened, end, count=0, waits=waits)
         for index in range(total):
             while len(posed) <= AHEAD and (time := next(times, None)) is not None:
                 posed.append(poses.submit(pose, time))
             while len(written) >= queued or (written and written[0].done()):
-                yield from come(written[0], end, count=index, waits=waits)
+                yield from wait_some(written[0], end, count=index, waits=waits)
                 written.popleft()
-            yield from come(posed[0], end, count=index, waits=waits)
+            yield from wait_some(posed[0], end, count=index, waits=waits)
             frame = draw(posed.popleft().result())
             encoded = encoders.submit(opened.result().encode, frame)
             written.append(Future())
-            due.put(_Due(encoded, written[-1]))
+            due.put(_InFlight(encoded, written[-1]))
             yield index + 1
         due.put(None)
-        yield from come(end, count=total, waits=waits)
+        yield from wait_some(end, count=total, waits=waits)
         is_idle = True
     except BaseException:
         if not finishes_frames:
@@ -109,7 +109,7 @@ def export(
         writers.shutdown(wait=is_idle or finishes_frames)
 
 
-def come(*awaited: Future[Any], count: int, waits: bool) -> Iterator[int]:
+def wait_some(*awaited: Future[Any], count: int, waits: bool) -> Iterator[int]:
     """Go on yielding the count until one of some is done, unless they may be waited for.
 
     Raises
@@ -127,7 +127,7 @@ def _write(
     plan: ExportPlan,
     cancellation: Cancellation,
     opened: Future[FrameWriter],
-    due: SimpleQueue[_Due | None],
+    due: SimpleQueue[_InFlight | None],
 ) -> None:
     """Write what is due until nothing more is; on the one thread that has the files in its hands.
 

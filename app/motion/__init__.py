@@ -7,42 +7,53 @@ Imports: `app.document`.
 
 from app.motion.corrected_frames import (
     CorrectedFrames as CorrectedFrames,
-    FoundCorrections as FoundCorrections,
-    corrected_clip as corrected_clip,
+    CorrectionUpdate as CorrectionUpdate,
+    reuse_corrections as reuse_corrections,
+)
+from app.motion.deform_mesh import DeformMesh as DeformMesh, MeshPoints as MeshPoints
+from app.motion.displayed_frame import (
+    DisplayedFrame as DisplayedFrame,
+    hang_shown as hang_shown,
+    show as show,
 )
 from app.motion.extents import (
-    Box as Box,
-    box_around as box_around,
-    extent_source as extent_source,
+    BoundingBox as BoundingBox,
+    bounding_box as bounding_box,
+    extent_key as extent_key,
     measure_extent as measure_extent,
-    motion_box as motion_box,
+    motion_bounding_box as motion_bounding_box,
+)
+from app.motion.inbetween_cache import (
+    InbetweenCache as InbetweenCache,
+    InbetweenPart as InbetweenPart,
+)
+from app.motion.inbetween_jobs import (
+    AnyInbetweens as AnyInbetweens,
+    CachedSegment as CachedSegment,
+    CacheUpdate as CacheUpdate,
+    SeriesBuild as SeriesBuild,
 )
 from app.motion.inbetweens import (
     Animation as Animation,
-    Carried as Carried,
-    Ground as Ground,
+    BaseMotionFrame as BaseMotionFrame,
+    ParentMotion as ParentMotion,
     PoseSampler as PoseSampler,
-    is_corrected as is_corrected,
+    needs_correction as needs_correction,
 )
-from app.motion.interval_store import IntervalPart as IntervalPart, IntervalStore as IntervalStore
-from app.motion.intervals import (
-    AnyInbetweens as AnyInbetweens,
-    Build as Build,
-    FoundIntervals as FoundIntervals,
-    KnownInterval as KnownInterval,
-)
-from app.motion.joints import (
-    Joints as Joints,
-    anchor_of as anchor_of,
-    animation_at as animation_at,
-    carried_in as carried_in,
-    hand_over as hand_over,
-    hang as hang,
+from app.motion.parenting import (
+    ParentTransforms as ParentTransforms,
+    anchor_or_default as anchor_or_default,
+    attach_in_place as attach_in_place,
+    find_parent_motion as find_parent_motion,
     hung_animations as hung_animations,
-    joints_source as joints_source,
+    layer_animation as layer_animation,
+    parenting_key as parenting_key,
+    reparent_in_place as reparent_in_place,
 )
-from app.motion.paint_order import PaintOrder as PaintOrder
-from app.motion.posable_mesh import AttachedPoints as AttachedPoints, PosableMesh as PosableMesh
-from app.motion.shown_frame import Shown as Shown, hang_shown as hang_shown, show as show
 from app.motion.tracing import MotionPaths as MotionPaths, trace_paths as trace_paths
-from app.motion.vertices import Placed as Placed, Streamed as Streamed, Vertices as Vertices
+from app.motion.triangle_order import TriangleOrder as TriangleOrder
+from app.motion.vertices import (
+    StreamedVertices as StreamedVertices,
+    VertexArray as VertexArray,
+    Vertices as Vertices,
+)

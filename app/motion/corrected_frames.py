@@ -6,27 +6,27 @@ from typing import NamedTuple
 
 from app.document import Clip, Document, clip_of
 from app.motion.inbetweens import (
-    Corrections,
-    Ground,
+    BaseMotionFrame,
+    FrameCorrector,
     PoseSampler,
-    SolvedTracks,
-    have_one_ground,
-    is_corrected,
+    SecondaryCorrection,
+    have_same_base_frames,
+    needs_correction,
 )
-from app.motion.joints import carried_in
+from app.motion.parenting import find_parent_motion
 
 BATCH = 2  # frames that are solved before a worker looks for more urgent work
-GROUNDS = 6  # the same of frames of which only the ground is wanted
+BASE_FRAMES_AT_ONCE = 6  # the same of frames of which only the ground is wanted
 
-Found = Mapping[int, SolvedTracks | None]
+Found = Mapping[int, SecondaryCorrection | None]
 
 
-class FoundCorrections(NamedTuple):
+class CorrectionUpdate(NamedTuple):
     """What a worker has found: corrections and grounds by their frames, and by what."""
 
-    corrections: Corrections
+    corrections: FrameCorrector
     exact: Found
-    grounds: Mapping[int, Ground]
+    base_frames: Mapping[int, BaseMotionFrame]
 
 
 class CorrectedFrames:
@@ -41,19 +41,19 @@ class CorrectedFrames:
 
     def __init__(self, clip: Clip, earlier: "CorrectedFrames | None" = None) -> None:
         self.clip = clip
-        self._is_asked = is_corrected(clip)
-        self._corrections: Corrections | None = None
-        self._exact: dict[int, SolvedTracks | None] = {}
-        self._rough: dict[int, SolvedTracks | None] = {}
-        self._grounds: dict[int, Ground] = {}
+        self._is_asked = needs_correction(clip)
+        self._corrections: FrameCorrector | None = None
+        self._exact: dict[int, SecondaryCorrection | None] = {}
+        self._rough: dict[int, SecondaryCorrection | None] = {}
+        self._grounds: dict[int, BaseMotionFrame] = {}
         # Of the frame that was watched last.
-        self._latest: SolvedTracks | None = None
+        self._latest: SecondaryCorrection | None = None
         if earlier is not None:
             self._take_over(earlier)
 
     def _take_over(self, earlier: "CorrectedFrames") -> None:
         """Take what an earlier clip's frames have as what stands in for these."""
-        if have_one_ground(self.clip, earlier.clip):
+        if have_same_base_frames(self.clip, earlier.clip):
             self._grounds, self._latest = earlier._grounds, earlier._latest  # noqa: SLF001 - its own
             if earlier._corrections is not None:  # noqa: SLF001
                 self._corrections = earlier._corrections.with_tracks(self.clip)  # noqa: SLF001
@@ -61,7 +61,7 @@ class CorrectedFrames:
             return
         self._rough = {**earlier._rough, **earlier._exact}  # noqa: SLF001
 
-    def at(self, clip: Clip, frame: int) -> SolvedTracks | None:
+    def at(self, clip: Clip, frame: int) -> SecondaryCorrection | None:
         """Return the best that is known of a frame of a clip; of another one there is nothing."""
         if clip != self.clip or not self._is_asked:
             return None
@@ -77,7 +77,7 @@ class CorrectedFrames:
             return True
         return frame in self._exact
 
-    def ground(self, frame: int) -> Ground | None:
+    def ground(self, frame: int) -> BaseMotionFrame | None:
         """Return what tracks are relative to at a frame, if that is known."""
         return self._grounds.get(frame)
 
@@ -113,7 +113,11 @@ class CorrectedFrames:
     @property
     def misses(self) -> Mapping[int, Mapping[int, float]]:
         """By how many pixels handles, by their ids, miss their tracks' wishes, by frames."""
-        return {frame: each.misses for frame, each in self._exact.items() if each and each.misses}
+        return {
+            frame: each.target_errors
+            for frame, each in self._exact.items()
+            if each and each.target_errors
+        }
 
     def lead(self, frame: int) -> None:
         """Let what was found last of tracks stand in at a frame until its own is there."""
@@ -122,7 +126,7 @@ class CorrectedFrames:
 
     def missing(
         self, document: Document, frame: int, siblings: Mapping[int, PoseSampler]
-    ) -> Callable[[], FoundCorrections] | None:
+    ) -> Callable[[], CorrectionUpdate] | None:
         """Return what finds the corrections that are wanted next, the nearest to a frame first."""
         if self.is_whole or not self._is_known(siblings):
             return None
@@ -133,7 +137,7 @@ class CorrectedFrames:
 
     def missing_here(
         self, document: Document, frame: int, siblings: Mapping[int, PoseSampler]
-    ) -> Callable[[], FoundCorrections] | None:
+    ) -> Callable[[], CorrectionUpdate] | None:
         """Return what finds the correction of one frame, whatever else is missing."""
         if self.is_exact(self.clip, frame) or not self._is_known(siblings):
             return None
@@ -142,7 +146,7 @@ class CorrectedFrames:
 
     def missing_ground(
         self, document: Document, frame: int, siblings: Mapping[int, PoseSampler]
-    ) -> Callable[[], FoundCorrections] | None:
+    ) -> Callable[[], CorrectionUpdate] | None:
         """Return what finds the grounds that are wanted next, the nearest to a frame first.
 
         Without handles there is nothing that could be recorded.
@@ -152,7 +156,7 @@ class CorrectedFrames:
             return None
         lacking.sort(key=lambda each: abs(each - frame))
         begin = partial(_prepare, self._corrections, document, self.clip, siblings)
-        return lambda: _find(begin(), [], lacking[:GROUNDS])
+        return lambda: _find(begin(), [], lacking[:BASE_FRAMES_AT_ONCE])
 
     def _is_known(self, siblings: Mapping[int, PoseSampler]) -> bool:
         """Tell whether the window knows the outline.
@@ -161,17 +165,17 @@ class CorrectedFrames:
         """
         return self.clip.layer.id in siblings or len(self.clip.keys) == 1
 
-    def take(self, found: FoundCorrections, *, is_newest: bool = False) -> None:
+    def take(self, found: CorrectionUpdate, *, is_newest: bool = False) -> None:
         """Take in what a worker has found; what is of an earlier clip stands in for this one's.
 
         It is the newest where it is of the frame that a person watches.
         """
         clip = found.corrections.clip
-        if not have_one_ground(self.clip, clip):
+        if not have_same_base_frames(self.clip, clip):
             return
         if self._corrections is None:
             self._corrections = found.corrections.with_tracks(self.clip)
-        for frame, ground in found.grounds.items():
+        for frame, ground in found.base_frames.items():
             self._grounds.setdefault(frame, ground)
         (self._exact if clip == self.clip else self._rough).update(found.exact)
         for each in found.exact.values() if is_newest else ():
@@ -179,11 +183,11 @@ class CorrectedFrames:
 
 
 def _prepare(
-    earlier: Corrections | None,
+    earlier: FrameCorrector | None,
     document: Document,
     clip: Clip,
     siblings: Mapping[int, PoseSampler],
-) -> Corrections:
+) -> FrameCorrector:
     """Return a clip's corrections, the earlier ones if there are any."""
     if earlier is not None:
         return earlier
@@ -191,20 +195,20 @@ def _prepare(
     sibling = siblings.get(layer.id)
     if sibling is None or sibling.domain.cage is not layer.domain.cage:
         sibling = PoseSampler(layer.domain, anchor=layer.anchor, points=layer.domain.outline)
-    carried = carried_in(document, layer.id, siblings)
-    return Corrections(clip, clip.layer.variant, sibling, carried)
+    carried = find_parent_motion(document, layer.id, siblings)
+    return FrameCorrector(clip, clip.layer.variant, sibling, carried)
 
 
 def _find(
-    corrections: Corrections, frames: Sequence[int], grounds: Sequence[int] = ()
-) -> FoundCorrections:
+    corrections: FrameCorrector, frames: Sequence[int], grounds: Sequence[int] = ()
+) -> CorrectionUpdate:
     """Find the corrections of some frames with their grounds, and the grounds of others."""
-    exact = {frame: corrections.at(frame) for frame in frames}
-    known = {frame: corrections.ground_at(frame) for frame in (*frames, *grounds)}
-    return FoundCorrections(corrections, exact, known)
+    exact = {frame: corrections.correction_at(frame) for frame in frames}
+    known = {frame: corrections.base_frame_at(frame) for frame in (*frames, *grounds)}
+    return CorrectionUpdate(corrections, exact, known)
 
 
-def corrected_clip(
+def reuse_corrections(
     document: Document, layer: int, earlier: CorrectedFrames | None
 ) -> CorrectedFrames:
     """Return the corrections of a layer's clip; the earlier ones where the motion is the same."""

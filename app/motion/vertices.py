@@ -10,7 +10,7 @@ from engine.streaming import Series
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Placed:
+class VertexArray:
     """Vertices whose positions are worked out already."""
 
     positions: Complexes  # complex128 (v,)
@@ -19,7 +19,7 @@ class Placed:
     triangles: Integers
 
 
-class Streamed:
+class StreamedVertices:
     """Vertices as a series places them; a graphics card can do that without the processor.
 
     Parameters
@@ -56,7 +56,7 @@ class Streamed:
         return fz, fzbar
 
 
-Vertices = Placed | Streamed
+Vertices = VertexArray | StreamedVertices
 
 
 def _complexes(series: Series, time: float) -> Complexes:

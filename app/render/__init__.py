@@ -5,13 +5,13 @@ Out: pixels in a target.
 Imports: `app.document`, `app.motion`, `app.storage`; with `app.render.gpu` it alone sees OpenGL.
 """
 
+from app.render.colormap import heat_colormap as heat_colormap
 from app.render.drawn_mesh import DrawnMesh as DrawnMesh, shader_is_faster as shader_is_faster
 from app.render.handles import (
     HandleMark as HandleMark,
     mark_anchor as mark_anchor,
     mark_handles as mark_handles,
 )
-from app.render.ramp import heat_ramp as heat_ramp
 from app.render.renderer import Renderer as Renderer
 from app.render.scene import (
     TRANSPARENT as TRANSPARENT,

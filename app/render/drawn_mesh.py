@@ -2,8 +2,15 @@
 
 import moderngl
 
-from app.motion import Streamed, Vertices
-from app.render.gpu import GpuMesh, PosedMesh, PositionBuffer, SeriesBuffer, is_software, singles
+from app.motion import StreamedVertices, Vertices
+from app.render.gpu import (
+    GpuMesh,
+    PosedMesh,
+    PositionBuffer,
+    SeriesBuffer,
+    is_software,
+    to_float32_points,
+)
 from engine.geometry import HERE, RigidMotion, Similarity
 from engine.streaming import MOST_ROWS, Series
 
@@ -49,7 +56,7 @@ class DrawnMesh:
         return posed
 
     def _positioned(self, vertices: Vertices) -> PosedMesh:
-        if isinstance(vertices, Streamed) and self._by_shader and _fits(vertices.series):
+        if isinstance(vertices, StreamedVertices) and self._by_shader and _fits(vertices.series):
             if self._series is None or self._series_pose is None:
                 self._series = SeriesBuffer(
                     self._context, self._mesh.count, MOST_ROWS, seam=self._mesh.seam
@@ -58,7 +65,9 @@ class DrawnMesh:
             self._series.place(vertices.series, vertices.time)
             return self._series_pose
         seam, positions = self._mesh.seam, vertices.positions
-        self._written.write(singles(positions if seam is None else seam.closed(positions)))
+        self._written.write(
+            to_float32_points(positions if seam is None else seam.closed(positions))
+        )
         return self._pose
 
 

@@ -12,7 +12,7 @@ NORMAL: Final[Colour] = (0.16, 0.42, 0.95, 1.0)
 SELECTED: Final[Colour] = (1.00, 0.66, 0.10, 1.0)
 ANCHOR: Final[Colour] = (0.05, 0.80, 0.90, 1.0)
 LOCKED: Final[Colour] = (0.33, 0.36, 0.42, 1.0)
-WISH: Final[Colour] = (1.00, 0.33, 0.18, 1.0)
+TARGET: Final[Colour] = (1.00, 0.33, 0.18, 1.0)
 RIM: Final[Colour] = (1.00, 1.00, 1.00, 1.0)
 HALO: Final[Colour] = (1.00, 1.00, 1.00, 0.55)
 SHADOW: Final[Colour] = (0.00, 0.00, 0.00, 0.45)
@@ -25,7 +25,7 @@ class HandleMark:
     """A handle as it is to be shown."""
 
     place: complex  # where the handle is, in the plane
-    wish: complex | None = None  # where it should be, if it is out of reach within the bounds
+    target: complex | None = None  # where it should be, if it is out of reach within the bounds
     anchor: bool = False
     selected: bool = False
     hovered: bool = False
@@ -39,16 +39,16 @@ def mark_handles(
     lines: list[Line] = []
     discs: list[Disc] = []
     for mark in marks:
-        if mark.wish is not None:
-            way = np.array([mark.wish, mark.place])
+        if mark.target is not None:
+            way = np.array([mark.target, mark.place])
             lines += [
                 # On white, so that the dashes are seen on a drawing of their own colour.
                 Line(points=way, colour=SHADOW, width=4.5 * scale),
                 Line(points=way, colour=RIM, width=2.5 * scale),
-                Line(points=way, colour=WISH, width=2.5 * scale, dash=5.0 * scale),
+                Line(points=way, colour=TARGET, width=2.5 * scale, dash=5.0 * scale),
             ]
-            discs.append(_shadow(mark.wish, 0.75 * RADIUS, scale))
-            discs.append(_disc(mark.wish, 0.75 * RADIUS, scale, fill=RIM, rim=WISH))
+            discs.append(_shadow(mark.target, 0.75 * RADIUS, scale))
+            discs.append(_disc(mark.target, 0.75 * RADIUS, scale, fill=RIM, rim=TARGET))
         discs += _pin(mark, scale)
     return tuple(lines), tuple(discs)
 

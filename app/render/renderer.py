@@ -6,10 +6,10 @@ from typing import Final
 
 import moderngl
 
-from app.document import BlendMode, Composite
+from app.document import BlendMode, CompositeGroup
+from app.render.colormap import heat_colormap
 from app.render.gpu import PosedMesh, Programs, RenderTarget, ShaderFiles
 from app.render.overlay import Overlay
-from app.render.ramp import heat_ramp
 from app.render.scene import Backdrop, Colour, Heat, Painted, Scene, Wireframe
 from app.render.view import View
 
@@ -56,7 +56,7 @@ class Renderer:
         self._context = context
         self._overlay = Overlay(self.programs)
         self._layers: list[RenderTarget] = []
-        ramp = heat_ramp()
+        ramp = heat_colormap()
         self._ramp = context.texture((len(ramp), 1), 3, ramp.tobytes())
         self._ramp.repeat_x = self._ramp.repeat_y = False
 
@@ -72,7 +72,9 @@ class Renderer:
         behind, before = scene.meshes[: scene.ghosts_over], scene.meshes[scene.ghosts_over :]
         self._draw_parts(behind, target, view, scene.heat)
         for ghost in scene.ghosts:
-            self._draw_layer(Composite(ghost.meshes, ghost.opacity), target, view, tint=ghost.tint)
+            self._draw_layer(
+                CompositeGroup(ghost.meshes, ghost.opacity), target, view, tint=ghost.tint
+            )
         self._draw_parts(before, target, view, scene.heat)
         if scene.wireframe is not None:
             self._blend_over()
@@ -135,7 +137,7 @@ class Renderer:
     ) -> None:
         self._blend_over()
         for part in parts:
-            if isinstance(part, Composite):
+            if isinstance(part, CompositeGroup):
                 self._draw_layer(part, target, view, heat=heat, depth=depth)
                 self._blend_over()
             else:
@@ -143,7 +145,7 @@ class Renderer:
 
     def _draw_layer(
         self,
-        whole: Composite[PosedMesh],
+        whole: CompositeGroup[PosedMesh],
         target: RenderTarget,
         view: View,
         *,
@@ -165,7 +167,7 @@ class Renderer:
             "opacity": whole.opacity,
         }
         passes = (_CLIPPED if whole.clipped else _BLENDS)[whole.blend]
-        if whole.passes:
+        if whole.is_pass_through:
             # On the layer is what will be there in the end: of what is there as much is taken away
             # as comes from it then.
             self._context.copy_framebuffer(layer.framebuffer, target.framebuffer)
@@ -220,7 +222,7 @@ def _premultiplied(colour: Colour) -> Colour:
 
 def _meshes(parts: Sequence[Painted]) -> Iterator[PosedMesh]:
     for part in parts:
-        if isinstance(part, Composite):
+        if isinstance(part, CompositeGroup):
             yield from _meshes(part.parts)
         else:
             yield part

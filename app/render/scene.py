@@ -3,14 +3,14 @@
 from dataclasses import dataclass
 from typing import Final
 
-from app.document import Composite
+from app.document import CompositeGroup
 from app.render.gpu import PosedMesh
 from engine.arrays import Complexes
 
 Colour = tuple[float, float, float, float]
 """Red, green, blue and alpha between 0 and 1, straight, as they stand in a picture file."""
 
-Painted = PosedMesh | Composite[PosedMesh]
+Painted = PosedMesh | CompositeGroup[PosedMesh]
 """A mesh, or several that are composited as one."""
 
 TRANSPARENT: Final[Colour] = (0.0, 0.0, 0.0, 0.0)

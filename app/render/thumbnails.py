@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import moderngl
 
-from app.storage import read_moments, read_thumbnail
+from app.storage import read_animation_frames, read_thumbnail
 from engine.arrays import Bytes
 
 
@@ -22,7 +22,7 @@ class Thumbnails:
     def __init__(self, context: moderngl.Context) -> None:
         self._context = context
         self._textures: dict[Path, moderngl.Texture | None] = {}
-        self._moments: dict[Path, list[moderngl.Texture]] = {}
+        self._animation_frames: dict[Path, list[moderngl.Texture]] = {}
         self._fresh = True
         self.is_behind = False  # whether more were asked for in this frame than were read
 
@@ -32,9 +32,9 @@ class Thumbnails:
         return frozenset(self._textures)
 
     @property
-    def moving_files(self) -> frozenset[Path]:
+    def animated_files(self) -> frozenset[Path]:
         """The files whose small animation was read."""
-        return frozenset(self._moments)
+        return frozenset(self._animation_frames)
 
     def begin_frame(self) -> None:
         """Allow one more file to be read: one a frame, so that the window opens at once."""
@@ -50,20 +50,22 @@ class Thumbnails:
         texture = self._textures.get(path)
         return None if texture is None else Thumbnail(texture.glo, texture.size)
 
-    def moments(self, path: Path) -> list[Thumbnail]:
+    def animation_frames(self, path: Path) -> list[Thumbnail]:
         """Return the pictures of a small animation; none where it cannot be read."""
-        if path not in self._moments:
-            pictures = read_moments(path)
-            self._moments[path] = [_texture(self._context, picture) for picture in pictures]
-        return [Thumbnail(texture.glo, texture.size) for texture in self._moments[path]]
+        if path not in self._animation_frames:
+            pictures = read_animation_frames(path)
+            self._animation_frames[path] = [
+                _texture(self._context, picture) for picture in pictures
+            ]
+        return [Thumbnail(texture.glo, texture.size) for texture in self._animation_frames[path]]
 
     def release(self, but: Path | None = None) -> None:
         """Let the textures go, but those of files in one folder, if it is named.
 
         Files that are asked for again are read again.
         """
-        while self._moments:
-            for moment in self._moments.popitem()[1]:
+        while self._animation_frames:
+            for moment in self._animation_frames.popitem()[1]:
                 moment.release()
         for path in [path for path in self._textures if path.parent != but]:
             texture = self._textures.pop(path)

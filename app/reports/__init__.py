@@ -6,8 +6,8 @@ Imports: `app.motion`, `app.storage`.
 """
 
 from app.reports.certification import (
-    IntervalReport as IntervalReport,
     Report as Report,
+    SegmentReport as SegmentReport,
     Verdict as Verdict,
     certify_clip as certify_clip,
 )
@@ -15,19 +15,19 @@ from app.reports.corrected_frames import CorrectedReport as CorrectedReport, Sho
 from app.reports.curve_picture import draw_curves as draw_curves
 from app.reports.curves import (
     TIMES as TIMES,
-    CorrectedAt as CorrectedAt,
+    CorrectedSample as CorrectedSample,
     Curves as Curves,
-    broken_lines as broken_lines,
+    divide_by_keys as divide_by_keys,
     measure_curves as measure_curves,
-    relative_to_keys as relative_to_keys,
+    split_at_keys as split_at_keys,
     worst_points as worst_points,
     write_curves as write_curves,
 )
 from app.reports.domain_preview import draw_preview as draw_preview
 from app.reports.problem import (
+    describe_machine as describe_machine,
+    format_problem_report as format_problem_report,
+    format_trace as format_trace,
     library_version as library_version,
-    machine_in_words as machine_in_words,
-    problem_report as problem_report,
-    trace_in_words as trace_in_words,
-    without_names as without_names,
+    redact_names as redact_names,
 )

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from app.document import Clip, Track, cycle_of, layout
+from app.document import Clip, Track, segment_layout, track_cycle
 from engine.arrays import Floats, Indices
 from engine.geometry.kinematics import FADE, frames_to_settle
 
@@ -19,7 +19,7 @@ def acting_frames(clip: Clip, *, is_carried: bool = False) -> tuple[Indices, Ind
     tracks = [track for track in layer.tracks if track.enabled]
     acts = np.full(len(frames), bool(springs) and (is_carried or clip.loop))
     # Where nothing moves they come to rest.
-    end = max([clip.keys[-1].frame, *(ring.end for ring in layout(clip).rings)])
+    end = max([clip.keys[-1].frame, *(ring.end for ring in segment_layout(clip).cycles)])
     for spring in springs:
         settled = frames_to_settle(clip.fps, spring.frequency, spring.damping)
         rests = end + spring.lag + settled + FADE
@@ -41,7 +41,7 @@ def acting_frames(clip: Clip, *, is_carried: bool = False) -> tuple[Indices, Ind
 def _times(track: Track, clip: Clip, frames: Indices) -> Floats:
     """Return the frame among a track's keys that each frame shows, ∞ where it does not act."""
     first, last = track.keys[0].frame, track.keys[-1].frame
-    cycle, period = cycle_of(track, clip), clip.period if clip.loop else 0
+    cycle, period = track_cycle(track, clip), clip.period if clip.loop else 0
     times, covered = frames - track.delay, np.ones(len(frames), bool)
     if cycle is not None:
         end = clip.frames.last if cycle.until is None else cycle.until
@@ -60,14 +60,14 @@ def _posed(clip: Clip, frames: Indices) -> Indices:
     keys = clip.keys
     if len(keys) == 1:
         return np.zeros_like(frames)
-    rings = layout(clip).rings
+    rings = segment_layout(clip).cycles
     shown = frames
     if not clip.loop and not rings:
         shown = np.clip(frames, keys[0].frame, keys[-1].frame)
     for ring in rings:
         first, period = ring.cycle.first, ring.cycle.period
         within = (first <= frames) & (frames < ring.end)
-        if ring.spans:
+        if ring.segments:
             shown = np.where(within, first + (frames - first) % period, shown)
         else:
             shown = np.where(within, keys[ring.keys[0]].frame, shown)

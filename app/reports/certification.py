@@ -7,8 +7,17 @@ from functools import reduce
 
 import numpy as np
 
-from app.document import HOLD, Clip, Cycle, Extremes, Transit, Variant, spans, transits
-from app.motion import Animation, Carried
+from app.document import (
+    HOLD,
+    Clip,
+    Cycle,
+    DistortionRange,
+    PoseSegment,
+    Variant,
+    clip_segments,
+    pose_segments,
+)
+from app.motion import Animation, ParentMotion
 from app.reports.corrected_frames import CorrectedReport, report_corrected
 from engine.arrays import Floats
 from engine.interpolation import Inbetweens, Proof, prove
@@ -39,7 +48,7 @@ class Verdict(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class IntervalReport:
+class SegmentReport:
     """One interval: what its in-betweens reach, beside what its two keys do.
 
     `limits` is what they are to keep: the keys' own distortion, but where handles stay or the
@@ -50,16 +59,16 @@ class IntervalReport:
 
     first: int
     last: int
-    reached: Extremes
-    keys: Extremes
+    reached: DistortionRange
+    keys: DistortionRange
     correction: float
-    limits: Extremes
+    limits: DistortionRange
     proof: Proof
     unsettled: tuple[int, ...]
     loose: tuple[int, ...]
 
     @property
-    def excess(self) -> Extremes:
+    def excess(self) -> DistortionRange:
         """By how much what is proven is beyond the limits."""
         return self._proven.beyond(self.limits)
 
@@ -69,13 +78,13 @@ class IntervalReport:
         return not self.proof.never_folds
 
     @property
-    def error(self) -> Extremes:
+    def error(self) -> DistortionRange:
         """By how much the true extremes may be worse than the measured ones: what is proven is."""
         return self._proven.beyond(self.reached)
 
     @property
-    def _proven(self) -> Extremes:
-        return Extremes(self.proof.k, self.proof.sigma_a, self.proof.sigma_b)
+    def _proven(self) -> DistortionRange:
+        return DistortionRange(self.proof.k, self.proof.sigma_a, self.proof.sigma_b)
 
     @property
     def verdict(self) -> Verdict:
@@ -95,7 +104,7 @@ class Report:
     """Intervals of a document, and its keyframes' certificates, proven anew against its bounds."""
 
     keys: tuple[tuple[int, Certificate], ...]
-    intervals: tuple[IntervalReport, ...]
+    segments: tuple[SegmentReport, ...]
     corrected: CorrectedReport | None = None
     cycles: tuple[Cycle, ...] = ()  # of which the intervals stand for all repeats
 
@@ -104,16 +113,16 @@ class Report:
         """The worst of the intervals' and the frames'; over if a keyframe is not certified."""
         if not all(certificate.certified for _, certificate in self.keys):
             return Verdict.OVER
-        return Verdict.worst([*(each.verdict for each in self.intervals), self.corrected_verdict])
+        return Verdict.worst([*(each.verdict for each in self.segments), self.corrected_verdict])
 
     @property
-    def reached(self) -> Extremes:
+    def reached(self) -> DistortionRange:
         """The worst that is reached: of keys as proven, in between and in own ways as measured."""
-        found = [Extremes(own.k, own.sigma_a, own.sigma_b) for _, own in self.keys]
-        found += [each.reached for each in self.intervals]
+        found = [DistortionRange(own.k, own.sigma_a, own.sigma_b) for _, own in self.keys]
+        found += [each.reached for each in self.segments]
         if self.corrected is not None and self.corrected.frames:
             found += [self.corrected.reached, self.corrected.between]
-        return reduce(Extremes.joined, found)
+        return reduce(DistortionRange.joined, found)
 
     @property
     def corrected_verdict(self) -> Verdict:
@@ -127,7 +136,7 @@ class Report:
         return Verdict.PROVEN if is_proven else Verdict.MEASURED
 
 
-def _are_within(reached: Extremes, limits: Extremes) -> bool:
+def _are_within(reached: DistortionRange, limits: DistortionRange) -> bool:
     """Tell whether extremes keep limits; of whatever kind they are, with one tolerance."""
     return (
         reached.k <= limits.k + BEYOND
@@ -137,7 +146,7 @@ def _are_within(reached: Extremes, limits: Extremes) -> bool:
 
 
 def certify_clip(
-    clip: Clip, variant: Variant | None = None, carried: Carried | None = None
+    clip: Clip, variant: Variant | None = None, carried: ParentMotion | None = None
 ) -> Report:
     """Prove and measure the distortion of a layer over time and space.
 
@@ -161,27 +170,27 @@ def certify_clip(
     )
     animation = Animation(clip, variant, points=boundary.points)
     reports = tuple(
-        _interval_report(clip, animation, boundary, number, transit)
-        for number, transit in enumerate(transits(clip))
+        _segment_report(clip, animation, boundary, number, transit)
+        for number, transit in enumerate(pose_segments(clip))
     )
     every = [each.limits for each in reports]
-    every += [Extremes(own.k, own.sigma_a, own.sigma_b) for _, own in keys]
-    bounds = Extremes(layer.bounds.k, layer.bounds.sigma_a, layer.bounds.sigma_b)
-    limits = reduce(Extremes.joined, every, bounds)
+    every += [DistortionRange(own.k, own.sigma_a, own.sigma_b) for _, own in keys]
+    bounds = DistortionRange(layer.bounds.k, layer.bounds.sigma_a, layer.bounds.sigma_b)
+    limits = reduce(DistortionRange.joined, every, bounds)
     corrected = report_corrected(clip, boundary, limits, variant, carried)
-    return Report(keys=keys, intervals=reports, corrected=corrected, cycles=layer.cycles)
+    return Report(keys=keys, segments=reports, corrected=corrected, cycles=layer.cycles)
 
 
-def _interval_report(
-    clip: Clip, animation: Animation, boundary: Boundary, number: int, transit: Transit
-) -> IntervalReport:
+def _segment_report(
+    clip: Clip, animation: Animation, boundary: Boundary, number: int, transit: PoseSegment
+) -> SegmentReport:
     """Prove and measure the interval of this number."""
-    layer, span = clip.layer, spans(clip)[number]
+    layer, span = clip.layer, clip_segments(clip)[number]
     start, end, last = clip.keys[span.first], clip.keys[span.last], span.start + span.frames
     # A key that is held is all that is seen until the next one.
     held = start.easing == HOLD
     ends = [
-        Extremes.measured(*layer.map_of(key.pose).derivatives(boundary.points))
+        DistortionRange.measured(*layer.map_of(key.pose).derivatives(boundary.points))
         for key in ((start, start) if held else (start, end, *transit.keys))
     ]
     bound = ends[0].joined(ends[1])
@@ -191,11 +200,13 @@ def _interval_report(
         else animation.base.inbetweens(number)
     )
     limits = bound
-    if transit.is_joined or inbetweens.corrections:
+    if transit.has_smooth_tangent or inbetweens.corrections:
         bounds = layer.bounds
-        limits = reduce(Extremes.joined, ends, Extremes(bounds.k, bounds.sigma_a, bounds.sigma_b))
+        limits = reduce(
+            DistortionRange.joined, ends, DistortionRange(bounds.k, bounds.sigma_a, bounds.sigma_b)
+        )
     proof = prove(inbetweens)
-    return IntervalReport(
+    return SegmentReport(
         first=span.start,
         last=last if last <= clip.frames.last else end.frame,
         reached=bound.joined(_measured(inbetweens)),
@@ -208,12 +219,12 @@ def _interval_report(
     )
 
 
-def _measured(inbetweens: Inbetweens) -> Extremes:
+def _measured(inbetweens: Inbetweens) -> DistortionRange:
     """Return the extremes over time: at equal steps, then more closely around each worst one."""
 
-    def at(times: Floats) -> list[Extremes]:
+    def at(times: Floats) -> list[DistortionRange]:
         frames = (inbetweens.frame(float(t)) for t in times)
-        return [Extremes.measured(frame.fz, frame.fzbar) for frame in frames]
+        return [DistortionRange.measured(frame.fz, frame.fzbar) for frame in frames]
 
     times = np.linspace(0.0, 1.0, TIMES)[1:-1]
     found = at(times)
@@ -224,14 +235,14 @@ def _measured(inbetweens: Inbetweens) -> Extremes:
     }
     for time in worst:
         found += at(np.linspace(time - step, time + step, CLOSER + 2)[1:-1])
-    return reduce(Extremes.joined, found)
+    return reduce(DistortionRange.joined, found)
 
 
 def _frames(
     clip: Clip, interval: int, stretches: tuple[tuple[float, float], ...]
 ) -> tuple[int, ...]:
     """Return the frames of an interval nearest to which stretches of its time, [0, 1], are."""
-    span, transit = spans(clip)[interval], transits(clip)[interval]
+    span, transit = clip_segments(clip)[interval], pose_segments(clip)[interval]
     start, end = span.start, span.start + span.frames
     found = []
     for frame in range(start, end + 1) if stretches else ():

@@ -10,17 +10,17 @@ import numpy as np
 
 from app.document import (
     Clip,
-    Extremes,
+    DistortionRange,
     Variant,
-    falls_short,
-    time_of,
+    misses_target,
+    segment_time_at,
 )
-from app.motion import Animation, Carried
+from app.motion import Animation, ParentMotion
 from app.reports.acting_frames import acting_frames
 from engine.interpolation import prove
 from engine.maps import Boundary
 
-NOTHING = Extremes(0.0, 1.0, 1.0)
+NOTHING = DistortionRange(0.0, 1.0, 1.0)
 MOST_LOOKED_AT: Final = 1_000  # frames; up to so many are all looked at
 SPREAD: Final = 150  # frames that are looked at of more
 MOST_DRIVEN: Final = 8_000  # frames whose motion is worked out, since springs follow it
@@ -49,11 +49,11 @@ class CorrectedReport:
         How many of them are proven, over all of the domain; the others are measured.
     points : int
         On the outline, at which frames are measured.
-    reached : Extremes
+    reached : DistortionRange
         Of all of them: what is proven of those that are, what is measured of the others.
-    between : Extremes
+    between : DistortionRange
         What is measured halfway between frames.
-    limits : Extremes
+    limits : DistortionRange
         What they are to keep: the layer's bounds, or what its keys have beyond them.
     short : tuple of Short
         What is out of reach.
@@ -65,15 +65,15 @@ class CorrectedReport:
     frames: int
     proven: int
     points: int
-    reached: Extremes
-    between: Extremes
-    limits: Extremes
+    reached: DistortionRange
+    between: DistortionRange
+    limits: DistortionRange
     short: tuple[Short, ...]
     looked_at: int
     left_out: int
 
     @property
-    def excess(self) -> Extremes:
+    def excess(self) -> DistortionRange:
         """By how much they, or what is between them, are beyond the limits."""
         return self.reached.joined(self.between).beyond(self.limits)
 
@@ -81,9 +81,9 @@ class CorrectedReport:
 def report_corrected(
     clip: Clip,
     boundary: Boundary,
-    limits: Extremes,
+    limits: DistortionRange,
     variant: Variant | None = None,
-    carried: Carried | None = None,
+    carried: ParentMotion | None = None,
 ) -> CorrectedReport | None:
     """Prove or measure the whole frames of a clip that are corrected; None where none is.
 
@@ -92,7 +92,7 @@ def report_corrected(
     clip : Clip
     boundary : Boundary
         Of the layer's domain.
-    limits : Extremes
+    limits : DistortionRange
         Of the keys and the bounds.
     variant : Variant, optional
         The layer's own by default.
@@ -109,11 +109,11 @@ def report_corrected(
     acting, counts = acting_frames(clip, is_carried=carried is not None)
     step = _step(len(acting), animation.corrections.run_up)
     looked_at = acting[::step].tolist()
-    corrections = {frame: animation.corrections.at(frame) for frame in looked_at}
+    corrections = {frame: animation.corrections.correction_at(frame) for frame in looked_at}
     found = {frame: each for frame, each in corrections.items() if each is not None}
     repeats = dict(zip(looked_at, counts[::step].tolist(), strict=True))
     # Those that come to the very same are looked at once.
-    same = {frame: (id(found[frame]), time_of(clip, frame)) for frame in found}
+    same = {frame: (id(found[frame]), segment_time_at(clip, frame)) for frame in found}
     once = {each: frame for frame, each in reversed(same.items())}
     proofs = {at: _proven(animation, frame) for at, frame in once.items()}
     reached = [
@@ -124,10 +124,12 @@ def report_corrected(
         frames=sum(repeats[frame] for frame in found),
         proven=sum(repeats[frame] for frame, at in same.items() if proofs[at] is not None),
         points=len(points),
-        reached=reduce(Extremes.joined, reached, NOTHING),
-        between=reduce(Extremes.joined, (_measured(animation, at) for at in between), NOTHING),
+        reached=reduce(DistortionRange.joined, reached, NOTHING),
+        between=reduce(
+            DistortionRange.joined, (_measured(animation, at) for at in between), NOTHING
+        ),
         limits=limits,
-        short=_short(clip, step, {frame: each.misses for frame, each in found.items()}),
+        short=_short(clip, step, {frame: each.target_errors for frame, each in found.items()}),
         looked_at=len(looked_at),
         left_out=len(acting) - len(looked_at),
     )
@@ -141,20 +143,20 @@ def _step(count: int, run_up: int) -> int:
     return -(-count // max(min(SPREAD, MOST_DRIVEN // (run_up + 1)), 1))
 
 
-def _proven(animation: Animation, frame: int) -> Extremes | None:
+def _proven(animation: Animation, frame: int) -> DistortionRange | None:
     """Return the proof of a corrected frame; None if nothing is proven of it."""
     corrections = animation.corrections
-    correction = None if corrections is None else corrections.at(frame)
+    correction = None if corrections is None else corrections.correction_at(frame)
     if correction is None:
         return None
-    inbetweens, time = animation.base.at(frame)
-    proof = prove(inbetweens.corrected(correction.known, animation.sampler.basis), time)
-    return Extremes(proof.k, proof.sigma_a, proof.sigma_b) if proof.never_folds else None
+    inbetweens, time = animation.base.segment_at(frame)
+    proof = prove(inbetweens.corrected(correction.series, animation.sampler.basis), time)
+    return DistortionRange(proof.k, proof.sigma_a, proof.sigma_b) if proof.never_folds else None
 
 
-def _measured(animation: Animation, at: float) -> Extremes:
+def _measured(animation: Animation, at: float) -> DistortionRange:
     frame = animation.frame(at)
-    return Extremes.measured(frame.fz, frame.fzbar)
+    return DistortionRange.measured(frame.fz, frame.fzbar)
 
 
 def _short(clip: Clip, step: int, misses: Mapping[int, Mapping[int, float]]) -> tuple[Short, ...]:
@@ -164,7 +166,7 @@ def _short(clip: Clip, step: int, misses: Mapping[int, Mapping[int, float]]) -> 
         lags = {
             frame: miss[handle.id]
             for frame, miss in misses.items()
-            if handle.id in miss and falls_short(clip.layer, miss[handle.id])
+            if handle.id in miss and misses_target(clip.layer, miss[handle.id])
         }
         # Frames of one run are as many steps ahead of their number in it.
         for _, run in groupby(enumerate(lags), key=lambda each: each[1] - step * each[0]):

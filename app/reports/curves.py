@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.document import Clip, Extremes, spans, transits
+from app.document import Clip, DistortionRange, clip_segments, pose_segments
 from app.motion import AnyInbetweens, CorrectedFrames
 from app.storage import write_atomically
 from engine.arrays import Floats
@@ -34,17 +34,19 @@ class Curves:
     tau_share: Floats
     extremes: Floats  # float64 (t, 3): Of all points: the largest k and σ_a, and the smallest σ_b
 
-    def extremes_at(self, frame: float) -> Extremes:
+    def extremes_at(self, frame: float) -> DistortionRange:
         """Return the extremes at a frame, between those that were measured around it."""
         cycle = self.clip.layer.cycle_at(frame)
         if cycle is not None and frame >= cycle.last:
-            frame = cycle.source(frame)
+            frame = cycle.source_frame(frame)
         elif frame < self.frames[0] and self.clip.loop:
             frame += self.clip.period
-        return Extremes(*(float(np.interp(frame, self.frames, row)) for row in self.extremes.T))
+        return DistortionRange(
+            *(float(np.interp(frame, self.frames, row)) for row in self.extremes.T)
+        )
 
 
-class CorrectedAt(NamedTuple):
+class CorrectedSample(NamedTuple):
     """The corrections of frames at some points, where handles have tracks and springs.
 
     Parameters
@@ -65,11 +67,11 @@ class CorrectedAt(NamedTuple):
         correction = self.frames.at(clip, frame)
         if correction is None or not isinstance(between, Inbetweens):
             return between.frame(time)
-        return between.corrected(correction.known, self.basis).frame(time)
+        return between.corrected(correction.series, self.basis).frame(time)
 
 
 def measure_curves(
-    clip: Clip, inbetweens: Sequence[AnyInbetweens], corrected: CorrectedAt | None = None
+    clip: Clip, inbetweens: Sequence[AnyInbetweens], corrected: CorrectedSample | None = None
 ) -> Curves:
     """Measure a clip.
 
@@ -79,11 +81,13 @@ def measure_curves(
         With at least two keys.
     inbetweens : sequence of AnyInbetweens
         Those of its intervals, at the points that are measured.
-    corrected : CorrectedAt, optional
+    corrected : CorrectedSample, optional
         Whole frames alone are measured with it: it is known of them.
     """
     frames, ks, taus, extremes = [], [], [], []
-    for span, transit, between in zip(spans(clip), transits(clip), inbetweens, strict=True):
+    for span, transit, between in zip(
+        clip_segments(clip), pose_segments(clip), inbetweens, strict=True
+    ):
         for share in np.linspace(0.0, 1.0, TIMES):
             if corrected is not None:
                 share = round(share * span.frames) / span.frames  # noqa: PLW2901
@@ -97,7 +101,7 @@ def measure_curves(
                 blended = corrected.frame(clip, shown, between, t)
             ks.append(distortion.k(blended.fz, blended.fzbar))
             taus.append(distortion.tau(blended.fz, blended.fzbar))
-            extremes.append(Extremes.measured(blended.fz, blended.fzbar))
+            extremes.append(DistortionRange.measured(blended.fz, blended.fzbar))
     worst_k, worst_tau = worst_points(np.array(ks)), worst_points(np.array(taus))
     return Curves(
         clip=clip,
@@ -110,7 +114,7 @@ def measure_curves(
     )
 
 
-def broken_lines(curves: Curves, values: Floats) -> tuple[Floats, Floats]:
+def split_at_keys(curves: Curves, values: Floats) -> tuple[Floats, Floats]:
     """Return frames and values (t, p) of all points as one line, broken by NaN at each key."""
     intervals = len(curves.frames) // TIMES
     blocks = values.T.reshape(-1, intervals, TIMES)
@@ -140,7 +144,7 @@ def worst_points(values: Floats) -> Floats:
     return values[:, order]
 
 
-def relative_to_keys(values: Floats) -> Floats:
+def divide_by_keys(values: Floats) -> Floats:
     """Return values (t, p) from key to key relative to the larger of both, 0 where that is 0.
 
     The linear scaling of Section 8, with which the curves of a point whose first key is undistorted
@@ -155,4 +159,4 @@ def relative_to_keys(values: Floats) -> Floats:
 def _shares(values: Floats) -> Floats:
     """Return values (t, p) of all intervals, each relative to its own keys."""
     blocks = values.reshape(-1, TIMES, values.shape[1])
-    return np.concatenate([relative_to_keys(block) for block in blocks])
+    return np.concatenate([divide_by_keys(block) for block in blocks])

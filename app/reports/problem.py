@@ -44,14 +44,14 @@ def library_version(name: str) -> str:
         return "missing"
 
 
-def machine_in_words() -> str:
+def describe_machine() -> str:
     """Return two lines: Lissom, Python and the system, and the libraries, each with its version."""
     system = f"{platform.system()} {platform.release()} {platform.machine()}"
     libraries = ", ".join(f"{name} {library_version(name)}" for name in LIBRARIES)
     return f"Lissom {version('lissom')}, Python {platform.python_version()}, {system}\n{libraries}"
 
 
-def problem_report(*, graphics: str, actions: Sequence[str], trace: str) -> str:
+def format_problem_report(*, graphics: str, actions: Sequence[str], trace: str) -> str:
     """Return a text about a problem that somebody else may read.
 
     Parameters
@@ -66,7 +66,7 @@ def problem_report(*, graphics: str, actions: Sequence[str], trace: str) -> str:
     parts = [
         "Report of a problem with Lissom",
         "What happened, and what should have happened, in your words:\n\n",
-        "\n".join(textwrap.fill(line, WIDTH) for line in machine_in_words().splitlines()),
+        "\n".join(textwrap.fill(line, WIDTH) for line in describe_machine().splitlines()),
     ]
     if graphics:
         parts.append(f"Drawn by {graphics}")
@@ -76,13 +76,13 @@ def problem_report(*, graphics: str, actions: Sequence[str], trace: str) -> str:
     return printable("\n\n".join(parts) + "\n", keeps_lines=True)
 
 
-def trace_in_words(error: BaseException, hidden: Iterable[Path] = ()) -> str:
+def format_trace(error: BaseException, hidden: Iterable[Path] = ()) -> str:
     """Return the traceback of an exception without paths and names of files of the person's."""
     trace = _CARETS.sub("", "".join(traceback.format_exception(error)))
-    return without_names(trace, hidden)
+    return redact_names(trace, hidden)
 
 
-def without_names(text: str, hidden: Iterable[Path] = ()) -> str:
+def redact_names(text: str, hidden: Iterable[Path] = ()) -> str:
     """Return a text with places in the program shortened, and all other paths and names left out.
 
     Parameters
@@ -94,9 +94,9 @@ def without_names(text: str, hidden: Iterable[Path] = ()) -> str:
     """
     text = text if len(text) <= LONGEST else f"{text[: LONGEST // 2]}\n…\n{text[-LONGEST // 2 :]}"
     pieces = _FRAME.split(text)
-    found = [_without_paths(pieces[0], hidden)]
+    found = [_redact_paths(pieces[0], hidden)]
     for indent, path, rest in zip(pieces[1::3], pieces[2::3], pieces[3::3], strict=True):
-        found.append(f'{indent}File "{_place(path)}"{_without_paths(rest, hidden)}')
+        found.append(f'{indent}File "{_place(path)}"{_redact_paths(rest, hidden)}')
     return "".join(found)
 
 
@@ -108,7 +108,7 @@ def _place(path: str) -> str:
     return Path(path.replace("\\", "/")).name if Path(path).is_absolute() else path
 
 
-def _without_paths(text: str, hidden: Iterable[Path]) -> str:
+def _redact_paths(text: str, hidden: Iterable[Path]) -> str:
     names = {str(path) for path in hidden} | {path.name for path in hidden}
     for name in sorted(filter(None, names), key=len, reverse=True):
         text = text.replace(name, LEFT_OUT)

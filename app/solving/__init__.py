@@ -5,19 +5,26 @@ Out: certified poses.
 Imports: `app.motion`, `app.storage`.
 """
 
-from app.solving.carrying import Carriage as Carriage, Likeness as Likeness
-from app.solving.drag import Drag as Drag, Rig as Rig, pose_at as pose_at
-from app.solving.flipping import flip_poses as flip_poses, flipped_targets as flipped_targets
-from app.solving.moving import (
-    Giving as Giving,
-    MotionOrder as MotionOrder,
-    ToldJoints as ToldJoints,
-    begin_giving as begin_giving,
-    facing_in as facing_in,
-    give_on as give_on,
-    load_joints as load_joints,
+from app.solving.drag_solver import (
+    DragSolver as DragSolver,
+    Rig as Rig,
+    fit_shown_pose as fit_shown_pose,
 )
-from app.solving.renewal import Renewal as Renewal, go_on as go_on
-from app.solving.replacing import begin_replacing as begin_replacing
+from app.solving.flipping import flip_poses as flip_poses, flip_targets as flip_targets
+from app.solving.motion_preset import (
+    JointsFile as JointsFile,
+    MotionRequest as MotionRequest,
+    MotionSolve as MotionSolve,
+    find_facing as find_facing,
+    load_joints as load_joints,
+    start_motion_solve as start_motion_solve,
+    step_motion_solve as step_motion_solve,
+)
+from app.solving.pose_transfer import (
+    PoseTransfer as PoseTransfer,
+    SimilarityTransform as SimilarityTransform,
+)
+from app.solving.replace_picture import start_picture_replacement as start_picture_replacement
+from app.solving.resolve_keys import KeyResolver as KeyResolver, step_resolver as step_resolver
 from app.solving.script import load_pose_script as load_pose_script
 from app.solving.script_solver import pose_document as pose_document

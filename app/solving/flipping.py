@@ -5,9 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.document import PAIRS, Layer, Pose, SidePairs, Target, partners_of
-from app.solving.carrying import Likeness, begin_like, is_alike, solve_from
-from app.solving.drag import Rig, pins_of
+from app.document import PAIRS, Layer, Pose, SidePairs, Target, mirrored_handles
+from app.solving.drag_solver import Rig, pins_of
+from app.solving.pose_transfer import (
+    SimilarityTransform,
+    find_initial_map,
+    is_similar,
+    solve_from_map,
+)
 
 
 def flip_poses(
@@ -20,7 +25,7 @@ def flip_poses(
     return [_flip(rig, pose, axis, pairs) for pose in poses]
 
 
-def flipped_targets(
+def flip_targets(
     layer: Layer, pose: Pose, axis: float, pairs: SidePairs = PAIRS
 ) -> Mapping[int, Target]:
     """Return where a flipped pose wants each handle.
@@ -32,15 +37,15 @@ def flipped_targets(
     Partners are told by the names of handles, then by their places; on a symmetric shape a handle
     without either does what the shape does at its mirror image, and else it mirrors itself.
     """
-    shape, likeness = layer.map_of(pose), Likeness.reflection(axis)
+    shape, likeness = layer.map_of(pose), SimilarityTransform.reflection(axis)
     handles = {handle.id: handle for handle in layer.handles}
-    partners = partners_of(layer.handles, axis, layer.domain.outline, pairs)
-    is_symmetric = is_alike(layer, layer, likeness)
+    partners = mirrored_handles(layer.handles, axis, layer.domain.outline, pairs)
+    is_symmetric = is_similar(layer, layer, likeness)
     targets = {}
     for handle in layer.handles:
         partner = handles.get(partners.get(handle.id, -1))
         place, target = handle.position, pose.targets[handle.id]
-        mirrored = likeness.to(place)
+        mirrored = likeness.apply_to_point(place)
         if partner is not None:
             place, target = partner.position, pose.targets[partner.id]
         elif is_symmetric and layer.covers(np.array([mirrored]))[0]:
@@ -48,19 +53,19 @@ def flipped_targets(
             target = replace(target, position=complex(shape(np.array([place]))[0]), rotation=None)
         targets[handle.id] = replace(
             pose.targets[handle.id],
-            position=likeness.moved(shape, place, target.position, handle.position),
+            position=likeness.transform_target(shape, place, target.position, handle.position),
             rotation=None if target.rotation is None else -target.rotation,
         )
     return targets
 
 
 def _flip(rig: Rig, pose: Pose, axis: float, pairs: SidePairs) -> Pose:
-    likeness = Likeness.reflection(axis)
-    targets = flipped_targets(rig.layer, pose, axis, pairs)
+    likeness = SimilarityTransform.reflection(axis)
+    targets = flip_targets(rig.layer, pose, axis, pairs)
     shape = rig.layer.map_of(pose)
     pins = [
-        Target(position=likeness.moved(shape, joint, pin.position, joint))
+        Target(position=likeness.transform_target(shape, joint, pin.position, joint))
         for joint, pin in zip(rig.pins, pins_of(rig.layer, pose), strict=True)
     ]
-    begin, ways = begin_like(rig, rig.layer, pose, likeness, targets)
-    return solve_from(rig, begin, targets, pins, ways)
+    begin, ways = find_initial_map(rig, rig.layer, pose, likeness, targets)
+    return solve_from_map(rig, begin, targets, pins, ways)

@@ -13,30 +13,30 @@ from app.document import (
     Keyframe,
     Layer,
     Pose,
-    Switch,
     Target,
+    VisibilityKey,
     brushed_stiffness,
-    find_shortfall,
     handle_commands,
     is_visible,
     layer_commands,
     material_commands,
+    measure_target_errors,
 )
 from app.errors import LissomError
-from app.solving.drag import Drag, Rig
+from app.solving.drag_solver import DragSolver, Rig
 from app.solving.script import LayerScript, PoseKey, PoseScript
-from app.solving.stage import (
-    layer_named,
-    unmoved,
-    unrepeated,
-    unseen,
-    unturned,
-    with_choices,
-    with_joints,
-    with_kept_places,
-    with_order,
+from app.solving.script_scene import (
+    find_layer,
+    warn_invisible_layers,
+    warn_unused_cycles,
+    warn_unused_switches,
+    warn_unused_transforms,
+    with_attachments,
+    with_draw_order,
+    with_switch_groups,
+    with_world_transforms,
 )
-from app.storage import still_layer
+from app.storage import make_still_layer
 from engine.deform import Hand
 from engine.errors import EngineError
 
@@ -92,18 +92,20 @@ def pose_document(
     if script.layers[0].layer is not None:
         for layer in document.layers:
             if layer.id not in named and not layer.still:
-                document = document.with_layer(still_layer(layer))
+                document = document.with_layer(make_still_layer(layer))
     for identity, part in named.items():
         with _whose(part):
             layer, told = _posed(document.layer(identity), part, progress, loop=script.loop)
         document = document.with_layer(layer)
         notices += told
-    document = with_choices(with_kept_places(with_order(document, script), script), script)
+    document = with_switch_groups(
+        with_world_transforms(with_draw_order(document, script), script), script
+    )
     return document, (
         *notices,
-        *unmoved(document, script),
-        *unturned(document),
-        *unseen(document, script),
+        *warn_unused_transforms(document, script),
+        *warn_unused_switches(document),
+        *warn_invisible_layers(document, script),
     )
 
 
@@ -148,7 +150,7 @@ def _by_layer(document: Document, script: PoseScript) -> dict[int, LayerScript]:
             seen = [f for f in posable if is_visible(document, f, 0)]
             layer = next(iter(seen or posable), None)
         else:
-            layer = layer_named(document, part.layer)
+            layer = find_layer(document, part.layer)
         is_posed = bool(part.handles) or len(part.keys) > 1 or part.layer is None
         if layer is None or (layer.still and is_posed):
             raise LissomError(
@@ -165,16 +167,16 @@ def _prepared(document: Document, identity: int, part: LayerScript) -> Document:
     for name, handle in part.handles.items():
         added = document.layer(identity).next_handle
         document = handle_commands.add_handle(identity, handle.at, name=name)(document)
-        document = layer_commands.set_front(identity, added, handle.front, handle.extent)(document)
-        document = handle_commands.free_handles(identity, {added}, free=not handle.still)(document)
+        document = layer_commands.set_depth(identity, added, handle.front, handle.extent)(document)
+        document = handle_commands.unpin_handles(identity, {added}, free=not handle.still)(document)
     layer = document.layer(identity)
     if part.visible is not None:
         # What the script says holds, whatever is hidden in the drawing.
-        document = layer_commands.reveal(identity)(document)
-        switches = tuple(Switch(frame, visible) for frame, visible in part.visible)
-        layer = replace(document.layer(identity), switches=switches)
+        document = layer_commands.show_layer(identity)(document)
+        switches = tuple(VisibilityKey(frame, visible) for frame, visible in part.visible)
+        layer = replace(document.layer(identity), visibility_keys=switches)
     if isinstance(part.opacity, tuple):
-        layer = replace(layer, opacities=part.opacity)
+        layer = replace(layer, opacity_keys=part.opacity)
     elif part.opacity is not None:
         layer = replace(layer, opacity=part.opacity)
     document = document.with_layer(
@@ -183,8 +185,8 @@ def _prepared(document: Document, identity: int, part: LayerScript) -> Document:
             variant=part.variant,
             bounds=part.bounds,
             anchor=part.anchor,
-            stillness=part.still,
-            movement=part.movement,
+            has_auto_pins=part.still,
+            transform_keys=part.movement,
             tracks=tuple(
                 replace(track, handles=tuple(first + number for number in track.handles))
                 for track in part.tracks
@@ -199,7 +201,7 @@ def _prepared(document: Document, identity: int, part: LayerScript) -> Document:
             ),
         )
     )
-    return with_joints(document, identity, part)
+    return with_attachments(document, identity, part)
 
 
 def _with_material(
@@ -216,13 +218,13 @@ def _with_material(
                 f"{whose}no outline is seen within {each.radius:g} px of ({at.real:g}, "
                 f"{at.imag:g}): nothing is stiff or soft there"
             )
-        document = material_commands.paint(identity, [at], **options)(document)
+        document = material_commands.paint_stiffness(identity, [at], **options)(document)
     ids = [handle.id for handle in document.layer(identity).handles]
     for bone in part.bones:
         ends = (ids[bone.ends[0]], ids[bone.ends[1]])
         first, second = (document.layer(identity).handle(end).name for end in ends)
         try:
-            document = material_commands.add_bone(identity, ends, bone.amount)(document)
+            document = material_commands.add_bone(identity, ends, bone.stiffness)(document)
         except EngineError as error:
             raise LissomError(f"stiff from {first!r} to {second!r}: {error}") from error
     return document, notices
@@ -241,7 +243,7 @@ def _posed(
         progress(f"solving {whose}the key at frame {key.frame}")
         pose, told = _solve(rig, pose, key)
         again = keys[0] if loop and key is part.keys[-1] and keys else _repeated(part, keys, key)
-        is_alike = again is not None and _wishes_alike(rig, pose, again.pose)
+        is_alike = again is not None and _has_same_targets(rig, pose, again.pose)
         if again is not None and is_alike:
             # The same moment again, to the last digit.
             pose, told = again.pose, []
@@ -249,7 +251,7 @@ def _posed(
         if again is not None and cycle is not None and cycle.until != cycle.last:
             if not is_alike or key.fronts:
                 raise LissomError(
-                    f"the key at frame {key.frame} is where {cycle.told} begin again, but it is "
+                    f"the key at frame {key.frame} is where {cycle.description} begin again, but it is "
                     f"not like the key at frame {again.frame}; leave it out, or let them end "
                     "elsewhere"
                 )
@@ -258,23 +260,23 @@ def _posed(
         fronts = {identities[name]: front for name, front in key.fronts.items()}
         keys.append(
             Keyframe(
-                frame=key.frame, pose=pose, easing=key.ease, passing=key.passing, fronts=fronts
+                frame=key.frame, pose=pose, easing=key.ease, tangent_mode=key.passing, depths=fronts
             )
         )
     posed = replace(layer, keys=tuple(keys), cycles=part.cycles)
-    return posed, [*notices, *(whose + notice for notice in unrepeated(posed, part))]
+    return posed, [*notices, *(whose + notice for notice in warn_unused_cycles(posed, part))]
 
 
 def _repeated(part: LayerScript, keys: Sequence[Keyframe], key: PoseKey) -> Keyframe | None:
     """Return the key of a cycle that is shown again at another key; None where there is none."""
     for cycle in part.cycles:
         if key.frame >= cycle.last and cycle.covers(key.frame):
-            source = cycle.source(key.frame)
+            source = cycle.source_frame(key.frame)
             return next((each for each in keys if each.frame == source), None)
     return None
 
 
-def _wishes_alike(rig: Rig, pose: Pose, other: Pose) -> bool:
+def _has_same_targets(rig: Rig, pose: Pose, other: Pose) -> bool:
     """Tell whether two poses are wanted alike where they are held."""
     return all(
         abs(pose.targets[held.id].position - other.targets[held.id].position) <= SAME_PLACE
@@ -289,7 +291,7 @@ def _solve(rig: Rig, start: Pose, key: PoseKey) -> tuple[Pose, list[str]]:
     identities = {handle.name: handle.id for handle in layer.handles}
     named = {identities[name]: place for name, place in key.targets.items()}
     turned = {identities[name]: turn for name, turn in key.turns.items()}
-    carried = layer.followers & named.keys()
+    carried = layer.sprung_handles & named.keys()
     notices = [
         f"frame {key.frame}: {layer.handle(identity).name!r} follows by its spring, and goes "
         "where the body carries it, whatever its target"
@@ -298,7 +300,7 @@ def _solve(rig: Rig, start: Pose, key: PoseKey) -> tuple[Pose, list[str]]:
     for identity in carried:
         del named[identity]
     targets = dict(start.targets)
-    for identity in named.keys() | (turned.keys() - layer.followers):
+    for identity in named.keys() | (turned.keys() - layer.sprung_handles):
         before = targets[identity]
         place = named.get(identity, before.position)
         targets[identity] = Target(position=place, rotation=turned.get(identity, before.rotation))
@@ -308,17 +310,17 @@ def _solve(rig: Rig, start: Pose, key: PoseKey) -> tuple[Pose, list[str]]:
     ):
         return start, notices
     hands = tuple(Hand((identity,), key.pull) for identity in named)
-    drag = Drag.begin(rig, start).towards(targets, MOST_STEPS, hands)
-    shortfall = find_shortfall(layer, drag.pose(targets))
+    drag = DragSolver.begin(rig, start).step_towards(targets, MOST_STEPS, hands)
+    shortfall = measure_target_errors(layer, drag.make_pose(targets))
     drag, released = drag.release(targets, hands)
     left = {**targets, **released}
-    pose = drag.towards(left, MOST_STEPS).pose(left)
+    pose = drag.step_towards(left, MOST_STEPS).make_pose(left)
     # Joints of bones give way: nobody asked them to stay.
-    joints = {identity for hand in rig.yielding(hands) for identity in hand.handles}
+    joints = {identity for hand in rig.find_yielding_joints(hands) for identity in hand.handles}
     notices += [
         f"frame {key.frame}: {layer.handle(identity).name!r} is {lag:.1f} px short of "
         f"its target, {shortfall.reason}"
-        for identity, lag in shortfall.lags.items()
+        for identity, lag in shortfall.errors.items()
         if identity not in joints
     ]
     return pose, notices

@@ -15,28 +15,28 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from app.document import Document
-from app.errors import LissomError, shown_name
+from app.errors import LissomError, display_name
 from app.storage.files import is_locked, lock, read_file, write_atomically
 from app.storage.preferences import make_settings_folder
 from app.storage.project_file import load_member, load_project, save_project
 
 SECONDS = 20.0  # between a change and its autosave, at least
 # The member of the file that tells where the work came from; projects that are saved have none.
-ORIGIN = "origin.json"
-LARGEST_ORIGIN = 100_000  # bytes
+SOURCE_INFO = "origin.json"
+LARGEST_SOURCE_INFO = 100_000  # bytes
 # Of what ended the program, before and after the person was told of it; what Python tells of it.
-REPORT, TOLD_REPORT, FAULTS = "report.txt", "report-told.txt", "faults.txt"
+REPORT, SEEN_REPORT, FAULT_LOG = "report.txt", "report-told.txt", "faults.txt"
 LARGEST_REPORT = 1_000_000  # bytes
 
 
-class Origin(NamedTuple):
+class SourceInfo(NamedTuple):
     """What unsaved work is called, and the project file that it belongs to, if there is one."""
 
     name: str
     path: Path | None
 
 
-UNKNOWN = Origin("recovered", None)
+UNKNOWN_SOURCE = SourceInfo("recovered", None)
 
 
 class Autosave:
@@ -53,19 +53,19 @@ class Autosave:
         self._lock: int | None = None
         self._writing = threading.Lock()
 
-    def write(self, document: Document, origin: Origin) -> None:
+    def write(self, document: Document, origin: SourceInfo) -> None:
         """Keep a document and where it came from, in place of an earlier one.
 
         What another thread still writes is waited for, so that the last one asked for stays.
         """
         told = json.dumps({"name": origin.name, "path": origin.path and str(origin.path)}).encode()
         # One file with both, so that they are of one time however this ends.
-        members = MappingProxyType({**document.attachments, ORIGIN: told})
+        members = MappingProxyType({**document.unknown_members, SOURCE_INFO: told})
         with self._writing:
             self._prepare()
-            save_project(self._path, replace(document, attachments=members), is_private=True)
+            save_project(self._path, replace(document, unknown_members=members), is_private=True)
 
-    def forget(self) -> None:
+    def remove(self) -> None:
         """Remove what was kept."""
         self._path.unlink(missing_ok=True)
         if self._lock is not None:
@@ -86,7 +86,7 @@ class Autosave:
                     pass
 
 
-def find_leftovers(folder: Path) -> list[Path]:
+def find_recoverable_files(folder: Path) -> list[Path]:
     """Return the files of unsaved work whose windows are gone, the newest first."""
     found = {}
     for path in folder.glob("unsaved-*.lissom"):
@@ -96,44 +96,44 @@ def find_leftovers(folder: Path) -> list[Path]:
     return sorted(found, key=lambda path: found[path], reverse=True)
 
 
-def load_leftover(path: Path) -> tuple[Document, Origin]:
+def load_recoverable_file(path: Path) -> tuple[Document, SourceInfo]:
     """Read unsaved work, and where it came from."""
     document = load_project(path)
-    attachments = dict(document.attachments)
-    origin = _origin(attachments.pop(ORIGIN, b""))
-    return replace(document, attachments=MappingProxyType(attachments)), origin
+    attachments = dict(document.unknown_members)
+    origin = _parse_source_info(attachments.pop(SOURCE_INFO, b""))
+    return replace(document, unknown_members=MappingProxyType(attachments)), origin
 
 
-def leftover_origin(path: Path) -> Origin:
+def read_source_info(path: Path) -> SourceInfo:
     """Return where unsaved work came from, without reading the work itself."""
-    return _origin(load_member(path, ORIGIN, LARGEST_ORIGIN) or b"")
+    return _parse_source_info(load_member(path, SOURCE_INFO, LARGEST_SOURCE_INFO) or b"")
 
 
-def remove_leftover(path: Path) -> None:
+def remove_recoverable_file(path: Path) -> None:
     """Remove unsaved work of a window that is gone."""
     path.unlink(missing_ok=True)
     _lock_of(path).unlink(missing_ok=True)
 
 
-def keep_report(folder: Path, text: str) -> None:
+def write_report(folder: Path, text: str) -> None:
     """Keep the report of a problem that ended the program, in place of an earlier one."""
     make_settings_folder(folder)
     write_atomically(folder / REPORT, lambda file: file.write(text.encode()), is_private=True)
 
 
-def kept_report(folder: Path) -> str:
+def load_report(folder: Path) -> str:
     """Return the report that was kept last; empty where there is none that can be read."""
-    for name in (REPORT, TOLD_REPORT):
+    for name in (REPORT, SEEN_REPORT):
         with suppress(LissomError):
             content = read_file(folder / name, largest=LARGEST_REPORT)
             return content.decode(errors="replace")
     return ""
 
 
-def take_news(folder: Path) -> bool:
+def mark_report_seen(folder: Path) -> bool:
     """Tell whether a report was kept that nobody was told of; from now on, somebody was."""
     try:
-        (folder / REPORT).replace(folder / TOLD_REPORT)
+        (folder / REPORT).replace(folder / SEEN_REPORT)
     except OSError:
         return False
     return True
@@ -141,11 +141,11 @@ def take_news(folder: Path) -> bool:
 
 def remove_report(folder: Path) -> None:
     """Remove the reports that were kept."""
-    for name in (REPORT, TOLD_REPORT):
+    for name in (REPORT, SEEN_REPORT):
         (folder / name).unlink(missing_ok=True)
 
 
-def open_faults(folder: Path) -> int:
+def open_fault_log(folder: Path) -> int:
     """Return a descriptor of the file in which Python tells where it was when it crashed.
 
     Raises
@@ -153,31 +153,31 @@ def open_faults(folder: Path) -> int:
     OSError
         If there cannot be one.
     """
-    return os.open(folder / FAULTS, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
+    return os.open(folder / FAULT_LOG, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
 
 
-def take_faults(folder: Path) -> str:
+def read_fault_log(folder: Path) -> str:
     """Return what Python told when it crashed, and forget it; empty where it did not."""
     try:
-        told = read_file(folder / FAULTS, largest=LARGEST_REPORT).decode(errors="replace")
+        told = read_file(folder / FAULT_LOG, largest=LARGEST_REPORT).decode(errors="replace")
         # Other windows may have it open.
-        os.truncate(folder / FAULTS, 0)
+        os.truncate(folder / FAULT_LOG, 0)
     except (LissomError, OSError):
         return ""
     return told
 
 
-def _origin(told: bytes) -> Origin:
+def _parse_source_info(told: bytes) -> SourceInfo:
     """Understand where work came from; nonsense must not hide the work itself."""
     try:
         match json.loads(told):
             case {"name": str(name), "path": str(path)} if Path(path).is_absolute():
-                return Origin(shown_name(name), Path(path))
+                return SourceInfo(display_name(name), Path(path))
             case {"name": str(name)}:
-                return Origin(shown_name(name), None)
+                return SourceInfo(display_name(name), None)
     except (ValueError, RecursionError):
         pass
-    return UNKNOWN
+    return UNKNOWN_SOURCE
 
 
 def _lock_of(path: Path) -> Path:

@@ -10,7 +10,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, TypeVar
 
-from app.errors import LissomError, shown_name
+from app.errors import LissomError, display_name
 from app.storage.files import read_file
 
 Parsed = TypeVar("Parsed")
@@ -43,59 +43,59 @@ class JsonObject(dict[str, Any]):
 def as_object(content: object, where: str) -> JsonObject:
     """Return an object."""
     if not isinstance(content, dict):
-        raise LissomError(NOT_OBJECT.format(where=where, content=shown(content)))
+        raise LissomError(NOT_OBJECT.format(where=where, content=repr_for_error(content)))
     return JsonObject(content, where)
 
 
 def as_list(content: object, where: str) -> list[Any]:
     """Return a list."""
     if not isinstance(content, list):
-        raise LissomError(NOT_LIST.format(where=where, content=shown(content)))
+        raise LissomError(NOT_LIST.format(where=where, content=repr_for_error(content)))
     return content
 
 
 def as_text(content: object, where: str) -> str:
     """Return a text."""
     if not isinstance(content, str):
-        raise LissomError(NOT_TEXT.format(where=where, content=shown(content)))
-    return shown_name(content)
+        raise LissomError(NOT_TEXT.format(where=where, content=repr_for_error(content)))
+    return display_name(content)
 
 
 def as_flag(content: object, where: str) -> bool:
     """Return true or false."""
     if not isinstance(content, bool):
-        raise LissomError(NOT_TRUE_OR_FALSE.format(where=where, content=shown(content)))
+        raise LissomError(NOT_TRUE_OR_FALSE.format(where=where, content=repr_for_error(content)))
     return content
 
 
 def as_whole(content: object, where: str) -> int:
     """Return a whole number."""
     if not isinstance(content, int) or isinstance(content, bool):
-        raise LissomError(NOT_WHOLE.format(where=where, content=shown(content)))
+        raise LissomError(NOT_WHOLE.format(where=where, content=repr_for_error(content)))
     return content
 
 
 def as_number(content: object, where: str) -> float:
     """Return a finite number."""
     if isinstance(content, bool) or not isinstance(content, (int, float)):
-        raise LissomError(NOT_NUMBER.format(where=where, content=shown(content)))
+        raise LissomError(NOT_NUMBER.format(where=where, content=repr_for_error(content)))
     try:
         number = float(content)
     except OverflowError:
         number = math.inf
     if not math.isfinite(number):
-        raise LissomError(NOT_FINITE.format(where=where, content=shown(content)))
+        raise LissomError(NOT_FINITE.format(where=where, content=repr_for_error(content)))
     return number
 
 
 def as_point(content: object, where: str) -> complex:
     """Return a point x + iy, written [x, y]."""
     if not isinstance(content, list) or len(content) != 2:
-        raise LissomError(NOT_POINT.format(where=where, content=shown(content)))
+        raise LissomError(NOT_POINT.format(where=where, content=repr_for_error(content)))
     return complex(as_number(content[0], f"{where}[0]"), as_number(content[1], f"{where}[1]"))
 
 
-def shown(content: object) -> str:
+def repr_for_error(content: object) -> str:
     """Return JSON for an error message, shortened where it is long."""
     text = json.dumps(content)
     return text if len(text) <= 60 else f"{text[:57]}..."
@@ -123,7 +123,7 @@ def load_json(path: Path, parse: Callable[[object], Parsed], *, largest: int) ->
     except UnicodeDecodeError as error:
         raise LissomError(f"{path} is not a text file in UTF-8") from error
     try:
-        return parse(json.loads(text, object_pairs_hook=without_repeats))
+        return parse(json.loads(text, object_pairs_hook=check_repeated_fields))
     except json.JSONDecodeError as error:
         raise LissomError(
             NOT_JSON.format(path=path, reason=error.msg, line=error.lineno, column=error.colno)
@@ -134,7 +134,7 @@ def load_json(path: Path, parse: Callable[[object], Parsed], *, largest: int) ->
         raise LissomError(f"{path}: {error}") from error
 
 
-def without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+def check_repeated_fields(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     """Refuse repeated fields; the `object_pairs_hook` of `json.loads`."""
     content = dict(pairs)
     if len(content) < len(pairs):
@@ -160,19 +160,19 @@ class Codec:
 
     write: Callable[[Any], Any]
     read: Callable[[object, str], Any]
-    known: Mapping[str, Any] = field(default_factory=dict)
+    known_fields: Mapping[str, Any] = field(default_factory=dict)
 
 
-def as_it_is(value: Any, _: str = "") -> Any:
+def verbatim(value: Any, _: str = "") -> Any:
     """Return a value that is its own JSON."""
     return value
 
 
-ANYTHING = Codec(as_it_is, as_it_is)
-FLAG = Codec(as_it_is, as_flag)
-WHOLE = Codec(as_it_is, as_whole)
-NUMBER = Codec(as_it_is, as_number)
-TEXT = Codec(as_it_is, as_text)
+ANYTHING = Codec(verbatim, verbatim)
+FLAG = Codec(verbatim, as_flag)
+WHOLE = Codec(verbatim, as_whole)
+NUMBER = Codec(verbatim, as_number)
+TEXT = Codec(verbatim, as_text)
 POINT = Codec(lambda point: [point.real, point.imag], as_point)
 
 
@@ -181,11 +181,11 @@ def optional(codec: Codec) -> Codec:
     return Codec(
         lambda value: None if value is None else codec.write(value),
         lambda content, where: None if content is None else codec.read(content, where),
-        codec.known,
+        codec.known_fields,
     )
 
 
-def several(codec: Codec) -> Codec:
+def list_of(codec: Codec) -> Codec:
     """Return a codec of tuples of so many values as there are."""
     return Codec(
         lambda values: [codec.write(value) for value in values],
@@ -201,7 +201,7 @@ def pair(
     what: str,
     *,
     make: Callable[[Any, Any], Any] = lambda one, other: (one, other),
-    of: Callable[[Any], tuple[Any, Any]] = as_it_is,
+    of: Callable[[Any], tuple[Any, Any]] = verbatim,
 ) -> Codec:
     """Return a codec of what is made of two values, which errors call by the words `what`."""
 
@@ -212,7 +212,7 @@ def pair(
     def read(content: object, where: str) -> Any:
         values = as_list(content, where)
         if len(values) != 2:
-            raise LissomError(f"{where} must be {what}, not {shown(values)}")
+            raise LissomError(f"{where} must be {what}, not {repr_for_error(values)}")
         return make(first.read(values[0], where), second.read(values[1], where))
 
     return Codec(write, read)
@@ -237,19 +237,23 @@ class Field:
 
     name: str
     codec: Codec
-    of: Callable[[Any], Any] | None = None
-    usual: Any = MISSING
-    earlier: Any = MISSING
-    was: str = ""
+    get: Callable[[Any], Any] | None = None
+    default: Any = MISSING
+    legacy_default: Any = MISSING
+    legacy_name: str = ""
 
-    def told(self, value: Any) -> Any:
+    def value_of(self, value: Any) -> Any:
         """Return what the field is of an object."""
-        return getattr(value, self.name) if self.of is None else self.of(value)
+        return getattr(value, self.name) if self.get is None else self.get(value)
 
     def read(self, content: JsonObject, where: str) -> Any:
         """Return what the field of some JSON is."""
-        absent = self.earlier if self.usual is MISSING else self.usual
-        name = self.was if self.name not in content and self.was in content else self.name
+        absent = self.legacy_default if self.default is MISSING else self.default
+        name = (
+            self.legacy_name
+            if self.name not in content and self.legacy_name in content
+            else self.name
+        )
         if name not in content and absent is not MISSING:
             return absent
         return self.codec.read(content[name], f"{where}.{name}" if where else name)
@@ -270,41 +274,43 @@ def record(
     unknown : callable, optional
         Returns what else there was in an object.
     """
-    known = {field.name: field.codec.known for field in fields}
-    known |= {field.was: field.codec.known for field in fields if field.was}
+    known = {field.name: field.codec.known_fields for field in fields}
+    known |= {field.legacy_name: field.codec.known_fields for field in fields if field.legacy_name}
 
     def write(value: Any) -> dict[str, Any]:
-        told = ((field, field.told(value)) for field in fields)
-        written = {field.name: field.codec.write(of) for field, of in told if of != field.usual}
-        return with_unknown(written, unknown(value) if unknown else {}, known)
+        told = ((field, field.value_of(value)) for field in fields)
+        written = {field.name: field.codec.write(of) for field, of in told if of != field.default}
+        return with_unknown_fields(written, unknown(value) if unknown else {}, known)
 
     def read(content: object, where: str) -> Any:
         content = as_object(content, where or "project.json")
         values = {field.name: field.read(content, where) for field in fields}
-        return make(**values, **({"unknown": unknown_in(content, known)} if unknown else {}))
+        return make(
+            **values, **({"unknown": find_unknown_fields(content, known)} if unknown else {})
+        )
 
     return Codec(write, read, {} if unknown else known)
 
 
-def part(make: Callable[..., Any], *fields: Field) -> Codec:
+def nested_record(make: Callable[..., Any], *fields: Field) -> Codec:
     """Return a codec of objects whose unknown fields are kept by the object that they are in."""
     return record(make, *fields, unknown=None)
 
 
-def unknown_in(content: Mapping[str, Any], known: Mapping[str, Any]) -> Mapping[str, Any]:
+def find_unknown_fields(content: Mapping[str, Any], known: Mapping[str, Any]) -> Mapping[str, Any]:
     """Return the fields that are not known, those of inner objects among them."""
     unknown = {}
     for name, value in content.items():
         if name not in known:
             unknown[name] = value
         elif known[name] and isinstance(value, dict):
-            inner = unknown_in(value, known[name])
+            inner = find_unknown_fields(value, known[name])
             if inner:
                 unknown[name] = inner
     return MappingProxyType(unknown)
 
 
-def with_unknown(
+def with_unknown_fields(
     written: dict[str, Any], unknown: Mapping[str, Any], known: Mapping[str, Any]
 ) -> dict[str, Any]:
     """Return an object with the unknown fields, which never take a known one's place."""
@@ -312,5 +318,5 @@ def with_unknown(
         if name not in known:
             written[name] = value
         elif isinstance(written.get(name), dict):
-            written[name] = with_unknown(written[name], value, known[name])
+            written[name] = with_unknown_fields(written[name], value, known[name])
     return written

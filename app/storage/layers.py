@@ -8,30 +8,30 @@ import numpy as np
 from PIL import Image, ImageChops
 
 from app.document import (
-    Composite,
+    CompositeGroup,
     Document,
     ExportSettings,
     Framing,
     Layer,
     Meshing,
     PictureFile,
-    composed,
+    composite_layers,
     is_visible,
     new_layer,
 )
-from app.errors import LissomError, Told, shown_name
+from app.errors import LissomError, NoticeCollector, display_name
 from app.storage.files import read_file
-from app.storage.opening import OpenedScene, cut_picture, scene_of
+from app.storage.opening import OpenedScene, build_scene, cut_picture
 from app.storage.pictures import (
     ImportedLayer,
     LayeredPicture,
-    Names,
     Picture,
+    UniqueNames,
     decode_pictures,
     encode_png,
     read_openraster,
     read_photoshop,
-    side_by_side,
+    run_parallel,
 )
 from engine.arrays import Bytes, readonly
 from engine.domain import CutOut, build_domain, rectangle_domain
@@ -74,11 +74,11 @@ def open_merged(path: Path, meshing: Meshing, cut_out: CutOut = CutOut()) -> Ope
         layer.id: cut_picture(scene.pictures[layer.id], layer.cut_out).texture
         for layer in scene.document.layers
     }
-    merged = encode_png(Image.fromarray(flattened(scene.document, textures)))
-    opened = scene_of(merged, path.with_suffix(".png"), meshing, cut_out)
+    merged = encode_png(Image.fromarray(flatten_layers(scene.document, textures)))
+    opened = build_scene(merged, path.with_suffix(".png"), meshing, cut_out)
     count = len(scene.document.layers)
     told = (f"the {count} layers of {path.name} are merged into one drawing",) if count > 1 else ()
-    document = replace(opened.document, told=scene.document.told)
+    document = replace(opened.document, import_log=scene.document.import_log)
     return opened._replace(document=document, notices=told + opened.notices)
 
 
@@ -88,7 +88,7 @@ def open_pictures(paths: Sequence[Path], meshing: Meshing) -> OpenedScene:
     The canvas is as large as the largest of them; the others stand in its middle.
     """
     all_imported: list[ImportedLayer] = []
-    names, told = Names(), Told()
+    names, told = UniqueNames(), NoticeCollector()
     files = [(read_file(path), str(path)) for path in paths]
     pictures = decode_pictures(files)
     size = (
@@ -96,16 +96,16 @@ def open_pictures(paths: Sequence[Path], meshing: Meshing) -> OpenedScene:
         max(picture.size[1] for picture in pictures),
     )
     for path, (data, _), picture in zip(paths, files, pictures, strict=True):
-        name = names.free(shown_name(path.stem))
+        name = names.claim(display_name(path.stem))
         corner = complex((size[0] - picture.size[0]) // 2, (size[1] - picture.size[1]) // 2)
         all_imported.append(ImportedLayer(name=name, data=data, picture=picture, corner=corner))
         for notice in picture.notices:
-            told.note(name, notice)
-    drawing = LayeredPicture(size=size, layers=tuple(all_imported), summary=told.summary)
+            told.add_note(name, notice)
+    drawing = LayeredPicture(size=size, layers=tuple(all_imported), summary=told.import_log)
     return _scene(drawing, meshing, is_cut_out=False)
 
 
-def flattened(document: Document, textures: Mapping[int, Bytes]) -> Bytes:
+def flatten_layers(document: Document, textures: Mapping[int, Bytes]) -> Bytes:
     """Return all layers that are seen at first as one picture, as drawn; a large one is reduced.
 
     Parameters
@@ -129,26 +129,26 @@ def flattened(document: Document, textures: Mapping[int, Bytes]) -> Bytes:
         moved.paste(imported, (round(corner.real), round(size[1] - corner.imag - imported.height)))
         return moved
 
-    def over(flat: Image.Image, parts: Sequence[Layer | Composite[Layer]]) -> Image.Image:
+    def over(flat: Image.Image, parts: Sequence[Layer | CompositeGroup[Layer]]) -> Image.Image:
         for part in parts:
-            if isinstance(part, Composite) and part.passes:
+            if isinstance(part, CompositeGroup) and part.is_pass_through:
                 faded = Image.blend(
                     flat.convert("RGBa"), over(flat, part.parts).convert("RGBa"), part.opacity
                 )
                 flat = faded.convert("RGBA")
-            elif isinstance(part, Composite):
+            elif isinstance(part, CompositeGroup):
                 flat = _blended(flat, over(Image.new("RGBA", size), part.parts), part)
             else:
                 flat = Image.alpha_composite(flat, drawn(part))
         return flat
 
     first = document.frames.first
-    seen = {each.id: each for each in document.exported if is_visible(document, each, first)}
-    painted = over(Image.new("RGBA", size), composed(document, seen, first))
+    seen = {each.id: each for each in document.exported_layers if is_visible(document, each, first)}
+    painted = over(Image.new("RGBA", size), composite_layers(document, seen, first))
     return readonly(np.asarray(painted))
 
 
-def _blended(below: Image.Image, above: Image.Image, how: Composite[Layer]) -> Image.Image:
+def _blended(below: Image.Image, above: Image.Image, how: CompositeGroup[Layer]) -> Image.Image:
     """Return a layer over what lies below it ("Compositing and Blending Level 1", Section 10)."""
     alpha = above.getchannel("A").point(lambda a: round(how.opacity * a))
     covered = below.getchannel("A")
@@ -173,7 +173,7 @@ def _reduced(rgba: Bytes, factor: int) -> Image.Image:
     return Image.fromarray(np.concatenate([Image.fromarray(row).reduce(factor) for row in rows]))
 
 
-def posable_layer(
+def make_posable_layer(
     imported: ImportedLayer, identity: int, meshing: Meshing, *, is_cut_out: bool
 ) -> tuple[Layer, tuple[str, ...]]:
     """Return the layer of a layer, as it was drawn, and what was done, in words.
@@ -217,24 +217,24 @@ def posable_layer(
     return layer, notices
 
 
-def still_picture(data: bytes, picture: Picture) -> Layer:
+def make_still_picture(data: bytes, picture: Picture) -> Layer:
     """Return the layer of a picture that stands still, its lower left corner at 0."""
     file = PictureFile(data=data, suffix=picture.suffix, size=picture.size)
     made = new_layer(file, rectangle_domain(*picture.size), Meshing(), WHOLE)
     return replace(made, still=True)
 
 
-def still_layer(layer: Layer) -> Layer:
+def make_still_layer(layer: Layer) -> Layer:
     """Return the layer as a picture that stands still where it was drawn, cut out as it is.
 
     What it is as a layer it stays, in time, too: it hangs, moves, fades and repeats as before.
     """
     domain = rectangle_domain(*layer.picture.size).moved(layer.corner)
     rest = new_layer(layer.picture, domain, layer.meshing, layer.cut_out)
-    return as_layer(replace(rest, still=True), layer)
+    return place_as_layer(replace(rest, still=True), layer)
 
 
-def as_layer(layer: Layer, replaced: Layer) -> Layer:
+def place_as_layer(layer: Layer, replaced: Layer) -> Layer:
     """Return a layer as it is drawn in the place of a layer, be that a still picture or not."""
     anchor = replaced.anchor
     if anchor is not None:
@@ -250,15 +250,15 @@ def as_layer(layer: Layer, replaced: Layer) -> Layer:
         reference=replaced.reference,
         locked=replaced.locked,
         hidden=replaced.hidden,
-        switches=replaced.switches,
+        visibility_keys=replaced.visibility_keys,
         opacity=replaced.opacity,
-        opacities=replaced.opacities,
+        opacity_keys=replaced.opacity_keys,
         blend=replaced.blend,
         clipped=replaced.clipped,
         group=replaced.group,
-        joints=replaced.joints,
-        movement=replaced.movement,
-        placings=replaced.placings,
+        attachments=replaced.attachments,
+        transform_keys=replaced.transform_keys,
+        draw_order_keys=replaced.draw_order_keys,
         unknown=replaced.unknown,
     )
 
@@ -266,8 +266,8 @@ def as_layer(layer: Layer, replaced: Layer) -> Layer:
 def _scene(drawing: LayeredPicture, meshing: Meshing, *, is_cut_out: bool) -> OpenedScene:
     share = max(FEWEST_TRIANGLES, meshing.triangles // len(drawing.layers))
     each = replace(meshing, triangles=min(meshing.triangles, share))
-    made = side_by_side(
-        lambda numbered: posable_layer(numbered[1], numbered[0], each, is_cut_out=is_cut_out),
+    made = run_parallel(
+        lambda numbered: make_posable_layer(numbered[1], numbered[0], each, is_cut_out=is_cut_out),
         enumerate(drawing.layers),
         (imported.picture.size for imported in drawing.layers),
     )
@@ -280,10 +280,10 @@ def _scene(drawing: LayeredPicture, meshing: Meshing, *, is_cut_out: bool) -> Op
     if all(layer.still for layer in layers):
         raise LissomError("none of its layers can be posed: there is no shape on any of them")
     pictures = {index: imported.picture for index, imported in enumerate(drawing.layers)}
-    told = Told()
+    told = NoticeCollector()
     for layer, notices in made:
         for notice in notices:
-            told.note(layer.name, notice)
+            told.add_note(layer.name, notice)
     # A drawing with a background has a frame of its own.
     framing: Framing = "canvas" if layers[0].still else "fit"
     document = Document(
@@ -291,6 +291,6 @@ def _scene(drawing: LayeredPicture, meshing: Meshing, *, is_cut_out: bool) -> Op
         size=drawing.size,
         export=ExportSettings(framing=framing),
         groups=drawing.groups,
-        told=drawing.summary + told.summary,
+        import_log=drawing.summary + told.import_log,
     )
     return OpenedScene(document, pictures)

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import NamedTuple, Self
 
 from app.document import Document, Meshing, PictureFile, new_layer
-from app.errors import shown_name
+from app.errors import display_name
 from app.storage.files import read_file
 from app.storage.pictures import Picture, decode_picture
 from engine.arrays import Booleans, Bytes, freeze
@@ -27,7 +27,7 @@ class OpenedScene(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Cut:
+class CutOutResult:
     """What is left of a picture that was cut out.
 
     Parameters
@@ -47,7 +47,7 @@ class Cut:
     mask: Mask
     texture: Bytes
     is_all: bool
-    leftover: Booleans | None = None
+    background_like: Booleans | None = None
     find_holes: Callable[[], HoleMap | None] = lambda: None
 
     @classmethod
@@ -81,10 +81,10 @@ def open_picture(path: Path, meshing: Meshing, cut_out: CutOut = CutOut()) -> Op
     LissomError, EngineError
         If the file is no picture, or has no subject that can be outlined.
     """
-    return scene_of(read_file(path), path, meshing, cut_out)
+    return build_scene(read_file(path), path, meshing, cut_out)
 
 
-def scene_of(data: bytes, path: Path, meshing: Meshing, cut_out: CutOut) -> OpenedScene:
+def build_scene(data: bytes, path: Path, meshing: Meshing, cut_out: CutOut) -> OpenedScene:
     """Return the scene of one picture, of the contents of a file with this name."""
     picture = decode_picture(data, str(path))
     domain, remedies = build_domain(
@@ -92,12 +92,12 @@ def scene_of(data: bytes, path: Path, meshing: Meshing, cut_out: CutOut) -> Open
     )
     file = PictureFile(data=data, suffix=picture.suffix, size=picture.size)
     layer = new_layer(file, domain, meshing, cut_out)
-    named = replace(layer, name=shown_name(path.stem).strip() or layer.name)
+    named = replace(layer, name=display_name(path.stem).strip() or layer.name)
     notices = picture.notices + remedies
     return OpenedScene(Document(layers=(named,)), {named.id: picture}, notices)
 
 
-def cut_picture(picture: Picture, cut_out: CutOut, *, is_alone: bool = True) -> Cut:
+def cut_picture(picture: Picture, cut_out: CutOut, *, is_alone: bool = True) -> CutOutResult:
     """Cut the subject out of a picture; where there is none, all of it stays.
 
     Its holes take time and memory: unless it is alone, they are found when they are asked for.
@@ -106,7 +106,7 @@ def cut_picture(picture: Picture, cut_out: CutOut, *, is_alone: bool = True) -> 
         subject = subject_mask(picture.rgba, cut_out)
     except EngineError:
         # Of a project that was saved before a cut-out that cannot be was changed again.
-        return Cut.of(freeze(picture.rgba[..., 3] > 0), picture.rgba)
+        return CutOutResult.of(freeze(picture.rgba[..., 3] > 0), picture.rgba)
 
     packed, enclosed, opens = Mask.of(subject.mask), subject.enclosed, subject.opens
 
@@ -119,4 +119,4 @@ def cut_picture(picture: Picture, cut_out: CutOut, *, is_alone: bool = True) -> 
 
     if is_alone:
         find()
-    return Cut.of(subject.mask, texture(picture.rgba, subject), enclosed, find)
+    return CutOutResult.of(subject.mask, texture(picture.rgba, subject), enclosed, find)

@@ -11,7 +11,7 @@ from typing import Any, Literal
 
 from app.document import LINEAR, Easing
 from app.errors import LissomError
-from app.export_formats import full_colour
+from app.export_formats import expand_colour
 from app.storage.files import read_file, write_atomically
 
 ThemeName = Literal["dark", "light"]
@@ -136,7 +136,7 @@ def load_preferences(folder: Path) -> Preferences:
 def save_preferences(folder: Path, preferences: Preferences) -> None:
     """Write the preferences; where that fails, they are as before next time."""
     # Paths, alone or in a list, are what JSON does not know.
-    content = {**asdict(preferences), "easing": preferences.easing.written()}
+    content = {**asdict(preferences), "easing": preferences.easing.to_json()}
     text = json.dumps(content, indent=1, default=str).encode()
     make_settings_folder(folder)
     write_atomically(folder / "preferences.json", lambda file: file.write(text), is_private=True)
@@ -157,7 +157,7 @@ def _understood(content: dict[str, Any]) -> Preferences:
         Path(told) if isinstance(told := content.get(name), str) else None
         for name in ("folder", "exported")
     )
-    backdrop = full_colour(str(content.get("backdrop"))).lower()
+    backdrop = expand_colour(str(content.get("backdrop"))).lower()
     return Preferences(
         theme="light" if content.get("theme") == "light" else "dark",
         scale=float(number("scale", SMALLEST_SCALE, LARGEST_SCALE)),

@@ -25,13 +25,13 @@ from app.document import Document, Layer
 from app.errors import EXPECTED_ERRORS, LissomError, shortened
 from app.storage.files import (
     DAMAGED_ZIP,
-    opened_file,
-    opened_zip,
+    open_file,
+    open_zip,
     sync_folder,
     tail_digest,
     write_atomically,
 )
-from app.storage.json_values import JsonObject, as_object, as_text, as_whole, without_repeats
+from app.storage.json_values import JsonObject, as_object, as_text, as_whole, check_repeated_fields
 from app.storage.project import (
     MEBIBYTE,
     NO_PROJECT,
@@ -85,7 +85,7 @@ def save_project(
     if thumbnail is not None:
         members[THUMBNAIL] = thumbnail
     # Later versions may know better, but never what this one writes.
-    members = {**document.attachments, **members}
+    members = {**document.unknown_members, **members}
 
     def write(file: IO[bytes]) -> str:
         write_archive(file, members)
@@ -100,7 +100,7 @@ def save_project(
 def project_digest(path: Path) -> str | None:
     """Return what tells the contents of a project file from others; None where there is none."""
     try:
-        with opened_file(path) as (file, _):
+        with open_file(path) as (file, _):
             return tail_digest(file)
     except FileNotFoundError:
         return None
@@ -118,7 +118,7 @@ def load_project(path: Path) -> Document:
         message says which.
     """
     try:
-        with opened_file(path) as (file, size), opened_zip(file) as members:
+        with open_file(path) as (file, size), open_zip(file) as members:
             document = _read(Archive(members, size))
     except OSError as error:
         raise LissomError(f"cannot read {path}: {error.strerror or error}") from error
@@ -138,7 +138,7 @@ def load_thumbnail(path: Path) -> bytes | None:
 def load_member(path: Path, name: str, largest: int) -> bytes | None:
     """Read only one member of a project; None where it has none such, or is no project."""
     try:
-        with opened_file(path) as (file, size), opened_zip(file) as members:
+        with open_file(path) as (file, size), open_zip(file) as members:
             return Archive(members, size).read(name, largest=largest)
     except (OSError, *EXPECTED_ERRORS, *DAMAGED_ZIP):
         return None
@@ -157,7 +157,7 @@ def _require_readable(
     arrays = {name: content for name, content in members.items() if name != PROJECT_JSON}
     size = file.seek(0, os.SEEK_END)
     try:
-        with opened_zip(file) as written:
+        with open_zip(file) as written:
             _read(Archive(written, size, arrays), known)
     except (*EXPECTED_ERRORS, *DAMAGED_ZIP) as error:
         raise LissomError(
@@ -176,7 +176,11 @@ def _read(archive: Archive, known: Mapping[int, Layer] = MappingProxyType({})) -
         raise LissomError(f"its schema {schema} does not exist")
     document = read_document(content, archive, known)
     attachments = {name: archive.read(name) for name in archive.unread if name != THUMBNAIL}
-    return replace(document, attachments=MappingProxyType(attachments)) if attachments else document
+    return (
+        replace(document, unknown_members=MappingProxyType(attachments))
+        if attachments
+        else document
+    )
 
 
 def _read_json(archive: Archive) -> JsonObject:
@@ -189,7 +193,7 @@ def _read_json(archive: Archive) -> JsonObject:
     try:
         content = json.loads(
             text,
-            object_pairs_hook=without_repeats,
+            object_pairs_hook=check_repeated_fields,
             parse_float=_finite,
             parse_constant=_finite,
         )

@@ -8,8 +8,8 @@ import numpy as np
 from PIL import Image, ImageSequence
 
 from app.errors import LissomError
-from app.storage.files import opened_file
-from app.storage.pictures import DECODER_ERRORS, FORMATS, let_go, upright
+from app.storage.files import open_file
+from app.storage.pictures import DECODER_ERRORS, FORMATS, apply_orientation, release_pages
 from app.storage.project_file import load_thumbnail
 from engine.arrays import Bytes, readonly
 
@@ -30,12 +30,12 @@ def draw_thumbnail(rgba: Bytes, side: int = SIDE) -> bytes:
     return file.getvalue()
 
 
-def shrink(rgba: Bytes, side: int) -> Bytes:
+def shrink_picture(rgba: Bytes, side: int) -> Bytes:
     """Return what is drawn on a picture, uint8 (h, w, 4), made small: its sides at most `side`."""
     image = Image.fromarray(rgba)
     drawn = image.crop(image.getchannel("A").getbbox())
     drawn.thumbnail((side, side))
-    let_go(rgba)
+    release_pages(rgba)
     return readonly(np.asarray(drawn))
 
 
@@ -48,16 +48,16 @@ def read_thumbnail(path: Path) -> Bytes | None:
         if path.suffix.lower() == PROJECT:
             content = load_thumbnail(path)
             return None if content is None else _small(io.BytesIO(content), ("PNG",))
-        with opened_file(path) as (file, _):
+        with open_file(path) as (file, _):
             return _small(file, tuple(FORMATS))
     except (LissomError, MemoryError, *DECODER_ERRORS, *BOMBS):
         return None
 
 
-def read_moments(path: Path) -> list[Bytes]:
+def read_animation_frames(path: Path) -> list[Bytes]:
     """Return the pictures of a small animation, uint8 (h, w, 4); none where it cannot be read."""
     try:
-        with opened_file(path) as (file, _), Image.open(file, formats=("WEBP",)) as moving:
+        with open_file(path) as (file, _), Image.open(file, formats=("WEBP",)) as moving:
             frames = ImageSequence.Iterator(moving)
             return [np.asarray(frame.convert("RGBA")) for frame in frames]
     except (LissomError, MemoryError, *DECODER_ERRORS, *BOMBS):
@@ -71,4 +71,4 @@ def _small(file: IO[bytes], formats: tuple[str, ...]) -> Bytes | None:
             return None
         small = image.convert("RGBA")
         small.thumbnail((SIDE, SIDE))
-        return np.asarray(upright(small)[0])
+        return np.asarray(apply_orientation(small)[0])

@@ -23,7 +23,7 @@ class Panel:
     draw: Callable[[Session, Look, Project], list[Action]]
     place: Literal["MainDockSpace", "side", "bottom"] = "side"
     # What is drawn first, and stays in sight where `draw` fails.
-    draw_ground: Callable[[Session, Look, Project], list[Action]] | None = None
+    draw_background: Callable[[Session, Look, Project], list[Action]] | None = None
 
     @property
     def labels(self) -> tuple[str, str, str]:

@@ -4,7 +4,7 @@ from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.editor import Action, Session, Toast, do
 from app.editor.actions import dismiss
-from app.ui.style import TOAST, Look, ink, small
+from app.ui.style import TOAST, Look, colour_u32, small_text
 
 SECONDS = {"info": 5.0, "good": 8.0, "error": 15.0}
 FADE = 0.25  # seconds
@@ -17,7 +17,7 @@ ICONS = {
 }
 
 
-def draw(session: Session, look: Look) -> list[Action]:
+def draw_toasts(session: Session, look: Look) -> list[Action]:
     """Draw the newest messages; those whose time is over ask to be dismissed."""
     actions: list[Action] = []
     viewport = imgui.get_main_viewport()
@@ -69,7 +69,7 @@ def _contents(toast: Toast, look: Look) -> list[Action]:
     imgui.pop_text_wrap_pos()
     details = f"Details##{toast.born}"  # those of others may be open
     if toast.details and imgui.tree_node_ex(details, imgui.TreeNodeFlags_.no_tree_push_on_open):
-        small(look, toast.details.strip()[-1500:])
+        small_text(look, toast.details.strip()[-1500:])
     if toast.details and imgui.small_button("Copy"):
         imgui.set_clipboard_text(f"{toast.text}\n\n{toast.details}")
     if toast.action is not None:
@@ -91,7 +91,7 @@ def _stripe(toast: Toast, look: Look) -> None:
     imgui.get_window_draw_list().add_rect_filled(
         corner,
         ImVec2(corner.x + 0.22 * look.em, corner.y + size.y),
-        ink(_colour(toast, look)),
+        colour_u32(_colour(toast, look)),
         0.22 * look.em,
     )
 

@@ -14,7 +14,7 @@ from imgui_bundle import (
 
 from app.editor import Action, Session, do
 from app.editor.actions import files, guiding
-from app.errors import shown_name
+from app.errors import display_name
 from app.render import Thumbnail
 from app.ui.shortcuts import BINDINGS
 from app.ui.style import (
@@ -22,18 +22,18 @@ from app.ui.style import (
     SMALL,
     TITLE,
     Look,
-    bold,
-    ink,
+    bold_text,
+    colour_u32,
     main_button,
+    push_text_size,
     show_picture,
-    sized,
     text_button,
 )
 
 CARD, TALL, GAP, ROW = 11.5, 11.2, 1.0, 2.5  # em
 FIRST, FOOT = 6.4, 3.5  # em: height of the card that begins, and of the words on the others
-LED = "Giraffe"  # the sample by which one begins
-MOMENTS = 10.0  # pictures of a moving sample in a second
+TUTORIAL_SAMPLE = "Giraffe"  # the sample by which one begins
+SAMPLE_FPS = 10.0  # pictures of a moving sample in a second
 WIDTH = 4 * CARD + 3 * GAP
 MOST_RECENT = 6
 FLAGS = (
@@ -54,7 +54,7 @@ class Previews(NamedTuple):
     moving: Callable[[Path], list[Thumbnail]]
 
 
-def draw(session: Session, look: Look, pictures: Previews) -> list[Action]:
+def draw_welcome(session: Session, look: Look, pictures: Previews) -> list[Action]:
     """Cover the window with samples to open and the ways to open one's own picture."""
     viewport = imgui.get_main_viewport()
     imgui.set_next_window_pos(viewport.work_pos)
@@ -80,10 +80,10 @@ def draw(session: Session, look: Look, pictures: Previews) -> list[Action]:
 
 def _greeting(session: Session, look: Look) -> list[Action]:
     actions: list[Action] = []
-    with sized(TITLE, look.bold):
+    with push_text_size(TITLE, look.bold):
         imgui.text("Lissom")
     told = "Pose a drawing with a few handles, and get in-betweens that never fold."
-    with sized(LARGE):
+    with push_text_size(LARGE):
         imgui.text_colored(look.palette.dim, told)
     imgui.dummy(ImVec2(0, 0.8 * look.em))
     binding = BINDINGS["open"]
@@ -99,7 +99,7 @@ def _greeting(session: Session, look: Look) -> list[Action]:
 
 def _first(look: Look, pictures: Previews) -> list[Action]:
     """Draw the way to a first animation, by the giraffe or by an own drawing."""
-    sample = next((each for each in files.samples() if each.name == LED), None)
+    sample = next((each for each in files.samples() if each.name == TUTORIAL_SAMPLE), None)
     if sample is None:
         return []
     actions: list[Action] = []
@@ -112,12 +112,12 @@ def _first(look: Look, pictures: Previews) -> list[Action]:
     room = ImVec2(FIRST * em, size.y - 0.8 * em)
     _show_sample(sample, pictures, corner + ImVec2(0.8 * em, 0.4 * em), room)
     draw_list, left = imgui.get_window_draw_list(), corner.x + (FIRST + 2.2) * em
-    with sized(LARGE, look.bold):
+    with push_text_size(LARGE, look.bold):
         draw_list.add_text(
-            ImVec2(left, corner.y + 0.9 * em), ink(palette.text), "Make this giraffe bow"
+            ImVec2(left, corner.y + 0.9 * em), colour_u32(palette.text), "Make this giraffe bow"
         )
     told = "Five steps to a first animation, from a handle to a GIF. It takes about a minute."
-    draw_list.add_text(ImVec2(left, corner.y + 2.5 * em), ink(palette.dim), told)
+    draw_list.add_text(ImVec2(left, corner.y + 2.5 * em), colour_u32(palette.dim), told)
     below = imgui.get_cursor_pos()
     imgui.set_cursor_screen_pos(ImVec2(left, corner.y + 4.1 * em))
     if text_button("…or with your own drawing", hint="Open it, and go through the same steps"):
@@ -129,7 +129,7 @@ def _first(look: Look, pictures: Previews) -> list[Action]:
 
 def _samples(look: Look, pictures: Previews) -> list[Action]:
     actions: list[Action] = []
-    bold(look, "Try one of these")
+    bold_text(look, "Try one of these")
     imgui.dummy(ImVec2(0, 0.2 * look.em))
     for index, sample in enumerate(files.samples()):
         if index % 4:
@@ -150,11 +150,11 @@ def _card(look: Look, sample: files.SampleFile, pictures: Previews) -> bool:
     _show_sample(sample, pictures, corner + ImVec2(0.7 * em, 0.7 * em), room)
     draw_list, opposite = imgui.get_window_draw_list(), corner + size
     text = ImVec2(corner.x + 0.9 * em, opposite.y - (FOOT - 0.45) * em)
-    draw_list.add_text(text, ink(palette.text), sample.name)
+    draw_list.add_text(text, colour_u32(palette.text), sample.name)
     end = ImVec2(opposite.x - 0.9 * em - imgui.calc_text_size(sample.what).x, text.y)
-    draw_list.add_text(end, ink(palette.dim), sample.what)
-    with sized(SMALL):
-        draw_list.add_text(text + ImVec2(0, 1.4 * em), ink(palette.dim), sample.story)
+    draw_list.add_text(end, colour_u32(palette.dim), sample.what)
+    with push_text_size(SMALL):
+        draw_list.add_text(text + ImVec2(0, 1.4 * em), colour_u32(palette.dim), sample.story)
     return pressed
 
 
@@ -164,8 +164,8 @@ def _frame(look: Look, corner: ImVec2, size: ImVec2, *, is_hot: bool) -> None:
     ground, edge, width = palette.panel, palette.line, 1.0
     if is_hot:
         ground, edge, width = palette.raised, palette.accent, 1.5
-    draw_list.add_rect_filled(corner, opposite, ink(ground), 0.6 * look.em)
-    draw_list.add_rect(corner, opposite, ink(edge), 0.6 * look.em, width)
+    draw_list.add_rect_filled(corner, opposite, colour_u32(ground), 0.6 * look.em)
+    draw_list.add_rect(corner, opposite, colour_u32(edge), 0.6 * look.em, width)
 
 
 def _show_sample(
@@ -180,7 +180,7 @@ def _show_sample(
     elif moments := pictures.moving(sample.moving):
         # Another picture is due soon, whatever else goes on.
         hello_imgui.request_refresh()
-        image = moments[int((now - storage.get_float(began, now)) * MOMENTS) % len(moments)]
+        image = moments[int((now - storage.get_float(began, now)) * SAMPLE_FPS) % len(moments)]
     if image is not None:
         show_picture(image.texture, image.size, corner, room)
 
@@ -190,7 +190,7 @@ def _recent(session: Session, look: Look, pictures: Previews) -> list[Action]:
     recent = files.recent_files(session)[:MOST_RECENT]
     if not recent:
         return actions
-    bold(look, "Recent")
+    bold_text(look, "Recent")
     for index, (path, is_there) in enumerate(recent):
         if index % 2:
             imgui.same_line(0, GAP * look.em)
@@ -215,10 +215,10 @@ def _row(look: Look, path: Path, index: int, image: Thumbnail | None, *, is_ther
         _write(icons.ICON_FA_CLOCK_ROTATE_LEFT, corner.x + em, corner.y + 0.5 * size.y)
     else:
         show_picture(image.texture, image.size, corner, ImVec2(3 * em, size.y))
-    _write(shown_name(path.name), corner.x + 3.6 * em, corner.y + 0.3 * size.y)
+    _write(display_name(path.name), corner.x + 3.6 * em, corner.y + 0.3 * size.y)
     where = str(path.parent) if is_there else f"not found in {path.parent}"
-    with sized(SMALL), imgui_ctx.push_style_color(imgui.Col_.text, look.palette.dim):
-        _write(shown_name(where), corner.x + 3.6 * em, corner.y + 0.72 * size.y)
+    with push_text_size(SMALL), imgui_ctx.push_style_color(imgui.Col_.text, look.palette.dim):
+        _write(display_name(where), corner.x + 3.6 * em, corner.y + 0.72 * size.y)
     imgui.pop_clip_rect()
     return clicked
 

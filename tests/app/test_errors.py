@@ -1,15 +1,15 @@
 import pytest
 
 from app.errors import (
-    LONGEST_MESSAGE,
-    LONGEST_SHOWN,
-    MOST_SHOWN,
-    Told,
+    MAX_LISTED,
+    MAX_MESSAGE_LENGTH,
+    MAX_TEXT_LENGTH,
+    NoticeCollector,
+    display_message,
     few_notices,
-    listed,
+    join_names,
     printable,
     shortened,
-    shown_message,
 )
 
 
@@ -28,24 +28,24 @@ def test_control_characters_are_shown_as_escapes(text, shown):
 
 
 def test_texts_of_others_are_cut_where_they_are_long():
-    assert shortened("x" * LONGEST_SHOWN) == "x" * LONGEST_SHOWN
+    assert shortened("x" * MAX_TEXT_LENGTH) == "x" * MAX_TEXT_LENGTH
     for long in ("x" * 121, "\x1b" * 100):
-        assert len(shortened(long)) == LONGEST_SHOWN
+        assert len(shortened(long)) == MAX_TEXT_LENGTH
         assert shortened(long).endswith("…")
 
 
 def test_a_message_is_one_line_whose_long_parts_are_cut():
-    shown = shown_message(f"the layer {'x' * 900!r} is\nin two choices; the user's layer's name")
+    shown = display_message(f"the layer {'x' * 900!r} is\nin two choices; the user's layer's name")
     assert shown == f"the layer '{'x' * 119}…' is in two choices; the user's layer's name"
-    assert len(shown_message("word " * 5000)) == LONGEST_MESSAGE + 1
+    assert len(display_message("word " * 5000)) == MAX_MESSAGE_LENGTH + 1
 
 
 def test_many_names_and_notices_are_counted():
     names = [f"n{number}" for number in range(2_000)]
-    assert listed(names[:MOST_SHOWN]) == ", ".join(names[:MOST_SHOWN])
-    assert listed(names).endswith("n9 and 1,990 more")
-    assert few_notices(names) == [*names[:MOST_SHOWN], "and 1,990 more"]
-    told = Told()
+    assert join_names(names[:MAX_LISTED]) == ", ".join(names[:MAX_LISTED])
+    assert join_names(names).endswith("n9 and 1,990 more")
+    assert few_notices(names) == [*names[:MAX_LISTED], "and 1,990 more"]
+    told = NoticeCollector()
     for name in ("a\x1b", *names):
-        told.lose(name, "is lost")
-    assert told.summary.losses == (rf"a\x1b, {', '.join(names[:9])} and 1,991 more: is lost",)
+        told.add_warning(name, "is lost")
+    assert told.import_log.warnings == (rf"a\x1b, {', '.join(names[:9])} and 1,991 more: is lost",)

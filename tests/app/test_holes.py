@@ -13,9 +13,9 @@ from app.cli.main import main
 from app.document import Document, Handle, Keyframe, Meshing, Pose, Target, clip_of, new_layer
 from app.errors import LissomError
 from app.motion import Animation
-from app.motion.posable_mesh import PosableMesh
+from app.motion.deform_mesh import DeformMesh
 from app.reports import certify_clip
-from app.solving.drag import fit_map
+from app.solving.drag_solver import fit_map
 from app.storage import load_project, save_project
 from engine.domain import CutOut, MeshedDomain, build_domain, require_domain
 from engine.domain.meshing import triangulate
@@ -95,9 +95,9 @@ def test_a_handle_or_anchor_in_a_hole_is_refused():
 def test_the_screen_shows_the_map_around_a_hole():
     (layer,) = document().layers
     pose = layer.keys[1].pose
-    mesh = PosableMesh.fine(layer.domain)
+    mesh = DeformMesh.fine(layer.domain)
     expected = layer.map_of(pose)(layer.domain.mesh.vertices)
-    assert_allclose(mesh.posed(pose), expected, rtol=0, atol=1e-3)
+    assert_allclose(mesh.pose_vertices(pose), expected, rtol=0, atol=1e-3)
 
 
 def test_a_motion_around_a_hole_is_certified_and_its_correction_told(tmp_path, capsys):
@@ -108,7 +108,7 @@ def test_a_motion_around_a_hole_is_certified_and_its_correction_told(tmp_path, c
     clip = clip_of(from_key_to_key, layer.id)
     report = certify_clip(clip)
     assert all(own.certified for _, own in report.keys)
-    for interval in report.intervals:
+    for interval in report.segments:
         assert interval.correction > 1e-4
         assert interval.reached.k <= 1.05 * interval.keys.k
     main(["certify", str(path)])

@@ -7,7 +7,7 @@ import numpy as np
 
 from app.document import Clip, FrameRange, Spring, Track, TrackKey, clip_of, pinned_segments
 from app.motion import Animation
-from app.motion.inbetweens import AutoPins, PoseSampler, SolvedTracks
+from app.motion.inbetweens import AutoPins, PoseSampler, SecondaryCorrection
 from app.storage import load_project, sample_images
 from engine.interpolation import finish
 from engine.streaming import Positions, Series, build_series
@@ -46,10 +46,10 @@ def tables(extent: Extent) -> Iterator[Table]:
                 for number in range(8)
             )
             track = Track(handles=(own,), keys=keys)
-            wagging = replace(clip, layer=replace(layer, tracks=(track,), stillness=False))
+            wagging = replace(clip, layer=replace(layer, tracks=(track,), has_auto_pins=False))
             rows.append(_row(f"{handle!r} wags by {size:.0f} px", wagging, extent.frames))
         spring = Spring(handle=own, frequency=1.6, damping=0.18)
-        swinging = replace(clip, layer=replace(layer, springs=(spring,), stillness=False))
+        swinging = replace(clip, layer=replace(layer, springs=(spring,), has_auto_pins=False))
         rows.append(_row(f"{handle!r} swings on a spring", swinging, extent.frames))
         rows.append(_edit_row(clip, own, extent.frames))
         count = sum(map(len, layer.domain.cages))
@@ -64,7 +64,7 @@ def _pin_rows(clip: Clip, frames: int) -> list[Row]:
         return []
     layer = clip.layer
     handles = np.array([handle.position for handle in layer.handles])
-    loose = replace(clip, layer=replace(layer, stillness=False))
+    loose = replace(clip, layer=replace(layer, has_auto_pins=False))
     rows, plain = [], 0.0
     for name, each in (("a segment without pins", loose), ("the same with pins", clip)):
 
@@ -106,7 +106,7 @@ def _edit_row(clip: Clip, wagged: int, frames: int) -> Row:
         if corrections is None:
             raise ValueError("nothing is corrected")
         for number in range(every):
-            corrections.at(float(edited.frames.first + number))
+            corrections.correction_at(float(edited.frames.first + number))
 
     name = f"a track and {len(springs)} springs, all {every} frames after an edit"
     return Row(name=name, seconds=measure(follow, repeats=1), note="")
@@ -118,15 +118,19 @@ def _row(name: str, clip: Clip, frames: int) -> Row:
     corrections = animation.corrections
     if corrections is None:
         raise ValueError(f"nothing of {name} is corrected")
-    corrections.at(0.0)  # what is prepared once
-    found: list[SolvedTracks | None] = []
+    corrections.correction_at(0.0)  # what is prepared once
+    found: list[SecondaryCorrection | None] = []
 
     def play() -> None:
         animation.sampler.known.corrections.clear()
-        found[:] = [corrections.at(clip.frames.first + 1.0 + number) for number in range(frames)]
+        found[:] = [
+            corrections.correction_at(clip.frames.first + 1.0 + number) for number in range(frames)
+        ]
 
     seconds = measure(play, repeats=1) / frames
     steps = [each.steps for each in found if each is not None]
-    miss = max((max(each.misses.values(), default=0.0) for each in found if each), default=0.0)
+    miss = max(
+        (max(each.target_errors.values(), default=0.0) for each in found if each), default=0.0
+    )
     note = f"{np.mean(steps or [0]):.1f} steps, at most {max(steps, default=0)}"
     return Row(name=name, seconds=seconds, note=f"{note}; misses by {miss:.2f} px at most")

@@ -24,11 +24,11 @@ from app.document import (
     clip_of,
     new_layer,
 )
-from app.errors import missing
-from app.export import ExportRequest, KeptPoses, Painter, plan_export
+from app.errors import install_hint
+from app.export import CachedVertices, ExportRequest, FrameRenderer, plan_export
 from app.export.writers.png import encode_png
 from app.export_formats import EXPORT_FORMATS
-from app.motion import Animation, box_around
+from app.motion import Animation, bounding_box
 from app.render import Renderer
 from app.render.gpu import RenderTarget, create_context
 from app.storage import decode_picture, load_project, sample_images, save_project
@@ -71,14 +71,14 @@ def _speed(extent: Extent) -> Table:
     layer = document.layers[0]
     pictures = {layer.id: decode_picture(layer.picture.data, "").rgba}
     context = create_context()
-    poses = {layer.id: KeptPoses(Animation(clip_of(document, layer.id)))}
+    poses = {layer.id: CachedVertices(Animation(clip_of(document, layer.id)))}
     middle = float((extent.frames - 1) // 2)
     places = poses[layer.id].positions(middle)
     with tempfile.TemporaryDirectory() as folder:
         request = ExportRequest(out=Path(folder), settings=document.export, project="giraffe")
         plan = plan_export(document, request, poses)
         start = time.process_time()
-        painter = Painter(context, document, pictures, poses, plan)
+        painter = FrameRenderer(context, document, pictures, poses, plan)
         posed = painter.pose(middle)
         frame = painter.draw(posed)
         begun = time.process_time() - start
@@ -113,7 +113,7 @@ def _speed(extent: Extent) -> Table:
 
 def _part_around(points: Complexes) -> tuple[int, int, int, int]:
     """Return left, top, width and height of the pixels that points (n,) of a frame span."""
-    box = box_around(points)
+    box = bounding_box(points)
     size = box.upper - box.lower
     return int(box.lower.real), int(box.lower.imag), int(size.real), int(size.imag)
 
@@ -145,7 +145,7 @@ def _formats(folder: Path, names: tuple[str, ...]) -> Table:
     rows = []
     for name in names:
         format_ = EXPORT_FORMATS[name]
-        if not format_.suffixes or (format_.extra and missing(format_.extra)):
+        if not format_.suffixes or (format_.extra and install_hint(format_.extra)):
             continue
         out = folder / f"{name}{format_.suffixes[0]}"
         words = ["--format", name] if name == "glb" else ["--format", name, "--size", "480x464"]
@@ -163,7 +163,7 @@ def _pinned(folder: Path, name: str, frames: str, repeats: int) -> Table:
     document = load_project(sample_images() / f"{name}.lissom")
     words = {False: "without auto-pins", True: "with auto-pins"}
     for pinned in words:
-        layers = tuple(replace(each, stillness=pinned) for each in document.layers)
+        layers = tuple(replace(each, has_auto_pins=pinned) for each in document.layers)
         save_project(folder / f"{pinned}.lissom", replace(document, layers=layers))
     runs = [
         (pinned, _export(str(folder / f"{pinned}.lissom"), "--frames", frames, "--out", str(out)))

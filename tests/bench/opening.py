@@ -10,13 +10,13 @@ from pathlib import Path
 from typing import Any
 
 from app.document import (
-    alternates,
     clip_of,
-    composed,
-    exported_frames,
-    fronts_at,
+    composite_layers,
+    depth_points_at,
+    export_frame_range,
     layer_tree,
-    sights_of,
+    suggest_switch_groups,
+    visibility_keys,
 )
 from app.errors import LissomError
 from app.storage import load_project, sample_images
@@ -82,13 +82,13 @@ def _opened(name: str, path: Path) -> Row:
         _, _, refusal = str(error).partition(": ")
     else:
         layer_tree(document)
-        alternates(document)
-        composed(document, {}, document.frames.last)
-        exported_frames(document)
+        suggest_switch_groups(document)
+        composite_layers(document, {}, document.frames.last)
+        export_frame_range(document)
         for layer in document.layers:
-            sights_of(document, layer)
-            fronts_at(clip_of(document, layer.id), document.frames.last)
-            document.carriers(layer.id, document.frames.last)
+            visibility_keys(document, layer)
+            depth_points_at(clip_of(document, layer.id), document.frames.last)
+            document.parent_chain(layer.id, document.frames.last)
     return Row(name=name, seconds=time.process_time() - begun, note=refusal[:90])
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from app.document import Layer, Target
 from app.editor.work import Start
-from app.solving import Drag, Rig
+from app.solving import DragSolver, Rig
 from app.storage import load_project, sample_images
 from engine.deform import Hand
 from tests.bench.table import Row, Table, measure
@@ -58,7 +58,7 @@ def _rows(layer: Layer, rig: Rig, reach: float, extent: Extent) -> Iterator[Row]
 class _Pull:
     """A hand at a handle, and the drag that begins with the layer's first pose."""
 
-    begun: Drag
+    begun: DragSolver
     start: Start
     hands: tuple[Hand, ...]
 
@@ -66,21 +66,21 @@ class _Pull:
     def of(cls, layer: Layer, rig: Rig, handle: int) -> "_Pull":
         pose = layer.keys[0].pose
         hands = (Hand(frozenset([handle])),)
-        return cls(begun=Drag.begin(rig, pose), start=Start.of(layer, pose), hands=hands)
+        return cls(begun=DragSolver.begin(rig, pose), start=Start.of(layer, pose), hands=hands)
 
-    def moved(self, reach: float, moves: int) -> tuple[Drag, Mapping[int, Target]]:
+    def moved(self, reach: float, moves: int) -> tuple[DragSolver, Mapping[int, Target]]:
         """Return the drag after moves of the pointer on an arc, and the last targets."""
         drag, targets = self.begun, dict(self.start.targets)
         (handle,) = self.hands[0].handles
         for move in range(moves):
             place = self.start.places[handle] + reach * complex(np.exp(0.1j * move))
             targets[handle] = Target(position=place)
-            drag = drag.towards(targets, PER_MOVE, self.hands)
+            drag = drag.step_towards(targets, PER_MOVE, self.hands)
         return drag, targets
 
-    def rested(self, drag: Drag, targets: Mapping[int, Target]) -> int:
+    def rested(self, drag: DragSolver, targets: Mapping[int, Target]) -> int:
         """Return the steps until a drag rests."""
         steps = 0
         while not drag.is_over:
-            drag, steps = drag.towards(targets, 1, self.hands), steps + 1
+            drag, steps = drag.step_towards(targets, 1, self.hands), steps + 1
         return steps

@@ -194,8 +194,8 @@ def _memory(extent: Extent) -> Table:
             clip = clip_of(document, layer.id)
             puppet = Puppet.of(clip, picture)
             store = puppet.store
-            store.pin([clip], [], 0)
-            store.take(store.preparing(clip, store.missing(clip, 0))())
+            store.set_needed_clips([clip], [], 0)
+            store.add(store.segments_job(clip, store.missing_segments(clip, 0))())
             kept.append(store)
         used = tracemalloc.get_traced_memory()[0] / 2**20
         tracemalloc.stop()

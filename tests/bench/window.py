@@ -10,12 +10,12 @@ from pathlib import Path
 
 import numpy as np
 
-from app.cli.process import share_interpreter
+from app.cli.process import set_switch_interval
 from app.document import Meshing, Target, Variant, clip_of
 from app.editor import Project, Puppet
 from app.editor.actions import files, playback
 from app.storage import decode_picture, load_project, sample_images
-from app.ui.window import share_heap
+from app.ui.window import limit_arenas
 from app.ui.window.window import SIZE
 from engine.domain import mesh_inside
 from tests.bench.stage import crowded, idle, start
@@ -70,8 +70,8 @@ BRIEF = Extent(
 
 def tables(extent: Extent) -> Iterator[Table]:
     """Measure the window without a display, on whatever draws here; its start also on one."""
-    share_interpreter()
-    share_heap()
+    set_switch_interval()
+    limit_arenas()
     yield start.table(extent.repeats)
     with tempfile.TemporaryDirectory() as folder:
         stage = Driver(Path(folder), extent.size)

@@ -22,7 +22,12 @@ import numpy as np
 from app.document import Document
 from app.errors import LissomError
 from app.storage.assets import sample_images
-from app.storage.autosave import UNKNOWN, Autosave, find_leftovers, load_leftover
+from app.storage.autosave import (
+    UNKNOWN_SOURCE,
+    Autosave,
+    find_recoverable_files,
+    load_recoverable_file,
+)
 from app.storage.preferences import (
     Preferences,
     load_preferences,
@@ -87,7 +92,7 @@ def _full_write(rng: np.random.Generator, folder: Path, document: Document, kind
     autosave = Autosave(folder)
     write = {
         "project": lambda number: save_project(folder / "a", numbered(document, number)),
-        "unsaved work": lambda number: autosave.write(numbered(document, number), UNKNOWN),
+        "unsaved work": lambda number: autosave.write(numbered(document, number), UNKNOWN_SOURCE),
         "preferences": lambda number: save_preferences(folder, Preferences(scale=1 + number / 9)),
     }[kind]
     write(1)
@@ -97,7 +102,7 @@ def _full_write(rng: np.random.Generator, folder: Path, document: Document, kind
     words = words_of(lambda: write(2), limit)
     expect(re.search(r"it takes [\d.,]+ [KM]B; make room", words) is not None, words)
     expect(_contents(folder) == before, f"the {kind} before is not whole")
-    autosave.forget()
+    autosave.remove()
 
 
 def _full_export(rng: np.random.Generator, folder: Path) -> None:
@@ -122,7 +127,7 @@ def _full_tmpfs(document: Document, *, exports: bool) -> int:
         before = _contents(disk)
         writes = [
             partial(save_project, disk / "a", numbered(document, 2)),
-            partial(Autosave(disk).write, numbered(document, 2), UNKNOWN),
+            partial(Autosave(disk).write, numbered(document, 2), UNKNOWN_SOURCE),
             partial(export_friend, disk, "apng", "#ff0000"),
         ]
         for write in writes if exports else writes[:2]:
@@ -189,7 +194,7 @@ def refused_places(_: np.random.Generator, __: int) -> dict[str, float]:
         expect(words_of(lose, _be_nobody) == "", "a folder whose permission was lost")
 
         settings = folder / "settings"
-        keep = partial(Autosave(settings).write, numbered(document, 2), UNKNOWN)
+        keep = partial(Autosave(settings).write, numbered(document, 2), UNKNOWN_SOURCE)
         settings.write_bytes(b"")
         _expect_words(keep, "cannot be made")
         settings.unlink()
@@ -202,13 +207,15 @@ def refused_places(_: np.random.Generator, __: int) -> dict[str, float]:
         _expect_words(partial(save_preferences, settings, Preferences()), "may not be written to")
 
         def look() -> None:
-            expect(len(find_leftovers(settings)) == 2, "unsaved work is not offered")
-            load_leftover(settings / "unsaved-1.lissom")
+            expect(len(find_recoverable_files(settings)) == 2, "unsaved work is not offered")
+            load_recoverable_file(settings / "unsaved-1.lissom")
             expect(load_preferences(settings) == Preferences(), "other preferences")
 
         expect(words_of(look, _be_nobody) == "", "unsaved work in a folder that is read only")
         settings.chmod(0)
-        expect(words_of(partial(find_leftovers, settings), _be_nobody) == "", "a secret folder")
+        expect(
+            words_of(partial(find_recoverable_files, settings), _be_nobody) == "", "a secret folder"
+        )
         settings.chmod(0o755)
 
         folder.chmod(0o555)

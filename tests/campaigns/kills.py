@@ -29,8 +29,8 @@ from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.work.jobs import Jobs
 from app.storage.assets import sample_images
-from app.storage.autosave import find_leftovers, load_leftover
-from app.storage.files.atomic import PART, atomic_file, clear_abandoned
+from app.storage.autosave import find_recoverable_files, load_recoverable_file
+from app.storage.files.atomic import PART, atomic_file, remove_abandoned_files
 from app.storage.project_file import load_project, save_project
 from tests.campaigns.slowest import note
 
@@ -105,7 +105,7 @@ class Victim:
 def numbered(document: Document, number: int) -> Document:
     """Return a document that says which one it is, and is packed to another size each time."""
     padding = MappingProxyType({"padding.bin": bytes(number % 7 * 40_000)})
-    return replace(document, markers=(Marker(frame=0, name=f"{number}"),), attachments=padding)
+    return replace(document, markers=(Marker(frame=0, name=f"{number}"),), unknown_members=padding)
 
 
 def number_of(document: Document) -> int:
@@ -117,7 +117,7 @@ def check_nothing_left(folder: Path, kept: set[str]) -> int:
     """Expect that a fresh start leaves nothing but what is kept; return how much it removed."""
     before = {path.name for path in folder.iterdir()} - kept
     expect(all(map(PART.fullmatch, before)), f"there is {before} besides")
-    clear_abandoned(folder)
+    remove_abandoned_files(folder)
     after = {path.name for path in folder.iterdir()} - kept
     expect(not after, f"{after} is never removed")
     return len(before)
@@ -164,10 +164,10 @@ def kill_autosaves(rng: np.random.Generator, kills: int) -> dict[str, float]:
             time.sleep(rng.uniform(0.0, 1.6))
             _, told = victim.kill()
             edits = dict([first, *told])
-            leftovers = find_leftovers(folder)
+            leftovers = find_recoverable_files(folder)
             expect(len(leftovers) <= 1, "the same work is offered twice")
             last = max(edits)
-            kept = number_of(load_leftover(leftovers[0])[0]) if leftovers else None
+            kept = number_of(load_recoverable_file(leftovers[0])[0]) if leftovers else None
             since = edits[kept] if kept is not None else edits[min(edits)]
             lost = edits[last] - since
             expect(lost <= MOST_LOST, f"{lost:.0f} s of edits are lost")
@@ -274,7 +274,7 @@ def quick_friend() -> Document:
     document = load_project(FRIEND)
     moving = [layer for layer in document.layers if len(layer.keys) > 1]
     layers = tuple(replace(layer, variant=Variant.NU) for layer in moving)
-    return replace(document, layers=layers, choices=())
+    return replace(document, layers=layers, switch_groups=())
 
 
 def export_friend(folder: Path, name: str, background: str, project: Path = FRIEND) -> int:

@@ -22,10 +22,10 @@ from app.document.keyframe import Target
 from app.document.settings import ExportSettings, FrameRange, Meshing
 from app.editor.actions import editing, exporting, playback, posing, saving, viewing
 from app.editor.layering import choose, hang
-from app.export_formats import EXPORT_FORMATS, ShapeDetail
+from app.export_formats import EXPORT_FORMATS, MeshOptions
 from app.render.gpu import finish_drawing
 from app.storage.assets import sample_images
-from app.ui.window.memory import REST, share_heap
+from app.ui.window.memory import REST, limit_arenas
 
 RATE = 10  # frames a second by the window's clock
 DRAG, PLAY = 2.0, 12.0  # seconds by it
@@ -55,7 +55,7 @@ class _OnScreen(Harness):
 
 def campaign(seed: int, amount: int) -> Iterator[tuple[str, dict[str, float]]]:
     """Use a window for so many minutes by its clock, and yield what was measured on the way."""
-    share_heap()
+    limit_arenas()
     harness.FRAME = 1 / RATE
     window, rng = _OnScreen(), np.random.default_rng(seed)
     window.reset()
@@ -210,7 +210,7 @@ def export(window: Harness, folder: Path, name: str) -> None:
         size=(64, 48),
         background="#ff8000",
         frames=FrameRange(0, 5),
-        shapes=ShapeDetail(triangles=200),
+        shapes=MeshOptions(triangles=200),
     )
     exporting.set_export(session, settings)
     suffixes = EXPORT_FORMATS[name].suffixes

@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 
 from app.storage.assets import sample_images
-from app.storage.autosave import find_leftovers, load_leftover
+from app.storage.autosave import find_recoverable_files, load_recoverable_file
 from app.storage.files.atomic import PART
 from app.storage.project_file import load_project, save_project
 from tests.campaigns.kills import check_nothing_left, expect, number_of, numbered
@@ -244,8 +244,8 @@ def _end_in_order(
         expect("your unsaved work was kept" in said, said)
         expect("Traceback" not in said, said)
         expect(seconds < MOST_SECONDS, f"it takes {seconds} s to end")
-        (kept,) = find_leftovers(home / "lissom")
-        number = number_of(load_leftover(kept)[0])
+        (kept,) = find_recoverable_files(home / "lissom")
+        number = number_of(load_recoverable_file(kept)[0])
         expect(number >= last, f"edit {last} was made, {number} is kept")
         return seconds, max(0, last - number)
 
@@ -289,9 +289,9 @@ def _kill(
             saved = int(number) if word == "saved" else saved
     in_file = number_of(load_project(path)) if path.exists() else -1
     expect(in_file >= saved, f"{saved} was saved, {in_file} is there")
-    found = find_leftovers(home / "lissom")
+    found = find_recoverable_files(home / "lissom")
     expect(len(found) <= 1, "the same work is offered twice")
-    kept = number_of(load_leftover(found[0])[0]) if found else -1
+    kept = number_of(load_recoverable_file(found[0])[0]) if found else -1
     since = times.get(max(in_file, kept), min(times.values()))
     lost = max(times.values()) - since
     expect(lost <= MOST_LOST, f"{lost:.1f} s of edits are lost")
@@ -344,7 +344,10 @@ def _against_each_other(rng: np.random.Generator, shown: Screen, home: Path) -> 
             time.sleep(3 * KEPT_EVERY + IDLE)
             for each in windows:
                 each.end()
-    found = {number_of(load_leftover(each)[0]) for each in find_leftovers(home / "lissom")}
+    found = {
+        number_of(load_recoverable_file(each)[0])
+        for each in find_recoverable_files(home / "lissom")
+    }
     expect(found == {number + 1, number + 2}, f"{found} is kept of both")
     return questions
 

@@ -11,13 +11,21 @@ from functools import cache
 from pathlib import Path
 
 from app.cli.main import COMMANDS, build_parser
-from app.document import BLENDS, HOLDS, PRESETS, SPRINGS, STRETCHES
+from app.document import BLENDS, LIMIT_PRESETS, PRESETS, SPRING_PRESETS, WEIGHT_PRESETS
 from app.editor.actions import files
 from app.export_formats import EXPORT_FORMATS
 from app.ui.shortcuts import BINDINGS, MENUS
-from app.ui.shortcuts.gestures import GESTURES
-from app.ui.shortcuts.keys import ALT, CTRL, KEYS, MAC_MODIFIERS, SHIFT, in_words, with_key
+from app.ui.shortcuts.keys import (
+    ALT,
+    CTRL,
+    KEYS,
+    MAC_MODIFIERS,
+    SHIFT,
+    format_chord,
+    format_modified,
+)
 from app.ui.shortcuts.manual import PAGES
+from app.ui.shortcuts.pointer_help import POINTER_HELP
 
 ROOT = Path(__file__).parents[2]
 ASKED = ROOT / "app" / "ui"  # where what is read on the screen is written
@@ -55,11 +63,13 @@ def key(name: str) -> tuple[str, str]:
         raise UnknownNameError(f"no action is named {name!r}")
     binding = BINDINGS[name]
     if not binding.keys:
-        if not binding.told:
+        if not binding.key_text:
             raise UnknownNameError(f"{name!r} has no keys")
-        return binding.told, binding.told
+        return binding.key_text, binding.key_text
     mac = binding.chords(is_mac=True)[0]
-    return in_words(binding.chords(is_mac=False)[0], is_mac=False), in_words(mac, is_mac=True)
+    return format_chord(binding.chords(is_mac=False)[0], is_mac=False), format_chord(
+        mac, is_mac=True
+    )
 
 
 def press(name: str) -> tuple[str, str]:
@@ -68,15 +78,15 @@ def press(name: str) -> tuple[str, str]:
         return name, MAC_MODIFIERS[HELD[name.lower()]]
     if name not in KEYS:
         raise UnknownNameError(f"there is no key {name!r}")
-    return in_words(KEYS[name], is_mac=False), in_words(KEYS[name], is_mac=True)
+    return format_chord(KEYS[name], is_mac=False), format_chord(KEYS[name], is_mac=True)
 
 
 def hold(modifiers: str, what: str) -> tuple[str, str]:
     """Return what the pointer does while keys are held, such as "ctrl+shift", "drag"."""
     plain = mac = what
     for modifier in reversed(modifiers.split("+")):
-        plain = with_key(HELD[modifier], plain, is_mac=False)
-        mac = with_key(HELD[modifier], mac, is_mac=True)
+        plain = format_modified(HELD[modifier], plain, is_mac=False)
+        mac = format_modified(HELD[modifier], mac, is_mac=True)
     return plain, mac
 
 
@@ -86,7 +96,7 @@ def key_groups() -> dict[str, list[tuple[str, tuple[str, str]]]]:
         menu: [
             (binding.label, key(name))
             for name, binding in bindings.items()
-            if binding.keys or binding.told
+            if binding.keys or binding.key_text
         ]
         for menu, bindings in MENUS.items()
     }
@@ -94,7 +104,7 @@ def key_groups() -> dict[str, list[tuple[str, tuple[str, str]]]]:
 
 def gestures() -> list[tuple[str, str]]:
     """Return what the pointer does, and how; written as on Linux and Windows."""
-    return [(gesture.what, gesture.how) for gesture in GESTURES]
+    return [(gesture.effect, gesture.gesture) for gesture in POINTER_HELP]
 
 
 def check_command(line: str) -> None:
@@ -144,7 +154,13 @@ def _is_known(part: str) -> bool:
         sample.name for sample in files.samples()
     }
     tables |= {format_.group for format_ in EXPORT_FORMATS.values()}
-    words = [*HOLDS, *PRESETS, *SPRINGS, *BLENDS, *(stretch.name for stretch in STRETCHES)]
+    words = [
+        *WEIGHT_PRESETS,
+        *PRESETS,
+        *SPRING_PRESETS,
+        *BLENDS,
+        *(stretch.name for stretch in LIMIT_PRESETS),
+    ]
     tables |= {*words, *map(str.capitalize, words)}
     return part in tables or _is_written(part, "")
 

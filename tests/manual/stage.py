@@ -46,7 +46,7 @@ def place_of(window: Film, name: str) -> complex:
     shown = project.puppet.shown
     assert shown is not None
     identities = [handle.id for handle in project.layer.handles]
-    return complex(shown.handle_places[identities.index(handle_named(project, name))])
+    return complex(shown.handle_positions[identities.index(handle_named(project, name))])
 
 
 def pull(window: Film, name: str, *way: complex, frames: int = 30) -> None:

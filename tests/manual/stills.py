@@ -207,7 +207,9 @@ def _mouths(window: Film, path: Path) -> None:
     project = open_sample(window, "friend", frame=36)
     window.resize(LAYERED)
     window.show_tab("Layers")
-    window.act(layering.toggle, next(row.toggle for row in project.tree if row.choice is not None))
+    window.act(
+        layering.toggle, next(row.toggle for row in project.tree if row.switch_group is not None)
+    )
     head = next(layer.id for layer in project.document.layers if layer.name == "head")
     heighten_timeline(window, CHOICE)
     window.act(layering.choose, head)

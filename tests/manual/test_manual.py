@@ -13,7 +13,7 @@ from app.cli.main import main
 from app.errors import LissomError
 from app.solving.script import parse_pose_script
 from app.storage import manual_page
-from app.storage.project import content
+from app.storage.project import document_json
 from app.ui.shortcuts import BINDINGS, MENUS
 from app.ui.shortcuts.manual import PAGES
 from tests.manual import build, motion, names, window
@@ -170,7 +170,7 @@ def test_the_fields_of_project_files_are_told():
         for row in re.findall(r"^\| (`[^|]+) \|", text.split("## project.json")[1], re.MULTILINE)
         for name in re.findall(r"`(\w+)`", row)
     }
-    source = Path(content.__file__).read_text(encoding="utf-8")
+    source = Path(document_json.__file__).read_text(encoding="utf-8")
     records = {
         ast.unparse(node.targets[0]): node.value.args
         for node in ast.parse(source).body

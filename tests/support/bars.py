@@ -83,7 +83,7 @@ def bend_bar(
         playback.seek(window.session, last)
     elif held == "loose":
         bar = window.again(bend_bar, None, "auto-pins")
-        bar.history.extend_step(shape_commands.set_stillness(bar.active, stillness=False))
+        bar.history.extend_step(shape_commands.set_auto_pins(bar.active, stillness=False))
     else:
         bar = window.again(open_bar)
         playback.seek(window.session, BENT)
@@ -100,7 +100,7 @@ def drag_bar(window: Harness, bar: Project) -> complex:
     window.frames(2)
     shown, gesture = bar.puppet.shown, object()
     assert shown is not None
-    place = complex(shown.handle_places[1])
+    place = complex(shown.handle_positions[1])
     for share in (0.25, 0.5, 0.75, 1.0):
         window.frames()
         wish = {1: Target(position=place + share * WAY)}

@@ -8,9 +8,9 @@ from documents import CENTRE, disc_document, inside
 
 from app.document import clip_of, layer_commands as layers
 from app.document.keyframe import Keyframe
-from app.document.layering import Attachment
+from app.document.layers import Attachment
 from app.document.settings import FrameRange
-from app.motion import Animation, Joints
+from app.motion import Animation, ParentTransforms
 
 SIZE = 200.0
 VARIANTS = ("nu", "metric", "scaled-eta")
@@ -43,8 +43,8 @@ def chain(variant="nu", count=3):
             document = document.with_layer(layer)
             continue
         document = layers.add_layer(layer)(document)
-        joint = Attachment(to=index - 1, at=inside(rng), rest=rng.normal())
-        document = layers.attach(index, inside(rng), joint)(document)
+        joint = Attachment(parent=index - 1, parent_point=inside(rng), rest_rotation=rng.normal())
+        document = layers.attach_layer(index, inside(rng), joint)(document)
     return document
 
 
@@ -69,4 +69,4 @@ def among(clip):
 def seen(document, layer, frame, joints=None):
     """Where some points of a layer are in the scene; by its joints where they are known."""
     own = among(clip_of(document, layer)).positions(frame)
-    return (joints or Joints(document)).placement(layer, frame).on(own)
+    return (joints or ParentTransforms(document)).placement(layer, frame).on(own)

@@ -6,14 +6,14 @@ from scenes import drawn
 
 from app.document.commands import handle_commands
 from app.document.keyframe import Keyframe
-from app.document.layering import (
+from app.document.layers import (
     CameraKey,
-    Choice,
-    MoveKey,
+    DrawOrderKey,
     OpacityKey,
-    Placing,
-    Switch,
-    Turn,
+    SwitchGroup,
+    SwitchKey,
+    TransformKey,
+    VisibilityKey,
 )
 from app.document.model import Document
 from app.document.settings import FrameRange, Marker
@@ -35,22 +35,22 @@ def crowded(kind: str, count: int) -> Document:
             row = tuple(TrackKey(frame=at, place=0j) for at in frames)
             layer = replace(layer, tracks=(Track(handles=(handle,), keys=row),))
         case "switches":
-            row = tuple(Switch(at, visible=bool(at % 2)) for at in frames)
-            layer = replace(layer, switches=row)
+            row = tuple(VisibilityKey(at, visible=bool(at % 2)) for at in frames)
+            layer = replace(layer, visibility_keys=row)
         case "cycles":
             layer = replace(layer, cycles=(Cycle(first=0, last=1),))
         case "changes":
             layer = replace(
                 layer,
-                movement=tuple(MoveKey(frame=at) for at in frames),
-                opacities=tuple(OpacityKey(frame=at, opacity=0.5) for at in frames),
-                placings=tuple(Placing(frame=at, beside=None) for at in frames),
+                transform_keys=tuple(TransformKey(frame=at) for at in frames),
+                opacity_keys=tuple(OpacityKey(frame=at, opacity=0.5) for at in frames),
+                draw_order_keys=tuple(DrawOrderKey(frame=at, beside=None) for at in frames),
             )
         case "turns":
-            turns = tuple(Turn(at, at % 2) for at in frames)
-            choice = Choice(name="mouth", layers=(0, 1), turns=turns)
+            turns = tuple(SwitchKey(at, at % 2) for at in frames)
+            choice = SwitchGroup(name="mouth", layers=(0, 1), keys=turns)
             other = replace(layer, id=1, name="other")
-            return replace(document, layers=(layer, other), choices=(choice,))
+            return replace(document, layers=(layer, other), switch_groups=(choice,))
         case "markers":
             row = tuple(Marker(frame=at, name=f"marker {at}") for at in frames)
             document = replace(document, markers=row)

@@ -10,7 +10,6 @@ import numpy as np
 from pictures import blank_png
 from shapes import regular_polygon
 
-from app.document.body import Bone
 from app.document.commands import (
     Command,
     choice_commands,
@@ -18,28 +17,29 @@ from app.document.commands import (
     handle_commands,
     key_commands,
     layer_commands,
-    material_commands,
     pose_commands,
     scene_commands,
     shape_commands,
+    stiffness_commands,
     track_commands,
 )
-from app.document.keyframe import Handle, KeptPose, Keyframe, Passing, Pose, Target
+from app.document.keyframe import Handle, Keyframe, LibraryPose, Pose, TangentMode, Target
 from app.document.layer import PictureFile, new_layer
-from app.document.layering import (
+from app.document.layers import (
     Attachment,
     CameraKey,
+    DrawOrderKey,
     Group,
-    MoveKey,
     OpacityKey,
-    Placing,
-    Switch,
+    TransformKey,
+    VisibilityKey,
 )
 from app.document.model import Document
+from app.document.rig import Bone
 from app.document.settings import FRAMINGS, VARIANTS, ExportSettings, FrameRange, Marker, Meshing
 from app.document.timing import HOLD, LINEAR, PRESETS, Easing, Spring, Track, TrackKey
-from app.errors import ImportSummary
-from app.export_formats import EXPORT_FORMATS, ShapeDetail, SheetLayout
+from app.errors import ImportLog
+from app.export_formats import EXPORT_FORMATS, MeshOptions, SpriteSheetOptions
 from engine.domain.build import MeshedDomain
 from engine.domain.meshing.mesh import Mesh
 from engine.domain.picture.cut_out import CutOut, Mask, Stroke
@@ -122,8 +122,13 @@ def _random_layer_command(rng: np.random.Generator, document: Document) -> Comma
     layers = document.layers
     layer = layers[rng.integers(len(layers))]
     other = layers[rng.integers(len(layers))]
-    joint = Attachment(to=other.id, at=inside(rng), turns=bool(rng.integers(2)), rest=rng.random())
-    copy = dataclasses.replace(layer, id=layer_commands.free_identity(document), corner=inside(rng))
+    joint = Attachment(
+        parent=other.id,
+        parent_point=inside(rng),
+        inherits_rotation=bool(rng.integers(2)),
+        rest_rotation=rng.random(),
+    )
+    copy = dataclasses.replace(layer, id=layer_commands.next_layer_id(document), corner=inside(rng))
     turn = complex(np.exp(1j * rng.normal()))
     flag = bool(rng.integers(2))
     commands = [
@@ -137,24 +142,24 @@ def _random_layer_command(rng: np.random.Generator, document: Document) -> Comma
         layer_commands.set_hidden(layer.id, hidden=flag),
         layer_commands.set_locked(layer.id, locked=flag),
         layer_commands.set_reference(layer.id, reference=flag),
-        layer_commands.switch_at(layer.id, int(rng.integers(50)), visible=flag),
-        layer_commands.switch_at(layer.id, int(rng.integers(50)), visible=None),
-        layer_commands.move_switch(
+        layer_commands.key_visibility(layer.id, int(rng.integers(50)), visible=flag),
+        layer_commands.key_visibility(layer.id, int(rng.integers(50)), visible=None),
+        layer_commands.move_visibility_key(
             layer.id,
-            layer.switches[0].frame if layer.switches else 3,
+            layer.visibility_keys[0].frame if layer.visibility_keys else 3,
             int(rng.integers(50)),
         ),
-        layer_commands.attach(layer.id, inside(rng), joint),
-        layer_commands.detach(layer.id, turn, inside(rng)),
+        layer_commands.attach_layer(layer.id, inside(rng), joint),
+        layer_commands.detach_layer(layer.id, turn, inside(rng)),
     ]
     if layer.handles:
         handle = layer.handles[rng.integers(len(layer.handles))].id
         frame = layer.keys[rng.integers(len(layer.keys))].frame
         commands += [
-            layer_commands.set_front(layer.id, handle, rng.uniform(-1, 1), None),
-            layer_commands.set_front(layer.id, handle, 0.5, 10 * rng.random() + 1),
-            layer_commands.key_front(layer.id, frame, handle, rng.uniform(-1, 1)),
-            layer_commands.key_front(layer.id, frame, handle, None),
+            layer_commands.set_depth(layer.id, handle, rng.uniform(-1, 1), None),
+            layer_commands.set_depth(layer.id, handle, 0.5, 10 * rng.random() + 1),
+            layer_commands.key_depth(layer.id, frame, handle, rng.uniform(-1, 1)),
+            layer_commands.key_depth(layer.id, frame, handle, None),
         ]
     return commands[rng.integers(len(commands))]
 
@@ -162,19 +167,21 @@ def _random_layer_command(rng: np.random.Generator, document: Document) -> Comma
 def _random_choice_command(rng: np.random.Generator, document: Document) -> Command:
     ids = [layer.id for layer in document.layers]
     identity, frame, to = ids[rng.integers(len(ids))], *(int(at) for at in rng.integers(50, size=2))
-    choice = document.choices[0] if document.choices else None
+    choice = document.switch_groups[0] if document.switch_groups else None
     name = choice.name if choice else "none"
-    turn = choice.turns[0].frame if choice and choice.turns else frame
+    turn = choice.keys[0].frame if choice and choice.keys else frame
     commands = [
-        choice_commands.form_choice(f"choice {rng.integers(3)}", ids[: 2 + int(rng.integers(2))]),
-        choice_commands.form_choice("two", rng.permutation(ids)[:2].tolist()),
+        choice_commands.create_switch_group(
+            f"choice {rng.integers(3)}", ids[: 2 + int(rng.integers(2))]
+        ),
+        choice_commands.create_switch_group("two", rng.permutation(ids)[:2].tolist()),
         choice_commands.choose_at(identity, frame),
         choice_commands.unchoose_at(name, turn),
         choice_commands.move_turn(name, turn, to),
-        choice_commands.rename_choice(name, f"choice {rng.integers(3)}"),
-        choice_commands.join_choice(name, [identity]),
-        choice_commands.leave_choice(identity),
-        choice_commands.dissolve_choice(name),
+        choice_commands.rename_switch_group(name, f"choice {rng.integers(3)}"),
+        choice_commands.add_to_switch_group(name, [identity]),
+        choice_commands.remove_from_switch_group(identity),
+        choice_commands.delete_switch_group(name),
     ]
     return commands[rng.integers(len(commands))]
 
@@ -190,11 +197,11 @@ def _random_handle_command(rng: np.random.Generator, document: Document) -> Comm
         commands += [
             handle_commands.move_handle(0, handle.id, inside(rng)),
             handle_commands.rename_handle(0, handle.id, f"name {rng.integers(3)}"),
-            handle_commands.weigh_handles(0, {handle.id}, float(rng.integers(1, 3))),
+            handle_commands.set_handle_weight(0, {handle.id}, float(rng.integers(1, 3))),
             handle_commands.remove_handles(0, {handle.id}),
             handle_commands.lock_handles(0, {handle.id}, locked=bool(rng.integers(2))),
             handle_commands.group_handles(0, {handle.id}, ("", "arms", "é")[rng.integers(3)]),
-            handle_commands.free_handles(0, {handle.id}, free=bool(rng.integers(2))),
+            handle_commands.unpin_handles(0, {handle.id}, free=bool(rng.integers(2))),
         ]
     return commands[rng.integers(len(commands))]
 
@@ -208,21 +215,21 @@ def _random_key_command(rng: np.random.Generator, document: Document) -> Command
     easing = [*PRESETS.values(), Easing(tuple(rng.random(4).tolist()))][rng.integers(6)]
     pose = random_pose(rng, document)
     commands = [
-        key_commands.pose_key(0, frames[0], pose),
+        key_commands.replace_key_pose(0, frames[0], pose),
         key_commands.insert_key(0, int(rng.integers(80)), pose),
         key_commands.insert_key(0, int(rng.integers(80)), pose, easing=easing),
         key_commands.move_keys(0, frames, by),
         key_commands.copy_keys(0, frames, by),
         key_commands.delete_keys(0, frames),
         key_commands.reverse_keys(0, frames),
-        key_commands.put_keys(0, [document.layers[0].key(frame) for frame in frames]),
-        key_commands.put_pose(0, int(rng.integers(80)), pose, easing),
+        key_commands.insert_keys(0, [document.layers[0].key(frame) for frame in frames]),
+        key_commands.insert_pose(0, int(rng.integers(80)), pose, easing),
         key_commands.scale_keys(0, frames, float(rng.choice([0.5, 1.0, 1.5, 2.0]))),
         scene_commands.scale_time(float(rng.choice([0.5, 1.0, 1.5, 2.0]))),
-        key_commands.match_ends(0),
+        key_commands.match_loop_ends(0),
         key_commands.set_easing(0, frames, easing),
-        key_commands.set_turns(0, frames, int(rng.integers(-1, 2))),
-        key_commands.set_passing(0, frames, Passing(rng.choice(list(Passing)))),
+        key_commands.set_revolutions(0, frames, int(rng.integers(-1, 2))),
+        key_commands.set_tangent_mode(0, frames, TangentMode(rng.choice(list(TangentMode)))),
     ]
     return commands[rng.integers(len(commands))]
 
@@ -231,21 +238,21 @@ def random_track(rng: np.random.Generator, handles: tuple[int, ...]) -> Track:
     frames = np.sort(rng.choice(60, rng.integers(1, 6), replace=False)).tolist()
     return Track(
         handles=handles,
-        planted=bool(rng.integers(2)),
+        is_scene_space=bool(rng.integers(2)),
         keys=tuple(
             TrackKey(
                 frame=frame,
                 place=inside(rng),
                 turn=float(rng.choice([0.0, rng.normal()])),
                 easing=rng.choice(np.array([*PRESETS.values()], object)),
-                passing=Passing(rng.choice(["through", "corner", "stop"])),
+                tangent_mode=TangentMode(rng.choice(["through", "corner", "stop"])),
                 velocity=rng.choice([None, inside(rng) / 9]),
             )
             for frame in frames
         ),
         delay=int(rng.integers(6)),
         reach=float(rng.choice([1.0, rng.random()])),
-        turns=bool(rng.integers(2)),
+        keys_rotation=bool(rng.integers(2)),
         enabled=bool(rng.integers(2)),
     )
 
@@ -285,7 +292,9 @@ def _random_track_command(rng: np.random.Generator, document: Document) -> Comma
         track_commands.reverse_track_keys(0, one, frames),
         track_commands.scale_track_keys(0, one, frames, factor),
         track_commands.set_track_easing(0, one, frames, PRESETS["in"] if flag else LINEAR),
-        track_commands.set_track_passing(0, one, frames, Passing(rng.choice(list(Passing)))),
+        track_commands.set_track_passing(
+            0, one, frames, TangentMode(rng.choice(list(TangentMode)))
+        ),
         track_commands.set_delay(0, one, int(rng.integers(50))),
         track_commands.set_reach(0, one, rng.random()),
         track_commands.set_turning(0, one, turns=flag),
@@ -307,13 +316,18 @@ def _random_material_command(rng: np.random.Generator, document: Document) -> Co
     amount = float(np.exp(rng.uniform(-3, 4)))
     way = [inside(rng) for _ in range(3)]
     commands = [
-        *2 * [material_commands.paint(0, way, radius=60.0, amount=amount, softness=rng.random())],
-        *2 * [material_commands.add_bone(0, ends, amount)],
-        material_commands.set_bone_amount(0, ends, amount),
-        material_commands.remove_bone(0, ends),
-        material_commands.show_bones(0, shown=bool(rng.integers(2))),
-        material_commands.clear(0),
-        material_commands.mirror(0),
+        *2
+        * [
+            stiffness_commands.paint_stiffness(
+                0, way, radius=60.0, amount=amount, softness=rng.random()
+            )
+        ],
+        *2 * [stiffness_commands.add_bone(0, ends, amount)],
+        stiffness_commands.set_bone_stiffness(0, ends, amount),
+        stiffness_commands.remove_bone(0, ends),
+        stiffness_commands.set_bones_visible(0, shown=bool(rng.integers(2))),
+        stiffness_commands.clear_stiffness(0),
+        stiffness_commands.mirror_stiffness(0),
     ]
     return commands[rng.integers(len(commands))]
 
@@ -321,8 +335,8 @@ def _random_material_command(rng: np.random.Generator, document: Document) -> Co
 def _random_pose_command(rng: np.random.Generator, document: Document) -> Command:
     pose = random_pose(rng, document)
     commands = [
-        pose_commands.keep_pose(0, pose),
-        pose_commands.keep_pose(0, document.layers[0].keys[0].pose, f"é {rng.integers(3)}"),
+        pose_commands.save_pose(0, pose),
+        pose_commands.save_pose(0, document.layers[0].keys[0].pose, f"é {rng.integers(3)}"),
         pose_commands.set_mirror(0, None if rng.random() < 0.3 else 200 * rng.random()),
     ]
     if document.layers[0].library:
@@ -351,15 +365,15 @@ def _random_settings_command(rng: np.random.Generator, document: Document) -> Co
         scene_commands.delete_marker(at),
         scene_commands.set_loop(loop=bool(rng.integers(2))),
         *_camera_commands(rng, document),
-        scene_commands.set_pairs((("near", "far"), (f"é {rng.integers(3)}", "B"))),
+        scene_commands.set_mirror_names((("near", "far"), (f"é {rng.integers(3)}", "B"))),
         shape_commands.set_variant(0, VARIANTS[rng.integers(len(VARIANTS))]),
-        shape_commands.set_stillness(0, stillness=bool(rng.integers(2))),
+        shape_commands.set_auto_pins(0, stillness=bool(rng.integers(2))),
         shape_commands.set_anchor(0, None if rng.random() < 0.3 else inside(rng)),
         scene_commands.set_export(_random_export(rng)),
-        shape_commands.set_bounds(0, bounds),
-        shape_commands.set_bounds(0, bounds, poses),
+        shape_commands.set_limits(0, bounds),
+        shape_commands.set_limits(0, bounds, poses),
         shape_commands.replace_domain(0, domain, Meshing(detail="fine"), again),
-        shape_commands.brush(0, _random_stroke(rng)),
+        shape_commands.cut_with_brush(0, _random_stroke(rng)),
         shape_commands.set_cut_out(0, CutOut(tolerance=int(rng.integers(5)))),
     ]
     return commands[rng.integers(len(commands))]
@@ -368,7 +382,7 @@ def _random_settings_command(rng: np.random.Generator, document: Document) -> Co
 def _camera_commands(rng: np.random.Generator, document: Document) -> list[Command]:
     frame, to = (int(at) for at in rng.integers(50, size=2))
     at = document.camera[0].frame if document.camera else frame
-    faded, moved = document.layer(0).opacities, document.layer(0).movement
+    faded, moved = document.layer(0).opacity_keys, document.layer(0).transform_keys
     other = int(rng.integers(len(document.layers)))
     key = CameraKey(frame=frame, centre=inside(rng), zoom=rng.uniform(0.1, 9), turn=rng.normal())
     return [
@@ -379,7 +393,7 @@ def _camera_commands(rng: np.random.Generator, document: Document) -> list[Comma
         filming_commands.delete_opacity_key(0, faded[0].frame if faded else frame),
         filming_commands.key_movement(0, frame, inside(rng), rng.normal()),
         filming_commands.delete_movement_key(0, moved[0].frame if moved else frame),
-        filming_commands.place_at(0, Placing(frame, other, bool(rng.integers(2)))),
+        filming_commands.place_at(0, DrawOrderKey(frame, other, bool(rng.integers(2)))),
         filming_commands.unplace_at(0, frame),
     ]
 
@@ -398,12 +412,12 @@ def _random_export(rng: np.random.Generator) -> ExportSettings:
         framing=FRAMINGS[rng.integers(2)],
         frames=None if rng.random() < 0.5 else FrameRange(2, int(rng.integers(2, 50))),
         names=["frame_####", "{name} ##é"][rng.integers(2)],
-        sheet=SheetLayout(
+        sheet=SpriteSheetOptions(
             trimmed=bool(rng.integers(2)),
             padding=int(rng.integers(9)),
             power_of_two=bool(rng.integers(2)),
         ),
-        shapes=ShapeDetail(
+        shapes=MeshOptions(
             triangles=int(rng.integers(100, 9999)), tolerance=[None, 0.1][rng.integers(2)]
         ),
     )
@@ -437,7 +451,7 @@ def full_document() -> Document:
             name="nose",
             position=110 + 95.5j,
             weight=2.5,
-            front=-0.75,
+            depth=-0.75,
             extent=12.5,
             unknown=more,
         ),
@@ -470,16 +484,16 @@ def full_document() -> Document:
         next_handle=9,
         keys=(
             Keyframe(frame=3, pose=bent, easing=PRESETS["in-out"], unknown=more),
-            Keyframe(frame=10, pose=folded, easing=Easing((0.1, 0.2, 1 / 3, 1.0)), turns=-1),
-            Keyframe(frame=40, pose=bent, easing=HOLD, fronts={4: 0.25, 1: 0.0}),
+            Keyframe(frame=10, pose=folded, easing=Easing((0.1, 0.2, 1 / 3, 1.0)), revolutions=-1),
+            Keyframe(frame=40, pose=bent, easing=HOLD, depths={4: 0.25, 1: 0.0}),
         ),
         anchor=100.5 + 99j,
-        stillness=False,
+        has_auto_pins=False,
         variant="scaled-eta",
         bounds=Bounds(k=0.5, sigma_a=3.0, sigma_b=0.4),
         library=(
-            KeptPose(name="bow", pose=bent, unknown=more),
-            KeptPose(name="über\n", pose=dataclasses.replace(bent, psi=0.02 * cage.conj())),
+            LibraryPose(name="bow", pose=bent, unknown=more),
+            LibraryPose(name="über\n", pose=dataclasses.replace(bent, psi=0.02 * cage.conj())),
         ),
         mirror=1 / 3,
         name="Körper",
@@ -487,14 +501,18 @@ def full_document() -> Document:
         reference=True,
         locked=True,
         hidden=True,
-        switches=(Switch(0, visible=False), Switch(12, visible=True)),
+        visibility_keys=(VisibilityKey(0, visible=False), VisibilityKey(12, visible=True)),
         opacity=0.25,
-        joints=(Attachment(to=5, at=90 + 80j, turns=False, rest=-0.5),),
+        attachments=(
+            Attachment(
+                parent=5, parent_point=90 + 80j, inherits_rotation=False, rest_rotation=-0.5
+            ),
+        ),
         unknown=MappingProxyType({"visible": False, "bounds": {"tau": 4}}),
     )
     return dataclasses.replace(
         empty,
-        layers=(layer, dataclasses.replace(layer, id=5, name="parent", joints=())),
+        layers=(layer, dataclasses.replace(layer, id=5, name="parent", attachments=())),
         size=(640, 480),
         frames=FrameRange(1, 60),
         preview=FrameRange(3, 40),
@@ -520,14 +538,22 @@ def clocked_document() -> Document:
     more = MappingProxyType({"colour": "#123456"})
     keys = (
         TrackKey(frame=2, place=0j, unknown=more),
-        TrackKey(frame=9, place=3 - 4j, turn=0.25, easing=PRESETS["in"], passing=Passing.STOP),
+        TrackKey(
+            frame=9, place=3 - 4j, turn=0.25, easing=PRESETS["in"], tangent_mode=TangentMode.STOP
+        ),
         TrackKey(frame=12, place=0j, velocity=complex(1 / 3, -0.0)),
         TrackKey(frame=60, place=complex(1 / 3, -0.0), easing=Easing((0.1, 0.2, 1 / 3, 1.0))),
     )
     track = Track(
-        handles=(4, 1), keys=keys, delay=7, reach=0.3, turns=True, enabled=False, unknown=more
+        handles=(4, 1),
+        keys=keys,
+        delay=7,
+        reach=0.3,
+        keys_rotation=True,
+        enabled=False,
+        unknown=more,
     )
-    planted = Track(handles=(1,), planted=True, keys=(TrackKey(frame=1, place=70 + 90.5j),))
+    planted = Track(handles=(1,), is_scene_space=True, keys=(TrackKey(frame=1, place=70 + 90.5j),))
     spring = Spring(
         handle=1,
         frequency=3.1,
@@ -541,8 +567,8 @@ def clocked_document() -> Document:
     )
     parent = dataclasses.replace(
         full.layers[1],
-        handles=(nose, dataclasses.replace(foot, free=True)),
-        stillness=True,
+        handles=(nose, dataclasses.replace(foot, is_unpinned=True)),
+        has_auto_pins=True,
         tracks=(planted,),
     )
     painted = np.exp(np.linspace(-3, 4, sum(map(len, layer.domain.loops))))
@@ -551,16 +577,19 @@ def clocked_document() -> Document:
         tracks=(track,),
         springs=(spring,),
         stiffness=painted,
-        bones=(Bone(ends=(4, 1), amount=1 / 3, is_shown=False, unknown=more),),
+        bones=(Bone(ends=(4, 1), stiffness=1 / 3, is_shown=False, unknown=more),),
         blend="multiply",
         clipped=True,
         group="limbs/left",
-        movement=(
-            MoveKey(frame=2, shift=complex(1 / 3, -0.0), turn=0.1, unknown=more),
-            MoveKey(frame=9, easing=PRESETS["in"], passing=Passing.STOP),
+        transform_keys=(
+            TransformKey(frame=2, shift=complex(1 / 3, -0.0), turn=0.1, unknown=more),
+            TransformKey(frame=9, easing=PRESETS["in"], tangent_mode=TangentMode.STOP),
         ),
-        opacities=(OpacityKey(frame=3, opacity=1 / 3), OpacityKey(frame=60, opacity=0.0)),
-        placings=(Placing(frame=7, beside=5, in_front=False), Placing(frame=70, beside=None)),
+        opacity_keys=(OpacityKey(frame=3, opacity=1 / 3), OpacityKey(frame=60, opacity=0.0)),
+        draw_order_keys=(
+            DrawOrderKey(frame=7, beside=5, in_front=False),
+            DrawOrderKey(frame=70, beside=None),
+        ),
     )
     groups = (
         Group(name="limbs", hidden=True, unknown=more),
@@ -568,13 +597,13 @@ def clocked_document() -> Document:
     )
     camera = (
         CameraKey(frame=1, centre=complex(1 / 3, -0.0), zoom=2.0, turn=-0.5, unknown=more),
-        CameraKey(frame=9, centre=9j, zoom=0.1, easing=HOLD, passing=Passing.CORNER),
+        CameraKey(frame=9, centre=9j, zoom=0.1, easing=HOLD, tangent_mode=TangentMode.CORNER),
     )
     pairs = (("L", "R"), ("Fuß", "Tatze\n"))
     layers = (child, parent)
-    told = ImportSummary(losses=("glow: drawn normally",), matters=("Körper: left out", "ü"))
+    told = ImportLog(warnings=("glow: drawn normally",), notes=("Körper: left out", "ü"))
     return dataclasses.replace(
-        full, layers=layers, groups=groups, camera=camera, pairs=pairs, told=told
+        full, layers=layers, groups=groups, camera=camera, pairs=pairs, import_log=told
     )
 
 

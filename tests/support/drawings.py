@@ -7,7 +7,7 @@ import moderngl
 import numpy as np
 import pytest
 
-from app.render.gpu.mesh import GpuMesh, PosedMesh, PositionBuffer, VertexSource, singles
+from app.render.gpu.mesh import GpuMesh, PosedMesh, PositionBuffer, VertexSource, to_float32_points
 from app.render.gpu.picture import GpuPicture
 from app.render.gpu.target import RenderTarget
 from app.render.renderer import Renderer
@@ -46,7 +46,7 @@ class Easel:
 
     def pose(self, mesh: GpuMesh, points: Complexes) -> PosedMesh:
         source = PositionBuffer(self.gl, len(points))
-        source.write(singles(points))
+        source.write(to_float32_points(points))
         return self.pose_of(mesh, source)
 
     def pose_of(self, mesh: GpuMesh, source: VertexSource) -> PosedMesh:

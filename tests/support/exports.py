@@ -6,9 +6,9 @@ import numpy as np
 
 from app.document import FRAME_NAMES
 from app.export.destination import FrameNames
-from app.export.plan import ExportPlan, Tag
-from app.export.run import export
-from app.export_formats import ShapeDetail, SheetLayout
+from app.export.plan import ExportPlan, FrameTag
+from app.export.run import export_frames
+from app.export_formats import MeshOptions, SpriteSheetOptions
 from app.render.view import canvas_view
 from engine.arrays import Bytes
 
@@ -29,9 +29,9 @@ def plan_for(out: Path, format_: str, **changes: object) -> ExportPlan:
         "canvas": SIZE,
         "loop": True,
         "frame_names": FrameNames(pattern=FRAME_NAMES, project="walk"),
-        "tags": (Tag("walk", 0, FRAMES - 1),),
-        "sheet": SheetLayout(trimmed=False, padding=0),
-        "shapes": ShapeDetail(),
+        "tags": (FrameTag("walk", 0, FRAMES - 1),),
+        "sheet": SpriteSheetOptions(trimmed=False, padding=0),
+        "shapes": MeshOptions(),
     }
     return ExportPlan(**(values | changes))  # type: ignore[arg-type]
 
@@ -53,4 +53,4 @@ def at_once(time: float) -> float:
 
 
 def run(plan: ExportPlan, drawing=draw) -> None:
-    assert list(export(plan, at_once, drawing)) == list(range(1, len(plan.times) + 1))
+    assert list(export_frames(plan, at_once, drawing)) == list(range(1, len(plan.times) + 1))

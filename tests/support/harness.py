@@ -26,7 +26,7 @@ from app.render.gpu.context import create_context
 from app.render.renderer import Renderer
 from app.storage.preferences import Preferences
 from app.ui.style import FONT_SIZE
-from app.ui.viewport.hand.grips import RADIUS
+from app.ui.viewport.interaction.gizmos import RADIUS
 from app.ui.viewport.screen import GRIP
 from app.ui.window.window import Window
 
@@ -104,7 +104,7 @@ class Harness:
         # Small meshes, and nothing that nobody looks at, so that the tests are quick.
         self.session.meshing = Meshing(triangles=2_000, detail="coarse")
         self.session.prepares_ahead = False
-        self.session.autosave.forget()
+        self.session.autosave.remove()
         for leftover in self.folder.iterdir():
             leftover.unlink()
         self.frames()
@@ -187,7 +187,7 @@ class Harness:
 
     def act(self, verb: Callable[..., None], *arguments: object) -> None:
         """Do something as a panel would ask for it, with its errors told as theirs are."""
-        self.program.ask(do(verb, *arguments))
+        self.program.queue_action(do(verb, *arguments))
         self.frames()
 
     def settle(self) -> None:

@@ -25,7 +25,7 @@ from psd_tools import PSDImage
 from app.cli.main import main
 from app.errors import EXPECTED_ERRORS
 from app.solving.script import load_pose_script
-from app.storage.autosave import Autosave, Origin, leftover_origin, load_leftover
+from app.storage.autosave import Autosave, SourceInfo, load_recoverable_file, read_source_info
 from app.storage.files import read_file
 from app.storage.pictures import decode_mask, decode_picture, read_openraster, read_photoshop
 from app.storage.preferences import (
@@ -194,10 +194,10 @@ def _project() -> dict[str, bytes]:
 @cache
 def _leftover() -> dict[str, bytes]:
     keeper = Autosave(_scratch())
-    keeper.write(full_document(), Origin("a", Path("/a/b.lissom")))
+    keeper.write(full_document(), SourceInfo("a", Path("/a/b.lissom")))
     (path,) = _scratch().glob("unsaved-*.lissom")
     content = path.read_bytes()
-    keeper.forget()
+    keeper.remove()
     return {"unsaved-1.lissom": content}
 
 
@@ -286,7 +286,9 @@ READERS = {
     "masks": Reader(lambda path: decode_mask(read_file(path), "it"), _pictures),
     "thumbnails": Reader(read_thumbnail, lambda: {**_pictures(), **_project()}),
     "projects": Reader(load_project, _project),
-    "unsaved work": Reader(lambda path: (leftover_origin(path), load_leftover(path)), _leftover),
+    "unsaved work": Reader(
+        lambda path: (read_source_info(path), load_recoverable_file(path)), _leftover
+    ),
     "OpenRaster": Reader(lambda path: read_openraster(read_file(path)), _openraster),
     "Photoshop": Reader(lambda path: read_photoshop(read_file(path)), _photoshop),
     "scripts": Reader(load_pose_script, _script),

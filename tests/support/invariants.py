@@ -48,19 +48,28 @@ def check_invariants(session: Session) -> None:
 def check_joints(project: Project) -> None:
     """Fail where a layer is not drawn at the point that it hangs by."""
     for layer in project.document.layers:
-        child, joint = project.puppets[layer.id].shown, project.document.joint_at(layer, 0)
-        if joint is None or joint.to is None or joint.keeps or len(layer.joints) > 1:
+        child, joint = project.puppets[layer.id].shown, project.document.attachment_at(layer, 0)
+        if (
+            joint is None
+            or joint.parent is None
+            or joint.keep_world_transform
+            or len(layer.attachments) > 1
+        ):
             continue
-        parent = project.puppets[joint.to].shown
+        parent = project.puppets[joint.parent].shown
         if child is None or parent is None:
             continue
-        pair = (child, layer), (parent, project.document.layer(joint.to))
+        pair = (child, layer), (parent, project.document.layer(joint.parent))
         if not all(each.is_current and each.clip.layer is now for each, now in pair):
             continue
-        anchor = child.placement.on(np.array([child.hinge(layer.anchor).place]))[0]
-        at = parent.placement.on(np.array([parent.hinge(joint.at).place]))[0]
+        anchor = child.placement.on(np.array([child.pivot_frame_at(layer.anchor).position]))[0]
+        at = parent.placement.on(np.array([parent.pivot_frame_at(joint.parent_point).position]))[0]
         size = np.abs(layer.domain.outline - layer.domain.outline.mean()).max()
-        factor = parent.placement.factor * parent.hinge(joint.at).turn if joint.turns else 1.0
+        factor = (
+            parent.placement.factor * parent.pivot_frame_at(joint.parent_point).rotation
+            if joint.inherits_rotation
+            else 1.0
+        )
         gap = abs(anchor - at - factor * joint.offset)
         assert gap < OPEN * size, f"{layer.name} is {gap} from its joint {joint}: {child}, {parent}"
 

@@ -11,8 +11,8 @@ from shapes import regular_polygon
 from app.document.keyframe import Keyframe
 from app.document.queries.clips import clip_of
 from app.document.settings import FrameRange
-from app.motion.interval_store import IntervalStore
-from app.motion.posable_mesh import PosableMesh
+from app.motion.deform_mesh import DeformMesh
+from app.motion.inbetween_cache import InbetweenCache
 from engine.maps import Bounds
 
 TURNS = (1.0, np.exp(0.3j), np.exp(-0.4j), np.exp(0.2j), np.exp(0.5j), np.exp(-0.1j), np.exp(0.1j))
@@ -44,7 +44,7 @@ def row(count, *, loop=False, **settings):
 def prepared(document, store=None):
     """Return a store that has all in-betweens of a document, and how many were prepared for it."""
     clip = clip_of(document, 0)
-    store = store or IntervalStore(mesh=PosableMesh.coarse(clip.layer.domain))
+    store = store or InbetweenCache(mesh=DeformMesh.coarse(clip.layer.domain))
     lacking = store.missing(clip, 0)
     store.take(store.preparing(clip, lacking)())
     assert store.has(clip)

@@ -8,7 +8,6 @@ from animations import BLOB, still_document, within
 from documents import random_spring, random_track
 from shapes import regular_polygon
 
-from app.document.body import GivenMotion
 from app.document.commands import (
     Command,
     choice_commands,
@@ -17,22 +16,23 @@ from app.document.commands import (
     group_commands,
     handle_commands,
     layer_commands,
-    material_commands,
     scene_commands,
     shape_commands,
+    stiffness_commands,
     track_commands,
 )
-from app.document.keyframe import KeptPose, Keyframe, Passing, Pose, Target
+from app.document.keyframe import Keyframe, LibraryPose, Pose, TangentMode, Target
 from app.document.layer import Layer
-from app.document.layering import Attachment, CameraKey, Placing
+from app.document.layers import Attachment, CameraKey, DrawOrderKey
 from app.document.model import Document
+from app.document.rig import AppliedMotion
 from app.document.settings import VARIANTS, FrameRange
 from app.document.timing import PRESETS
 from app.editor import Session
 from app.editor.project import Project
 from app.editor.timeline_view import TrackRow, frames_in
 from app.errors import LissomError
-from app.storage.layers import still_layer
+from app.storage.layers import make_still_layer
 from engine.geometry.motions import Parameters
 from engine.maps.certificate import Certificate
 
@@ -67,7 +67,7 @@ def random_scene(rng: np.random.Generator) -> Document:
 def _random_layer(rng: np.random.Generator, drawn: Layer, number: int) -> Layer:
     layer = replace(drawn, id=number, name=f"layer {number}", corner=complex(0, 0))
     if rng.random() < 0.15:
-        return still_layer(layer)
+        return make_still_layer(layer)
     document = Document(layers=(replace(layer, id=0),))
     for name in rng.permutation(NAMES)[: rng.integers(5)].tolist():
         place = complex(rng.uniform(30, 90), rng.uniform(30, 65))
@@ -79,13 +79,13 @@ def _random_layer(rng: np.random.Generator, drawn: Layer, number: int) -> Layer:
             frame=frame,
             pose=random_affine(rng, layer),
             easing=_any(rng, PRESETS.values()),
-            passing=_any(rng, (Passing.THROUGH, Passing.CORNER, Passing.STOP)),
-            turns=int(rng.integers(-1, 2)),
+            tangent_mode=_any(rng, (TangentMode.SMOOTH, TangentMode.CORNER, TangentMode.STOP)),
+            revolutions=int(rng.integers(-1, 2)),
         )
         for frame in sorted(map(int, frames))
     )
     library = tuple(
-        KeptPose(name=f"pose {count}", pose=random_affine(rng, layer))
+        LibraryPose(name=f"pose {count}", pose=random_affine(rng, layer))
         for count in range(rng.integers(3))
     )
     variant = VARIANTS[rng.integers(len(VARIANTS))]
@@ -133,25 +133,25 @@ def _random_change(rng: np.random.Generator, document: Document) -> Command:
     handles = [handle.id for handle in layer.handles]
     group = _any(rng, ("body", "body/arms", "legs"))
     joint = Attachment(
-        to=None if rng.random() < 0.2 else other.id,
-        at=place,
-        turns=flag,
+        parent=None if rng.random() < 0.2 else other.id,
+        parent_point=place,
+        inherits_rotation=flag,
         frame=0 if flag else one,
-        keeps=bool(rng.integers(2)),
+        keep_world_transform=bool(rng.integers(2)),
     )
     until = _any(rng, (None, to, to + (to - one), LAST))
     camera = CameraKey(frame=one, centre=place, zoom=rng.uniform(0.3, 4), turn=rng.normal())
     changes = [
-        layer_commands.attach(layer.id, place, joint),
-        layer_commands.switch_at(layer.id, one, visible=flag),
-        choice_commands.form_choice(f"choice {one}", rng.permutation(ids)[:2].tolist()),
+        layer_commands.attach_layer(layer.id, place, joint),
+        layer_commands.key_visibility(layer.id, one, visible=flag),
+        choice_commands.create_switch_group(f"choice {one}", rng.permutation(ids)[:2].tolist()),
         choice_commands.choose_at(layer.id, to),
-        *2 * [cycle_commands.repeat(layer.id, one, to, until)],
+        *2 * [cycle_commands.set_cycle(layer.id, one, to, until)],
         filming_commands.key_camera(camera),
         filming_commands.key_opacity(layer.id, one, rng.random()),
         filming_commands.key_movement(layer.id, to, place - 60, rng.normal()),
-        filming_commands.place_at(layer.id, Placing(one, other.id, flag)),
-        group_commands.put_in_group([layer.id, other.id], group),
+        filming_commands.place_at(layer.id, DrawOrderKey(one, other.id, flag)),
+        group_commands.group_layers([layer.id, other.id], group),
         group_commands.set_group_hidden(group, hidden=flag),
         scene_commands.add_marker(one, _any(rng, (None, "beat"))),
         scene_commands.set_preview(FrameRange(one, to) if flag else None),
@@ -166,19 +166,24 @@ def _random_change(rng: np.random.Generator, document: Document) -> Command:
         track = random_track(rng, some)
         offsets = tuple(replace(key, place=complex(*rng.normal(0, 3, 2))) for key in track.keys)
         changes += [
-            *2 * [track_commands.put_track(layer.id, replace(track, planted=False, keys=offsets))],
+            *2
+            * [
+                track_commands.put_track(
+                    layer.id, replace(track, is_scene_space=False, keys=offsets)
+                )
+            ],
             track_commands.put_spring(layer.id, random_spring(rng, handles[0])),
-            material_commands.add_bone(layer.id, ends, 10.0),
+            stiffness_commands.add_bone(layer.id, ends, 10.0),
             handle_commands.group_handles(layer.id, set(some), "arms"),
             handle_commands.lock_handles(layer.id, set(some), locked=flag),
-            layer_commands.key_front(layer.id, one, handles[0], rng.uniform(-1, 1)),
-            scene_commands.give_motion(layer, _given(rng, handles, one, to)),
+            layer_commands.key_depth(layer.id, one, handles[0], rng.uniform(-1, 1)),
+            scene_commands.apply_motion(layer, _given(rng, handles, one, to)),
         ]
     return changes[rng.integers(len(changes))]
 
 
-def _given(rng: np.random.Generator, handles: list[int], first: int, last: int) -> GivenMotion:
-    return GivenMotion(
+def _given(rng: np.random.Generator, handles: list[int], first: int, last: int) -> AppliedMotion:
+    return AppliedMotion(
         motion="wave",
         kind="biped-front",
         joints={"hips": handles[0]},

@@ -10,7 +10,7 @@ from shapes import regular_polygon
 
 from app.document import FrameRange, Keyframe, Target, clip_of, handle_commands
 from app.motion import Animation
-from app.solving import Drag, Rig
+from app.solving import DragSolver, Rig
 
 PLACES = {"left": 25 + 45j, "middle": 60 + 48j, "right": 95 + 45j, "top": 60 + 70j}
 # Of each key: where the handles go; what is not named stays where it was drawn.
@@ -38,10 +38,10 @@ def dragged(number):
         handle.id: Target(position=handle.position + move.get(handle.name, 0))
         for handle in layer.handles
     }
-    drag = Drag.begin(Rig.of(layer), layer.keys[0].pose)
+    drag = DragSolver.begin(Rig.of(layer), layer.keys[0].pose)
     while not drag.is_over:
-        drag = drag.towards(targets, 50)
-    return drag.pose(targets)
+        drag = drag.step_towards(targets, 50)
+    return drag.make_pose(targets)
 
 
 @cache

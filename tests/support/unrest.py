@@ -4,7 +4,7 @@ from app.document import clip_of
 from app.editor import promises
 from app.editor.project import Project
 from app.editor.session import Session
-from app.motion import Shown
+from app.motion import DisplayedFrame
 
 
 def unrest(session: Session) -> str:
@@ -46,16 +46,16 @@ def _shown(project: Project) -> list[str]:
                 f"{shown.clip.frames.first} to {shown.clip.frames.last}, and the document has "
                 f"{clip.frames.first} to {clip.frames.last}; same clip {shown.clip == clip}, same "
                 f"layer {shown.clip.layer is clip.layer}, stand-in "
-                f"{type(shown.stand_in).__name__}, rough {shown.is_rough}, still "
+                f"{type(shown.placeholder).__name__}, rough {shown.is_approximate}, still "
                 f"{clip.layer.still}, mesh of its domain {store.mesh.source is clip.layer.domain}"
                 f", failed {[part for part in PARTS if store.has_failed(clip, part)]}"
             )
     return lines
 
 
-def _plays(project: Project, shown: Shown) -> bool:
+def _plays(project: Project, shown: DisplayedFrame) -> bool:
     """Tell whether a frame only plays, so that nothing finds its corrections."""
-    return project.playhead.since is not None and shown.stand_in is None
+    return project.playhead.since is not None and shown.placeholder is None
 
 
 PARTS = ("frame", "in-betweens", "fine", "series")

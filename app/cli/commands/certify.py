@@ -5,11 +5,11 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from app.cli.console import give_notices, say
-from app.document import Extremes, clip_of, motion_notices
+from app.cli.console import print_line, print_notices
+from app.document import DistortionRange, clip_of, motion_notices
 from app.errors import shortened
-from app.motion import carried_in
-from app.reports import IntervalReport, Report, Verdict, certify_clip
+from app.motion import find_parent_motion
+from app.reports import Report, SegmentReport, Verdict, certify_clip
 from app.storage import load_project, strict_json
 from engine.interpolation import Proof
 from engine.maps import Certificate
@@ -23,20 +23,22 @@ WORDS = {Verdict.PROVEN: "proven", Verdict.MEASURED: "MEASURED ONLY", Verdict.OV
 def run(arguments: argparse.Namespace) -> int:
     """Print the report of a project."""
     document = load_project(arguments.project)
-    give_notices(motion_notices(document))
+    print_notices(motion_notices(document))
     reports = {
         layer.name: certify_clip(
-            clip_of(document, layer.id), arguments.variant, carried_in(document, layer.id)
+            clip_of(document, layer.id), arguments.variant, find_parent_motion(document, layer.id)
         )
         for layer in document.layers
         if not layer.still
     }
     if arguments.json:
-        say(_as_json(reports))
+        print_line(_as_json(reports))
     else:
         # Of one layer the table is all that there is to say.
         parts = [_overview(reports)] if len(reports) != 1 else []
-        say("\n\n".join([*parts, *(_tables(reports) if arguments.details or not parts else [])]))
+        print_line(
+            "\n\n".join([*parts, *(_tables(reports) if arguments.details or not parts else [])])
+        )
     return EXITS[_verdict(reports)]
 
 
@@ -91,9 +93,7 @@ def _where(report: Report) -> list[str]:
     is_over = report.verdict is Verdict.OVER
     found = [f"key {frame}" for frame, own in report.keys if is_over and not own.certified]
     found += [
-        f"{each.first} to {each.last}"
-        for each in report.intervals
-        if each.verdict is report.verdict
+        f"{each.first} to {each.last}" for each in report.segments if each.verdict is report.verdict
     ]
     return found + ["tracks"] * (report.corrected_verdict is report.verdict)
 
@@ -105,7 +105,7 @@ def _block(report: Report) -> dict[str, Any]:
     return {
         **_judged(report.verdict),
         "keys": keys,
-        "intervals": [_interval_block(interval) for interval in report.intervals],
+        "intervals": [_interval_block(interval) for interval in report.segments],
         "corrected": None if report.corrected is None else _corrected_block(report),
     }
 
@@ -135,7 +135,7 @@ def _judged(verdict: Verdict) -> dict[str, Any]:
     return {"verdict": verdict, "certified": verdict is Verdict.PROVEN}
 
 
-def _interval_block(interval: IntervalReport) -> dict[str, Any]:
+def _interval_block(interval: SegmentReport) -> dict[str, Any]:
     return {
         "from": interval.first,
         "to": interval.last,
@@ -154,7 +154,7 @@ def _interval_block(interval: IntervalReport) -> dict[str, Any]:
     }
 
 
-def _named(values: Certificate | Extremes | Proof) -> dict[str, float | None]:
+def _named(values: Certificate | DistortionRange | Proof) -> dict[str, float | None]:
     """Return each number by its name, None (JSON null) where nothing is proven: JSON has no ∞."""
     return {
         name: value if math.isfinite(value) else None
@@ -162,7 +162,7 @@ def _named(values: Certificate | Extremes | Proof) -> dict[str, float | None]:
     }
 
 
-def _numbers(values: Certificate | Extremes | Proof) -> tuple[float, float, float]:
+def _numbers(values: Certificate | DistortionRange | Proof) -> tuple[float, float, float]:
     return values.k, values.sigma_a, values.sigma_b
 
 
@@ -173,10 +173,10 @@ def _as_table(report: Report) -> str:
         lines.append(
             _line(f"key {frame}", cells, "certified" if own.certified else "NOT CERTIFIED")
         )
-    for interval in report.intervals:
+    for interval in report.segments:
         lines += _interval_lines(interval)
     lines += [
-        f"{cycle.told.capitalize()} repeat"
+        f"{cycle.description.capitalize()} repeat"
         f"{'' if cycle.until is None else f' until frame {cycle.until}'}: every repeat is the same "
         "motion, told once."
         for cycle in report.cycles
@@ -187,7 +187,7 @@ def _as_table(report: Report) -> str:
         " (or beyond the layer's bounds, where handles stay or the motion passes through a key)."
     )
     lines.append(f"All in all: {WORDS[report.verdict]}.")
-    largest = max((interval.correction for interval in report.intervals), default=0.0)
+    largest = max((interval.correction for interval in report.segments), default=0.0)
     if largest > 0:
         lines.append(
             f"Around holes the in-betweens are stretched and turned by up to {largest:.2%} to "
@@ -225,7 +225,7 @@ def _corrected_lines(report: Report) -> list[str]:
     return lines
 
 
-def _interval_lines(interval: IntervalReport) -> list[str]:
+def _interval_lines(interval: SegmentReport) -> list[str]:
     """Return what is reached in an interval, what is proven of it, and where it is not."""
     reached = zip(_numbers(interval.reached), interval.keys, strict=True)
     proven = zip(_numbers(interval.proof), ("+", "+", "-"), interval.excess, strict=True)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from app.cli.console import say
+from app.cli.console import print_line
 from app.cli.hole_arrays import HOLE_ARRAYS, hole_arrays, read_holes
 from app.errors import LissomError
 from app.storage import check_writable, read_arrays, write_arrays
@@ -68,7 +68,7 @@ def run(arguments: argparse.Namespace) -> int:
             "steps_tried": tried,
         },
     )
-    say(
+    print_line(
         f"{state.status.value}: k ≤ {certificate.k:.4f}, sigma_a ≤ {certificate.sigma_a:.4f}, "
         f"sigma_b ≥ {certificate.sigma_b:.4f}, {state.steps} steps of {tried} tried"
     )

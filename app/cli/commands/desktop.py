@@ -15,7 +15,7 @@ import sysconfig
 from contextlib import suppress
 from pathlib import Path
 
-from app.cli.console import say
+from app.cli.console import print_line
 from app.errors import REINSTALL, LissomError
 from app.storage import app_icon, decode_picture, draw_thumbnail, home_folder, write_atomically
 
@@ -28,7 +28,7 @@ ICONS_AT = {
     side: f"icons/hicolor/{side}x{side}/apps/lissom.png"
     for side in (16, 24, 32, 48, 64, 128, 256, 512)
 }
-PLACES = (ENTRY_AT, THUMBNAILER_AT, MIME_TYPE_AT, *ICONS_AT.values())
+INSTALLED_PATHS = (ENTRY_AT, THUMBNAILER_AT, MIME_TYPE_AT, *ICONS_AT.values())
 # What makes the desktop look again, and the folder that it reads.
 REFRESHERS = {"update-desktop-database": "applications", "update-mime-database": "mime"}
 # What the second of them makes of the packages; of none, it makes files that say nothing.
@@ -88,10 +88,12 @@ def run(arguments: argparse.Namespace) -> int:
     try:
         if arguments.install:
             _install(home)
-            say(f"Lissom is in the menu of applications, and .lissom files open with it ({home}).")
+            print_line(
+                f"Lissom is in the menu of applications, and .lissom files open with it ({home})."
+            )
         else:
             _remove(home)
-            say(f"Nothing of Lissom is left in {home}.")
+            print_line(f"Nothing of Lissom is left in {home}.")
     except OSError as error:
         raise LissomError(f"cannot change {error.filename}: {error.strerror}") from error
     return 0
@@ -104,13 +106,13 @@ def _data_home() -> Path:
 
 
 def _install(home: Path) -> None:
-    for place, content in contents(_program()).items():
+    for place, content in build_desktop_files(_program()).items():
         _write(home / place, content)
     _refresh(home)
 
 
 def _remove(home: Path) -> None:
-    for place in PLACES:
+    for place in INSTALLED_PATHS:
         (home / place).unlink(missing_ok=True)
     _refresh(home)
     if not list(home.glob("mime/packages/*")):
@@ -118,13 +120,13 @@ def _remove(home: Path) -> None:
             (home / "mime" / name).unlink(missing_ok=True)
     if not list(home.glob("applications/*.desktop")):
         (home / "applications" / "mimeinfo.cache").unlink(missing_ok=True)
-    folders = {parent for place in PLACES for parent in Path(place).parents} - {Path()}
+    folders = {parent for place in INSTALLED_PATHS for parent in Path(place).parents} - {Path()}
     for folder in sorted({*folders, Path("mime/application")}, reverse=True):
         with suppress(OSError):  # others keep something there, or it is gone
             (home / folder).rmdir()
 
 
-def contents(program: str) -> dict[str, bytes]:
+def build_desktop_files(program: str) -> dict[str, bytes]:
     """Return what enters the program of this path into a desktop, by its place in a data folder."""
     icon = decode_picture(app_icon(), "the icon of Lissom").rgba
     said = {"program": _escaped(program), "quoted": _quoted(program)}

@@ -7,8 +7,8 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from app.cli.console import say
-from app.errors import LIBRARIES, Extra, LissomError, missing
+from app.cli.console import print_line
+from app.errors import LIBRARIES, Extra, LissomError, install_hint
 from app.export_formats import EXPORT_FORMATS
 from app.render import Renderer, Scene, canvas_view
 from app.render.gpu import (
@@ -21,10 +21,10 @@ from app.render.gpu import (
     PositionBuffer,
     RenderTarget,
     create_context,
-    probe,
-    singles,
+    probe_backend,
+    to_float32_points,
 )
-from app.reports import library_version, machine_in_words
+from app.reports import describe_machine, library_version
 from app.ui.dialogs import find_system_dialogs
 
 USES: Final[dict[Extra, str]] = {
@@ -34,7 +34,7 @@ USES: Final[dict[Extra, str]] = {
 }
 
 
-class Finding(NamedTuple):
+class CheckResult(NamedTuple):
     """Whether something works, and which one it is or what to do about it."""
 
     name: str
@@ -44,32 +44,32 @@ class Finding(NamedTuple):
 
 def run(_: argparse.Namespace) -> int:
     """Print what works here."""
-    say(machine_in_words())
+    print_line(describe_machine())
     rendering = [_rendering(backend) for backend in AUTOMATIC]
     for finding in (*rendering, _display(), _dialogs(), *map(_extra, LIBRARIES)):
-        say(f"{'ok' if finding.works else '--'}  {finding.name}: {finding.text}")
+        print_line(f"{'ok' if finding.works else '--'}  {finding.name}: {finding.text}")
     if any(finding.works for finding in rendering):
-        say("Lissom can render here.")
+        print_line("Lissom can render here.")
         return 0
-    say("Lissom cannot render here: install what is named above.")
+    print_line("Lissom cannot render here: install what is named above.")
     return 1
 
 
-def _rendering(backend: Backend) -> Finding:
+def _rendering(backend: Backend) -> CheckResult:
     name = f"rendering with {backend}"
-    report = probe(backend)
+    report = probe_backend(backend)
     if report.problem:
-        return Finding(name, report.problem, works=False)
+        return CheckResult(name, report.problem, works=False)
     text = (
         f"{report.renderer}, OpenGL {report.version}, up to {report.largest_size} pixels each way"
     )
     try:
         if _draws_exactly(backend):
-            return Finding(name, text)
+            return CheckResult(name, text)
         problem = "the pictures come out wrong"
     except (LissomError, GlError) as error:
         problem = f"drawing fails: {error}"
-    return Finding(name, f"{text}, but {problem}; install another graphics driver", works=False)
+    return CheckResult(name, f"{text}, but {problem}; install another graphics driver", works=False)
 
 
 def _draws_exactly(backend: Backend) -> bool:
@@ -83,7 +83,7 @@ def _draws_exactly(backend: Backend) -> bool:
         texture = GpuPicture(context, picture)
         mesh = GpuMesh(renderer.programs, texture, rest=rest, triangles=triangles)
         vertices = PositionBuffer(context, len(rest))
-        vertices.write(singles(rest))
+        vertices.write(to_float32_points(rest))
         target = RenderTarget(renderer.programs, (16, 12))
         renderer.draw(target, canvas_view((16, 12)), Scene(meshes=(PosedMesh(mesh, vertices),)))
         return np.array_equal(target.read_straight_rgba(), picture)
@@ -92,28 +92,28 @@ def _draws_exactly(backend: Backend) -> bool:
         context.release()
 
 
-def _display() -> Finding:
+def _display() -> CheckResult:
     name = "display for the window"
     if sys.platform in {"win32", "darwin"}:
-        return Finding(name, "the system's own")
+        return CheckResult(name, "the system's own")
     for variable in ("WAYLAND_DISPLAY", "DISPLAY"):
         if os.environ.get(variable):
-            return Finding(name, f"{variable}={os.environ[variable]}")
-    return Finding(name, "none; the command line does not need one", works=False)
+            return CheckResult(name, f"{variable}={os.environ[variable]}")
+    return CheckResult(name, "none; the command line does not need one", works=False)
 
 
-def _dialogs() -> Finding:
+def _dialogs() -> CheckResult:
     name = "file dialogs of the system"
     found = find_system_dialogs()
     if found:
-        return Finding(name, found)
+        return CheckResult(name, found)
     remedy = "none, Lissom's own are used; for the system's: sudo apt install zenity"
-    return Finding(name, remedy, works=False)
+    return CheckResult(name, remedy, works=False)
 
 
-def _extra(extra: Extra) -> Finding:
+def _extra(extra: Extra) -> CheckResult:
     """Return how it stands about something that needs more than Lissom always has."""
     name, library = USES[extra], LIBRARIES[extra]
-    if remedy := missing(extra):
-        return Finding(name, f"{library} is not installed: {remedy}", works=False)
-    return Finding(name, f"{library} {library_version(library)}")
+    if remedy := install_hint(extra):
+        return CheckResult(name, f"{library} is not installed: {remedy}", works=False)
+    return CheckResult(name, f"{library} {library_version(library)}")

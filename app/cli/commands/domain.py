@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
-from app.cli.console import give_notices, say
-from app.cli.cut_out import read_cut_out
+from app.cli.console import print_line, print_notices
+from app.cli.cut_out import parse_cut_out
 from app.cli.hole_arrays import hole_arrays
-from app.errors import LissomError, listed
+from app.errors import LissomError, join_names
 from app.reports import draw_preview
 from app.storage import (
     Picture,
@@ -29,7 +29,7 @@ def run(arguments: argparse.Namespace) -> int:
     written, read = (arguments.out, arguments.preview), (arguments.picture, arguments.mask)
     check_writable(*filter(None, written), sources=filter(None, read))
     picture, corner = _read(arguments.picture, arguments.layer)
-    cut_out = read_cut_out(arguments)
+    cut_out = parse_cut_out(arguments)
     if is_layered(arguments.picture) and cut_out.background == "auto":
         # What is drawn on a layer is all that it shows, as in a scene.
         cut_out = replace(cut_out, background="none")
@@ -39,7 +39,7 @@ def run(arguments: argparse.Namespace) -> int:
     domain, remedies = build_domain(
         picture.rgba, triangles=arguments.triangles, detail=arguments.detail, cut_out=cut_out
     )
-    give_notices((*picture.notices, *remedies))
+    print_notices((*picture.notices, *remedies))
     if arguments.preview is not None:
         drawn = draw_preview(picture, domain)
         write_atomically(arguments.preview, lambda file: file.write(drawn))
@@ -61,7 +61,7 @@ def run(arguments: argparse.Namespace) -> int:
         },
     )
     kept = f", {len(holes)} {'hole' if len(holes) == 1 else 'holes'}" if holes else ""
-    say(
+    print_line(
         f"{arguments.out}: {picture.size[0]} × {picture.size[1]} pixels, outline and cage of "
         f"{sum(map(len, domain.cages))} vertices{kept}, {len(mesh.triangles):,} triangles"
     )
@@ -76,13 +76,13 @@ def _read(path: Path, layer: str | None) -> tuple[Picture, complex]:
         return decode_picture(read_file(path), str(path)), 0j
     drawing = read_layered(path)
     names = [each.name for each in drawing.layers]
-    told = listed([repr(name) for name in reversed(names)])
+    told = join_names([repr(name) for name in reversed(names)])
     if layer is None and len(names) > 1:
         raise LissomError(
             f"{path} has {len(names)} layers; name one by --layer, from the front: {told}"
         )
     if layer is not None and layer not in names:
         raise LissomError(f"{path} has no layer {layer!r}; its layers are, from the front: {told}")
-    give_notices(drawing.summary.lines)
+    print_notices(drawing.summary.lines)
     found = drawing.layers[0 if layer is None else names.index(layer)]
     return found.picture, found.corner

@@ -7,30 +7,30 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from app.cli.console import StatusLine, give_notices, say
+from app.cli.console import StatusLine, print_line, print_notices
 from app.document import (
     Document,
     ExportSettings,
     FrameRange,
     clip_of,
     motion_notices,
-    seen_alone,
+    without_foreign_clips,
 )
-from app.errors import LissomError, listed
+from app.errors import LissomError, join_names
 from app.export import (
     PROJECT,
+    CachedVertices,
     ExportPlan,
     ExportRequest,
-    KeptPoses,
-    Painter,
-    ShapeExport,
+    FrameRenderer,
+    MeshExport,
     check_request,
     data_file,
     plan_export,
     sheet_grid,
-    with_light_meshes,
+    with_reduced_meshes,
 )
-from app.export_formats import EXPORT_FORMATS, STILL, FormatSettings, format_by_suffix
+from app.export_formats import EXPORT_FORMATS, STILL_FORMAT, FormatSettings, format_by_suffix
 from app.motion import Animation, hung_animations
 from app.render.gpu import create_context
 from app.storage import cut_picture, decode_picture, load_project
@@ -42,7 +42,7 @@ NO_USE = "{name} has no use for --{flag}; leave it out"
 def run(arguments: argparse.Namespace) -> int:
     """Export a project."""
     document = load_project(arguments.project)
-    give_notices(motion_notices(document))
+    print_notices(motion_notices(document))
     if arguments.layer is not None:
         document = _alone(document, arguments.layer)
     name = arguments.project.stem
@@ -68,7 +68,7 @@ def run(arguments: argparse.Namespace) -> int:
         layer.id: cut_picture(decoded[layer.picture], layer.cut_out).texture
         for layer in document.layers
     }
-    say(_make(document, pictures, request, arguments))
+    print_line(_make(document, pictures, request, arguments))
     return 0
 
 
@@ -76,13 +76,13 @@ def _alone(document: Document, name: str) -> Document:
     """Return a document of which only one layer is seen; it hangs where it hung."""
     names = [layer.name for layer in document.layers]
     if name not in names:
-        raise LissomError(f"there is no layer {name!r}; the layers are {listed(names)}")
+        raise LissomError(f"there is no layer {name!r}; the layers are {join_names(names)}")
     layers = tuple(
         replace(layer, hidden=False, reference=layer.name != name) for layer in document.layers
     )
     groups = tuple(replace(group, hidden=False) for group in document.groups)
     alone = replace(document, layers=layers, groups=groups, size=document.canvas)
-    return seen_alone(alone, [layer.id for layer in layers if layer.name == name])
+    return without_foreign_clips(alone, [layer.id for layer in layers if layer.name == name])
 
 
 def _make(
@@ -92,33 +92,33 @@ def _make(
     arguments: argparse.Namespace,
 ) -> str:
     """Make what was asked for; return what it came to."""
-    maker: Painter | ShapeExport
+    maker: FrameRenderer | MeshExport
     with ExitStack() as ending:
         context = None
         if EXPORT_FORMATS[request.settings.format].is_drawn:
             context = create_context()
             ending.callback(context.release)
         else:
-            document = with_light_meshes(document, request.settings.shapes.triangles)
+            document = with_reduced_meshes(document, request.settings.shapes.triangles)
         status = ending.enter_context(StatusLine())
         status.show("preparing the in-betweens")
         poses = _poses(document, arguments)
         plan = plan_export(document, request, poses)
         given = document, pictures, poses, plan
-        maker = ShapeExport(*given) if context is None else Painter(context, *given)
+        maker = MeshExport(*given) if context is None else FrameRenderer(context, *given)
         with closing(maker.run()) as steps:
             for done in steps:
                 status.show(f"{done} of {len(plan.times)} frames")
-    give_notices((*maker.notices, *plan.notices))
-    if isinstance(maker, ShapeExport):
+    print_notices((*maker.notices, *plan.notices))
+    if isinstance(maker, MeshExport):
         return _summary_of_shapes(maker, plan)
     return _summary_of_frames(plan)
 
 
-def _poses(document: Document, arguments: argparse.Namespace) -> dict[int, KeptPoses]:
+def _poses(document: Document, arguments: argparse.Namespace) -> dict[int, CachedVertices]:
     alone = [Animation(clip_of(document, layer.id), arguments.variant) for layer in document.layers]
     hung = hung_animations(alone, document)
-    return {layer: KeptPoses(animation) for layer, animation in hung.items()}
+    return {layer: CachedVertices(animation) for layer, animation in hung.items()}
 
 
 def _settings(own: ExportSettings, arguments: argparse.Namespace, out: Path) -> ExportSettings:
@@ -136,7 +136,7 @@ def _settings(own: ExportSettings, arguments: argparse.Namespace, out: Path) -> 
     }
     options = {
         group: replace(
-            asking, **_known({name: getattr(arguments, name) for name in asking.asked()})
+            asking, **_known({name: getattr(arguments, name) for name in asking.option_fields()})
         )
         for group, asking in own.options().items()
     }
@@ -156,7 +156,7 @@ def _check_options(name: str, arguments: argparse.Namespace) -> None:
     useless = {option: option for option in (*framing, *(("names",) if format_.suffixes else ()))}
     for group, asking in FormatSettings().options().items():
         if group != format_.options:
-            useless |= {each: option.flag for each, option in asking.asked().items()}
+            useless |= {each: option.flag for each, option in asking.option_fields().items()}
     for each, flag in useless.items():
         if getattr(arguments, each) is not None:
             raise LissomError(NO_USE.format(name=name, flag=flag))
@@ -190,7 +190,7 @@ def _format_of(out: Path, own: ExportSettings, *, is_one: bool) -> str | None:
         return None if is_own else format_by_suffix()[suffix]
     several = [name for name, format_ in EXPORT_FORMATS.items() if suffix in format_.suffixes]
     if is_one:
-        return STILL
+        return STILL_FORMAT
     raise LissomError(
         f"{out} may be {' or '.join(several)}: say --format, or --frame N for the picture of a "
         "frame"
@@ -212,12 +212,12 @@ def _summary_of_frames(plan: ExportPlan) -> str:
     return f"{text}, {plan.fps:g} a second"
 
 
-def _summary_of_shapes(maker: ShapeExport, plan: ExportPlan) -> str:
+def _summary_of_shapes(maker: MeshExport, plan: ExportPlan) -> str:
     first, last = plan.span
     counts = [
         f"{len(shape.motion.targets)} shapes of {len(shape.uv):,} vertices within "
         f"{shape.motion.error:.2g} pixels of the motion"
-        for shape in maker.shapes
+        for shape in maker.meshes
     ]
     size = plan.out.stat().st_size / 1000
     seconds = (last - first) / plan.fps

@@ -3,8 +3,15 @@
 import argparse
 from pathlib import Path
 
-from app.cli.console import StatusLine, say
-from app.cli.figures import MAKERS, Easel, Plate, Studio, lay_out, require_matplotlib
+from app.cli.console import StatusLine, print_line
+from app.cli.figures import (
+    MAKERS,
+    FigureContext,
+    PaperFigure,
+    ShapeRenderer,
+    render_page,
+    require_matplotlib,
+)
 from app.storage import make_folder, write_atomically
 
 
@@ -14,22 +21,24 @@ def run(arguments: argparse.Namespace) -> int:
     out: Path = arguments.out.path
     make_folder(out)
     plates = {}
-    with StatusLine() as status, Easel() as easel:
-        studio = Studio(easel=easel, triangles=arguments.triangles, largest=arguments.largest)
+    with StatusLine() as status, ShapeRenderer() as easel:
+        studio = FigureContext(
+            renderer=easel, triangles=arguments.triangles, largest=arguments.largest
+        )
         for number in sorted(set(arguments.only or MAKERS)):
             status.show(f"making figure {number}")
             plates[number] = plate = MAKERS[number](studio)
             _write(out / f"figure_{number}.png", plate.picture)
-    _write(out / "figures.html", lay_out(plates).encode())
+    _write(out / "figures.html", render_page(plates).encode())
     for number, plate in plates.items():
         print(f"\nFigure {number}: {plate.title}\n{_as_table(plate)}")
-    say(f"\n{out}: {len(plates)} figures")
+    print_line(f"\n{out}: {len(plates)} figures")
     return 0
 
 
-def _as_table(plate: Plate) -> str:
+def _as_table(plate: PaperFigure) -> str:
     """Return the numbers beside a figure in columns."""
-    table = [plate.heads, *plate.rows]
+    table = [plate.column_names, *plate.rows]
     widths = [max(map(len, column)) for column in zip(*table, strict=True)]
     lines = []
     for name, *numbers in table:

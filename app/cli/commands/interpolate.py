@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from app.cli.console import notice
+from app.cli.console import print_notice
 from app.cli.keyframes import Keyframes, read_keyframes
 from app.document import NATURAL
-from app.errors import LissomError, tell
+from app.errors import LissomError, report_progress
 from app.storage import check_writable, write_arrays
 from engine.baselines import Baseline, prepare_baseline
 from engine.geometry import Domain
@@ -57,7 +57,7 @@ def _harmonic(arguments: argparse.Namespace, given: Keyframes) -> dict[str, npt.
         through=arguments.through,
         loop=arguments.loop,
         bounds=_bounds(arguments),
-        progress=tell,
+        progress=report_progress,
     )
     frames = [prepared.frame(time) for time in arguments.times]
     results = {
@@ -113,7 +113,7 @@ def _compared(arguments: argparse.Namespace, given: Keyframes) -> dict[str, npt.
             results[name] = np.array(values)
     defect = max(results.get("angle_defect", np.zeros(1)))
     if defect > UNFINISHED:
-        notice(f"a mesh could not be flattened: angles of {defect:.2g} radians are left over")
+        print_notice(f"a mesh could not be flattened: angles of {defect:.2g} radians are left over")
     return results
 
 

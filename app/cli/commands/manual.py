@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from app.cli.console import say
+from app.cli.console import print_line
 from app.storage import check_writable, make_folder, manual_page, write_atomically
 
 
@@ -18,7 +18,7 @@ def run(arguments: argparse.Namespace) -> int:
     check_writable(*copies, sources=sources)
     for source, copy in zip(sources, copies, strict=True):
         _write(copy, source.read_bytes())
-    say(f"{out / first.name}: the first page of the manual")
+    print_line(f"{out / first.name}: the first page of the manual")
     return 0
 
 

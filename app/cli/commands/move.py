@@ -3,11 +3,18 @@
 import argparse
 from typing import NamedTuple
 
-from app.cli.console import StatusLine, give_notices, say
-from app.cli.cut_out import read_cut_out
+from app.cli.console import StatusLine, print_line, print_notices
+from app.cli.cut_out import parse_cut_out
 from app.document import Document, Layer, Meshing
 from app.errors import LissomError
-from app.solving import MotionOrder, ToldJoints, begin_giving, facing_in, give_on, load_joints
+from app.solving import (
+    JointsFile,
+    MotionRequest,
+    find_facing,
+    load_joints,
+    start_motion_solve,
+    step_motion_solve,
+)
 from app.storage import (
     OpenedScene,
     check_writable,
@@ -22,10 +29,10 @@ from engine.domain import guessed_kind, suggested_joints
 from engine.geometry.motions import MOTIONS, Motion, Parameters, kind_named, motion_named
 
 WHOLE = "anything"  # what moves as a whole may be anything
-NO_JOINTS = ToldJoints(kind=None, joints={})
+NO_JOINTS = JointsFile(kind=None, joints={})
 
 
-class _Found(NamedTuple):
+class _LayerJoints(NamedTuple):
     """The kind and the joints of a drawing."""
 
     kind: str
@@ -50,10 +57,10 @@ def run(arguments: argparse.Namespace) -> int:
             raise LissomError(
                 f"--kind is {arguments.kind!r}, but {arguments.joints} is of {told.kind!r}"
             )
-    opened = _opened(arguments)
+    opened = _open_picture(arguments)
     layer = opened.document.layers[0]
-    found = _found(layer, motion, arguments.kind or told.kind, told)
-    order = MotionOrder(
+    found = _find_joints(layer, motion, arguments.kind or told.kind, told)
+    order = MotionRequest(
         motion=arguments.motion,
         kind=found.kind,
         joints=found.joints,
@@ -61,7 +68,7 @@ def run(arguments: argparse.Namespace) -> int:
         facing={"left": -1, "right": 1, None: None}[arguments.facing],
         bones=arguments.bones,
     )
-    document = _moved(opened.document, order)
+    document = _apply_motion(opened.document, order)
     _save(arguments, opened, document)
     return 0
 
@@ -71,7 +78,7 @@ def _list_motions() -> None:
     longest = max(map(len, MOTIONS))
     for name, motion in MOTIONS.items():
         travels = "; it may travel" if motion.travels else ""
-        say(f"{name:<{longest}}  {', '.join(motion.kinds)}: {motion.hint}{travels}")
+        print_line(f"{name:<{longest}}  {', '.join(motion.kinds)}: {motion.hint}{travels}")
 
 
 def _parameters(arguments: argparse.Namespace) -> Parameters:
@@ -86,16 +93,16 @@ def _parameters(arguments: argparse.Namespace) -> Parameters:
     )
 
 
-def _opened(arguments: argparse.Namespace) -> OpenedScene:
+def _open_picture(arguments: argparse.Namespace) -> OpenedScene:
     """Return the drawing as a scene of one layer."""
     meshing = Meshing(triangles=arguments.triangles, detail=arguments.detail)
     open_one = open_merged if is_layered(arguments.picture) else open_picture
-    opened = open_one(arguments.picture, meshing, read_cut_out(arguments))
-    give_notices((*opened.notices, *opened.document.told.lines))
+    opened = open_one(arguments.picture, meshing, parse_cut_out(arguments))
+    print_notices((*opened.notices, *opened.document.import_log.lines))
     return opened
 
 
-def _found(layer: Layer, motion: Motion, kind: str | None, told: ToldJoints) -> _Found:
+def _find_joints(layer: Layer, motion: Motion, kind: str | None, told: JointsFile) -> _LayerJoints:
     """Return the kind of a drawing and its joints, guessed where they are not told."""
     loops = layer.domain.loops
     if kind is None:
@@ -104,27 +111,27 @@ def _found(layer: Layer, motion: Motion, kind: str | None, told: ToldJoints) -> 
         kind = guessed_kind(loops).name
         if kind not in motion.kinds and WHOLE in motion.kinds:
             kind = WHOLE
-        say(f"kind: {kind} (guessed)")
+        print_line(f"kind: {kind} (guessed)")
     joints = dict(told.joints)
     if not joints and kind_named(kind).parents:
         joints = dict(suggested_joints(loops, kind_named(kind)))
         if not joints:
             raise LissomError(f"no joints of {kind!r} are found in the drawing; tell --joints")
-        say(f"joints: {', '.join(joints)} (guessed)")
-    return _Found(kind, joints)
+        print_line(f"joints: {', '.join(joints)} (guessed)")
+    return _LayerJoints(kind, joints)
 
 
-def _moved(document: Document, order: MotionOrder) -> Document:
+def _apply_motion(document: Document, order: MotionRequest) -> Document:
     """Return the document with the motion; tell what of it is out of reach."""
     with StatusLine() as status:
-        giving = begin_giving(document, document.layers[0].id, order)
+        giving = start_motion_solve(document, document.layers[0].id, order)
         if order.facing is None and order.kind in {"biped-side", "four-legs"}:
-            side = "right" if facing_in(document.layers[0], order) > 0 else "left"
-            say(f"it looks to the {side} (guessed)")
+            side = "right" if find_facing(document.layers[0], order) > 0 else "left"
+            print_line(f"it looks to the {side} (guessed)")
         while not giving.is_over:
-            status.show(giving.now)
-            giving = give_on(giving)
-    give_notices(giving.notices)
+            status.show(giving.status_text)
+            giving = step_motion_solve(giving)
+    print_notices(giving.notices)
     return giving.command(document)
 
 
@@ -135,4 +142,4 @@ def _save(arguments: argparse.Namespace, opened: OpenedScene, document: Document
     save_project(arguments.out, document, thumbnail=draw_thumbnail(texture))
     length = document.frames.last - document.frames.first
     frames = f"{length} frames, looped" if document.loop else f"{length + 1} frames"
-    say(f"{arguments.out}: {arguments.motion}, {frames}, {len(layer.keys)} keys")
+    print_line(f"{arguments.out}: {arguments.motion}, {frames}, {len(layer.keys)} keys")

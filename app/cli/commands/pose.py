@@ -2,15 +2,15 @@
 
 import argparse
 
-from app.cli.console import StatusLine, give_notices, say
-from app.cli.cut_out import read_cut_out
+from app.cli.console import StatusLine, print_line, print_notices
+from app.cli.cut_out import parse_cut_out
 from app.document import Meshing
 from app.solving import load_pose_script, pose_document
 from app.storage import (
     check_writable,
     cut_picture,
     draw_thumbnail,
-    flattened,
+    flatten_layers,
     is_layered,
     open_layered,
     open_picture,
@@ -24,24 +24,24 @@ def run(arguments: argparse.Namespace) -> int:
     check_writable(arguments.out, sources=filter(None, read))
     script = load_pose_script(arguments.script)
     meshing = Meshing(triangles=arguments.triangles, detail=arguments.detail)
-    cut_out = read_cut_out(arguments)
+    cut_out = parse_cut_out(arguments)
     if is_layered(arguments.picture):
         opened = open_layered(arguments.picture, meshing)
     else:
         opened = open_picture(arguments.picture, meshing, cut_out)
-    give_notices((*opened.notices, *opened.document.told.lines))
+    print_notices((*opened.notices, *opened.document.import_log.lines))
     with StatusLine() as status:
         document, lags = pose_document(opened.document, script, status.show)
-    give_notices(lags)
+    print_notices(lags)
     textures = {
         layer.id: cut_picture(opened.pictures[layer.id], layer.cut_out).texture
         for layer in document.layers
     }
-    picture = flattened(document, textures)
+    picture = flatten_layers(document, textures)
     save_project(arguments.out, document, thumbnail=draw_thumbnail(picture))
     posed = [layer for layer in document.layers if not layer.still]
     keys = sum(len(layer.keys) for layer in posed)
     handles = sum(len(layer.handles) for layer in posed)
     layers = "" if len(document.layers) == 1 else f"{len(document.layers)} layers, "
-    say(f"{arguments.out}: {layers}{keys} keys, {handles} handles")
+    print_line(f"{arguments.out}: {layers}{keys} keys, {handles} handles")
     return 0

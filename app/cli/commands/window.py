@@ -7,15 +7,15 @@ import time
 from contextlib import AbstractContextManager, nullcontext, suppress
 from pathlib import Path
 
-from app.cli.console import fail, notice
+from app.cli.console import exit_with_error, print_notice
 from app.cli.process import (
     PATIENCE,
-    Endings,
-    at_lost_display,
-    end_within,
-    faults_told_to,
-    has_threads_left,
-    share_interpreter,
+    SignalHandler,
+    exit_within,
+    has_running_threads,
+    on_display_lost,
+    redirect_faulthandler,
+    set_switch_interval,
 )
 from app.editor import Jobs, Session, failures
 from app.editor.actions import files, saving
@@ -25,17 +25,17 @@ from app.render.gpu import window_context
 from app.storage import (
     load_preferences,
     make_settings_folder,
-    open_faults,
+    open_fault_log,
     save_preferences,
     settings_folder,
 )
 from app.ui.dialogs import find_system_dialogs
-from app.ui.window import Window, has_display, share_heap
+from app.ui.window import Window, has_display, limit_arenas
 
 EXIT_FAILED = 1
 DISPLAY_GONE = "the display is gone"
 WORK_KEPT = "your unsaved work was kept; it is offered when Lissom starts again"
-HINDRANCES = (*EXPECTED_ERRORS, ImportError, MemoryError, OSError, RuntimeError)
+START_ERRORS = (*EXPECTED_ERRORS, ImportError, MemoryError, OSError, RuntimeError)
 # Seconds that workers have to end: when the person has closed the window, when something else has.
 LEISURE, HURRY = 6.0, 2.0
 
@@ -43,12 +43,12 @@ LEISURE, HURRY = 6.0, 2.0
 def run(arguments: argparse.Namespace) -> int:
     """Open the window, and close it when the person does."""
     if not has_display():
-        fail(
+        exit_with_error(
             "there is no display for the window; the command line works without one, for example "
             "'lissom export PROJECT --out DIR'"
         )
-    share_interpreter()
-    share_heap()
+    set_switch_interval()
+    limit_arenas()
     folder = settings_folder()
     session = Session(
         clock=time.perf_counter,
@@ -66,15 +66,15 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.file is not None:
         files.open_file(session, arguments.file.resolve())
     window = Window(session, lambda: Renderer(window_context()))
-    heard = at_lost_display(lambda: _keep_at_lost_display(session), EXIT_FAILED)
-    with Endings(window.wake) as endings, _noting_faults(folder):
+    heard = on_display_lost(lambda: _keep_at_lost_display(session), EXIT_FAILED)
+    with SignalHandler(window.wake) as endings, _noting_faults(folder):
         status = _show(window, endings)
         del heard
         have_ended = session.jobs.close(LEISURE if session.quitting else HURRY)
         if session.quitting:
             # One that was being written when the person left.
-            session.autosave.forget()
-    if status == EXIT_FAILED or not have_ended or has_threads_left():
+            session.autosave.remove()
+    if status == EXIT_FAILED or not have_ended or has_running_threads():
         # What a worker that never ends uses must not be taken down under it, and after an exception
         # nobody knows what may be.
         sys.stderr.flush()
@@ -82,7 +82,7 @@ def run(arguments: argparse.Namespace) -> int:
     return status
 
 
-def _show(window: Window, endings: Endings) -> int:
+def _show(window: Window, endings: SignalHandler) -> int:
     """Show the window until it is closed; return the program's exit status."""
     session, was_open = window.session, False
 
@@ -94,19 +94,19 @@ def _show(window: Window, endings: Endings) -> int:
         with suppress(*EXPECTED_ERRORS):
             save_preferences(session.folder, session.preferences)
         if session.quitting:
-            end_within(PATIENCE, 0)
+            exit_within(PATIENCE, 0)
         else:
-            end_within(2 * HURRY, endings.status if endings.has_come else EXIT_FAILED)
+            exit_within(2 * HURRY, endings.exit_status if endings.is_signalled else EXIT_FAILED)
 
     try:
-        window.run(is_over=lambda: endings.has_come, farewell=farewell)
+        window.run(is_over=lambda: endings.is_signalled, farewell=farewell)
     except Exception as error:
         # What hinders a start has words of its own.
-        if not was_open and isinstance(error, HINDRANCES):
+        if not was_open and isinstance(error, START_ERRORS):
             raise
         _report(session, error)
         return EXIT_FAILED
-    return 0 if session.quitting else endings.status
+    return 0 if session.quitting else endings.exit_status
 
 
 def _report(session: Session, error: Exception) -> None:
@@ -117,13 +117,13 @@ def _report(session: Session, error: Exception) -> None:
     except EXPECTED_ERRORS as reason:
         text, kept = failures.report_of(session), f"the report could not be kept ({reason})"
     print(text, file=sys.stderr)
-    notice(f"the window failed, as told above; nothing is sent, and {kept}")
+    print_notice(f"the window failed, as told above; nothing is sent, and {kept}")
 
 
 def _noting_faults(folder: Path) -> AbstractContextManager[None]:
     """Let Python note where it crashes; where there is no file for that, it does not."""
     try:
-        return faults_told_to(open_faults(folder))
+        return redirect_faulthandler(open_fault_log(folder))
     except OSError:
         return nullcontext()
 
@@ -141,8 +141,8 @@ def _make(folder: Path, session: Session) -> None:
 
 def _keep_at_lost_display(session: Session) -> None:
     """Keep unsaved work, and tell why the window ends."""
-    end_within(PATIENCE, EXIT_FAILED)
-    notice(DISPLAY_GONE)
+    exit_within(PATIENCE, EXIT_FAILED)
+    print_notice(DISPLAY_GONE)
     if not session.quitting:
         _keep(session)
     sys.stderr.flush()
@@ -153,7 +153,7 @@ def _keep(session: Session) -> None:
     try:
         saving.autosave_now(session)
     except EXPECTED_ERRORS as error:
-        notice(f"unsaved work could not be kept: {error}")
+        print_notice(f"unsaved work could not be kept: {error}")
         return
     if session.project is not None and not session.project.history.is_saved:
-        notice(WORK_KEPT)
+        print_notice(WORK_KEPT)

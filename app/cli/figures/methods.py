@@ -45,12 +45,12 @@ def prepare_variant(pair: ShapePair, variant: Variant) -> Prepared:
     )
 
 
-def of_variant(variant: Variant) -> Callable[[ShapePair], FrameAt]:
+def variant_preparer(variant: Variant) -> Callable[[ShapePair], FrameAt]:
     """Return the preparation of one of our variants."""
     return lambda pair: prepare_variant(pair, variant).frame
 
 
-def of_baseline(baseline: Baseline) -> Callable[[ShapePair], FrameAt]:
+def baseline_preparer(baseline: Baseline) -> Callable[[ShapePair], FrameAt]:
     """Return the preparation of one of the methods that ours are compared with."""
 
     def prepare_pair(pair: ShapePair) -> FrameAt:
@@ -69,19 +69,23 @@ def of_baseline(baseline: Baseline) -> Callable[[ShapePair], FrameAt]:
     return prepare_pair
 
 
-LINEAR = ComparedMethod(name="linear", colour="#8a8f99", prepare=of_variant(Variant.LINEAR))
-NU = ComparedMethod(name="ν", colour="#3fa796", prepare=of_variant(Variant.NU))
-ETA = ComparedMethod(name="η", colour="#f2a541", prepare=of_variant(Variant.ETA))
+LINEAR = ComparedMethod(name="linear", colour="#8a8f99", prepare=variant_preparer(Variant.LINEAR))
+NU = ComparedMethod(name="ν", colour="#3fa796", prepare=variant_preparer(Variant.NU))
+ETA = ComparedMethod(name="η", colour="#f2a541", prepare=variant_preparer(Variant.ETA))
 SCALED_ETA = ComparedMethod(
-    name="scaled η", colour="#7d5ba6", prepare=of_variant(Variant.SCALED_ETA)
+    name="scaled η", colour="#7d5ba6", prepare=variant_preparer(Variant.SCALED_ETA)
 )
-METRIC = ComparedMethod(name="metric", colour="#4a5be0", prepare=of_variant(Variant.METRIC))
-ARAP = ComparedMethod(name="ARAP", colour="#d9534f", prepare=of_baseline(Baseline.ARAP))
-FFMP = ComparedMethod(name="FFMP", colour="#c77d2e", prepare=of_baseline(Baseline.FFMP))
+METRIC = ComparedMethod(name="metric", colour="#4a5be0", prepare=variant_preparer(Variant.METRIC))
+ARAP = ComparedMethod(name="ARAP", colour="#d9534f", prepare=baseline_preparer(Baseline.ARAP))
+FFMP = ComparedMethod(name="FFMP", colour="#c77d2e", prepare=baseline_preparer(Baseline.FFMP))
 SIG13 = ComparedMethod(
-    name="Chen et al. 2013", colour="#2e7d8c", prepare=of_baseline(Baseline.SIG13)
+    name="Chen et al. 2013", colour="#2e7d8c", prepare=baseline_preparer(Baseline.SIG13)
 )
-HANDLES = ComparedMethod(name="handles", colour="#6b7a3a", prepare=of_baseline(Baseline.HANDLES))
-MESH_ETA = ComparedMethod(name="mesh η", colour="#a04a8c", prepare=of_baseline(Baseline.MESH_ETA))
+HANDLES = ComparedMethod(
+    name="handles", colour="#6b7a3a", prepare=baseline_preparer(Baseline.HANDLES)
+)
+MESH_ETA = ComparedMethod(
+    name="mesh η", colour="#a04a8c", prepare=baseline_preparer(Baseline.MESH_ETA)
+)
 # All that are timed.
 METHODS = (LINEAR, NU, ETA, SCALED_ETA, METRIC, ARAP, FFMP, MESH_ETA, HANDLES, SIG13)

@@ -4,7 +4,7 @@ import base64
 from collections.abc import Mapping
 from html import escape
 
-from app.cli.figures.plates import Plate
+from app.cli.figures.plots import PaperFigure
 
 STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; color: #2b2f38; background: #fff;
@@ -26,7 +26,7 @@ INTRODUCTION = (
 )
 
 
-def lay_out(plates: Mapping[int, Plate]) -> str:
+def render_page(plates: Mapping[int, PaperFigure]) -> str:
     """Return the page as HTML."""
     figures = "\n".join(_figure(number, plate) for number, plate in plates.items())
     return (
@@ -37,9 +37,9 @@ def lay_out(plates: Mapping[int, Plate]) -> str:
     )
 
 
-def _figure(number: int, plate: Plate) -> str:
+def _figure(number: int, plate: PaperFigure) -> str:
     picture = base64.b64encode(plate.picture).decode()
-    head = "".join(f"<th>{escape(word)}</th>" for word in plate.heads)
+    head = "".join(f"<th>{escape(word)}</th>" for word in plate.column_names)
     rows = "".join(
         "<tr>" + "".join(f"<td>{escape(word)}</td>" for word in row) + "</tr>\n"
         for row in plate.rows

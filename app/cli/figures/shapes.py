@@ -120,7 +120,7 @@ def bar_to_ring(triangles: int) -> ShapePair:
     )
 
 
-def sample(name: str, first: int, second: int, triangles: int) -> ShapePair:
+def make_sample_pair(name: str, first: int, second: int, triangles: int) -> ShapePair:
     """Return two keys of a sample project, by their numbers, with as many triangles.
 
     Its poses are the deformer's, and certified.
@@ -142,7 +142,7 @@ def sample(name: str, first: int, second: int, triangles: int) -> ShapePair:
     )
 
 
-def spiral(shape: Shape, *, turn: float, growth: float, nu: float) -> HarmonicMap:
+def spiral_map(shape: Shape, *, turn: float, growth: float, nu: float) -> HarmonicMap:
     """Return a map that winds a shape up along x and lets it grow on the way, with ν everywhere.
 
     Parameters
@@ -159,7 +159,7 @@ def spiral(shape: Shape, *, turn: float, growth: float, nu: float) -> HarmonicMa
     return _wound(shape, start, turn=turn, growth=growth, nu=nu).moved(1, start)
 
 
-def bent(offset: Complexes, *, turn: float, growth: float = 0.0) -> Complexes:
+def bend_points(offset: Complexes, *, turn: float, growth: float = 0.0) -> Complexes:
     """Return places about the origin bent so that what is across stays straight.
 
     By `turn` radians over their extent along x, on which they also grow by exp(`growth`).

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.cli.figures.easel import Easel, alike, box_of
-from app.cli.figures.track import Tracked
-from app.errors import LissomError, missing
-from app.motion import Box
+from app.cli.figures.measure import MeasuredMotion
+from app.cli.figures.shape_renderer import ShapeRenderer, bounds_of, same_scale
+from app.errors import LissomError, install_hint
+from app.motion import BoundingBox
 from engine.arrays import Floats
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ def require_matplotlib() -> None:
     LissomError
         If matplotlib is not installed.
     """
-    if remedy := missing("figures"):
+    if remedy := install_hint("figures"):
         raise LissomError(f"the figures need matplotlib, which is not installed: {remedy}")
 
 
@@ -48,55 +48,66 @@ def as_png(sheet: "Figure") -> bytes:
     return file.getvalue()
 
 
-def show(
-    axes: "Axes", easel: Easel, track: Tracked, time: float, *, box: Box | None = None
+def draw_frame(
+    axes: "Axes",
+    easel: ShapeRenderer,
+    track: MeasuredMotion,
+    time: float,
+    *,
+    box: BoundingBox | None = None,
 ) -> None:
     """Draw an in-between, by default whole."""
     positions = track.frame(time).positions
-    box = box or box_of(positions)
+    box = box or bounds_of(positions)
     picture = easel.draw(track.pair.shape, positions, box, pixels=PICTURE)
     axes.imshow(picture)
     axes.set_axis_off()
 
 
-def show_panels(
-    easel: Easel, panels: Sequence[tuple[str, Tracked, float]], size: tuple[float, float]
+def draw_panels(
+    easel: ShapeRenderer,
+    panels: Sequence[tuple[str, MeasuredMotion, float]],
+    size: tuple[float, float],
 ) -> "Figure":
     """Return a sheet, of a size in inches, with titled in-betweens side by side at one scale."""
     sheet = new_sheet(*size)
-    boxes = alike([box_of(track.frame(time).positions) for _, track, time in panels])
+    boxes = same_scale([bounds_of(track.frame(time).positions) for _, track, time in panels])
     columns = sheet.subplots(1, len(panels))
     for axes, (title, track, time), box in zip(columns, panels, boxes, strict=True):
-        show(axes, easel, track, time, box=box)
+        draw_frame(axes, easel, track, time, box=box)
         axes.set_title(title, color=INK, fontsize=11)
     return sheet
 
 
-def show_strip(
+def draw_strip(
     rows: Sequence[Sequence["Axes"]],
-    easel: Easel,
-    tracks: Mapping[str, Tracked],
+    easel: ShapeRenderer,
+    tracks: Mapping[str, MeasuredMotion],
     times: Sequence[float],
 ) -> None:
     """Draw in-betweens in rows with names, all at the same scale."""
     every = tracks.values()
-    boxes = alike([box_of(*(track.frame(time).positions for track in every)) for time in times])
+    boxes = same_scale(
+        [bounds_of(*(track.frame(time).positions for track in every)) for time in times]
+    )
     for row, (named, track) in zip(rows, tracks.items(), strict=True):
         for axes, time, box in zip(row, times, boxes, strict=True):
-            show(axes, easel, track, time, box=box)
-        name(row[0], named)
+            draw_frame(axes, easel, track, time, box=box)
+        label_row(row[0], named)
     for axes, time in zip(rows[0], times, strict=True):
         axes.set_title(f"t = {time:g}", color=INK, fontsize=9)
 
 
-def show_row(row: Sequence["Axes"], easel: Easel, track: Tracked, times: Sequence[float]) -> None:
+def draw_row(
+    row: Sequence["Axes"], easel: ShapeRenderer, track: MeasuredMotion, times: Sequence[float]
+) -> None:
     """Draw a method's in-betweens, all at the same scale."""
-    boxes = alike([box_of(track.frame(time).positions) for time in times])
+    boxes = same_scale([bounds_of(track.frame(time).positions) for time in times])
     for axes, time, box in zip(row, times, boxes, strict=True):
-        show(axes, easel, track, time, box=box)
+        draw_frame(axes, easel, track, time, box=box)
 
 
-def name(axes: "Axes", text: str) -> None:
+def label_row(axes: "Axes", text: str) -> None:
     """Write the name of a row to its left."""
     axes.text(
         *(-0.04, 0.5, text),
@@ -116,11 +127,11 @@ def plot_shares(axes: "Axes", times: Floats, shares: Floats, title: str, colour:
     axes.axhline(1.0, color=LIMIT, linewidth=1.2)
     axes.set_xlim(0, 1)
     axes.set_ylim(0, SHOWN)
-    axes.set_title(f"{title}, at most {told(float(shares.max()))}", color=INK, fontsize=9)
-    plain(axes)
+    axes.set_title(f"{title}, at most {format_number(float(shares.max()))}", color=INK, fontsize=9)
+    style_axes(axes)
 
 
-def plain(axes: "Axes") -> None:
+def style_axes(axes: "Axes") -> None:
     """Give a plot the looks of all."""
     axes.tick_params(colors=INK, labelsize=8)
     axes.grid(color=GRID, linewidth=0.6)
@@ -129,7 +140,7 @@ def plain(axes: "Axes") -> None:
         spine.set_color(GRID)
 
 
-def told(value: float) -> str:
+def format_number(value: float) -> str:
     """Return a number as it is printed beside a figure."""
     if not np.isfinite(value):
         return "unbounded (it folds)"

@@ -76,7 +76,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "{name} for the project's name, here and in --out (default: the project's, frame_####)",
     )
     for options in FormatSettings().options().values():
-        for name, option in options.asked().items():
+        for name, option in options.option_fields().items():
             usual = getattr(options, name)
             if isinstance(usual, bool):
                 how: dict[str, Any] = {"action": argparse.BooleanOptionalAction}

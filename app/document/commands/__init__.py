@@ -9,25 +9,25 @@ from app.document.commands import (
     cycle_commands as cycle_commands,
     handle_commands as handle_commands,
     key_commands as key_commands,
-    material_commands as material_commands,
     pose_commands as pose_commands,
     scene_commands as scene_commands,
     shape_commands as shape_commands,
+    stiffness_commands as material_commands,
     track_commands as track_commands,
 )
 from app.document.commands.command import (
     Command as Command,
-    in_turn as in_turn,
-    numbered as numbered,
+    combine_commands as combine_commands,
+    with_number as with_number,
 )
-from app.document.commands.pose_commands import (
-    Settled as Settled,
-    exchanged as exchanged,
-    retargeted as retargeted,
-)
-from app.document.commands.staging import (
-    choice_commands as choice_commands,
+from app.document.commands.layers import (
     filming_commands as filming_commands,
     group_commands as group_commands,
     layer_commands as layer_commands,
+    switch_group_commands as choice_commands,
+)
+from app.document.commands.pose_commands import (
+    PoseReplacement as PoseReplacement,
+    with_all_targets as with_all_targets,
+    with_replaced_pose as with_replaced_pose,
 )

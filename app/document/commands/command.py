@@ -25,7 +25,7 @@ from app.document.model import Document
 Arguments = ParamSpec("Arguments")
 
 
-def numbered(name: str, taken: Collection[str], number: int) -> str:
+def with_number(name: str, taken: Collection[str], number: int) -> str:
     """Return a name with the first number, from one on, with which it is not taken."""
     while f"{name} {number}" in taken:
         number += 1
@@ -61,7 +61,7 @@ def command(
     return make
 
 
-def in_turn(label: str, commands: Iterable[Command]) -> Command:
+def combine_commands(label: str, commands: Iterable[Command]) -> Command:
     """Return the command that runs others one after the other, as one step."""
     given = tuple(commands)
 

@@ -5,26 +5,26 @@ from dataclasses import replace
 from typing import TypeVar
 
 from app.document.commands.command import command, layer_command
-from app.document.commands.keys_in_time import Row, in_order, nearest_frame
+from app.document.commands.retime import Keys, nearest_frame, sorted_by_frame
 from app.document.keyframe import Keyframe
 from app.document.layer import Layer
-from app.document.layering import MoveKey, OpacityKey, repeated_joints
+from app.document.layers import OpacityKey, TransformKey, repeated_joints
 from app.document.model import Document
 from app.document.queries import (
-    AS_DRAWN,
-    are_alike,
+    DEFAULT_DRAW_ORDER,
+    have_same_map,
     repeated,
-    repeating,
-    turning,
+    repeating_cycle,
+    switch_cycle,
     with_repeats,
 )
 from app.document.timing import Cycle, Track, TrackKey
 from app.errors import LissomError
 
 # By how much the ends of a track may differ, in pixels and radians, that wants nothing there.
-NOWHERE = 1e-6
+SAME_POSE_DISTANCE = 1e-6
 
-Moving = TypeVar("Moving", MoveKey, OpacityKey)
+Moving = TypeVar("Moving", TransformKey, OpacityKey)
 TWO_POSES_SHOWN = (
     "Frames {first} and {last} show two poses, but what repeats ends as it began; give the latter "
     "the pose of the former, or choose other keys."
@@ -32,7 +32,7 @@ TWO_POSES_SHOWN = (
 
 
 @layer_command("Repeat stretch")
-def repeat(layer: Layer, first: int, last: int, until: int | None = None) -> Layer:
+def set_cycle(layer: Layer, first: int, last: int, until: int | None = None) -> Layer:
     """Let a stretch of time repeat, until a frame or the end of the scene.
 
     It takes the place of what repeated from its first frame on. A key at its end that is like the
@@ -46,7 +46,7 @@ def repeat(layer: Layer, first: int, last: int, until: int | None = None) -> Lay
     cycle = Cycle(first=first, last=last, until=until)
     keys = layer.keys
     if until != last and {first, last} <= layer.key_frames:
-        if not are_alike(layer.key(first), layer.key(last)):
+        if not have_same_map(layer.key(first), layer.key(last)):
             raise LissomError(TWO_POSES_SHOWN.format(first=first, last=last))
         keys = tuple(key for key in keys if key.frame != last)
     others = (each for each in layer.cycles if each.first != first)
@@ -54,35 +54,37 @@ def repeat(layer: Layer, first: int, last: int, until: int | None = None) -> Lay
 
 
 @command("Stop repeating")
-def stop(document: Document, identity: int, first: int) -> Document:
+def delete_cycle(document: Document, identity: int, first: int) -> Document:
     """Let the stretch that begins at a frame be there once; it still ends as it began.
 
     So do turns of a choice that repeated with it.
     """
-    cycle = cycle_from(document.layer(identity), first)
-    document = _with_turns(document, identity, cycle, cycle.last)
-    return document.with_layer(_stopped(document.layer(identity), first))
+    cycle = cycle_starting_at(document.layer(identity), first)
+    document = _with_baked_switch(document, identity, cycle, cycle.last)
+    return document.with_layer(_without_cycle(document.layer(identity), first))
 
 
-def _stopped(layer: Layer, first: int) -> Layer:
-    cycle = cycle_from(layer, first)
+def _without_cycle(layer: Layer, first: int) -> Layer:
+    cycle = cycle_starting_at(layer, first)
     cycles = tuple(each for each in layer.cycles if each is not cycle)
-    own = [key for key in layer.keys if cycle.has(key.frame)]
+    own = [key for key in layer.keys if cycle.contains(key.frame)]
     keys = layer.keys
     if len(own) > 1 and own[0].frame == first and cycle.last not in layer.key_frames:
-        keys = in_order((*keys, replace(own[0], frame=cycle.last)))
+        keys = sorted_by_frame((*keys, replace(own[0], frame=cycle.last)))
     return replace(
         layer,
         keys=keys,
         cycles=cycles,
-        movement=_copied(layer, layer.movement, cycle, cycle.last),
-        opacities=_copied(layer, layer.opacities, cycle, cycle.last),
-        joints=repeated_joints(layer.joints, (replace(cycle, until=cycle.last),), cycle.last),
+        transform_keys=_copied(layer, layer.transform_keys, cycle, cycle.last),
+        opacity_keys=_copied(layer, layer.opacity_keys, cycle, cycle.last),
+        attachments=repeated_joints(
+            layer.attachments, (replace(cycle, until=cycle.last),), cycle.last
+        ),
     )
 
 
 @command("Make repeats into keys")
-def make_keys(document: Document, identity: int, first: int, end: int) -> Document:
+def bake_cycle(document: Document, identity: int, first: int, end: int) -> Document:
     """Make the repeats of the stretch that begins at a frame into keys of their own.
 
     Only what leads to the stretch and on from it may pass its ends otherwise then. Less than a
@@ -103,26 +105,28 @@ def make_keys(document: Document, identity: int, first: int, end: int) -> Docume
     LissomError
         If a track acts in a part of the stretch only, and neither comes from nor leads to nothing.
     """
-    cycle = cycle_from(document.layer(identity), first)
-    document = _with_turns(document, identity, cycle, end if cycle.until is None else cycle.until)
-    return document.with_layer(_keyed(document.layer(identity), first, end))
+    cycle = cycle_starting_at(document.layer(identity), first)
+    document = _with_baked_switch(
+        document, identity, cycle, end if cycle.until is None else cycle.until
+    )
+    return document.with_layer(_with_baked_keys(document.layer(identity), first, end))
 
 
-def _with_turns(document: Document, identity: int, cycle: Cycle, end: int) -> Document:
+def _with_baked_switch(document: Document, identity: int, cycle: Cycle, end: int) -> Document:
     """Return a document in which what repeats of a layer's choice with a cycle is said in full."""
-    choice = document.choice_of(identity)
-    if choice is None or turning(document, choice) != cycle:
+    choice = document.switch_group_of(identity)
+    if choice is None or switch_cycle(document, choice) != cycle:
         return document
     said = with_repeats(document, choice, max(end, cycle.last))
-    choices = tuple(said if each is choice else each for each in document.choices)
-    return replace(document, choices=choices)
+    choices = tuple(said if each is choice else each for each in document.switch_groups)
+    return replace(document, switch_groups=choices)
 
 
-def _keyed(layer: Layer, first: int, end: int) -> Layer:
+def _with_baked_keys(layer: Layer, first: int, end: int) -> Layer:
     """Return a layer with the repeats of a stretch as keys."""
-    cycle = cycle_from(layer, first)
+    cycle = cycle_starting_at(layer, first)
     until = max(cycle.last, end if cycle.until is None else cycle.until)
-    own = [key for key in layer.keys if cycle.has(key.frame)]
+    own = [key for key in layer.keys if cycle.contains(key.frame)]
     rounds = (until - first) // cycle.period
     rest = (until - first) % cycle.period
     left: tuple[Cycle, ...] = ()
@@ -134,25 +138,25 @@ def _keyed(layer: Layer, first: int, end: int) -> Layer:
     copies = [replace(key, frame=key.frame + at - first) for at in starts for key in own]
     if not left and until not in layer.key_frames and len(own) > 1 and own[0].frame == first:
         copies.append(replace(own[0], frame=first + rounds * cycle.period))
-    copies = [_with_fronts(layer, cycle, key) for key in copies]
+    copies = [_with_depths(layer, cycle, key) for key in copies]
     others = (each for each in layer.cycles if each is not cycle)
     return replace(
         layer,
-        keys=in_order((*layer.keys, *copies)),
+        keys=sorted_by_frame((*layer.keys, *copies)),
         cycles=_ordered((*others, *left)),
         tracks=tuple(
-            _repeated(layer, track, cycle, starts) if cycle.takes(track.keys) else track
+            _repeated(layer, track, cycle, starts) if cycle.repeats_keys(track.keys) else track
             for track in layer.tracks
         ),
-        movement=_copied(layer, layer.movement, cycle, until),
-        opacities=_copied(layer, layer.opacities, cycle, until),
-        switches=repeated(layer.switches, (cycle,), until, layer.switches[:1]),
-        placings=repeated(layer.placings, (cycle,), until, AS_DRAWN),
-        joints=repeated_joints(layer.joints, (cycle,), until),
+        transform_keys=_copied(layer, layer.transform_keys, cycle, until),
+        opacity_keys=_copied(layer, layer.opacity_keys, cycle, until),
+        visibility_keys=repeated(layer.visibility_keys, (cycle,), until, layer.visibility_keys[:1]),
+        draw_order_keys=repeated(layer.draw_order_keys, (cycle,), until, DEFAULT_DRAW_ORDER),
+        attachments=repeated_joints(layer.attachments, (cycle,), until),
     )
 
 
-def end_of_repeats(layer: Layer, first: int, last: int) -> int | None:
+def end_of_cycle(layer: Layer, first: int, last: int) -> int | None:
     """Return until when a stretch can repeat: whole times if it can, or to the end of the scene.
 
     Raises
@@ -163,7 +167,7 @@ def end_of_repeats(layer: Layer, first: int, last: int) -> int | None:
     for cycle in layer.cycles:
         if first < cycle.first < last:
             raise LissomError(
-                f"Frames {first} to {last} cannot repeat, as {cycle.told} in them repeat already; "
+                f"Frames {first} to {last} cannot repeat, as {cycle.description} in them repeat already; "
                 "stop those first, or choose other keys."
             )
     after = [frame for frame in layer.key_frames if frame > last]
@@ -182,7 +186,7 @@ def end_of_repeats(layer: Layer, first: int, last: int) -> int | None:
     return whole if whole > last else max(ends)
 
 
-def nearest_end(layer: Layer, cycle: Cycle, frame: int, end: int) -> int | None:
+def nearest_cycle_end(layer: Layer, cycle: Cycle, frame: int, end: int) -> int | None:
     """Return the frame next to another one until which a cycle can repeat; None is for ever.
 
     It is one at which a key of the stretch is shown, or the end of the scene.
@@ -192,16 +196,16 @@ def nearest_end(layer: Layer, cycle: Cycle, frame: int, end: int) -> int | None:
     limit = min(after, default=end)
     if not after and frame >= end:
         return None
-    own = {each for each in layer.key_frames if cycle.has(each)} | {cycle.first}
+    own = {each for each in layer.key_frames if cycle.contains(each)} | {cycle.first}
     rounds = range(1, (limit - cycle.first) // cycle.period + 1)
     shown = {each + count * cycle.period for count in rounds for each in own}
     fitting = {each for each in shown if cycle.last <= each <= limit} | {cycle.last}
     return min(fitting, key=lambda each: abs(each - frame))
 
 
-def stretched_to(layer: Layer, cycle: Cycle, frame: int) -> Cycle:
+def with_cycle_end(layer: Layer, cycle: Cycle, frame: int) -> Cycle:
     """Return a cycle with its end next to a frame, behind its keys; it repeats as often."""
-    own = [each for each in layer.key_frames if cycle.has(each)]
+    own = [each for each in layer.key_frames if cycle.contains(each)]
     last = max([frame, cycle.first + 1, *(each + 1 for each in own)])
     until = cycle.until
     if until is not None:
@@ -210,7 +214,7 @@ def stretched_to(layer: Layer, cycle: Cycle, frame: int) -> Cycle:
     return replace(cycle, last=last, until=until)
 
 
-def cycle_from(layer: Layer, first: int) -> Cycle:
+def cycle_starting_at(layer: Layer, first: int) -> Cycle:
     """Return the cycle of a layer that begins at a frame."""
     for cycle in layer.cycles:
         if cycle.first == first:
@@ -222,22 +226,22 @@ def _ordered(cycles: Iterable[Cycle]) -> tuple[Cycle, ...]:
     return tuple(sorted(cycles, key=lambda cycle: cycle.first))
 
 
-def _with_fronts(layer: Layer, cycle: Cycle, copy: Keyframe) -> Keyframe:
+def _with_depths(layer: Layer, cycle: Cycle, copy: Keyframe) -> Keyframe:
     """Return a copy of a key; where a repeat begins, it takes back what the last one ended with."""
-    own = [key for key in layer.keys if cycle.has(key.frame)]
+    own = [key for key in layer.keys if cycle.contains(key.frame)]
     if not own or (copy.frame - own[0].frame) % cycle.period:
         return copy
-    changed = {handle for key in own for handle in key.fronts}
-    depths = {handle.id: handle.front for handle in layer.handles}
+    changed = {handle for key in own for handle in key.depths}
+    depths = {handle.id: handle.depth for handle in layer.handles}
     for key in layer.keys:
         if key.frame <= own[0].frame:
-            depths.update(key.fronts)
-    return replace(copy, fronts={handle: depths[handle] for handle in changed})
+            depths.update(key.depths)
+    return replace(copy, depths={handle: depths[handle] for handle in changed})
 
 
-def _copied(layer: Layer, row: Row[Moving], cycle: Cycle, until: int) -> Row[Moving]:
+def _copied(layer: Layer, row: Keys[Moving], cycle: Cycle, until: int) -> Keys[Moving]:
     """Return keys of a movement or an opacity in each repeat until a frame, if they repeat."""
-    if repeating(layer, row) is not cycle:
+    if repeating_cycle(layer, row) is not cycle:
         return row
     first, last = row[0], row[-1]
     is_whole = last.frame - first.frame == cycle.period
@@ -245,22 +249,22 @@ def _copied(layer: Layer, row: Row[Moving], cycle: Cycle, until: int) -> Row[Mov
     for count, at in enumerate(range(0, until - cycle.first + 1, cycle.period)):
         for key in row[:-1] if is_whole else row:
             copy = replace(key, frame=key.frame + at)
-            if is_whole and isinstance(first, MoveKey) and isinstance(last, MoveKey):
+            if is_whole and isinstance(first, TransformKey) and isinstance(last, TransformKey):
                 # What turns round and round goes on turning.
                 copy = replace(copy, turn=copy.turn + count * (last.turn - first.turn))
             copies += [copy] if copy.frame <= until else []
-    return in_order(copies)
+    return sorted_by_frame(copies)
 
 
 def _repeated(layer: Layer, track: Track, cycle: Cycle, starts: list[int]) -> Track:
     """Return a track with its keys in each repeat."""
     first, last = track.keys[0], track.keys[-1]
     is_whole = first.frame == cycle.first and last.frame == cycle.last
-    acts = [max(abs(key.place), abs(key.turn)) > NOWHERE for key in (first, last)]
-    if not is_whole and starts and (track.planted or any(acts)):
+    acts = [max(abs(key.place), abs(key.turn)) > SAME_POSE_DISTANCE for key in (first, last)]
+    if not is_whole and starts and (track.is_scene_space or any(acts)):
         raise LissomError(
             f"The track of {layer.handle(track.handles[0]).name!r} acts in a part of "
-            f"{cycle.told} only, so that its repeats are no keys of one track; let it act from "
+            f"{cycle.description} only, so that its repeats are no keys of one track; let it act from "
             f"frame {cycle.first} to {cycle.last}, or begin and end where the pose has the handle."
         )
     # Where it fills the stretch, its last key is its first one again.
@@ -271,4 +275,4 @@ def _repeated(layer: Layer, track: Track, cycle: Cycle, starts: list[int]) -> Tr
     if is_whole:
         shift = (starts or [cycle.first])[-1] - cycle.first
         keys.append(replace(last, frame=last.frame + shift))
-    return replace(track, keys=in_order(keys))
+    return replace(track, keys=sorted_by_frame(keys))

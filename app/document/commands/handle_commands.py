@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from app.document.commands.command import layer_command, numbered
+from app.document.commands.command import layer_command, with_number
 from app.document.commands.track_handles import with_moved_handle, without_handles
 from app.document.keyframe import Handle, Pose, Target
 from app.document.layer import Layer
@@ -30,7 +30,7 @@ def add_handle(
     """
     handle = Handle(
         id=layer.next_handle,
-        name=free_name(layer) if name is None else name,
+        name=next_handle_name(layer) if name is None else name,
         position=position,
         weight=weight,
     )
@@ -73,7 +73,7 @@ def remove_handles(layer: Layer, identities: Collection[int]) -> Layer:
 
     handles = tuple(handle for handle in layer.handles if handle.id not in gone)
     keys = tuple(
-        replace(key, fronts={i: front for i, front in key.fronts.items() if i not in gone})
+        replace(key, depths={i: front for i, front in key.depths.items() if i not in gone})
         for key in layer.keys
     )
     motions = tuple(
@@ -91,7 +91,7 @@ def rename_handle(layer: Layer, identity: int, name: str) -> Layer:
 
 
 @layer_command("Set handle weight")
-def weigh_handles(layer: Layer, identities: Collection[int], weight: float) -> Layer:
+def set_handle_weight(layer: Layer, identities: Collection[int], weight: float) -> Layer:
     """Let handles pull more or less strongly in poses that are solved from now on."""
     return with_handles(layer, identities, weight=weight)
 
@@ -103,7 +103,7 @@ def lock_handles(layer: Layer, identities: Collection[int], *, locked: bool) -> 
 
 
 @layer_command("Free or keep still")
-def free_handles(layer: Layer, identities: Collection[int], *, free: bool) -> Layer:
+def unpin_handles(layer: Layer, identities: Collection[int], *, free: bool) -> Layer:
     """Let handles move as they like between keys that have them at one place, or keep them."""
     return with_handles(layer, identities, free=free)
 
@@ -148,7 +148,7 @@ def _follow(layer: Layer, handle: Handle, pose: Pose) -> Pose:
     return replace(pose, targets={**pose.targets, handle.id: target})
 
 
-def free_name(layer: Layer) -> str:
+def next_handle_name(layer: Layer) -> str:
     """Return a name that no handle has, for the next handle."""
     taken = {handle.name for handle in layer.handles}
-    return numbered("handle", taken, layer.next_handle + 1)
+    return with_number("handle", taken, layer.next_handle + 1)

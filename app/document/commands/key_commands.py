@@ -5,24 +5,24 @@ from dataclasses import replace
 from itertools import compress, pairwise
 from typing import TypeVar
 
-from app.document.body import GivenMotion
-from app.document.commands import keys_in_time
+from app.document.commands import retime
 from app.document.commands.command import layer_command
-from app.document.commands.keys_in_time import TimeScale
+from app.document.commands.retime import TimeScale
 from app.document.keyframe import Keyframe, Pose
 from app.document.layer import Layer
-from app.document.layering import Placing, Switch
-from app.document.queries import digest_of_keys, is_as_given
-from app.document.timing import LINEAR, Cycle, Easing, Passing
+from app.document.layers import DrawOrderKey, VisibilityKey
+from app.document.queries import digest_keys, is_motion_unedited
+from app.document.rig import AppliedMotion
+from app.document.timing import LINEAR, Cycle, Easing, TangentMode
 from app.errors import LissomError
 
-Held = TypeVar("Held", Switch, Placing)
+Held = TypeVar("Held", VisibilityKey, DrawOrderKey)
 
 
 @layer_command("Pose")
-def pose_key(layer: Layer, frame: int, pose: Pose) -> Layer:
+def replace_key_pose(layer: Layer, frame: int, pose: Pose) -> Layer:
     """Give the key at a frame another pose."""
-    return exchange(layer, {frame: replace(layer.key(frame), pose=pose)})
+    return replace_keys(layer, {frame: replace(layer.key(frame), pose=pose)})
 
 
 @layer_command("Insert key")
@@ -37,42 +37,42 @@ def insert_key(layer: Layer, frame: int, pose: Pose, *, easing: Easing = LINEAR)
 
 
 @layer_command("Paste pose")
-def put_pose(layer: Layer, frame: int, pose: Pose, easing: Easing) -> Layer:
+def insert_pose(layer: Layer, frame: int, pose: Pose, easing: Easing) -> Layer:
     """Give the key at a frame a pose; where there is none, insert one."""
     if frame not in layer.key_frames:
         return _inserted(layer, frame, pose, easing)
     old = layer.key(frame)
-    return layer if old.pose is pose else exchange(layer, {frame: replace(old, pose=pose)})
+    return layer if old.pose is pose else replace_keys(layer, {frame: replace(old, pose=pose)})
 
 
 @layer_command("Paste keys")
-def put_keys(layer: Layer, keys: Sequence[Keyframe]) -> Layer:
+def insert_keys(layer: Layer, keys: Sequence[Keyframe]) -> Layer:
     """Put keys at their frames, where they replace those that are there."""
-    return _with_keys(layer, keys_in_time.put(layer.keys, keys))
+    return _with_keys(layer, retime.with_overwritten_keys(layer.keys, keys))
 
 
 @layer_command("Move keys")
 def move_keys(layer: Layer, frames: Collection[int], by: int) -> Layer:
     """Move the keys at some frames; cycles and ready motions go with their keys."""
-    keys = keys_in_time.moved(layer.keys, frames, by)
+    keys = retime.with_moved_keys(layer.keys, frames, by)
     return _rearranged(layer, keys, frames, lambda frame: frame + by)
 
 
 @layer_command("Copy keys")
 def copy_keys(layer: Layer, frames: Collection[int], by: int) -> Layer:
     """Repeat the keys at some frames a number of frames later, or earlier."""
-    return _with_keys(layer, keys_in_time.copied(layer.keys, frames, by))
+    return _with_keys(layer, retime.with_copied_keys(layer.keys, frames, by))
 
 
 @layer_command("Delete keys")
 def delete_keys(layer: Layer, frames: Collection[int]) -> Layer:
     """Delete the keys at some frames; one key must remain. What has no keys repeats no longer."""
-    keys = keys_in_time.without(layer.keys, frames)
+    keys = retime.without_keys(layer.keys, frames)
     if not keys:
         raise LissomError("An animation has at least one key; pose the last one instead.")
     kept = {key.frame for key in keys}
-    gone = {cycle for cycle in layer.cycles if not any(map(cycle.has, kept))}
-    gone &= {cycle for cycle in layer.cycles if any(map(cycle.has, frames))}
+    gone = {cycle for cycle in layer.cycles if not any(map(cycle.contains, kept))}
+    gone &= {cycle for cycle in layer.cycles if any(map(cycle.contains, frames))}
     return _with_keys(layer, keys, tuple(each for each in layer.cycles if each not in gone))
 
 
@@ -89,7 +89,7 @@ def reverse_keys(
         The first and the last frame of what runs backwards, where other layers do so together with
         this one; by default those of the keys.
     """
-    return _with_keys(layer, keys_in_time.backwards(layer.keys, frames, span))
+    return _with_keys(layer, retime.with_reversed_keys(layer.keys, frames, span))
 
 
 @layer_command("Scale time of keys")
@@ -105,51 +105,52 @@ def scale_keys(
     first : int, optional
         The frame that stays; by default that of the first key.
     """
-    keys = keys_in_time.spread(layer.keys, frames, factor, first)
+    keys = retime.with_scaled_keys(layer.keys, frames, factor, first)
     stays = min(frames, default=0) if first is None else first
     return _rearranged(layer, keys, frames, TimeScale(stays, factor))
 
 
 @layer_command("Make last key equal first")
-def match_ends(layer: Layer) -> Layer:
+def match_loop_ends(layer: Layer) -> Layer:
     """Give the last key the pose of the first one, so that a loop has no jump."""
     first, last = layer.keys[0], layer.keys[-1]
     if first is last:
         raise LissomError("A loop needs two keys; insert a second one first.")
     if first.pose is last.pose:
         return layer
-    return exchange(layer, {last.frame: replace(last, pose=first.pose)})
+    return replace_keys(layer, {last.frame: replace(last, pose=first.pose)})
 
 
 @layer_command("Set easing")
 def set_easing(layer: Layer, frames: Collection[int], easing: Easing) -> Layer:
     """Set how time runs from the keys at some frames to the next ones."""
-    return _with_keys(layer, keys_in_time.eased(layer.keys, frames, easing))
+    return _with_keys(layer, retime.with_easing(layer.keys, frames, easing))
 
 
 @layer_command("Set passing")
-def set_passing(layer: Layer, frames: Collection[int], passing: Passing) -> Layer:
+def set_tangent_mode(layer: Layer, frames: Collection[int], passing: TangentMode) -> Layer:
     """Set how the motion passes the keys at some frames; one that held its pose does no longer."""
-    return _with_keys(layer, keys_in_time.passed(layer.keys, frames, passing))
+    return _with_keys(layer, retime.with_tangent_mode(layer.keys, frames, passing))
 
 
 @layer_command("Set turns")
-def set_turns(layer: Layer, frames: Collection[int], turns: int) -> Layer:
+def set_revolutions(layer: Layer, frames: Collection[int], turns: int) -> Layer:
     """Set how often the shape turns round on the way from the keys at some frames."""
-    keys = keys_in_time.at_frames(layer.keys, frames)
-    return exchange(
-        layer, {key.frame: replace(key, turns=turns) for key in keys if key.turns != turns}
+    keys = retime.keys_at_frames(layer.keys, frames)
+    return replace_keys(
+        layer,
+        {key.frame: replace(key, revolutions=turns) for key in keys if key.revolutions != turns},
     )
 
 
 def _inserted(layer: Layer, frame: int, pose: Pose, easing: Easing) -> Layer:
     new = Keyframe(frame=frame, pose=pose, easing=easing)
-    return _with_keys(layer, keys_in_time.inserted(layer.keys, new))
+    return _with_keys(layer, retime.with_inserted_key(layer.keys, new))
 
 
-def exchange(layer: Layer, changed: dict[int, Keyframe]) -> Layer:
+def replace_keys(layer: Layer, changed: dict[int, Keyframe]) -> Layer:
     """Return the layer with others for the keys at some frames, itself if there are none."""
-    return _with_keys(layer, keys_in_time.exchanged(layer.keys, changed))
+    return _with_keys(layer, retime.with_replaced_keys(layer.keys, changed))
 
 
 def _with_keys(
@@ -169,20 +170,20 @@ def _rearranged(
     """Return the layer with the keys at some frames elsewhere, and what goes with them."""
     if keys is layer.keys:
         return layer
-    changed = replace(layer, keys=keys, cycles=_carried(layer, frames, to), motions=())
+    changed = replace(layer, keys=keys, cycles=_moved_cycles(layer, frames, to), motions=())
     return replace(changed, motions=_carried_motions(layer, changed, frames, to))
 
 
 def _carried_motions(
     layer: Layer, changed: Layer, frames: Collection[int], to: Callable[[int], int]
-) -> tuple[GivenMotion, ...]:
+) -> tuple[AppliedMotion, ...]:
     """Return a layer's ready motions, whose ends go with the keys there.
 
     A motion that would take in other keys or meet another motion is forgotten: to give it again
     would delete what is not its own. One that is moved as a whole is still as it was given.
     """
     gone = {frame: to(frame) for frame in frames}
-    motions: list[GivenMotion] = []
+    motions: list[AppliedMotion] = []
     for motion in layer.motions:
         own = {frame for frame in layer.key_frames if motion.first <= frame <= motion.last}
         is_whole = bool(own) and own <= gone.keys()
@@ -196,34 +197,38 @@ def _carried_motions(
             continue
         moved = replace(motion, first=first, start=start, last=last)
         is_shifted = is_whole and len({to(frame) - frame for frame in {*own, *ends}}) == 1
-        if is_shifted and is_as_given(layer, motion):
-            moved = replace(moved, digest=digest_of_keys(changed, first, last))
+        if is_shifted and is_motion_unedited(layer, motion):
+            moved = replace(moved, digest=digest_keys(changed, first, last))
         motions.append(moved)
     motions.sort(key=lambda motion: motion.first)
     apart = [before.last <= after.first for before, after in pairwise(motions)]
     return tuple(compress(motions, [True, *apart]))
 
 
-def _carried(layer: Layer, frames: Collection[int], to: Callable[[int], int]) -> tuple[Cycle, ...]:
+def _moved_cycles(
+    layer: Layer, frames: Collection[int], to: Callable[[int], int]
+) -> tuple[Cycle, ...]:
     """Return a layer's cycles; those of which all keys are among some go with them."""
     cycles = []
     for cycle in layer.cycles:
-        own = {frame for frame in layer.key_frames if cycle.has(frame)}
-        cycles.append(cycle.moved(to) if own and own <= set(frames) else cycle)
+        own = {frame for frame in layer.key_frames if cycle.contains(frame)}
+        cycles.append(cycle.retimed(to) if own and own <= set(frames) else cycle)
     return tuple(sorted(cycles, key=lambda cycle: cycle.first))
 
 
-def stretched(layer: Layer, scale: TimeScale) -> Layer:
+def with_scaled_time(layer: Layer, scale: TimeScale) -> Layer:
     """Return the layer with all of its time scaled; springs go on swinging in seconds."""
     of_layer = f"of {layer.name!r}"
     return replace(
         layer,
-        switches=scale.retimed(layer.switches, f"visibility keys {of_layer}", _at_frame),
-        joints=scale.retimed(
-            layer.joints, f"attachments {of_layer}", lambda joint, _: joint.moved(scale)
+        visibility_keys=scale.retimed(
+            layer.visibility_keys, f"visibility keys {of_layer}", _at_frame
+        ),
+        attachments=scale.retimed(
+            layer.attachments, f"attachments {of_layer}", lambda joint, _: joint.retimed(scale)
         ),
         keys=scale.paced(layer.keys, f"keys {of_layer}"),
-        cycles=tuple(cycle.moved(scale) for cycle in layer.cycles),
+        cycles=tuple(cycle.retimed(scale) for cycle in layer.cycles),
         motions=tuple(
             motion.moved(scale)
             for motion in layer.motions
@@ -233,13 +238,15 @@ def stretched(layer: Layer, scale: TimeScale) -> Layer:
             replace(
                 track,
                 keys=scale.paced(track.keys, f"track keys {of_layer}"),
-                delay=keys_in_time.nearest_frame(scale.factor * track.delay),
+                delay=retime.nearest_frame(scale.factor * track.delay),
             )
             for track in layer.tracks
         ),
-        movement=scale.paced(layer.movement, f"movement keys {of_layer}"),
-        opacities=scale.paced(layer.opacities, f"opacity keys {of_layer}"),
-        placings=scale.retimed(layer.placings, f"draw order keys {of_layer}", _at_frame),
+        transform_keys=scale.paced(layer.transform_keys, f"movement keys {of_layer}"),
+        opacity_keys=scale.paced(layer.opacity_keys, f"opacity keys {of_layer}"),
+        draw_order_keys=scale.retimed(
+            layer.draw_order_keys, f"draw order keys {of_layer}", _at_frame
+        ),
     )
 
 

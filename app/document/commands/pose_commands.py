@@ -5,28 +5,28 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.document.commands.command import layer_command, numbered
-from app.document.keyframe import KeptPose, Pose, Target
+from app.document.commands.command import layer_command, with_number
+from app.document.keyframe import LibraryPose, Pose, Target
 from app.document.layer import Layer
 from app.document.model import Document
 
 # Of a layer and a pose of it: the pose to which that one has gone on.
-Settled = Callable[[Layer, Pose], Pose]
+PoseReplacement = Callable[[Layer, Pose], Pose]
 
 
 @layer_command("Keep pose")
-def keep_pose(layer: Layer, pose: Pose, name: str | None = None) -> Layer:
+def save_pose(layer: Layer, pose: Pose, name: str | None = None) -> Layer:
     """Put a pose into the library, by default under a name that no other one has."""
     taken = {kept.name for kept in layer.library}
-    free = numbered("Pose", taken, len(taken) + 1)
-    kept = KeptPose(name=free if name is None else name, pose=pose)
+    free = with_number("Pose", taken, len(taken) + 1)
+    kept = LibraryPose(name=free if name is None else name, pose=pose)
     return replace(layer, library=(*layer.library, kept))
 
 
 @layer_command("Rename pose")
 def rename_pose(layer: Layer, name: str, to: str) -> Layer:
     """Give a pose of the library another name."""
-    renamed = layer.kept_pose(name)
+    renamed = layer.library_pose(name)
     if to == name:
         return layer
     library = tuple(replace(kept, name=to) if kept is renamed else kept for kept in layer.library)
@@ -36,7 +36,7 @@ def rename_pose(layer: Layer, name: str, to: str) -> Layer:
 @layer_command("Delete pose")
 def delete_pose(layer: Layer, name: str) -> Layer:
     """Take a pose out of the library; keys that were made of it stay."""
-    gone = layer.kept_pose(name)
+    gone = layer.library_pose(name)
     return replace(layer, library=tuple(kept for kept in layer.library if kept is not gone))
 
 
@@ -46,8 +46,8 @@ def set_mirror(layer: Layer, mirror: float | None) -> Layer:
     return layer if mirror == layer.mirror else replace(layer, mirror=mirror)
 
 
-def exchanged(
-    document: Document, old: Pose, new: Settled, known: dict[Layer, Layer] | None = None
+def with_replaced_pose(
+    document: Document, old: Pose, new: PoseReplacement, known: dict[Layer, Layer] | None = None
 ) -> Document:
     """Return a document in which another pose stands wherever one with the map of `old` does.
 
@@ -63,7 +63,7 @@ def exchanged(
     return document
 
 
-def retargeted(layer: Layer, pose: Pose) -> Pose:
+def with_all_targets(layer: Layer, pose: Pose) -> Pose:
     """Return a pose with a target for each handle of a layer: its own, or where it is."""
     places = layer.map_of(pose)(
         np.array([handle.position for handle in layer.handles], dtype=np.complex128)

@@ -5,12 +5,12 @@ from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
-from app.document.body import GivenMotion, SidePairs
-from app.document.commands.command import command, numbered
-from app.document.commands.key_commands import stretched
-from app.document.commands.keys_in_time import TimeScale
+from app.document.commands.command import command, with_number
+from app.document.commands.key_commands import with_scaled_time
+from app.document.commands.retime import TimeScale
 from app.document.layer import Layer
 from app.document.model import Document
+from app.document.rig import AppliedMotion, SidePairs
 from app.document.settings import ExportSettings, FrameRange, Marker
 from app.errors import LissomError
 
@@ -31,7 +31,7 @@ def set_frames(document: Document, frames: FrameRange) -> Document:
     """Set the first and last frame, which cut the ranges in them; no key may be left outside."""
     if frames == document.frames:
         return document
-    ends = [frame for layer in document.layers for frame in layer.ends]
+    ends = [frame for layer in document.layers for frame in layer.keyed_range]
     ends += [key.frame for key in document.camera]
     outside = next((frame for frame in ends if frame not in frames), None)
     if outside is not None:
@@ -80,7 +80,7 @@ def set_export(document: Document, export: ExportSettings) -> Document:
 
 
 @command("Set pairs of names")
-def set_pairs(document: Document, pairs: SidePairs) -> Document:
+def set_mirror_names(document: Document, pairs: SidePairs) -> Document:
     """Set which words, or whole names, tell layers and handles of the two sides apart."""
     return document if pairs == document.pairs else replace(document, pairs=pairs)
 
@@ -105,20 +105,20 @@ def scale_time(document: Document, factor: float) -> Document:
         document,
         scaled(document.frames),
         scaled,
-        layers=tuple(stretched(layer, scale) for layer in document.layers),
+        layers=tuple(with_scaled_time(layer, scale) for layer in document.layers),
         markers=scale.retimed(
             document.markers, "markers", lambda marker, at: replace(marker, frame=at)
         ),
         choices=tuple(
             replace(
                 choice,
-                turns=scale.retimed(
-                    choice.turns,
+                keys=scale.retimed(
+                    choice.keys,
                     f"switch keys of {choice.name!r}",
                     lambda turn, at: turn._replace(frame=at),
                 ),
             )
-            for choice in document.choices
+            for choice in document.switch_groups
         ),
         camera=scale.paced(document.camera, "camera keys"),
     )
@@ -128,7 +128,7 @@ def scale_time(document: Document, factor: float) -> Document:
 def add_marker(document: Document, frame: int, name: str | None = None) -> Document:
     """Mark a frame, by default under a name that no other marker has."""
     taken = {marker.name for marker in document.markers}
-    free = numbered("Marker", taken, len(document.markers) + 1)
+    free = with_number("Marker", taken, len(document.markers) + 1)
     marker = Marker(frame=frame, name=free if name is None else name)
     return _with_markers(document, (*document.markers, marker))
 
@@ -172,14 +172,14 @@ def _with_markers(document: Document, markers: Iterable[Marker]) -> Document:
 
 
 @command("Give a motion")
-def give_motion(document: Document, moved: Layer, given: GivenMotion) -> Document:
+def apply_motion(document: Document, moved: Layer, given: AppliedMotion) -> Document:
     """Put a layer with a motion in its place; where nothing moved yet, the scene becomes its loop.
 
     Parameters
     ----------
     moved : Layer
         The layer with the keys that were made, `given` among its motions.
-    given : GivenMotion
+    given : AppliedMotion
     """
     is_new = not _moves(document)
     document = document.with_layer(moved)
@@ -193,15 +193,15 @@ def give_motion(document: Document, moved: Layer, given: GivenMotion) -> Documen
 def _moves(document: Document) -> bool:
     """Tell whether anything of a scene has a time."""
     has_time = bool(document.preview or document.markers or document.camera)
-    has_time |= any(choice.turns[1:] for choice in document.choices)
+    has_time |= any(choice.keys[1:] for choice in document.switch_groups)
     return has_time or any(
         each.keys[1:]
         or each.tracks
         or each.cycles
-        or each.switches
-        or each.movement
-        or each.opacities
-        or each.placings
-        or each.joints[1:]
+        or each.visibility_keys
+        or each.transform_keys
+        or each.opacity_keys
+        or each.draw_order_keys
+        or each.attachments[1:]
         for each in document.layers
     )

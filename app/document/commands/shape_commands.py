@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from app.document.body import carried_over
 from app.document.commands.command import layer_command
 from app.document.keyframe import Pose
 from app.document.layer import Layer
+from app.document.rig import transfer_painted_stiffness
 from app.document.settings import Meshing
 from engine.domain import CutOut, MeshedDomain, Slit, Stroke
 from engine.maps import Bounds
@@ -26,13 +26,13 @@ def set_anchor(layer: Layer, anchor: complex | None) -> Layer:
 
 
 @layer_command("Set stillness")
-def set_stillness(layer: Layer, *, stillness: bool) -> Layer:
+def set_auto_pins(layer: Layer, *, stillness: bool) -> Layer:
     """Let handles that two keys have at one place stay there in between, or move as they like."""
-    return layer if stillness == layer.stillness else replace(layer, stillness=stillness)
+    return layer if stillness == layer.has_auto_pins else replace(layer, has_auto_pins=stillness)
 
 
 @layer_command("Set bounds")
-def set_bounds(layer: Layer, bounds: Bounds, poses: Sequence[Pose] | None = None) -> Layer:
+def set_limits(layer: Layer, bounds: Bounds, poses: Sequence[Pose] | None = None) -> Layer:
     """Set the distortion that is allowed.
 
     Parameters
@@ -47,14 +47,14 @@ def set_bounds(layer: Layer, bounds: Bounds, poses: Sequence[Pose] | None = None
 
 
 @layer_command("Brush")
-def brush(layer: Layer, stroke: Stroke) -> Layer:
+def cut_with_brush(layer: Layer, stroke: Stroke) -> Layer:
     """Keep or remove a part of the picture; the domain stays until it is replaced."""
     strokes = (*layer.cut_out.strokes, stroke)
     return replace(layer, cut_out=replace(layer.cut_out, strokes=strokes), is_stale=True)
 
 
 @layer_command("Cut by the knife")
-def part(layer: Layer, slit: Slit) -> Layer:
+def cut_with_line(layer: Layer, slit: Slit) -> Layer:
     """Part what touches along a line; the domain stays until it is replaced."""
     slits = (*layer.cut_out.slits, slit)
     return replace(layer, cut_out=replace(layer.cut_out, slits=slits), is_stale=True)
@@ -88,7 +88,7 @@ def replace_domain(
         poses,
         domain=domain,
         meshing=meshing,
-        stiffness=carried_over(layer.stiffness, layer.domain, domain),
+        stiffness=transfer_painted_stiffness(layer.stiffness, layer.domain, domain),
         is_stale=False,
         unknown=unknown,
     )

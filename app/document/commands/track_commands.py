@@ -7,12 +7,16 @@ from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
 from typing import Any
 
-from app.document.body import PAIRS, SidePairs
-from app.document.commands import keys_in_time
+from app.document.commands import retime
 from app.document.commands.command import layer_command
-from app.document.commands.track_handles import left, mirrored_track, moved_to
+from app.document.commands.track_handles import (
+    mirrored_track,
+    track_for_handles,
+    track_without_handles,
+)
 from app.document.layer import Layer
-from app.document.timing import LINEAR, Easing, Passing, Spring, Track, TrackKey
+from app.document.rig import PAIRS, SidePairs
+from app.document.timing import LINEAR, Easing, Spring, TangentMode, Track, TrackKey
 from app.errors import LissomError
 
 
@@ -58,42 +62,42 @@ def put_track_key(
     """
     track = layer.track_of(handle)
     if track is not None and frame in track.key_frames:
-        (key,) = keys_in_time.at_frames(track.keys, {frame})
+        (key,) = retime.keys_at_frames(track.keys, {frame})
         changed = replace(key, place=place, turn=key.turn if turn is None else turn)
-        return _with_keys(layer, track, keys_in_time.put(track.keys, (changed,)))
+        return _with_keys(layer, track, retime.with_overwritten_keys(track.keys, (changed,)))
     key = TrackKey(frame=frame, place=place, turn=turn or 0.0, velocity=velocity, easing=easing)
     if track is not None:
-        return _with_keys(layer, track, keys_in_time.inserted(track.keys, key))
+        return _with_keys(layer, track, retime.with_inserted_key(track.keys, key))
     layer.handle(handle)
-    return _with_track(layer, Track(handles=(handle,), planted=planted, keys=(key,)))
+    return _with_track(layer, Track(handles=(handle,), is_scene_space=planted, keys=(key,)))
 
 
 @layer_command("Paste keys of track")
 def put_track_keys(layer: Layer, handle: int, keys: Sequence[TrackKey]) -> Layer:
     """Put keys at their frames in a handle's track, in place of those that are there."""
     track = _track(layer, handle)
-    return _with_keys(layer, track, keys_in_time.put(track.keys, keys))
+    return _with_keys(layer, track, retime.with_overwritten_keys(track.keys, keys))
 
 
 @layer_command("Move keys of track")
 def move_track_keys(layer: Layer, handle: int, frames: Collection[int], by: int) -> Layer:
     """Move the keys of a track at some frames by a number of frames."""
     track = _track(layer, handle)
-    return _with_keys(layer, track, keys_in_time.moved(track.keys, frames, by))
+    return _with_keys(layer, track, retime.with_moved_keys(track.keys, frames, by))
 
 
 @layer_command("Copy keys of track")
 def copy_track_keys(layer: Layer, handle: int, frames: Collection[int], by: int) -> Layer:
     """Repeat the keys of a track at some frames a number of frames later, or earlier."""
     track = _track(layer, handle)
-    return _with_keys(layer, track, keys_in_time.copied(track.keys, frames, by))
+    return _with_keys(layer, track, retime.with_copied_keys(track.keys, frames, by))
 
 
 @layer_command("Delete keys of track")
 def delete_track_keys(layer: Layer, handle: int, frames: Collection[int]) -> Layer:
     """Delete the keys of a track at some frames; with the last one the track goes."""
     track = _track(layer, handle)
-    keys = keys_in_time.without(track.keys, frames)
+    keys = retime.without_keys(track.keys, frames)
     if not keys:
         return _with_tracks(layer, (each for each in layer.tracks if each is not track))
     return _with_keys(layer, track, keys)
@@ -105,7 +109,7 @@ def reverse_track_keys(
 ) -> Layer:
     """Let a track run backwards between some of its keys, or in a span of frames."""
     track = _track(layer, handle)
-    return _with_keys(layer, track, keys_in_time.backwards(track.keys, frames, span))
+    return _with_keys(layer, track, retime.with_reversed_keys(track.keys, frames, span))
 
 
 @layer_command("Scale time of keys of track")
@@ -114,7 +118,7 @@ def scale_track_keys(
 ) -> Layer:
     """Move keys of a track apart or together in time, around the first of them or a frame."""
     track = _track(layer, handle)
-    return _with_keys(layer, track, keys_in_time.spread(track.keys, frames, factor, first))
+    return _with_keys(layer, track, retime.with_scaled_keys(track.keys, frames, factor, first))
 
 
 @layer_command("Set easing")
@@ -124,19 +128,21 @@ def set_track_easing(layer: Layer, handle: int, frames: Collection[int], easing:
     They are passed at no velocity of their own any more.
     """
     track = _track(layer, handle)
-    return _with_keys(layer, track, keys_in_time.eased(_unled(track, frames), frames, easing))
+    return _with_keys(layer, track, retime.with_easing(_unled(track, frames), frames, easing))
 
 
 @layer_command("Set passing")
 def set_track_passing(
-    layer: Layer, handle: int, frames: Collection[int], passing: Passing
+    layer: Layer, handle: int, frames: Collection[int], passing: TangentMode
 ) -> Layer:
     """Set how a track passes its keys at some frames; one that held its place does no longer.
 
     None of them has a velocity of its own any more.
     """
     track = _track(layer, handle)
-    return _with_keys(layer, track, keys_in_time.passed(_unled(track, frames), frames, passing))
+    return _with_keys(
+        layer, track, retime.with_tangent_mode(_unled(track, frames), frames, passing)
+    )
 
 
 @layer_command("Set delay")
@@ -195,13 +201,13 @@ def plant_track(
 def set_track_handles(layer: Layer, handle: int, handles: Sequence[int]) -> Layer:
     """Set which handles a track moves, the first of which its keys are of."""
     track = _track(layer, handle)
-    return _with_track(layer, moved_to(layer, track, tuple(handles)), instead=track)
+    return _with_track(layer, track_for_handles(layer, track, tuple(handles)), instead=track)
 
 
 @layer_command("Copy track")
 def copy_track(layer: Layer, handle: int, to: int) -> Layer:
     """Give another handle the track of a handle, so that it is moved alike from where it is."""
-    return _with_track(layer, moved_to(layer, _track(layer, handle), (to,)))
+    return _with_track(layer, track_for_handles(layer, _track(layer, handle), (to,)))
 
 
 @layer_command("Copy track mirrored")
@@ -238,8 +244,10 @@ def _track(layer: Layer, handle: int) -> Track:
 
 def _unled(track: Track, frames: Collection[int]) -> tuple[TrackKey, ...]:
     """Return the keys of a track, those at some frames without a velocity of their own."""
-    chosen = keys_in_time.at_frames(track.keys, frames)
-    return keys_in_time.exchanged(track.keys, {key.frame: key.unled() for key in chosen})
+    chosen = retime.keys_at_frames(track.keys, frames)
+    return retime.with_replaced_keys(
+        track.keys, {key.frame: key.without_velocity() for key in chosen}
+    )
 
 
 def _with_track(layer: Layer, track: Track, *, instead: Track | None = None) -> Layer:
@@ -249,7 +257,8 @@ def _with_track(layer: Layer, track: Track, *, instead: Track | None = None) -> 
     same = (each for each in layer.tracks if each.handles == track.handles)
     instead = instead or next(same, None)
     tracks = [
-        track if each is instead else left(layer, each, track.handles) for each in layer.tracks
+        track if each is instead else track_without_handles(layer, each, track.handles)
+        for each in layer.tracks
     ]
     return _with_tracks(layer, filter(None, tracks if instead else [*tracks, track]))
 

@@ -5,14 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.document.body import SidePairs, partners_of
 from app.document.layer import Layer
+from app.document.rig import SidePairs, mirrored_handles
 from app.document.timing import Track, TrackKey
 
 
 def without_handles(layer: Layer, gone: Collection[int]) -> Layer:
     """Return the layer whose tracks, springs and bones have nothing of some handles any more."""
-    tracks = (left(layer, track, gone) for track in layer.tracks)
+    tracks = (track_without_handles(layer, track, gone) for track in layer.tracks)
     springs = (
         replace(spring, root=None) if spring.root in gone else spring
         for spring in layer.springs
@@ -31,7 +31,7 @@ def with_moved_handle(layer: Layer, identity: int, position: complex) -> Layer:
     """Return the layer whose tracks want what they did of a handle that is put elsewhere."""
     old = layer.handle(identity).position
     tracks = (
-        _replanted(layer, track, old, position) if track.handles[0] == identity else track
+        _rebased_track(layer, track, old, position) if track.handles[0] == identity else track
         for track in layer.tracks
     )
     return replace(layer, tracks=tuple(tracks))
@@ -40,7 +40,7 @@ def with_moved_handle(layer: Layer, identity: int, position: complex) -> Layer:
 def mirrored_track(layer: Layer, track: Track, pairs: SidePairs) -> Track:
     """Return a track mirrored at the layer's axis, for the partners of its handles."""
     axis = layer.axis
-    partners = partners_of(layer.handles, axis, layer.domain.outline, pairs)
+    partners = mirrored_handles(layer.handles, axis, layer.domain.outline, pairs)
     # Two that lie together may have one partner.
     handles = tuple(dict.fromkeys(partners.get(handle, handle) for handle in track.handles))
     old, new = (layer.handle(each[0]).position for each in (track.handles, handles))
@@ -50,7 +50,7 @@ def mirrored_track(layer: Layer, track: Track, pairs: SidePairs) -> Track:
         replace(
             key,
             place=_reflected(key.place, axis) + beside
-            if track.planted
+            if track.is_scene_space
             else _reflected(key.place, 0.0),
             turn=0.0 - key.turn,
             velocity=None if key.velocity is None else _reflected(key.velocity, 0.0),
@@ -64,26 +64,26 @@ def _reflected(place: complex, axis: float) -> complex:
     return complex(2 * axis - place.real, place.imag)
 
 
-def left(layer: Layer, track: Track, gone: Collection[int]) -> Track | None:
+def track_without_handles(layer: Layer, track: Track, gone: Collection[int]) -> Track | None:
     """Return what is left of a track without some handles."""
     handles = tuple(handle for handle in track.handles if handle not in gone)
-    return moved_to(layer, track, handles) if handles else None
+    return track_for_handles(layer, track, handles) if handles else None
 
 
-def moved_to(layer: Layer, track: Track, handles: tuple[int, ...]) -> Track:
+def track_for_handles(layer: Layer, track: Track, handles: tuple[int, ...]) -> Track:
     """Return a track that moves other handles alike."""
     changed = replace(track, handles=handles)
     old, new = (layer.handle(each.handles[0]).position for each in (track, changed))
-    return _replanted(layer, changed, old, new)
+    return _rebased_track(layer, changed, old, new)
 
 
-def _replanted(layer: Layer, track: Track, old: complex, new: complex) -> Track:
+def _rebased_track(layer: Layer, track: Track, old: complex, new: complex) -> Track:
     """Return a track that was for a point of the drawing for another one.
 
     A planted key's place comes to be as far from it as the two points are apart in the pose of the
     layer's nearest key; what is beside the pose stays so.
     """
-    if not track.planted or old == new:
+    if not track.is_scene_space or old == new:
         return track
 
     def moved(key: TrackKey) -> TrackKey:

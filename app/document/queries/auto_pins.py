@@ -7,15 +7,15 @@ import numpy as np
 from app.document.keyframe import Pose
 from app.document.layer import Layer
 from app.document.queries.clips import Clip
-from app.document.queries.remembered import remembered
-from app.document.queries.spans import spans
-from app.document.queries.transits import passings_of, transits
+from app.document.queries.key_segments import clip_segments
+from app.document.queries.memo import memoized_on
+from app.document.queries.pose_tangents import adjacent_segments, pose_segments
 from app.document.settings import FrameRange
 from app.document.timing import HOLD
 from engine.arrays import Booleans, Floats, freeze
 from engine.variant import Baseline
 
-SAME = 0.5  # pixels between two targets that are at one place
+SAME_TARGET_DISTANCE = 0.5  # pixels between two targets that are at one place
 
 
 class PinnedSegment(NamedTuple):
@@ -37,7 +37,7 @@ class PinnedSegment(NamedTuple):
 
     is_pinned: Booleans
     fading: Booleans
-    beyond: tuple[int | None, int | None]
+    neighbours: tuple[int | None, int | None]
     content: tuple[object, ...]
     poses: tuple[Pose, ...]
 
@@ -58,7 +58,7 @@ def pinned_segments(clip: Clip) -> tuple[PinnedSegment | None, ...]:
     return _segments(clip.layer, clip.frames, clip.loop, clip.baseline)
 
 
-@remembered
+@memoized_on
 def _pinned(
     layer: Layer,
     frames: FrameRange,
@@ -68,23 +68,23 @@ def _pinned(
     clip = Clip(layer=layer, frames=frames, loop=loop, fps=1.0, baseline=baseline)
     keys = clip.keys
     following = {spring.handle for spring in layer.springs if spring.enabled}
-    pinned = np.zeros((len(spans(clip)), len(layer.handles)), dtype=bool)
-    if not layer.stillness or baseline is not None:
+    pinned = np.zeros((len(clip_segments(clip)), len(layer.handles)), dtype=bool)
+    if not layer.has_auto_pins or baseline is not None:
         return freeze(pinned)
-    for number, span in enumerate(spans(clip)):
+    for number, span in enumerate(clip_segments(clip)):
         one, other = keys[span.first], keys[span.last]
         # A whole turn between equal targets is meant: it would be unwound.
-        if one.easing == HOLD or one.turns:
+        if one.easing == HOLD or one.revolutions:
             continue
         for index, handle in enumerate(layer.handles):
-            if handle.free or handle.id in following:
+            if handle.is_unpinned or handle.id in following:
                 continue
             first, second = (key.pose.targets[handle.id].position for key in (one, other))
-            pinned[number, index] = handle.locked or abs(first - second) < SAME
+            pinned[number, index] = handle.locked or abs(first - second) < SAME_TARGET_DISTANCE
     return freeze(pinned)
 
 
-@remembered
+@memoized_on
 def _segments(
     layer: Layer,
     frames: FrameRange,
@@ -96,7 +96,7 @@ def _segments(
     if not pinned.any():
         return (None,) * len(pinned)
     found: list[PinnedSegment | None] = []
-    for number, (at_start, at_end) in enumerate(passings_of(clip)):
+    for number, (at_start, at_end) in enumerate(adjacent_segments(clip)):
         fading = np.zeros((2, pinned.shape[1]), dtype=bool)
         for side, other in enumerate((at_start.before, at_end.after)):
             if other is not None:
@@ -109,14 +109,14 @@ def _segments(
             for side, other in enumerate((at_start.before, at_end.after))
         )
         around = [each for each in (before, number, after) if each is not None]
-        keys = [key for each in around for key in transits(clip)[each].keys]
+        keys = [key for each in around for key in pose_segments(clip)[each].keys]
         content = (
             pinned[number].tobytes(),
             fading.tobytes(),
             tuple(handle.position for handle in layer.handles),
-            layer.hangs,
+            layer.has_parent,
             id(layer.stiffness),
-            tuple(_ways(clip, each) for each in around) if len(around) > 1 else (),
+            tuple(_velocity_sources(clip, each) for each in around) if len(around) > 1 else (),
             (layer.bounds.k, layer.bounds.sigma_a, layer.bounds.sigma_b),
         )
         poses = tuple(dict.fromkeys(key.pose for key in keys))
@@ -128,9 +128,17 @@ def _segments(
     return tuple(found)
 
 
-def _ways(clip: Clip, number: int) -> tuple[object, ...]:
+def _velocity_sources(clip: Clip, number: int) -> tuple[object, ...]:
     """Return what the velocities of a segment follow from, beside its poses."""
-    transit, span = transits(clip)[number], spans(clip)[number]
+    transit, span = pose_segments(clip)[number], clip_segments(clip)[number]
     maps = tuple((id(key.pose.phi), id(key.pose.psi)) for key in transit.keys)
     easing = clip.keys[span.first].easing
-    return (maps, transit.turns, transit.start, transit.end, transit.apart, span.frames, easing)
+    return (
+        maps,
+        transit.revolutions,
+        transit.start,
+        transit.end,
+        transit.apart,
+        span.frames,
+        easing,
+    )

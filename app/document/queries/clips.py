@@ -6,15 +6,15 @@ from operator import attrgetter
 from app.document.keyframe import Handle, Keyframe
 from app.document.layer import Layer
 from app.document.model import Document
-from app.document.queries.remembered import remembered
+from app.document.queries.memo import memoized_on
 from app.document.settings import FrameRange
 from engine.variant import Baseline
 
 # Fields of a layer, and of its handles, that its motion does not follow from. All others count.
 UNMOVING = {
     *("name", "next_handle", "library", "mirror", "motions", "unread_motions", "reference"),
-    *("locked", "hidden", "switches", "opacity", "opacities", "blend", "clipped", "group"),
-    *("placings", "unknown"),
+    *("locked", "hidden", "visibility_keys", "opacity", "opacity_keys", "blend", "clipped", "group"),
+    *("draw_order_keys", "unknown"),
 }
 UNMOVING_OF_HANDLES = {"name", "group", "unknown"}
 _of_layer = attrgetter(
@@ -25,7 +25,7 @@ _of_handle = attrgetter(
 )
 
 
-@remembered
+@memoized_on
 def motion_source(layer: Layer) -> tuple[object, ...]:
     """Return all of a layer that its motion follows from; equal where the motion is."""
     stiffness = None if layer.stiffness is None else layer.stiffness.tobytes()
@@ -47,7 +47,7 @@ class Clip:
     baseline: Baseline | None = None
     # Those of the layers that it hangs on at some time, by themselves, where springs and planted
     # tracks follow from them.
-    carriers: "tuple[Clip, ...]" = ()
+    parents: "tuple[Clip, ...]" = ()
 
     def __eq__(self, other: object) -> bool:
         """Tell whether the motion of two clips is the same, whatever else the layers are like."""
@@ -63,7 +63,7 @@ class Clip:
     @property
     def _time(self) -> tuple[object, ...]:
         own = (self.layer.id, self.frames, self.loop, self.fps)
-        return (*own, self.baseline, self.carriers)
+        return (*own, self.baseline, self.parents)
 
     @property
     def keys(self) -> tuple[Keyframe, ...]:
@@ -80,7 +80,7 @@ def clip_of(document: Document, layer: int) -> Clip:
     """Return the clip of the layer with this id."""
     own = document.layer(layer)
     feels = [each.enabled for each in own.springs]
-    feels += [each.enabled and each.planted for each in own.tracks]
+    feels += [each.enabled and each.is_scene_space for each in own.tracks]
 
     def clip(each: Layer, carriers: tuple[Clip, ...] = ()) -> Clip:
         return Clip(
@@ -88,8 +88,8 @@ def clip_of(document: Document, layer: int) -> Clip:
             frames=document.frames,
             loop=document.loop,
             fps=document.fps,
-            carriers=carriers,
+            parents=carriers,
         )
 
-    carriers = document.all_carriers(layer) if any(feels) else ()
+    carriers = document.all_ancestors(layer) if any(feels) else ()
     return clip(own, tuple(map(clip, carriers)))

@@ -9,10 +9,10 @@ from app.document.keyframe import Pose
 from app.document.layer import Layer
 from app.document.model import Document
 from app.document.queries.clips import Clip, clip_of
-from app.document.queries.spans import place_at, spans
-from app.document.queries.stage import camera_at, movement_at, opacity_at
+from app.document.queries.key_segments import clip_segments, segment_at_frame
+from app.document.queries.layers import camera_at, opacity_at, transform_at
+from app.document.queries.pose_tangents import pose_segments
 from app.document.queries.tracks import track_at
-from app.document.queries.transits import transits
 from app.document.settings import FrameRange, require_fps
 from app.errors import LissomError
 from engine.geometry import RigidMotion, Similarity
@@ -22,10 +22,10 @@ SAME_PLACE = 1e-6
 SAME_FACTOR = 1e-9
 
 
-class Moment(NamedTuple):
+class SegmentTime(NamedTuple):
     """A place between the two keys of an interval, of which `intervals` tells."""
 
-    interval: int
+    segment: int
     # How far it is from the former, 0, to the latter, 1: the time of the interval's in-betweens.
     # Where these blend the two keys alone, it is the weight of the latter.
     weight: float
@@ -44,7 +44,7 @@ class _Key(NamedTuple):
     key: object
 
 
-def time_of(clip: Clip, frame: float) -> Moment:
+def segment_time_at(clip: Clip, frame: float) -> SegmentTime:
     """Return the moment that a frame shows.
 
     Before the first key and after the last one their poses stand still. In a loop the last key
@@ -53,21 +53,21 @@ def time_of(clip: Clip, frame: float) -> Moment:
     Fractions lie between frames.
     """
     if len(clip.keys) == 1:
-        return Moment(0, 0.0)
-    interval, span, share = place_at(clip, frame)
+        return SegmentTime(0, 0.0)
+    interval, span, share = segment_at_frame(clip, frame)
     eased = clip.keys[span.first].easing(share)
-    return Moment(interval, transits(clip)[interval].weight(eased))
+    return SegmentTime(interval, pose_segments(clip)[interval].weight(eased))
 
 
-def resting_pose(clip: Clip, moment: Moment) -> Pose | None:
+def keyed_pose_at(clip: Clip, moment: SegmentTime) -> Pose | None:
     """Return the pose of the one key that a moment shows unblended; None where it blends two."""
     keys = clip.keys
     if moment.weight not in (0.0, 1.0) or len(keys) == 1:
         return None if len(keys) > 1 else keys[0].pose
-    return keys[spans(clip)[moment.interval][moment.weight == 1.0]].pose
+    return keys[clip_segments(clip)[moment.segment][moment.weight == 1.0]].pose
 
 
-def changed_stretches(before: Document, after: Document) -> list[FrameRange]:
+def changed_ranges(before: Document, after: Document) -> list[FrameRange]:
     """Return where in time two documents differ: keys of all kinds, the ways from poses, markers.
 
     A change of everything that is shown, such as of handles or of a domain, is nowhere.
@@ -93,10 +93,16 @@ def _keys_beside(document: Document) -> set[_Key]:
     rows: list[tuple[int | str, Iterable[_HasFrame]]] = [
         ("markers", document.markers),
         ("camera", document.camera),
-        *((choice.name, choice.turns) for choice in document.choices),
+        *((choice.name, choice.keys) for choice in document.switch_groups),
     ]
     for layer in document.layers:
-        moved = layer.movement, layer.opacities, layer.placings, layer.switches, layer.joints
+        moved = (
+            layer.transform_keys,
+            layer.opacity_keys,
+            layer.draw_order_keys,
+            layer.visibility_keys,
+            layer.attachments,
+        )
         rows += [(layer.id, row) for row in moved]
     return {_Key(whose, key.frame, key) for whose, row in rows for key in row}
 
@@ -127,7 +133,7 @@ def _changed_in_tracks(before: Layer, after: Layer) -> set[int]:
     return {track.delay + key.frame for track in tracks for key in track.keys}
 
 
-def exported_frames(document: Document) -> FrameRange:
+def export_frame_range(document: Document) -> FrameRange:
     """Return the frames that an export covers unless told otherwise.
 
     Of a loop that is exported whole, the last frame is left out where it is the first one again.
@@ -141,7 +147,7 @@ def exported_frames(document: Document) -> FrameRange:
     return frames
 
 
-def framed_frames(document: Document, exported: FrameRange) -> FrameRange:
+def frames_for_fit(document: Document, exported: FrameRange) -> FrameRange:
     """Return the frames whose motion an export shows whole where it is fitted into the frame.
 
     All of the animation's are among them, so that some frames exported anew match those of before.
@@ -154,7 +160,7 @@ def _is_same(document: Document, first: int, second: int) -> bool:
     """Tell whether two frames show the same pose, or two that were solved for the same wishes."""
     clips = (clip_of(document, layer.id) for layer in document.layers)
     return _moves_alike(document, first, second) and all(
-        _poses_alike(clip, time_of(clip, first), time_of(clip, second))
+        _poses_alike(clip, segment_time_at(clip, first), segment_time_at(clip, second))
         and all(
             track_at(track, clip, first) == track_at(track, clip, second)
             for track in clip.layer.tracks
@@ -167,10 +173,10 @@ def _moves_alike(document: Document, first: int, second: int) -> bool:
     """Tell whether the camera, and all layers as a whole, are alike at two frames."""
     shots = [camera_at(document, frame) for frame in (first, second)]
     pairs: list[list[RigidMotion | Similarity]] = [
-        [shot.on_canvas(document.canvas) for shot in shots if shot is not None]
+        [shot.canvas_motion(document.canvas) for shot in shots if shot is not None]
     ]
     pairs += [
-        [movement_at(document, each, frame) for frame in (first, second)]
+        [transform_at(document, each, frame) for frame in (first, second)]
         for each in document.layers
     ]
     # After a whole turn things are where they were, up to rounding.
@@ -183,10 +189,10 @@ def _moves_alike(document: Document, first: int, second: int) -> bool:
     )
 
 
-def _poses_alike(clip: Clip, first: Moment, second: Moment) -> bool:
+def _poses_alike(clip: Clip, first: SegmentTime, second: SegmentTime) -> bool:
     if first == second:
         return True
-    one, other = resting_pose(clip, first), resting_pose(clip, second)
+    one, other = keyed_pose_at(clip, first), keyed_pose_at(clip, second)
     if one is None or other is None:
         return False
     return one is other or all(
@@ -194,7 +200,7 @@ def _poses_alike(clip: Clip, first: Moment, second: Moment) -> bool:
         and target.rotation == other.targets[handle].rotation
         for handle, target in one.targets.items()
         # Those that follow are not wished anywhere: poses have them where the body carries them.
-        if handle not in clip.layer.followers
+        if handle not in clip.layer.sprung_handles
     )
 
 

@@ -5,12 +5,13 @@ Out: frozen values, checked as they are made.
 Imports: `app.errors`, and the checks of `app.document`.
 """
 
+from app.document.timing.base_key import BaseKey as BaseKey
 from app.document.timing.cycles import (
     Cycle as Cycle,
-    changes_in as changes_in,
-    count_changes as count_changes,
-    require_apart as require_apart,
-    require_repeatable as require_repeatable,
+    count_changes_within as count_changes_within,
+    count_repeated_changes as count_repeated_changes,
+    require_no_overlap as require_no_overlap,
+    require_repeatable_cycle as require_repeatable_cycle,
 )
 from app.document.timing.easing import (
     HOLD as HOLD,
@@ -18,11 +19,13 @@ from app.document.timing.easing import (
     PRESETS as PRESETS,
     Easing as Easing,
 )
-from app.document.timing.moving_key import MovingKey as MovingKey
-from app.document.timing.passing import Passing as Passing, require_passing as require_passing
-from app.document.timing.springs import SPRINGS as SPRINGS, Spring as Spring
+from app.document.timing.springs import SPRING_PRESETS as SPRING_PRESETS, Spring as Spring
+from app.document.timing.tangent_mode import (
+    TangentMode as TangentMode,
+    require_tangent_mode as require_tangent_mode,
+)
 from app.document.timing.tracks import (
-    MOST_TURN as MOST_TURN,
+    MAX_TRACK_ROTATION as MAX_TRACK_ROTATION,
     Track as Track,
     TrackKey as TrackKey,
 )

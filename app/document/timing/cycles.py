@@ -7,10 +7,10 @@ from itertools import pairwise
 from typing import Self
 
 from app.document.checks import NOTHING, Unknown, require, require_frame
-from app.document.timing.moving_key import MovingKey
+from app.document.timing.base_key import BaseKey
 from app.errors import LissomError
 
-MOST_CYCLES = 1_000  # of a layer
+MAX_CYCLES = 1_000  # of a layer
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,11 +42,11 @@ class Cycle:
         return self.last - self.first
 
     @property
-    def told(self) -> str:
+    def description(self) -> str:
         """The stretch in words."""
         return f"frames {self.first} to {self.last}"
 
-    def has(self, frame: float) -> bool:
+    def contains(self, frame: float) -> bool:
         """Tell whether a frame is in the stretch itself, whose end is that of the last repeat."""
         return self.first <= frame < self.last
 
@@ -54,11 +54,11 @@ class Cycle:
         """Tell whether a frame is in the stretch or in its repeats."""
         return self.first <= frame and (self.until is None or frame <= self.until)
 
-    def takes(self, keys: Sequence[MovingKey]) -> bool:
+    def repeats_keys(self, keys: Sequence[BaseKey]) -> bool:
         """Tell whether keys repeat with it: those that go on beyond it have their own time."""
-        return self.has(keys[0].frame) and keys[-1].frame <= self.last
+        return self.contains(keys[0].frame) and keys[-1].frame <= self.last
 
-    def has_all(self, frames: Iterable[int]) -> bool:
+    def contains_changes(self, frames: Iterable[int]) -> bool:
         """Tell whether what changes at some frames changes in the stretch, and not in repeats.
 
         What changes before and after has no say, and there is a change at least.
@@ -68,39 +68,39 @@ class Cycle:
             later = [frame for frame in later if frame < self.until]
         return bool(later) and max(later) < self.last
 
-    def moved(self, to: Callable[[int], int]) -> Self:
+    def retimed(self, to: Callable[[int], int]) -> Self:
         """Return the cycle with its frames where a function has them."""
         until = None if self.until is None else to(self.until)
         return replace(self, first=to(self.first), last=to(self.last), until=until)
 
-    def held(self, frame: float, end: int) -> float:
+    def clamped_source_frame(self, frame: float, end: int) -> float:
         """Return the frame of the stretch that a frame shows of what is held before and after it.
 
         The last frame of the scene is where repeats without an end are over.
         """
         until = max(self.last, end) if self.until is None else self.until
-        return self.source(min(max(frame, self.first), until))
+        return self.source_frame(min(max(frame, self.first), until))
 
-    def source(self, frame: float) -> float:
+    def source_frame(self, frame: float) -> float:
         """Return the frame of the stretch that a frame shows while it repeats."""
         return self.first + (frame - self.first) % self.period
 
 
-def require_apart(cycles: Sequence[Cycle]) -> None:
+def require_no_overlap(cycles: Sequence[Cycle]) -> None:
     """Raise a `LissomError` unless each cycle has ended when the next one begins."""
     require(
-        len(cycles) <= MOST_CYCLES,
-        f"A layer has at most {MOST_CYCLES:,} stretches that repeat, not {len(cycles):,}.",
+        len(cycles) <= MAX_CYCLES,
+        f"A layer has at most {MAX_CYCLES:,} stretches that repeat, not {len(cycles):,}.",
     )
     for before, after in pairwise(cycles):
         require(
             before.until is not None and before.until <= after.first,
-            f"The repeats of {before.told} and of {after.told} overlap; end the former at frame "
+            f"The repeats of {before.description} and of {after.description} overlap; end the former at frame "
             f"{after.first} at the latest.",
         )
 
 
-def require_repeatable(cycle: Cycle, keys: Sequence[int]) -> None:
+def require_repeatable_cycle(cycle: Cycle, keys: Sequence[int]) -> None:
     """Raise a `LissomError` unless motion comes into a cycle, round, and on to a layer's keys.
 
     These are told by their frames, in order.
@@ -109,12 +109,12 @@ def require_repeatable(cycle: Cycle, keys: Sequence[int]) -> None:
     own, has_before, after = keys[begin:end], begin > 0, keys[end : end + 1]
     if after and (cycle.until is None or after[0] < cycle.until):
         raise LissomError(
-            f"The key at frame {after[0]} is where {cycle.told} repeat; pose it in {cycle.told}, "
+            f"The key at frame {after[0]} is where {cycle.description} repeat; pose it in {cycle.description}, "
             "let the repeats end there, or make them into keys first."
         )
     require(
         bool(own) or not (has_before and after),
-        f"There is no key in {cycle.told} that could repeat; insert one there first.",
+        f"There is no key in {cycle.description} that could repeat; insert one there first.",
     )
     require(
         not (has_before and own) or own[0] == cycle.first,
@@ -126,7 +126,7 @@ def require_repeatable(cycle: Cycle, keys: Sequence[int]) -> None:
         return
     if all((until - frame) % cycle.period for frame in own):
         raise LissomError(
-            f"At frame {until} the repeats of {cycle.told} are between two keys, from where "
+            f"At frame {until} the repeats of {cycle.description} are between two keys, from where "
             f"nothing leads to the key at frame {after[0]}; let them end at frame "
             f"{_nearest_end(cycle, own, after[0])} instead."
         )
@@ -141,16 +141,16 @@ def _nearest_end(cycle: Cycle, own: Sequence[int], before: int) -> int:
     return min(fitting, key=lambda end: abs(end - until))
 
 
-def changes_in(frames: Sequence[int], cycle: Cycle) -> int:
+def count_changes_within(frames: Sequence[int], cycle: Cycle) -> int:
     """Return how many of some frames, in their order, lie within a cycle, its ends left out."""
     return max(0, bisect_left(frames, cycle.last) - bisect_right(frames, cycle.first))
 
 
-def count_changes(frames: Sequence[int], cycles: Iterable[Cycle], end: int) -> int:
+def count_repeated_changes(frames: Sequence[int], cycles: Iterable[Cycle], end: int) -> int:
     """Return how many changes come of some in all repeats at most, up to the scene's last frame."""
     count = len(frames)
     for cycle in cycles:
-        own = changes_in(frames, cycle)
+        own = count_changes_within(frames, cycle)
         until = end if cycle.until is None else cycle.until
         count += (own + 1) * ((until - cycle.first) // cycle.period) if own else 0
     return count

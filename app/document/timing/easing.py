@@ -61,7 +61,7 @@ class Easing:
         return min(1.0, _bezier(y1, y2, high))
 
     @property
-    def paces(self) -> tuple[float, float]:
+    def end_speeds(self) -> tuple[float, float]:
         """How fast time runs at the start and at the end, from 0, at rest, to infinity; 1 is even.
 
         A hold has no pace, and 0 at both.
@@ -69,7 +69,9 @@ class Easing:
         if self.curve is None:
             return 0.0, 0.0
         x1, y1, x2, y2 = self.curve
-        return _pace((x1, y1), (x2, y2)), _pace((1.0 - x2, 1.0 - y2), (1.0 - x1, 1.0 - y1))
+        return _end_speed((x1, y1), (x2, y2)), _end_speed(
+            (1.0 - x2, 1.0 - y2), (1.0 - x1, 1.0 - y1)
+        )
 
     def reversed(self) -> Self:
         """Return the easing of the interval played backwards; a hold stays a hold."""
@@ -101,13 +103,13 @@ class Easing:
             )
         return cls(tuple(value))
 
-    def written(self) -> str | list[float]:
+    def to_json(self) -> str | list[float]:
         """Return what `parse` reads back as this easing."""
         name = self.name
         return name if self.curve is None or name != "custom" else list(self.curve)
 
 
-def _pace(first: tuple[float, float], second: tuple[float, float]) -> float:
+def _end_speed(first: tuple[float, float], second: tuple[float, float]) -> float:
     """Return the slope of a curve at (0, 0), from its control points."""
     for x, y in (first, second):
         if x > 0.0:

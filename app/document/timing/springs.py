@@ -6,10 +6,10 @@ from types import MappingProxyType
 
 from app.document.checks import NOTHING, Unknown, require
 
-FASTEST_SWING = 1000.0  # Hz
-MOST_DAMPING = 100.0  # of the critical one
-MOST_LAG = 10_000.0  # frames
-MOST_STRENGTH = 10.0
+MAX_SPRING_FREQUENCY = 1000.0  # Hz
+MAX_DAMPING = 100.0  # of the critical one
+MAX_LAG = 10_000.0  # frames
+MAX_STRENGTH = 10.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -30,21 +30,21 @@ class Spring:
 
     def __post_init__(self) -> None:
         require(
-            0 < self.frequency <= FASTEST_SWING,
-            f"The frequency of a spring is above 0 and at most {FASTEST_SWING:,.0f} Hz, not "
+            0 < self.frequency <= MAX_SPRING_FREQUENCY,
+            f"The frequency of a spring is above 0 and at most {MAX_SPRING_FREQUENCY:,.0f} Hz, not "
             f"{self.frequency:g}.",
         )
         require(
-            0 <= self.damping <= MOST_DAMPING,
-            f"The damping of a spring is from 0 to {MOST_DAMPING:g}, not {self.damping:g}.",
+            0 <= self.damping <= MAX_DAMPING,
+            f"The damping of a spring is from 0 to {MAX_DAMPING:g}, not {self.damping:g}.",
         )
         require(
-            0 <= self.lag <= MOST_LAG,
-            f"The lag of a spring is from 0 to {MOST_LAG:,.0f} frames, not {self.lag:g}.",
+            0 <= self.lag <= MAX_LAG,
+            f"The lag of a spring is from 0 to {MAX_LAG:,.0f} frames, not {self.lag:g}.",
         )
         require(
-            0 <= self.strength <= MOST_STRENGTH,
-            f"The strength of a spring is from 0 to {MOST_STRENGTH:g}, not {self.strength:g}.",
+            0 <= self.strength <= MAX_STRENGTH,
+            f"The strength of a spring is from 0 to {MAX_STRENGTH:g}, not {self.strength:g}.",
         )
         require(
             0 <= self.stretch <= 1,
@@ -54,7 +54,7 @@ class Spring:
 
 
 # By name: frequency and damping. Measured on the samples' tails and ears; the others are between.
-SPRINGS: Mapping[str, tuple[float, float]] = MappingProxyType(
+SPRING_PRESETS: Mapping[str, tuple[float, float]] = MappingProxyType(
     {
         "tail": (1.6, 0.18),
         "ear": (3.0, 0.25),

@@ -6,21 +6,21 @@ from itertools import pairwise
 from typing import Self
 
 from app.document.checks import (
-    FARTHEST,
     LAST_FRAME,
+    MAX_COORDINATE,
     NOTHING,
     Unknown,
     require,
     require_distinct,
-    require_place,
+    require_point,
 )
-from app.document.timing.moving_key import MovingKey
+from app.document.timing.base_key import BaseKey
 
-MOST_TURN = 20 * math.tau  # either way
+MAX_TRACK_ROTATION = 20 * math.tau  # either way
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class TrackKey(MovingKey):
+class TrackKey(BaseKey):
     """Where a track wants its handles at a frame, and the way from there to its next key."""
 
     # Of a track with the pose, by how much the handle is beside its place in the base motion, in
@@ -33,25 +33,25 @@ class TrackKey(MovingKey):
     velocity: complex | None = None
 
     def __post_init__(self) -> None:
-        MovingKey.__post_init__(self)
-        require_place(self.place, "A track's key")
+        BaseKey.__post_init__(self)
+        require_point(self.place, "A track's key")
         require(
-            abs(self.turn) <= MOST_TURN,
-            f"A track turns by at most {MOST_TURN / math.tau:g} whole turns, not by "
+            abs(self.turn) <= MAX_TRACK_ROTATION,
+            f"A track turns by at most {MAX_TRACK_ROTATION / math.tau:g} whole turns, not by "
             f"{self.turn / math.tau:g}.",
         )
         require(
-            self.velocity is None or abs(self.velocity) <= FARTHEST,
-            f"A track passes a key at no more than {FARTHEST:,.0f} pixels a frame, not at "
+            self.velocity is None or abs(self.velocity) <= MAX_COORDINATE,
+            f"A track passes a key at no more than {MAX_COORDINATE:,.0f} pixels a frame, not at "
             f"{self.velocity}.",
         )
 
-    def at_pace(self, frame: int, pace: float) -> Self:
+    def retimed(self, frame: int, pace: float) -> Self:
         """Return the key at another frame of a motion that runs so many times as fast."""
         velocity = None if self.velocity is None else pace * self.velocity
         return replace(self, frame=frame, velocity=velocity)
 
-    def unled(self) -> Self:
+    def without_velocity(self) -> Self:
         """Return the key passed as its neighbours and the easings have it."""
         return self if self.velocity is None else replace(self, velocity=None)
 
@@ -65,12 +65,14 @@ class Track:
 
     # The ids of its handles. Its keys are of the first one; the others are moved by as much.
     handles: tuple[int, ...]
-    planted: bool = False  # whether its keys are places in the picture, and not beside the pose
+    is_scene_space: bool = (
+        False  # whether its keys are places in the picture, and not beside the pose
+    )
     keys: tuple[TrackKey, ...]  # in the order of their frames; there is always one
     delay: int = 0  # frames by which it is late; in a loop it comes round
     # How far around its handles the body gives, from 0, hardly, to 1, as it likes.
     reach: float = 1.0
-    turns: bool = False  # whether its keys turn the shape at the handles, too
+    keys_rotation: bool = False  # whether its keys turn the shape at the handles, too
     enabled: bool = True
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 

@@ -10,13 +10,13 @@ from app.document import (
     Document,
     FrameRange,
     Handle,
-    UnkeyedPose,
-    changed_stretches,
+    PreviewPose,
+    changed_ranges,
     clip_of,
     handle_commands,
     key_commands,
     layer_commands,
-    pairs_by_name,
+    mirrored_handles_by_name,
     track_commands,
 )
 from app.editor import promises
@@ -101,7 +101,11 @@ def undo(session: Session, project: Project) -> None:
     if waiting is not None:
         _tell_step(session, "Undone", waiting)
         return
-    before, unkeyed, label = project.document, project.history.unkeyed, project.history.undo_label
+    before, unkeyed, label = (
+        project.document,
+        project.history.preview_pose,
+        project.history.undo_label,
+    )
     position = project.history.position
     # What was done since they were wished is taken back before them.
     unseen = [pull for pull in project.pulls if pull.kept is None and pull.position >= position]
@@ -113,7 +117,7 @@ def undo(session: Session, project: Project) -> None:
         # Nothing is to be seen of them yet but what their gestures did first.
         for pull in unseen:
             for gesture in (*pull.wishes, pull.gesture):
-                project.history.take_back(gesture)
+                project.history.revert(gesture)
     else:
         project.history.undo()
         _tell_step(session, "Undone", label)
@@ -125,14 +129,14 @@ def undo(session: Session, project: Project) -> None:
 def take_back(session: Session, project: Project, gesture: object) -> None:
     """Undo what a gesture has done, as if it had never begun."""
     posing.take_back(session, gesture)
-    project.history.take_back(gesture)
+    project.history.revert(gesture)
     _forget_what_is_gone(project)
 
 
 @with_project
 def redo(session: Session, project: Project) -> None:
     """Do the step that was taken back again."""
-    before, unkeyed = project.document, project.history.unkeyed
+    before, unkeyed = project.document, project.history.preview_pose
     _tell_step(session, "Done again", project.history.redo_label)
     project.history.redo()
     _forget_what_is_gone(project)
@@ -145,14 +149,14 @@ def _tell_step(session: Session, what: str, label: str | None) -> None:
 
 
 def _go_to_change(
-    session: Session, project: Project, before: Document, unkeyed: UnkeyedPose | None
+    session: Session, project: Project, before: Document, unkeyed: PreviewPose | None
 ) -> None:
     """Put a playhead that stands where something has changed, or as near to it as it is to be."""
     if project.playhead.since is not None:
         return
-    stretches = changed_stretches(before, project.document)
-    if project.history.unkeyed is not unkeyed:
-        poses = filter(None, (unkeyed, project.history.unkeyed))
+    stretches = changed_ranges(before, project.document)
+    if project.history.preview_pose is not unkeyed:
+        poses = filter(None, (unkeyed, project.history.preview_pose))
         stretches += [FrameRange(pose.frame, pose.frame) for pose in poses]
     here = project.playhead.frame
     if stretches and not any(here in stretch for stretch in stretches):
@@ -193,7 +197,7 @@ def deselect_keys(_: Session, project: Project) -> None:
 @with_project
 def select_mirrored(session: Session, project: Project) -> None:
     """Select the partners of the selected handles on the other side, as their names tell."""
-    pairs = pairs_by_name(project.layer.handles, project.document.pairs)
+    pairs = mirrored_handles_by_name(project.layer.handles, project.document.pairs)
     partners = frozenset(pairs[handle] for handle in project.selected if handle in pairs)
     if partners:
         select(session, partners)
@@ -225,7 +229,7 @@ def group(session: Session, project: Project) -> None:
 @with_project
 def ungroup(session: Session, project: Project) -> None:
     """Part the groups that the selected handles belong to."""
-    fellows = frozenset[int]().union(*map(project.layer.together_with, project.selected))
+    fellows = frozenset[int]().union(*map(project.layer.grouped_handles, project.selected))
     edit_layer(session, handle_commands.group_handles, fellows, "")
 
 
@@ -327,7 +331,7 @@ def _forget_what_is_gone(project: Project) -> None:
 
 def depth_now(session: Session, project: Project, handle: Handle) -> float:
     """Return what is painted in front around a handle at the present frame, from −1 to 1."""
-    return _fronts_here(session, project).get(handle.id, handle.front)
+    return _fronts_here(session, project).get(handle.id, handle.depth)
 
 
 @with_project
@@ -335,13 +339,13 @@ def set_depth(session: Session, project: Project, identity: int, front: float) -
     """Set what is painted in front around a handle, in the present key if it says so already."""
     if identity in _fronts_here(session, project):
         frame = playback.posed_frame(session, project)
-        edit_layer(session, layer_commands.key_front, frame, identity, front)
+        edit_layer(session, layer_commands.key_depth, frame, identity, front)
     else:
         extent = project.layer.handle(identity).extent
-        edit_layer(session, layer_commands.set_front, identity, front, extent)
+        edit_layer(session, layer_commands.set_depth, identity, front, extent)
 
 
 def _fronts_here(session: Session, project: Project) -> Mapping[int, float]:
     """Return what the key at the present frame says, if there is one."""
     frame, layer = playback.posed_frame(session, project), project.layer
-    return layer.key(frame).fronts if frame in layer.key_frames else {}
+    return layer.key(frame).depths if frame in layer.key_frames else {}

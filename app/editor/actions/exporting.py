@@ -16,24 +16,24 @@ from app.editor.failures import ask_worker, report, sentence
 from app.editor.project import Project
 from app.editor.session import ExportRun, Session, with_project
 from app.editor.work import Afterwards, Kind
-from app.errors import LissomError, shown_name
+from app.errors import LissomError, display_name
 from app.export import (
     FRAMES,
+    CachedVertices,
     ExportRequest,
     FrameNames,
-    KeptPoses,
     check_request,
     clipboard_program,
     data_file,
+    list_overwritten_files,
     plan_export,
     put_on_clipboard,
-    replaced_files,
-    suited,
-    with_light_meshes,
+    with_reduced_meshes,
+    with_suffix_for,
 )
-from app.export_formats import EXPORT_FORMATS, STILL
-from app.motion import Animation, Box, PoseSampler, extent_source, hung_animations
-from app.storage import Cancellation, make_settings_folder, passing_picture
+from app.export_formats import EXPORT_FORMATS, STILL_FORMAT
+from app.motion import Animation, BoundingBox, PoseSampler, extent_key, hung_animations
+from app.storage import Cancellation, make_settings_folder, temporary_picture
 
 UNDER_WAY = "An export is under way. The next one can begin when it is done."
 RUNNING = "An export is running"
@@ -99,7 +99,7 @@ def destination(project: Project) -> Path | None:
     """
     name, places = project.document.export.format, project.exports_to
     newest = next(reversed(places.values()), None)
-    return places.get(name) or (suited(newest, name) if newest else None)
+    return places.get(name) or (with_suffix_for(newest, name) if newest else None)
 
 
 @with_project
@@ -111,7 +111,7 @@ def start(session: Session, project: Project, out: Path) -> None:
     request = _request(session, project, out, settings)
     check_request(project.document, request)
     is_replaceable = project.replaceable == (settings.format, out)
-    there = [] if is_replaceable else replaced_files(project.document, request)
+    there = [] if is_replaceable else list_overwritten_files(project.document, request)
     if there:
         what = "file" if len(there) == 1 else f"{len(there)} files"
         which = there[0] if len(there) == 1 else f"{there[0]} … {there[-1]}"
@@ -149,8 +149,8 @@ def copy_picture(session: Session, project: Project) -> None:
         return
     clipboard_program()  # tells what to install where there is none
     make_settings_folder(session.folder)
-    out = passing_picture(session.folder)
-    settings = replace(project.document.export, format=STILL)
+    out = temporary_picture(session.folder)
+    settings = replace(project.document.export, format=STILL_FORMAT)
     request = _request(session, project, out, settings)
     check_request(project.document, request)
     session.cancellation = Cancellation()
@@ -200,7 +200,7 @@ def _prepare(
 ) -> None:
     """Let a worker prepare an export that was checked, and then begin."""
     document, format_ = project.document, EXPORT_FORMATS[request.settings.format]
-    unkeyed = project.history.unkeyed
+    unkeyed = project.history.preview_pose
     if format_.is_still and unkeyed is not None and unkeyed.layer == project.active:
         frames = request.settings.frames
         if frames is not None and unkeyed.frame in frames:
@@ -211,17 +211,19 @@ def _prepare(
         for layer, puppet in project.puppets.items()
     }
     extent = project.extent
-    box = extent.value if extent.follows(extent_source(document)) else None
+    box = extent.value if extent.follows(extent_key(document)) else None
     cancellation = session.cancellation
 
     def work() -> ExportRun:
         detail = request.settings.shapes.triangles
-        exported = document if format_.is_drawn else with_light_meshes(document, detail)
+        exported = document if format_.is_drawn else with_reduced_meshes(document, detail)
         alone = [
             _animation(clip_of(exported, layer.id), samplers[layer.id]) for layer in exported.layers
         ]
         hung = hung_animations(alone, exported)
-        poses = {layer: KeptPoses(animation, cancellation) for layer, animation in hung.items()}
+        poses = {
+            layer: CachedVertices(animation, cancellation) for layer, animation in hung.items()
+        }
         plan = plan_export(exported, request, poses, box)
         return ExportRun(document=exported, pictures=pictures, poses=poses, plan=plan)
 
@@ -334,7 +336,7 @@ def keep_aspect(session: Session, keeps: bool) -> None:  # noqa: FBT001 - the on
     session.keeps_aspect = keeps
 
 
-def show_frame(session: Session, box: Box) -> None:
+def show_frame(session: Session, box: BoundingBox) -> None:
     """Show what an export shows in the viewport, until the next frame of the window."""
     session.export_frame = box
 
@@ -349,7 +351,7 @@ def open_folder(session: Session, folder: Path) -> None:
         subprocess.Popen([opener, folder], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)  # noqa: S603
     except OSError:
         raise LissomError(f"no file manager was found; the folder is {folder}") from None
-    session.hint = shown_name(folder)
+    session.hint = display_name(folder)
 
 
 @with_project

@@ -17,27 +17,27 @@ from app.editor.failures import ask_worker, sentence
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work import Kind, Puppet
-from app.errors import ImportSummary, shown_name
+from app.errors import ImportLog, display_name
 from app.storage import (
-    Hold,
-    HoldError,
+    FileLock,
+    FileLockedError,
     OpenedScene,
-    Origin,
     Picture,
+    SourceInfo,
     decode_pictures,
-    find_leftovers,
+    find_recoverable_files,
     is_layered,
-    leftover_origin,
-    load_leftover,
     load_project,
-    on_disk,
+    load_recoverable_file,
+    move_to_disk,
     open_layered,
     open_picture,
     open_pictures,
     project_digest,
-    remove_leftover,
+    read_source_info,
+    remove_recoverable_file,
+    run_parallel,
     sample_images,
-    side_by_side,
 )
 
 PICTURES = (
@@ -149,7 +149,7 @@ def open_file(session: Session, path: Path) -> None:
     If there are changes to be lost by then, a question comes first.
     """
     meshing = session.meshing
-    kind = Kind(shown_name(f"Opening {path.name}"), f"{path.name} cannot be opened")
+    kind = Kind(display_name(f"Opening {path.name}"), f"{path.name} cannot be opened")
     _open(session, path, kind, lambda: _read(path, meshing))
 
 
@@ -195,7 +195,7 @@ def show(session: Session, path: Path, opened: Opened) -> None:
         return
     try:
         hold = saving.hold_file(session, path)
-    except HoldError as error:
+    except FileLockedError as error:
         session.dialog = Question(
             title="Open elsewhere",
             text=f"{path.name} is open already {error}. What is saved here and there takes the "
@@ -220,12 +220,12 @@ def show_anyway(session: Session, path: Path, opened: Opened) -> None:
 
 
 def _show(
-    session: Session, path: Path, opened: Opened, own: Path | None, hold: Hold | None = None
+    session: Session, path: Path, opened: Opened, own: Path | None, hold: FileLock | None = None
 ) -> None:
     """Make what was read the project of the window; `own` is the file that it is saved in."""
-    session.autosave.forget()
+    session.autosave.remove()
     project = Project(
-        name=shown_name(path.stem),
+        name=display_name(path.stem),
         history=History(opened.document, saved=True),
         puppets=opened.puppets,
         active=_foremost(opened.document),
@@ -242,17 +242,17 @@ def _show(
     for notice in opened.notices:
         session.tell(sentence(notice))
     if opened.drawings:
-        tell_of_import(session, project, opened.document.told)
+        tell_of_import(session, project, opened.document.import_log)
     if opened.offer:
         session.tell(tone="good", **opened.offer._asdict())
 
 
-def tell_of_import(session: Session, project: Project, summary: ImportSummary) -> None:
+def tell_of_import(session: Session, project: Project, summary: ImportLog) -> None:
     """Tell of what is lost of a drawing that was brought in."""
-    if not summary.losses:
+    if not summary.warnings:
         return
     project.shows_summary = True
-    count = len(summary.losses)
+    count = len(summary.warnings)
     session.tell(
         f"{'One thing looks' if count == 1 else f'{count} things look'} different here; the tab "
         "Layers tells which.",
@@ -291,9 +291,9 @@ def with_puppets(opened: OpenedScene) -> Opened:
 
 def _puppets(document: Document, pictures: Mapping[int, Picture]) -> dict[int, Puppet]:
     if len(pictures) > 1:
-        kept = {id(each): on_disk(each) for each in pictures.values()}
+        kept = {id(each): move_to_disk(each) for each in pictures.values()}
         pictures = {identity: kept[id(each)] for identity, each in pictures.items()}
-    made = side_by_side(
+    made = run_parallel(
         lambda identity: Puppet.of(
             clip_of(document, identity), pictures[identity], among=len(document.layers)
         ),
@@ -367,10 +367,10 @@ def show_recovery(session: Session) -> None:
 def leftovers(session: Session) -> tuple[Leftover, ...]:
     """Return the unsaved work of windows that are gone, the newest first."""
     found = []
-    for path in find_leftovers(session.folder):
+    for path in find_recoverable_files(session.folder):
         with suppress(OSError):  # another window has just taken it
             status = path.stat()
-            found.append(Leftover(path, leftover_origin(path), status.st_mtime, status.st_size))
+            found.append(Leftover(path, read_source_info(path), status.st_mtime, status.st_size))
     return tuple(found)
 
 
@@ -378,25 +378,25 @@ def recover(session: Session, path: Path) -> None:
     """Open unsaved work; it stays unsaved, and is kept until it is saved."""
     kind = Kind("Opening unsaved work", "The unsaved work cannot be opened")
 
-    def done(read: tuple[Opened, Origin]) -> None:
+    def done(read: tuple[Opened, SourceInfo]) -> None:
         saving.unless_unsaved(session, do(show_recovered, path, *read))
 
     ask_worker(session, kind, lambda: _read_leftover(path), done)
 
 
-def _read_leftover(path: Path) -> tuple[Opened, Origin]:
-    document, origin = load_leftover(path)
+def _read_leftover(path: Path) -> tuple[Opened, SourceInfo]:
+    document, origin = load_recoverable_file(path)
     return decoded(document, origin.name), origin
 
 
 def throw_away(session: Session, path: Path) -> None:
     """Delete unsaved work, and go on with what else there is."""
-    remove_leftover(path)
+    remove_recoverable_file(path)
     session.tell("The unsaved work was discarded.")
     offer_recovery(session)
 
 
-def show_recovered(session: Session, path: Path, opened: Opened, origin: Origin) -> None:
+def show_recovered(session: Session, path: Path, opened: Opened, origin: SourceInfo) -> None:
     """Make unsaved work the project of the window, under its own name and unsaved."""
     saving.put_project(
         session,
@@ -410,6 +410,6 @@ def show_recovered(session: Session, path: Path, opened: Opened, origin: Origin)
         ),
     )
     session.autosave.write(opened.document, origin)
-    remove_leftover(path)
+    remove_recoverable_file(path)
     what = f"unsaved work on {origin.path.name}" if origin.path else "unsaved work"
     session.tell(f"This is your {what}. Save it to keep it.", tone="good")

@@ -105,13 +105,13 @@ def _to_next(session: Session, project: Project, frames: list[int], direction: i
 @with_project
 def to_start(session: Session, project: Project) -> None:
     """Go to the first frame that plays."""
-    seek(session, project.document.played.first)
+    seek(session, project.document.played_frames.first)
 
 
 @with_project
 def to_end(session: Session, project: Project) -> None:
     """Go to the last frame that plays."""
-    seek(session, project.document.played.last)
+    seek(session, project.document.played_frames.last)
 
 
 @with_project

@@ -12,17 +12,17 @@ from app.editor.failures import ask_worker, mended, report, report_once
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work import Job, Kind, Promise
-from app.errors import shown_name
+from app.errors import display_name
 from app.reports import draw_curves, write_curves
 from app.storage import (
     SECONDS,
-    Hold,
-    HoldError,
+    FileLock,
+    FileLockedError,
     check_writable,
-    clear_abandoned,
     draw_thumbnail,
-    flattened,
+    flatten_layers,
     project_digest,
+    remove_abandoned_files,
     save_preferences,
     save_project,
     write_atomically,
@@ -86,13 +86,13 @@ def write_now(session: Session, project: Project, path: Path, then: Action | Non
         if known is not None and project_digest(path) not in (None, known):
             raise _ChangedError
         check_writable(path, sources=drawings)
-        picture = flattened(document, textures)
+        picture = flatten_layers(document, textures)
         return save_project(path, document, thumbnail=draw_thumbnail(picture))
 
     def done(digest: str) -> None:
         project.pending.remove(saving)
         project.history.mark_saved(document)
-        project.name, project.path, project.is_recovered = shown_name(path.stem), path, False
+        project.name, project.path, project.is_recovered = display_name(path.stem), path, False
         project.read_as = digest
         _hold_saved(session, project, path)
         session.preferences = session.preferences.with_recent(path)
@@ -125,19 +125,19 @@ class _ChangedError(Exception):
     """The file is not as it was when it was opened or saved here last."""
 
 
-def hold_file(session: Session, path: Path) -> Hold | None:
+def hold_file(session: Session, path: Path) -> FileLock | None:
     """Let other windows see that a project is open here; tell where that is not possible.
 
     Raises
     ------
-    HoldError
+    FileLockedError
         If it is open in another window.
     """
     project = session.project
     if project is not None and project.hold is not None and project.hold.path == path:
         return project.hold
     try:
-        return Hold(path)
+        return FileLock(path)
     except OSError as error:
         reason = error.strerror or str(error)
         session.tell(
@@ -164,7 +164,7 @@ def _hold_saved(session: Session, project: Project, path: Path) -> None:
     before = project.hold
     try:
         project.hold = hold_file(session, path)
-    except HoldError as error:
+    except FileLockedError as error:
         project.hold = None
         session.tell(f"{path.name} is open elsewhere, too: {error}.", tone="error")
     if before is not None:
@@ -232,7 +232,7 @@ def _asks_about(waiting: Action, then: Action) -> bool:
 @with_project
 def ask_unsaved(session: Session, project: Project, then: Action) -> None:
     """Do something that gives up the project, but ask first if it has changes now."""
-    unkeyed = project.history.unkeyed
+    unkeyed = project.history.preview_pose
     is_settled = promises.is_settled(project, after_saves=True)
     if is_settled and not has_unsaved(project):
         then.apply(session)
@@ -253,7 +253,7 @@ def ask_unsaved(session: Session, project: Project, then: Action) -> None:
 @with_project
 def key_and_save(session: Session, project: Project, then: Action) -> None:
     """Make a key of the pose that no key holds, and save the project."""
-    unkeyed = project.history.unkeyed
+    unkeyed = project.history.preview_pose
     if unkeyed is not None:
         posing.insert_key_at(session, unkeyed.layer, unkeyed.frame)
     save_then(session, then)
@@ -267,7 +267,7 @@ def close(session: Session) -> None:
 def give_up(session: Session) -> None:
     """Close the project, whatever it holds."""
     put_project(session, None)
-    session.autosave.forget()
+    session.autosave.remove()
 
 
 def quit_lissom(session: Session) -> None:
@@ -277,7 +277,7 @@ def quit_lissom(session: Session) -> None:
 
 def leave(session: Session) -> None:
     """Close the window."""
-    session.autosave.forget()
+    session.autosave.remove()
     if session.project is not None and session.project.hold is not None:
         session.project.hold.release()
         session.project.hold = None
@@ -296,7 +296,7 @@ def clear_up(session: Session) -> None:
 
     def work() -> None:
         for folder in folders:
-            clear_abandoned(folder)
+            remove_abandoned_files(folder)
 
     # They may lie on a slow disk.
     ask_worker(session, CLEARING, work, lambda _: None)
@@ -323,10 +323,10 @@ def autosave(session: Session, project: Project) -> None:
     if not has_unsaved(project):
         if project.autosaved is not None:
             project.autosaved = None
-            session.autosave.forget()
+            session.autosave.remove()
         project.changed_at = None
         return
-    if project.autosaved == (project.document, project.history.unkeyed):
+    if project.autosaved == (project.document, project.history.preview_pose):
         project.changed_at = None
         return
     now = session.clock()
@@ -350,7 +350,7 @@ def autosave_now(session: Session, project: Project) -> None:
         If they cannot be kept.
     """
     posing.bring_all(session, project)
-    kept = project.document, project.history.unkeyed
+    kept = project.document, project.history.preview_pose
     is_kept = project.autosaved == kept and AUTOSAVING not in session.jobs.kinds
     if is_kept or not has_unsaved(project):
         return
@@ -362,12 +362,12 @@ def autosave_now(session: Session, project: Project) -> None:
 
 def has_unsaved(project: Project) -> bool:
     """Tell whether there is anything that no file has, a pose that no key holds among it."""
-    return not project.history.is_saved or project.history.unkeyed is not None
+    return not project.history.is_saved or project.history.preview_pose is not None
 
 
 def _all_keyed(session: Session, project: Project) -> Document:
     """Return the document with a pose that no key holds in a key: files have keys only."""
-    unkeyed = project.history.unkeyed
+    unkeyed = project.history.preview_pose
     if unkeyed is None:
         return project.document
     return posing.as_key(session, project, unkeyed)(project.document)
@@ -375,14 +375,14 @@ def _all_keyed(session: Session, project: Project) -> Document:
 
 def _begin_autosave(session: Session, project: Project, now: float) -> None:
     document, origin, earlier = _all_keyed(session, project), project.origin, project.autosaved
-    kept = project.document, project.history.unkeyed
+    kept = project.document, project.history.preview_pose
     project.autosaved, project.autosaved_at = kept, now
 
     def done(_: None) -> None:
         mended(session, AUTOSAVING.complaint)
         # In the meantime it may have been saved, or closed.
         if session.project is not project or project.autosaved != kept:
-            session.autosave.forget()
+            session.autosave.remove()
 
     def failed(error: Exception) -> None:
         # There may be room again next time.

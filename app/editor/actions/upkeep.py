@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import TypeVar
 
-from app.document import Clip, clip_of, resting_pose, time_of
+from app.document import Clip, clip_of, keyed_pose_at, segment_time_at
 from app.editor.actions import playback, posing, tracking, viewing
 from app.editor.actions.body import rebuilding
 from app.editor.actions.posing.moving import drafting
@@ -14,23 +14,23 @@ from app.editor.session import Session, with_project
 from app.editor.timeline_view import measure_shortfalls
 from app.editor.work import Derived, Job, Kind, Pull, Puppet
 from app.motion import (
-    Build,
-    IntervalPart,
-    IntervalStore,
-    Joints,
+    DeformMesh,
+    InbetweenCache,
+    InbetweenPart,
     MotionPaths,
-    PosableMesh,
-    carried_in,
-    corrected_clip,
-    extent_source,
+    ParentTransforms,
+    SeriesBuild,
+    extent_key,
+    find_parent_motion,
     hang_shown,
-    joints_source,
     measure_extent,
+    parenting_key,
+    reuse_corrections,
     show,
     trace_paths,
 )
-from app.reports import CorrectedAt, measure_curves
-from app.storage import cut_picture, shrink
+from app.reports import CorrectedSample, measure_curves
+from app.storage import cut_picture, shrink_picture
 
 STILL = 0.15  # seconds after which the playhead is taken to stay where it is
 MOST_UNASKED = 1000  # frames whose extent is measured before anybody asks
@@ -150,8 +150,8 @@ def _stage(pull: Pull) -> tuple[object, ...]:
 def _follow_document(session: Session, project: Project) -> None:
     """Let what is known follow the document."""
     for identity, puppet in project.puppets.items():
-        puppet.corrected = corrected_clip(project.document, identity, puppet.corrected)
-    project.extent.recall(extent_source(project.document))
+        puppet.corrected = reuse_corrections(project.document, identity, puppet.corrected)
+    project.extent.recall(extent_key(project.document))
     project.pair_up(session.split.method if session.split else None)
     _pin(session, project)
 
@@ -173,9 +173,9 @@ def _pin(session: Session, project: Project) -> None:
             for document in project.history.nearby
             if layer in [other.id for other in document.layers]
         ]
-        puppet.store.pin([clip, *others], nearby, frame)
+        puppet.store.set_needed_clips([clip, *others], nearby, frame)
         if puppet.fine is not None:
-            puppet.fine.pin([clip], nearby, frame)
+            puppet.fine.set_needed_clips([clip], nearby, frame)
 
 
 def missing(session: Session, project: Project) -> Iterator[Job]:
@@ -238,9 +238,9 @@ def _make_frames(session: Session, project: Project) -> Iterator[Job]:
         is_posed = clip.layer.id == project.active and project.unkeyed is not None
         # What fails at one frame would at others, and is told of once.
         if not is_posed and not puppet.store.has_failed(clip, "frame"):
-            work = puppet.store.making_frame(clip, frame)
+            work = puppet.store.frame_job(clip, frame)
             if work is not None:
-                done = puppet.store.take
+                done = puppet.store.add
                 yield _interval_job(session, GLIMPSING, puppet, clip, work=work, done=done)
 
 
@@ -249,11 +249,11 @@ def _awaits_frame(session: Session, project: Project) -> bool:
     if GLIMPSING not in session.jobs.kinds:
         return False
     frame = playback.current_frame(session, project)
-    moments = ((time_of(clip, frame), clip, puppet) for clip, puppet in _clips(project))
+    moments = ((segment_time_at(clip, frame), clip, puppet) for clip, puppet in _clips(project))
     return any(
-        resting_pose(clip, moment) is None
+        keyed_pose_at(clip, moment) is None
         and not puppet.store.is_exact(clip, frame)
-        and puppet.store.interval(clip, moment.interval) is None
+        and puppet.store.segment(clip, moment.segment) is None
         for moment, clip, puppet in moments
     )
 
@@ -264,7 +264,7 @@ def _wanted(session: Session, project: Project) -> Iterator[tuple[Kind, Puppet, 
     clips = [(clip, puppet) for clip, puppet in clips if not puppet.store.has_failed(clip)]
     prepares_all = _prepares_all(session, project)
 
-    def is_wanted(clip: Clip, store: IntervalStore) -> bool:
+    def is_wanted(clip: Clip, store: InbetweenCache) -> bool:
         return prepares_all or not store.is_exact(clip, frame)
 
     # Where nobody sees them before the hand rests, they are not worked out for each move.
@@ -298,14 +298,14 @@ def _prepare(
     is_fine, frame = kind == REFINING, playback.current_frame(session, project)
     store = puppet.fine if is_fine else puppet.store
     if store is None or store.mesh.source is not domain:
-        make = PosableMesh.fine if is_fine else partial(PosableMesh.coarse, among=among)
+        make = DeformMesh.fine if is_fine else partial(DeformMesh.coarse, among=among)
 
-        def begin(mesh: PosableMesh) -> None:
-            setattr(puppet, "fine" if is_fine else "store", IntervalStore(mesh=mesh))
+        def begin(mesh: DeformMesh) -> None:
+            setattr(puppet, "fine" if is_fine else "store", InbetweenCache(mesh=mesh))
 
         return _interval_job(session, kind, puppet, clip, work=partial(make, domain), done=begin)
     is_edited = puppet is project.puppet and not is_fine
-    lacking = store.missing(clip, frame, is_edited=is_edited)
+    lacking = store.missing_segments(clip, frame, is_edited=is_edited)
     if store.lacks_sampler(clip):
         # A frame at a key needs no in-betweens to be corrected.
         lacking = []
@@ -317,8 +317,8 @@ def _prepare(
     # together; else what is wanted next need not wait long.
     if not (session.overlays.onion and project.pull is not None):
         lacking = lacking[:1]
-    prepare = store.preparing(clip, lacking, puppet.store.sampler)
-    return _interval_job(session, kind, puppet, clip, work=prepare, done=store.take)
+    prepare = store.segments_job(clip, lacking, puppet.store.sampler)
+    return _interval_job(session, kind, puppet, clip, work=prepare, done=store.add)
 
 
 def _stream(session: Session, project: Project) -> Iterator[Job]:
@@ -334,15 +334,15 @@ def _stream(session: Session, project: Project) -> Iterator[Job]:
                 yield _interval_job(session, STREAMING, puppet, clip, work=build.advance, done=done)
 
 
-def _take_build(project: Project, store: IntervalStore, build: Build) -> None:
+def _take_build(project: Project, store: InbetweenCache, build: SeriesBuild) -> None:
     """Take in a series; where it is crowded, let go of what it was made from."""
-    store.take_build(build)
+    store.add_build(build)
     project.make_room()
 
 
-def _part(kind: Kind) -> IntervalPart:
+def _part(kind: Kind) -> InbetweenPart:
     """Return which part of a clip's in-betweens a job makes."""
-    parts: dict[Kind, IntervalPart] = {
+    parts: dict[Kind, InbetweenPart] = {
         GLIMPSING: "frame",
         REFINING: "fine",
         STREAMING: "series",
@@ -360,7 +360,7 @@ def _interval_job(
     done: Callable[[Value], None],
 ) -> Job:
     """Return a job for some in-betweens; what fails is not tried again for the same keys."""
-    return _job(session, kind, work, done, lambda: puppet.store.fail(_part(kind), clip))
+    return _job(session, kind, work, done, lambda: puppet.store.mark_failed(_part(kind), clip))
 
 
 def _job(
@@ -396,7 +396,7 @@ def _cut(session: Session, project: Project) -> Iterator[Job]:
         cut = partial(cut_picture, puppet.picture, cut_out)
         yield from _derive(session, CUTTING, puppet.cut, cut_out, cut)
         whole = puppet.cut.value
-        small = partial(shrink, whole.texture, SMALL_SIDE)
+        small = partial(shrink_picture, whole.texture, SMALL_SIDE)
         yield from _derive(session, SHRINKING, puppet.small, whole, small)
 
 
@@ -408,7 +408,7 @@ def _trace(session: Session, project: Project) -> Iterator[Job]:
         sibling = project.puppet.store.sampler
 
         def trace() -> MotionPaths:
-            carried = carried_in(document, clip.layer.id, siblings)
+            carried = find_parent_motion(document, clip.layer.id, siblings)
             return trace_paths(clip, known, sibling, carried)
 
         yield from _derive(session, TRACING, paths, clip, trace)
@@ -416,15 +416,15 @@ def _trace(session: Session, project: Project) -> Iterator[Job]:
 
 def _hang(session: Session, project: Project) -> Iterator[Job]:
     """Yield some frames of the joints of what hangs."""
-    joints, source = project.joints, joints_source(project.document)
+    joints, source = project.joints, parenting_key(project.document)
     is_settled = not source or joints.follows(source) or joints.has_failed(source)
     if is_settled or HANGING in session.jobs.kinds:
         return
     begun_of, begun = joints.begun or (None, joints.value)
     if begun is None or begun_of != source:
-        begun = Joints(project.document, project.samplers, begun)
+        begun = ParentTransforms(project.document, project.samplers, begun)
 
-    def done(advanced: Joints) -> None:
+    def done(advanced: ParentTransforms) -> None:
         joints.begun = source, advanced
         if advanced.is_whole:
             joints.set(source, advanced)
@@ -444,14 +444,14 @@ def _measure(session: Session, project: Project) -> Iterator[Job]:
         if inbetweens and (own is None or own.is_whole):
             at = None
             if own is not None and store.sampler is not None:
-                at = CorrectedAt(own, store.sampler.basis)
+                at = CorrectedSample(own, store.sampler.basis)
             measure = partial(measure_curves, clip, inbetweens, at)
             yield from _derive(session, MEASURING, curves, clip, measure)
 
 
 def _span(session: Session, project: Project) -> Iterator[Job]:
     """Yield the measurement of where the motion reaches, once all in-betweens are there."""
-    document, extent, source = project.document, project.extent, extent_source(project.document)
+    document, extent, source = project.document, project.extent, extent_key(project.document)
     clips = _clips(project)
     if extent.follows(source) or not all(each.store.has(clip) for clip, each in clips):
         return
@@ -464,7 +464,7 @@ def _span(session: Session, project: Project) -> Iterator[Job]:
 
 
 def _fit_motion(session: Session, project: Project) -> None:
-    source = extent_source(project.document)
+    source = extent_key(project.document)
     if project.extent.follows(source) and project.extent.value is not None:
         viewing.look_at(session, project.extent.value)
     elif project.extent.has_failed(source):

@@ -13,7 +13,7 @@ from app.editor.dialogs import Dialog, FileDialog, ProblemReport, ShortcutSheet
 from app.editor.project import Project, view_around
 from app.editor.session import CurveKind, HeatMap, Session, Tint, Toast, with_project
 from app.errors import LissomError
-from app.motion import Box, box_around
+from app.motion import BoundingBox, bounding_box
 from app.render import View
 from app.storage import (
     LARGEST_GHOST_STEP,
@@ -42,9 +42,9 @@ def look_from(_: Session, project: Project, camera: View | None) -> None:
 def fit_pose(session: Session, project: Project) -> None:
     """Show all layers as they are in this frame, whole."""
     shown = [puppet.shown for puppet in project.puppets.values()]
-    boxes = [box_around(each.placement.on(each.positions)) for each in shown if each is not None]
+    boxes = [bounding_box(each.placement.on(each.positions)) for each in shown if each is not None]
     if boxes:
-        look_at(session, reduce(Box.joined, boxes))
+        look_at(session, reduce(BoundingBox.joined, boxes))
 
 
 @with_project
@@ -59,16 +59,16 @@ def fit_selection(session: Session, project: Project) -> None:
     shown = project.puppet.shown
     if shown is None:
         return
-    box = box_around(shown.placement.on(shown.positions))
+    box = bounding_box(shown.placement.on(shown.positions))
     selected = [handle.id in project.selected for handle in shown.clip.layer.handles]
     if any(selected):
         room = AROUND_HANDLES * abs(box.upper - box.lower) * (1 + 1j)
-        box = box_around(shown.placement.on(shown.handle_places[selected]))
-        box = Box(box.lower - room, box.upper + room)
+        box = bounding_box(shown.placement.on(shown.handle_positions[selected]))
+        box = BoundingBox(box.lower - room, box.upper + room)
     look_at(session, box)
 
 
-def look_at(session: Session, box: Box) -> None:
+def look_at(session: Session, box: BoundingBox) -> None:
     """Move the camera so that a box of the plane fills the viewport."""
     look_from(session, view_around(box, session.screen))
 

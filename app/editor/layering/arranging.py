@@ -7,14 +7,14 @@ import numpy as np
 
 from app.document import (
     BlendMode,
+    ancestor_paths,
     choice_commands,
+    combine_commands,
+    common_path,
     group_commands,
-    in_order,
-    in_turn,
     is_visible,
     layer_commands,
-    paths_to,
-    shared_path,
+    layers_in_draw_order,
 )
 from app.editor.actions import editing, playback
 from app.editor.layering.choosing import choose
@@ -42,7 +42,7 @@ def layer_at(
     frame = project.playhead.frame if shown is None else shown.frame
     found = (
         each.id
-        for each in reversed(in_order(project.document, frame))
+        for each in reversed(layers_in_draw_order(project.document, frame))
         if each.id != besides and not (each.still or each.locked) and is_at(project, each.id, place)
     )
     if below is None:
@@ -95,7 +95,7 @@ def move_beside(
     """
     whole = _whole_group(project, identities)
     if whole:
-        editing.edit(session, group_commands.put_group_beside(whole, beside, in_front=in_front))
+        editing.edit(session, group_commands.reorder_group(whole, beside, in_front=in_front))
         return
     order = [layer.id for layer in project.document.layers]
     moved = [each for each in order if each in identities and each != beside]
@@ -105,7 +105,7 @@ def move_beside(
         index = order.index(moved[count - 1] if count else beside) + (count > 0 or in_front)
         order.insert(index, each)
         commands.append(layer_commands.move_layer(each, index))
-    editing.edit(session, in_turn(_of("Move", moved), commands))
+    editing.edit(session, combine_commands(_of("Move", moved), commands))
 
 
 @with_project
@@ -113,7 +113,7 @@ def show(session: Session, project: Project, *identities: int) -> None:
     """Hide layers, or show them again: the other way than the first of them is."""
     hidden = not project.document.layer(identities[0]).hidden
     commands = [layer_commands.set_hidden(each, hidden=hidden) for each in identities]
-    editing.edit(session, in_turn(_of("Hide" if hidden else "Show", identities), commands))
+    editing.edit(session, combine_commands(_of("Hide" if hidden else "Show", identities), commands))
 
 
 @with_project
@@ -121,21 +121,23 @@ def lock(session: Session, project: Project, *identities: int) -> None:
     """Let clicks on the drawing pass through layers, or stop at them: other than at the first."""
     locked = not project.document.layer(identities[0]).locked
     commands = [layer_commands.set_locked(each, locked=locked) for each in identities]
-    editing.edit(session, in_turn(_of("Lock" if locked else "Unlock", identities), commands))
+    editing.edit(
+        session, combine_commands(_of("Lock" if locked else "Unlock", identities), commands)
+    )
 
 
 def group(session: Session, path: str, *identities: int) -> None:
     """Put layers in a group, or with "" out of all groups."""
-    editing.edit(session, group_commands.put_in_group(identities, path))
+    editing.edit(session, group_commands.group_layers(identities, path))
 
 
 @with_project
 def group_together(session: Session, project: Project) -> None:
     """Put the chosen layers in a new group, in the innermost one that all of them are in."""
     document, chosen = project.document, project.selected_layers
-    around = reduce(shared_path, (document.layer(each).group for each in chosen))
+    around = reduce(common_path, (document.layer(each).group for each in chosen))
     taken = {each.name for each in document.groups}
-    free = layer_commands.numbered_name(f"{around}/group".removeprefix("/"), taken)
+    free = layer_commands.unique_name(f"{around}/group".removeprefix("/"), taken)
     group(session, free, *chosen)
 
 
@@ -144,7 +146,7 @@ def take_in(session: Session, project: Project, path: str, *identities: int) -> 
     """Take layers into a group; all of another group stay one in it."""
     whole = _whole_group(project, identities)
     if whole:
-        editing.edit(session, group_commands.put_group_in(whole, path))
+        editing.edit(session, group_commands.move_group_into(whole, path))
     else:
         group(session, path, *identities)
 
@@ -152,8 +154,8 @@ def take_in(session: Session, project: Project, path: str, *identities: int) -> 
 def _whole_group(project: Project, identities: Sequence[int]) -> str:
     """Return the path of the outermost group that is made of several layers; "" if none is."""
     document = project.document
-    for path in paths_to(document.layer(identities[0]).group):
-        inside = {each.id for each in document.layers if path in paths_to(each.group)}
+    for path in ancestor_paths(document.layer(identities[0]).group):
+        inside = {each.id for each in document.layers if path in ancestor_paths(each.group)}
         if len(inside) > 1 and inside == set(identities):
             return path
     return ""
@@ -161,7 +163,7 @@ def _whole_group(project: Project, identities: Sequence[int]) -> str:
 
 def ungroup(session: Session, path: str) -> None:
     """Let the layers of a group be by themselves."""
-    editing.edit(session, group_commands.ungroup(path))
+    editing.edit(session, group_commands.ungroup_layers(path))
 
 
 def rename_group(session: Session, path: str, name: str) -> None:
@@ -218,8 +220,8 @@ def switch_here(session: Session, project: Project, identity: int) -> None:
     frame = playback.current_frame(session, project)
     document = project.document
     visible = not is_visible(document, document.layer(identity), frame)
-    if document.choice_of(identity) is None:
-        editing.edit(session, layer_commands.switch_at(identity, frame, visible=visible))
+    if document.switch_group_of(identity) is None:
+        editing.edit(session, layer_commands.key_visibility(identity, frame, visible=visible))
     elif visible:
         editing.edit(session, choice_commands.choose_at(identity, frame))
 
@@ -228,7 +230,7 @@ def switch_here(session: Session, project: Project, identity: int) -> None:
 def unswitch_here(session: Session, project: Project, identity: int) -> None:
     """Take back that a layer is shown or hidden from the present frame on."""
     frame = playback.current_frame(session, project)
-    editing.edit(session, layer_commands.switch_at(identity, frame, visible=None))
+    editing.edit(session, layer_commands.key_visibility(identity, frame, visible=None))
 
 
 @with_project
@@ -245,6 +247,6 @@ def ask_name(session: Session, identity: int | None) -> None:
 @with_project
 def duplicate(session: Session, project: Project, identity: int) -> None:
     """Put a copy of a layer in front of it, and choose it."""
-    free = layer_commands.free_identity(project.document)
+    free = layer_commands.next_layer_id(project.document)
     editing.edit(session, layer_commands.duplicate_layer(identity))
     choose(session, free)

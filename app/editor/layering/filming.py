@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.document import CameraKey, Placing, camera_at, filming_commands
+from app.document import CameraKey, DrawOrderKey, camera_at, filming_commands
 from app.editor.actions import editing, playback
 from app.editor.project import Project, view_around
 from app.editor.session import Session, with_project
-from app.motion import Box
+from app.motion import BoundingBox
 
 
 @with_project
@@ -19,7 +19,7 @@ def key_camera(session: Session, project: Project) -> None:
     """
     document, frame = project.document, playback.current_frame(session, project)
     shot, view = camera_at(document, frame), project.view(session.screen)
-    whole = view_around(Box(0j, complex(*document.canvas)), session.screen)
+    whole = view_around(BoundingBox(0j, complex(*document.canvas)), session.screen)
     turn = 0.0 if shot is None else shot.turn
     if view.turn != 1:
         # The nearest one, of those with whole turns more or less.
@@ -101,7 +101,7 @@ def place_here(
 ) -> None:
     """Paint a layer beside another one from the playhead on, or beside none where it lies."""
     frame = playback.current_frame(session, project)
-    placing = Placing(frame, beside, in_front)
+    placing = DrawOrderKey(frame, beside, in_front)
     editing.edit(session, filming_commands.place_at(identity, placing))
 
 

@@ -2,7 +2,14 @@
 
 from collections.abc import Callable, Collection, Sequence
 
-from app.document import Attachment, Command, Document, in_turn, layer_commands, movement_at
+from app.document import (
+    Attachment,
+    Command,
+    Document,
+    combine_commands,
+    layer_commands,
+    transform_at,
+)
 from app.editor import promises
 from app.editor.action import do
 from app.editor.actions import editing, playback
@@ -11,10 +18,10 @@ from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work import Kind
 from app.motion import (
-    Joints,
-    anchor_of,
-    hand_over as joint_that_keeps,
-    hang as joint_at_rest,
+    ParentTransforms,
+    anchor_or_default,
+    attach_in_place as joint_at_rest,
+    reparent_in_place as joint_that_keeps,
 )
 from engine.geometry import RigidMotion
 
@@ -27,7 +34,7 @@ HANGS_IN_CIRCLE = (
 
 def hangs_on(project: Project, identity: int, carrier: int) -> bool:
     """Tell whether a layer is another one, or hangs on it at some time, directly or by others."""
-    others = project.document.all_carriers(identity)
+    others = project.document.all_ancestors(identity)
     return identity == carrier or any(each.id == carrier for each in others)
 
 
@@ -61,9 +68,9 @@ def hang(
         return
     frame = playback.current_frame(session, project)
 
-    def find(joints: Joints) -> Command:
+    def find(joints: ParentTransforms) -> Command:
         held = joint_at_rest(joints, child, parent, frame, place=place, turns=turns)
-        return layer_commands.attach(child, *held)
+        return layer_commands.attach_layer(child, *held)
 
     joining = do(_join, (child, parent), find)
     promises.once_settled(session, joining, "Hang the layer")
@@ -85,10 +92,10 @@ def hang_together(session: Session, project: Project, parent: int, *children: in
         hang(session, (circles or free)[0], parent)
         return
 
-    def find(joints: Joints) -> Command:
+    def find(joints: ParentTransforms) -> Command:
         held = [(child, joint_at_rest(joints, child, parent, frame, turns=True)) for child in free]
-        attached = [layer_commands.attach(child, *joint) for child, joint in held]
-        return in_turn(f"Attach {len(free)} layers", attached)
+        attached = [layer_commands.attach_layer(child, *joint) for child, joint in held]
+        return combine_commands(f"Attach {len(free)} layers", attached)
 
     joining = do(_join, (*free, parent), find)
     promises.once_settled(session, joining, "Hang the layers")
@@ -99,7 +106,7 @@ def _join(
     session: Session,
     project: Project,
     joined: Sequence[int],
-    find: Callable[[Joints], Command],
+    find: Callable[[ParentTransforms], Command],
 ) -> None:
     """Hang layers on another one by the joints that are found."""
     document = project.document
@@ -117,7 +124,7 @@ def _join(
         session,
         project,
         HANGING,
-        lambda: find(Joints(document, siblings)),
+        lambda: find(ParentTransforms(document, siblings)),
         done,
     )
 
@@ -129,10 +136,10 @@ def let_hang(session: Session, project: Project, child: int) -> None:
     One that hangs on others at other times is let go as long as the present joint holds.
     """
     shown, layer = project.puppets[child].shown, project.document.layer(child)
-    joint = layer.keyed_joint(playback.current_frame(session, project))
-    if joint is not None and len(layer.joints) > 1:
-        free = Attachment(to=None, frame=joint.frame, keeps=True)
-        editing.edit(session, layer_commands.attach(child, anchor_of(layer), free))
+    joint = layer.attachment_key_at(playback.current_frame(session, project))
+    if joint is not None and len(layer.attachments) > 1:
+        free = Attachment(parent=None, frame=joint.frame, keep_world_transform=True)
+        editing.edit(session, layer_commands.attach_layer(child, anchor_or_default(layer), free))
     elif shown is not None:
         editing.edit(session, _detach(project.document, child, shown.frame, shown.placement))
 
@@ -141,9 +148,9 @@ def let_hang(session: Session, project: Project, child: int) -> None:
 def turn_with(session: Session, project: Project, child: int, turns: bool) -> None:  # noqa: FBT001 - of an action
     """Let a layer turn with the one that it hangs on, or keep its own turn; nothing moves now."""
     frame = playback.current_frame(session, project)
-    joint = project.document.layer(child).keyed_joint(frame)
-    if joint is not None and joint.to is not None and turns != joint.turns:
-        hang(session, child, joint.to, turns)
+    joint = project.document.layer(child).attachment_key_at(frame)
+    if joint is not None and joint.parent is not None and turns != joint.inherits_rotation:
+        hang(session, child, joint.parent, turns)
 
 
 @with_project
@@ -152,15 +159,18 @@ def hand_over(session: Session, project: Project, child: int, parent: int | None
     layer = project.document.layer(child)
     frame = layer.joint_frame(playback.current_frame(session, project))
     if parent is None:
-        anchor, joint = anchor_of(layer), Attachment(to=None, frame=frame, keeps=True)
-        editing.edit(session, layer_commands.attach(child, anchor, joint))
+        anchor, joint = (
+            anchor_or_default(layer),
+            Attachment(parent=None, frame=frame, keep_world_transform=True),
+        )
+        editing.edit(session, layer_commands.attach_layer(child, anchor, joint))
         return
 
-    def find(joints: Joints) -> Command:
-        held = layer.keyed_joint(frame)
-        turns = held is None or held.turns
+    def find(joints: ParentTransforms) -> Command:
+        held = layer.attachment_key_at(frame)
+        turns = held is None or held.inherits_rotation
         joint = joint_that_keeps(joints, child, parent, frame, turns=turns)
-        return layer_commands.attach(child, anchor_of(layer), joint)
+        return layer_commands.attach_layer(child, anchor_or_default(layer), joint)
 
     joining = do(_join, (child, parent), find)
     promises.once_settled(session, joining, "Hand the layer over")
@@ -169,7 +179,7 @@ def hand_over(session: Session, project: Project, child: int, parent: int | None
 @with_project
 def take_back_joint(session: Session, _: Project, child: int, frame: int) -> None:
     """Let a layer hang on what it hung on before a frame, from there on, too."""
-    editing.edit(session, layer_commands.unjoin(child, frame))
+    editing.edit(session, layer_commands.delete_attachment_key(child, frame))
 
 
 @with_project
@@ -178,7 +188,7 @@ def remove(session: Session, project: Project, *identities: int) -> None:
     gone, layers = set(identities), project.document.layers
     if len(gone) == len(layers):
         session.tell("A scene has at least one layer. Add another one first.", tone="error")
-    elif any(joint.to in gone for layer in layers for joint in layer.joints):
+    elif any(joint.parent in gone for layer in layers for joint in layer.attachments):
         promises.once_settled(session, do(_hand_down, *identities), "Delete the layer")
     else:
         _remove(session, identities, [])
@@ -191,7 +201,7 @@ def _hand_down(session: Session, project: Project, *identities: int) -> None:
     frame = playback.current_frame(session, project)
 
     def find() -> list[Command]:
-        joints = Joints(document, siblings)
+        joints = ParentTransforms(document, siblings)
         layers = [layer.id for layer in document.layers if layer.id not in identities]
         return [_inherit(joints, child, identities, frame) for child in layers]
 
@@ -204,30 +214,33 @@ def _hand_down(session: Session, project: Project, *identities: int) -> None:
     promises.begin(session, project, HANGING, find, done)
 
 
-def _inherit(joints: Joints, child: int, gone: Collection[int], frame: int) -> Command:
+def _inherit(joints: ParentTransforms, child: int, gone: Collection[int], frame: int) -> Command:
     """Return the command by which a layer hangs on what carries those that go, at all times.
 
     At the frame nothing moves; where it is handed over to one of them it does not jump.
     """
     document = joints.document
-    layer, here = document.layer(child), document.layer(child).keyed_joint(frame)
-    lost = [joint for joint in layer.joints if joint.to in gone]
+    layer, here = document.layer(child), document.layer(child).attachment_key_at(frame)
+    lost = [joint for joint in layer.attachments if joint.parent in gone]
     found: list[Command] = []
-    hangs = len(lost) < len(layer.joints)
+    hangs = len(lost) < len(layer.attachments)
     for joint in lost:
         at = frame if joint is here else joint.frame
-        carriers = document.carriers(child, at)[1:]
+        carriers = document.parent_chain(child, at)[1:]
         heir = next((each.id for each in carriers if each.id not in gone), None)
         hangs |= heir is not None
-        held = anchor_of(layer), Attachment(to=None, frame=joint.frame, keeps=True)
-        if heir is not None and joint.keeps and joint is not here:
-            held = held[0], joint_that_keeps(joints, child, heir, at, turns=joint.turns)
+        held = (
+            anchor_or_default(layer),
+            Attachment(parent=None, frame=joint.frame, keep_world_transform=True),
+        )
+        if heir is not None and joint.keep_world_transform and joint is not here:
+            held = held[0], joint_that_keeps(joints, child, heir, at, turns=joint.inherits_rotation)
         elif heir is not None:
-            held = joint_at_rest(joints, child, heir, at, turns=joint.turns)
-        found.append(layer_commands.attach(child, *held))
+            held = joint_at_rest(joints, child, heir, at, turns=joint.inherits_rotation)
+        found.append(layer_commands.attach_layer(child, *held))
     if lost and not hangs:
         return _detach(document, child, frame, joints.placement(child, frame))
-    return in_turn("Attach", found)
+    return combine_commands("Attach", found)
 
 
 def _detach(document: Document, child: int, frame: int, placement: RigidMotion) -> Command:
@@ -235,8 +248,8 @@ def _detach(document: Document, child: int, frame: int, placement: RigidMotion) 
 
     From then on it is moved by its own movement.
     """
-    own = movement_at(document, document.layer(child), frame)
-    return layer_commands.detach(child, *own.inverse.after(placement))
+    own = transform_at(document, document.layer(child), frame)
+    return layer_commands.detach_layer(child, *own.inverse.after(placement))
 
 
 @with_project
@@ -247,7 +260,7 @@ def _remove(
     removals = [layer_commands.remove_layer(identity) for identity in identities]
     label = "Delete layer" if len(identities) == 1 else f"Delete {len(identities)} layers"
     was_active, index = project.active in identities, order.index(project.active)
-    editing.edit(session, in_turn(label, [*inherited, *removals]))
+    editing.edit(session, combine_commands(label, [*inherited, *removals]))
     if was_active:
         near = [*order[:index][::-1], *order[index + 1 :]]
         choose(session, next(each for each in near if each not in identities))

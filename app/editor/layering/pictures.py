@@ -23,21 +23,21 @@ from app.editor.layering.choosing import choose
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work import Kind, Puppet
-from app.errors import NOTHING_TOLD, ImportSummary, LissomError, Told, shown_name
-from app.solving import Renewal, begin_replacing
+from app.errors import EMPTY_IMPORT_LOG, ImportLog, LissomError, NoticeCollector, display_name
+from app.solving import KeyResolver, start_picture_replacement
 from app.storage import (
     ImportedLayer,
     LayeredPicture,
     Picture,
-    as_layer,
     decode_picture,
     is_layered,
-    posable_layer,
+    make_posable_layer,
+    make_still_layer,
+    make_still_picture,
+    place_as_layer,
     read_file,
     read_layered,
     require_memory,
-    still_layer,
-    still_picture,
 )
 
 ADDING = Kind("Adding a layer", "The layer cannot be added")
@@ -56,7 +56,7 @@ class _Made(NamedTuple):
 @with_project
 def stand_still(session: Session, project: Project, identity: int) -> None:
     """Make a layer a still picture, without handles and keys."""
-    still = still_layer(project.document.layer(identity))
+    still = make_still_layer(project.document.layer(identity))
     command = layer_commands.replace_layer(identity, still)
     editing.edit(session, replace(command, label="Make still"))
 
@@ -71,7 +71,7 @@ def stand_up(session: Session, project: Project, identity: int) -> None:
     meshing = session.meshing
 
     def work() -> Layer:
-        return as_layer(_shape(imported, identity, meshing).layer, layer)
+        return place_as_layer(_shape(imported, identity, meshing).layer, layer)
 
     def done(made: Layer) -> None:
         command = layer_commands.replace_layer(identity, made)
@@ -86,7 +86,7 @@ def _shape(imported: ImportedLayer, identity: int, meshing: Meshing) -> _Made:
     """Return the layer of a layer that can be posed."""
     # Where nothing is transparent, a plain background is taken off first.
     is_cut_out = bool((imported.picture.rgba[..., 3] == 0).any())
-    made, notices = posable_layer(imported, identity, meshing, is_cut_out=is_cut_out)
+    made, notices = make_posable_layer(imported, identity, meshing, is_cut_out=is_cut_out)
     if made.still:
         raise LissomError(f"there is no shape on it ({'; '.join(notices)})")
     return _Made(made, imported.picture, (*imported.picture.notices, *notices))
@@ -104,18 +104,18 @@ def _replace_picture(session: Session, project: Project, identity: int, path: Pa
     before, canvas = project.document.layer(identity), project.document.canvas
     scene = project.document.layers
 
-    def work() -> tuple[Renewal, _Made]:
+    def work() -> tuple[KeyResolver, _Made]:
         data = read_file(path)
         picture = decode_picture(data, path.name)
         _require_room([each for each in scene if each is not before], [picture])
         if before.still:
-            made = _Made(still_picture(data, picture), picture, picture.notices)
+            made = _Made(make_still_picture(data, picture), picture, picture.notices)
         else:
             imported = ImportedLayer(name=before.name, data=data, picture=picture)
             made = _shape(imported, identity, before.meshing)
-        return begin_replacing(before, made.layer, canvas), made
+        return start_picture_replacement(before, made.layer, canvas), made
 
-    def done(begun: tuple[Renewal, _Made]) -> None:
+    def done(begun: tuple[KeyResolver, _Made]) -> None:
         renewal, made = begun
         project.drawings.add(path)
         project.pictures[made.layer.picture] = made.picture
@@ -135,8 +135,8 @@ def add(session: Session, project: Project, paths: Sequence[Path]) -> None:
     meshing, before = session.meshing, project.document
     canvas = before.canvas
 
-    def work() -> tuple[list[_Made], ImportSummary, Sequence[Group]]:
-        document, summary, told = before, NOTHING_TOLD, Told()
+    def work() -> tuple[list[_Made], ImportLog, Sequence[Group]]:
+        document, summary, told = before, EMPTY_IMPORT_LOG, NoticeCollector()
         made: list[_Made] = []
         for path in paths:
             drawing = _with_free_groups(_drawing(path), document)
@@ -146,26 +146,26 @@ def add(session: Session, project: Project, paths: Sequence[Path]) -> None:
             across, up = ((ours - its) // 2 for ours, its in zip(canvas, drawing.size, strict=True))
             for imported in drawing.layers:
                 moved = replace(imported, corner=imported.corner + complex(across, up))
-                identity = layer_commands.free_identity(document)
-                layer, notices = posable_layer(
+                identity = layer_commands.next_layer_id(document)
+                layer, notices = make_posable_layer(
                     moved, identity, meshing, is_cut_out=is_layered(path)
                 )
                 document = layer_commands.add_layer(layer)(document)
                 # Here, and not while the window waits: it takes a tenth of a second.
                 puppet = Puppet.of(clip_of(document, identity), imported.picture)
                 for notice in imported.picture.notices + notices:
-                    told.note(document.layers[-1].name, notice)
+                    told.add_note(document.layers[-1].name, notice)
                 made.append(_Made(layer, imported.picture, (), puppet))
-        return made, summary + told.summary, document.groups[len(before.groups) :]
+        return made, summary + told.import_log, document.groups[len(before.groups) :]
 
-    def done(read: tuple[list[_Made], ImportSummary, Sequence[Group]]) -> None:
+    def done(read: tuple[list[_Made], ImportLog, Sequence[Group]]) -> None:
         made, summary, groups = read
         project.drawings.update(paths)
         gesture = object()
-        project.history.do(layer_commands.keep_told(summary), gesture=gesture)
+        project.history.do(layer_commands.append_import_log(summary), gesture=gesture)
         project.history.do(group_commands.add_groups(groups), gesture=gesture)
         for layer, picture, _, puppet in made:
-            identity = layer_commands.free_identity(project.document)
+            identity = layer_commands.next_layer_id(project.document)
             project.pictures[layer.picture] = picture
             command = layer_commands.add_layer(replace(layer, id=identity))
             project.history.do(command, gesture=gesture)
@@ -190,7 +190,7 @@ def _with_free_groups(drawing: LayeredPicture, document: Document) -> LayeredPic
 
     def free(path: str) -> str:
         outermost, slash, inner = path.partition("/")
-        return path and layer_commands.numbered_name(outermost, taken) + slash + inner
+        return path and layer_commands.unique_name(outermost, taken) + slash + inner
 
     return replace(
         drawing,
@@ -206,7 +206,7 @@ def _drawing(path: Path) -> LayeredPicture:
     data = read_file(path)
     picture = decode_picture(data, path.name)
     imported = ImportedLayer(
-        name=shown_name(path.stem).strip() or "layer", data=data, picture=picture
+        name=display_name(path.stem).strip() or "layer", data=data, picture=picture
     )
     return LayeredPicture(size=picture.size, layers=(imported,))
 

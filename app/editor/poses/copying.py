@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
-from app.document import Clip, Keyframe, Layer, Pose, clip_of, resting_pose, time_of
+from app.document import Clip, Keyframe, Layer, Pose, clip_of, keyed_pose_at, segment_time_at
 from app.editor import promises
 from app.editor.actions import playback, posing
 from app.editor.poses import putting
@@ -12,7 +12,7 @@ from app.editor.session import CopiedKeys, CopiedTrack, Session, with_project
 from app.editor.timeline_view import TrackRow, layer_of
 from app.editor.work import Kind
 from app.motion import PoseSampler
-from app.solving import Rig, pose_at
+from app.solving import Rig, fit_shown_pose
 
 COPYING = Kind("Copying a pose", "The pose could not be copied", "hand")
 KEYS_COPIED = "{count} keys copied."
@@ -53,7 +53,7 @@ def _copy_poses(session: Session, project: Project, chosen: Sequence[int]) -> No
         clip, puppet = clip_of(document, layer.id), project.puppets[layer.id]
         is_active = layer.id == project.active
         pose = posing.pose_here(session, project) if is_active else None
-        pose = pose or resting_pose(clip, time_of(clip, frame))
+        pose = pose or keyed_pose_at(clip, segment_time_at(clip, frame))
         if pose is None:
             rig = partial(Rig.of, layer, puppet.rig)
             works[layer.id] = partial(_between, rig, clip, frame, puppet.store.sampler)
@@ -97,7 +97,7 @@ def copy_keys(session: Session, project: Project) -> None:
 
 
 def _between(rig: Callable[[], Rig], clip: Clip, frame: int, sibling: PoseSampler | None) -> Pose:
-    return pose_at(rig(), clip, frame, sibling)
+    return fit_shown_pose(rig(), clip, frame, sibling)
 
 
 def _copy(session: Session, frame: int, layer: Layer, pose: Pose) -> None:

@@ -5,7 +5,7 @@ from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
-from app.document import KeptPose, Keyframe, Layer, Pose, Target, pose_commands
+from app.document import Keyframe, Layer, LibraryPose, Pose, Target, pose_commands
 from app.editor.actions import editing, playback, posing
 from app.editor.poses import pasting, putting
 from app.editor.poses.receiving import Landing, landing_on
@@ -28,7 +28,7 @@ def _keep(session: Session, project: Project, layer: Layer, pose: Pose) -> None:
         return
     taken = [Keyframe(frame=0, pose=pose)]
     (key,) = putting.fitted(project, project.active, taken, layer.bounds)
-    editing.edit(session, pose_commands.keep_pose(project.active, key.pose))
+    editing.edit(session, pose_commands.save_pose(project.active, key.pose))
     project.picked_pose = (project.active, project.layer.library[-1].name)
 
 
@@ -36,7 +36,7 @@ class PoseOffer(NamedTuple):
     """A pose of a library that the layer that is posed can take, and whose it is."""
 
     owner: Layer
-    kept: KeptPose
+    kept: LibraryPose
 
 
 def offers(project: Project) -> list[PoseOffer]:
@@ -72,7 +72,7 @@ def apply_at(
 
 def _offer(project: Project, name: str, owner: int | None) -> PoseOffer:
     layer = project.layer if owner is None else project.document.layer(owner)
-    return PoseOffer(layer, layer.kept_pose(name))
+    return PoseOffer(layer, layer.library_pose(name))
 
 
 def _landing(project: Project, offer: PoseOffer) -> Landing:
@@ -128,7 +128,7 @@ def end_blend(session: Session, project: Project) -> None:
     posing.let_go(session)
     if blend is not None and blend.share >= 1.0 and blend.owner == project.active:
         for pull in [pull for pull in project.pulls if blend.gesture in pull.wishes]:
-            pose = project.document.layer(pull.layer).kept_pose(blend.name).pose
+            pose = project.document.layer(pull.layer).library_pose(blend.name).pose
             posing.end_at(session, project, pull, pose)
 
 

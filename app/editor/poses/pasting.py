@@ -8,8 +8,8 @@ from app.document import (
     Pose,
     Target,
     clip_of,
-    pairs_by_name,
-    read_pairs,
+    mirrored_handles_by_name,
+    parse_pairs,
     scene_commands,
 )
 from app.editor import promises
@@ -29,7 +29,7 @@ from app.editor.project import Flip, Project
 from app.editor.session import Session, with_project
 from app.editor.timeline_view import seen_at
 from app.editor.work import Kind
-from app.solving import Rig, flip_poses, flipped_targets, pose_at
+from app.solving import Rig, fit_shown_pose, flip_poses, flip_targets
 
 LABELS: Mapping[PasteWay, str] = {"swapped": "Paste swapped", "flipped": "Paste flipped"}
 CARRYING = Kind("Pasting", "The poses could not be pasted", "hand")
@@ -151,7 +151,7 @@ def bring(
 
 def set_pairs(session: Session, text: str) -> None:
     """Set which words, or whole names, tell layers and handles of the two sides apart."""
-    editing.edit(session, scene_commands.set_pairs(read_pairs(text)))
+    editing.edit(session, scene_commands.set_mirror_names(parse_pairs(text)))
 
 
 @with_project
@@ -169,10 +169,10 @@ def wishes_of(project: Project, landing: Landing, way: PasteWay) -> Mapping[int,
     if landing.is_own:
         pose, layer = _fitted(project, landing)[0].pose, landing.layer
         if way == "flipped":
-            return flipped_targets(layer, pose, layer.axis, project.document.pairs)
+            return flip_targets(layer, pose, layer.axis, project.document.pairs)
         if landing.is_direct(way):
             return pose.targets
-    return landing.carriage(way).targets(landing.layer, landing.copied.keys[0].pose)
+    return landing.carriage(way).transfer_targets(landing.layer, landing.copied.keys[0].pose)
 
 
 def _is_as_it_was(project: Project, landing: Landing) -> bool:
@@ -201,7 +201,7 @@ def _solving(
         def flip() -> Sequence[Keyframe]:
             rig = Rig.of(layer, earlier)
             poses = flip_poses(rig, [key.pose for key in keys], layer.axis, pairs)
-            partners = pairs_by_name(layer.handles, pairs)
+            partners = mirrored_handles_by_name(layer.handles, pairs)
             own = {handle.id: partners.get(handle.id, handle.id) for handle in layer.handles}
             return [
                 _carried(key, own, turns=-1, pose=pose)
@@ -210,7 +210,7 @@ def _solving(
 
         return flip
     carriage, clip = landing.carriage(way), clip_of(project.document, layer.id)
-    turns = -1 if carriage.likeness.mirrors else 1
+    turns = -1 if carriage.similarity.mirrors else 1
     # What is in front is not what moves: within one layer it stays where it is.
     fronts = {handle.id: handle.id for handle in layer.handles}
     fronts = fronts if landing.is_own else dict(landing.pairs)
@@ -220,8 +220,8 @@ def _solving(
         is_whole = {handle.id for handle in rig.handles} <= landing.pairs.keys()
         solved = []
         for key in landing.copied.keys:
-            present = None if is_whole else pose_at(rig, clip, key.frame + by, sibling)
-            pose = carriage.carry(rig, key.pose, present)
+            present = None if is_whole else fit_shown_pose(rig, clip, key.frame + by, sibling)
+            pose = carriage.transfer_pose(rig, key.pose, present)
             solved.append(_carried(key, fronts, turns=turns, pose=pose))
         return solved
 
@@ -230,8 +230,8 @@ def _solving(
 
 def _carried(key: Keyframe, fronts: Mapping[int, int], *, turns: int, pose: Pose) -> Keyframe:
     """Return a key with another pose, and what is in front at handles as it is at others."""
-    known = {i: key.fronts[other] for i, other in fronts.items() if other in key.fronts}
-    return replace(key, pose=pose, turns=turns * key.turns, fronts=known)
+    known = {i: key.depths[other] for i, other in fronts.items() if other in key.depths}
+    return replace(key, pose=pose, revolutions=turns * key.revolutions, depths=known)
 
 
 def _note_flip(project: Project, landing: Landing, flipped: Sequence[Keyframe]) -> None:

@@ -35,17 +35,21 @@ def _carried_track(
     landing: Landing, copied: CopiedTrack, way: PasteWay, handles: tuple[int, ...]
 ) -> CopiedTrack:
     """Return a track that was copied as one of a layer's handles."""
-    likeness = landing.carriage(way).likeness
+    likeness = landing.carriage(way).similarity
     old = landing.copied.layer.handle(copied.track.handles[0]).position
     new = landing.layer.handle(handles[0]).position
     # Beside the pose ways count, and in the picture places, with what the handle is beside them.
-    start = -likeness.shift if not copied.track.planted else new - likeness.to(old)
+    start = (
+        -likeness.shift if not copied.track.is_scene_space else new - likeness.apply_to_point(old)
+    )
     keys = tuple(
         replace(
             key,
-            place=likeness.to(key.place) + start,
+            place=likeness.apply_to_point(key.place) + start,
             turn=-key.turn if likeness.mirrors else key.turn,
-            velocity=None if key.velocity is None else likeness.to(key.velocity) - likeness.shift,
+            velocity=None
+            if key.velocity is None
+            else likeness.apply_to_point(key.velocity) - likeness.shift,
         )
         for key in copied.keys
     )
@@ -60,7 +64,7 @@ def paste_track(
     """Put keys of a track into that of a row so many frames later; these are chosen then."""
     layer = project.document.layer(row.layer)
     track, name = layer.track_of(row.handle), layer.handle(row.handle).name
-    if track is not None and track.planted != copied.track.planted:
+    if track is not None and track.is_scene_space != copied.track.is_scene_space:
         session.tell(
             f"The keys that were copied are {_kind(copied.track)}, those of {name} are "
             f"{_kind(track)}. Set both alike in the Handle tab, then copy again."
@@ -83,4 +87,4 @@ def paste_track(
 
 
 def _kind(track: Track) -> str:
-    return "planted" if track.planted else "with the pose"
+    return "planted" if track.is_scene_space else "with the pose"

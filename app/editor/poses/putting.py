@@ -4,7 +4,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
-from app.document import Keyframe, Layer, Pose, key_commands, retargeted
+from app.document import Keyframe, Layer, Pose, key_commands, with_all_targets
 from app.editor.actions import playback, posing
 from app.editor.project import Project
 from app.editor.session import Session
@@ -54,14 +54,14 @@ def put(
         moved = [replace(key, frame=key.frame + at - first) for key in keys]
         if is_pose:
             easing = session.preferences.easing
-            command = key_commands.put_pose(layer, at, moved[0].pose, easing)
+            command = key_commands.insert_pose(layer, at, moved[0].pose, easing)
         else:
-            command = key_commands.put_keys(layer, moved)
+            command = key_commands.insert_keys(layer, moved)
         project.history.do(replace(command, label=label or command.label), gesture=gesture)
         chosen_of[layer] = frozenset(key.frame for key in moved)
-    unkeyed = project.history.unkeyed
+    unkeyed = project.history.preview_pose
     if unkeyed is not None and unkeyed.frame in chosen_of.get(unkeyed.layer, ()):
-        project.history.pose(None, gesture=gesture)
+        project.history.set_preview_pose(None, gesture=gesture)
     project.selected, project.chosen_of = frozenset(), chosen_of
 
 
@@ -91,7 +91,7 @@ def fitted(
         replace(
             key,
             pose=_fitted(project, layer, key.pose, bounds),
-            fronts={i: front for i, front in key.fronts.items() if i in known},
+            depths={i: front for i, front in key.depths.items() if i in known},
         )
         for key in keys
     ]
@@ -99,7 +99,7 @@ def fitted(
 
 def _fitted(project: Project, layer: Layer, pose: Pose, bounds: Bounds) -> Pose:
     if pose.targets.keys() != {handle.id for handle in layer.handles}:
-        pose = retargeted(layer, pose)
+        pose = with_all_targets(layer, pose)
     if layer.bounds == bounds:
         return pose
     puppet = project.puppets[layer.id]

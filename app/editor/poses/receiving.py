@@ -9,7 +9,7 @@ import numpy as np
 from app.document import Document, Layer, SidePairs, mirrored_name
 from app.editor.project import Project
 from app.editor.session import CopiedKeys, Session
-from app.solving import Carriage, Likeness
+from app.solving import PoseTransfer, SimilarityTransform
 
 # As it is; with pairs of layers and of handles exchanged; or with all of it mirrored, too.
 PasteWay = Literal["as it is", "swapped", "flipped"]
@@ -61,17 +61,21 @@ class Landing:
         stays = all(identity == other for identity, other in self.pairs.items())
         return self.is_own and (way == "as it is" or (way == "swapped" and stays))
 
-    def carriage(self, way: PasteWay) -> Carriage:
+    def carriage(self, way: PasteWay) -> PoseTransfer:
         """Return the way from the poses that were copied to this layer's."""
-        source, likeness = self.copied.layer, Likeness()
+        source, likeness = self.copied.layer, SimilarityTransform()
         if self.is_own and way == "flipped":
-            likeness = Likeness.reflection(self.layer.axis)
+            likeness = SimilarityTransform.reflection(self.layer.axis)
         elif not self.is_own:
             handles = self.pairs.items()
             places = np.array([source.handle(other).position for _, other in handles])
             images = np.array([self.layer.handle(identity).position for identity, _ in handles])
-            likeness = Likeness.of(places, images, mirrors=True if way == "flipped" else None)
-        return Carriage(source=source, pairs=self.pairs, likeness=likeness, is_within=self.is_own)
+            likeness = SimilarityTransform.fit(
+                places, images, mirrors=True if way == "flipped" else None
+            )
+        return PoseTransfer(
+            source=source, pairs=self.pairs, similarity=likeness, is_within_layer=self.is_own
+        )
 
 
 def landings(session: Session, project: Project, way: PasteWay) -> list[Landing]:

@@ -66,8 +66,8 @@ class Joining(Tool):
                 gesture.end(session, place)
         elif self.parent is not None:
             frame = playback.current_frame(session, project)
-            joint = project.document.layer(self.child).keyed_joint(frame)
-            turns = joint is None or joint.turns
+            joint = project.document.layer(self.child).attachment_key_at(frame)
+            turns = joint is None or joint.inherits_rotation
             # On both of them the joint is just there; else by the anchor.
             there = on_scene(project, place)
             is_on_both = layering.is_at(project, self.child, there)

@@ -85,7 +85,7 @@ def _is_beside(spot: Spot) -> bool:
 def _carrier(session: Session, project: Project, layer: int | None) -> Layer:
     """Return what a layer, by default the one that is posed, hangs on in the end; or itself."""
     frame = playback.current_frame(session, project)
-    return project.document.carriers(project.active if layer is None else layer, frame)[-1]
+    return project.document.parent_chain(project.active if layer is None else layer, frame)[-1]
 
 
 def _choose_carrier(session: Session, project: Project, layer: int | None) -> bool:

@@ -74,7 +74,7 @@ class Pulling(Tool):
     def _take(cls, session: Session, project: Project, spot: Spot, handle: int) -> Self:
         pulling = cls(project=project, start=spot.place, taken=handle, at_target=spot.at_target)
         if handle not in project.selected:
-            editing.select(session, project.layer.together_with(handle))
+            editing.select(session, project.layer.grouped_handles(handle))
         pulling.handles = _movable(project)
         if handle in pulling.handles:
             pulling._take_to_track(session, handle)
@@ -92,9 +92,9 @@ class Pulling(Tool):
             return
         self.tracked = pressed if track is None else track.handles[0]
         identities = [handle.id for handle in shown.clip.layer.handles]
-        self.origin = complex(shown.handle_places[identities.index(self.tracked)])
+        self.origin = complex(shown.handle_positions[identities.index(self.tracked)])
         if self.at_target and shown.correction is not None:
-            self.origin = shown.correction.wishes.get(self.tracked, self.origin)
+            self.origin = shown.correction.targets.get(self.tracked, self.origin)
         if session.records:
             self.records = True
             self.start, self.origin = (
@@ -165,7 +165,7 @@ class Pulling(Tool):
         else:
             posing.let_go(session)
         if not self.moved and self.taken is not None:
-            editing.select(session, self.project.layer.together_with(self.taken))
+            editing.select(session, self.project.layer.grouped_handles(self.taken))
 
     def cancel(self, session: Session) -> None:
         """Take back what it did; the playhead goes back to where it was."""

@@ -8,7 +8,7 @@ from app.editor.actions import editing
 from app.editor.project import Project
 from app.editor.session import BoxMark, Hint, Mark, Session
 from app.editor.tools.tool import Spot, Tool
-from app.motion import Box
+from app.motion import BoundingBox
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
@@ -34,7 +34,7 @@ class Selecting(Tool):
             return None
         selecting = cls(project=project, start=at, place=at, adds=spot.shift, has_box=has_box)
         if spot.handle is not None:
-            fellows = project.layer.together_with(spot.handle)
+            fellows = project.layer.grouped_handles(spot.handle)
             is_selected = spot.handle in project.selected
             chosen = project.selected - fellows if is_selected else project.selected | fellows
             editing.select(session, chosen)
@@ -50,12 +50,12 @@ class Selecting(Tool):
         if shown is None or not self.has_box:
             return
         x, y = sorted((self.start.real, place.real)), sorted((self.start.imag, place.imag))
-        box = Box(complex(x[0], y[0]), complex(x[1], y[1]))
-        places = zip(shown.clip.layer.handles, shown.handle_places, strict=True)
+        box = BoundingBox(complex(x[0], y[0]), complex(x[1], y[1]))
+        places = zip(shown.clip.layer.handles, shown.handle_positions, strict=True)
         inside = {
             handle.id
             for handle, at in places
-            if box.contains(Box(complex(at), complex(at)), slack=0.0)
+            if box.contains(BoundingBox(complex(at), complex(at)), slack=0.0)
         }
         editing.select(session, project.selected | inside if self.adds else frozenset(inside))
 

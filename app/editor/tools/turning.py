@@ -67,9 +67,9 @@ class Turning(Tool):
         turning = cls(
             project=project,
             handle=handle,
-            centre=complex(shown.handle_places[index]),
+            centre=complex(shown.handle_positions[index]),
             start=spot.place,
-            turn=shown.handle_turns[index] if wished is None else wished,
+            turn=shown.handle_rotations[index] if wished is None else wished,
             on_track=on_track,
             deletes=is_by_key,
         )

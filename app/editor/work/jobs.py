@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, Literal, get_args
 
-from app.errors import CANCELLED, LissomError, told_to
+from app.errors import CANCELLED, LissomError, listen_to_progress
 
 LaneName = Literal["hand", "export", "display", "keep"]
 PATIENCE = 10.0  # seconds that the end of the program waits for what runs
@@ -285,7 +285,7 @@ class Jobs:
                     hold.first -= hold.holds(job.kind)
                 lane.running, lane.since, lane.is_stale = job, self._clock(), False
                 lane.share = None
-            with told_to(partial(self._hear, lane)):
+            with listen_to_progress(partial(self._hear, lane)):
                 hand_over = _attempt(job)
             with self._condition:
                 if not lane.is_stale:

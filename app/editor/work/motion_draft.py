@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Self
 
-from app.document import Document, GivenMotion, Layer
-from app.solving import Giving
+from app.document import AppliedMotion, Document, Layer
+from app.solving import MotionSolve
 from engine.domain import MeshedDomain
 from engine.geometry.motions import (
     MOTIONS,
@@ -37,7 +37,7 @@ class MotionDraft:
     facing: int | None = None  # None as it seems to look
     bones: bool = False
     first: int = 0  # the frame from which on it is given
-    given: GivenMotion | None = None  # what it takes the place of
+    given: AppliedMotion | None = None  # what it takes the place of
     replaces_edits: bool = False  # also where that was edited by hand
     chosen: str | None = None  # the joint that was touched last
     past: tuple[JointPlaces, ...] = ()  # joints as they were before each change, to be undone
@@ -87,14 +87,14 @@ class MotionErrand:
         As it has to be when the motion comes.
     base : Document
         What it is given to: without the motion that it takes the place of.
-    giving : Giving, optional
+    giving : MotionSolve, optional
         How far it is; None before the first step.
     """
 
     draft: MotionDraft
     before: Layer
     base: Document
-    giving: Giving | None = None
+    giving: MotionSolve | None = None
 
     @property
     def progress(self) -> float:
@@ -104,4 +104,4 @@ class MotionErrand:
     @property
     def now(self) -> str:
         """What the next step does, in words."""
-        return "Reading the joints" if self.giving is None else self.giving.now
+        return "Reading the joints" if self.giving is None else self.giving.status_text

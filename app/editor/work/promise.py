@@ -5,7 +5,7 @@ from math import inf
 
 from app.editor.action import Action
 from app.editor.work.motion_draft import MotionErrand
-from app.solving import Renewal
+from app.solving import KeyResolver
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
@@ -14,7 +14,7 @@ class Promise:
 
     label: str  # what comes, in words that the status bar can show
     changes: bool = True  # whether it changes the document when it comes; a save does not
-    renewal: Renewal | None = None  # keys that are being solved again, and how far that is
+    renewal: KeyResolver | None = None  # keys that are being solved again, and how far that is
     errand: MotionErrand | None = None  # a motion on its way, and how far that is
 
 

@@ -6,10 +6,10 @@ from functools import partial
 
 import numpy as np
 
-from app.document import Clip, Document, History, Layer, Pose, Settled, Target
+from app.document import Clip, Document, History, Layer, Pose, PoseReplacement, Target
 from app.editor.work.derived import Derived
 from app.editor.work.promise import Promise
-from app.solving import Drag
+from app.solving import DragSolver
 from engine.deform import Hand
 
 # Newton steps towards one wish; a drag comes to rest in far fewer.
@@ -99,7 +99,7 @@ class Pull(Promise):
         Of the history when something was wished last.
     is_held : bool
         Whether the hand still pulls.
-    drag : Drag, optional
+    drag : DragSolver, optional
         Where the solver is; None until its first steps are done.
     solved : tuple of mapping of int to Target and tuple of Hand, optional
         The targets that these steps were towards, and the hands that pulled.
@@ -136,7 +136,7 @@ class Pull(Promise):
     pulled: frozenset[int] = frozenset()
     position: int = 0
     is_held: bool = True
-    drag: Drag | None = None
+    drag: DragSolver | None = None
     solved: tuple[Mapping[int, Target], tuple[Hand, ...]] | None = None
     steps: int = 0
     found: Pose | None = None
@@ -201,7 +201,7 @@ class Pull(Promise):
         found = {**before, **places}
         if all(abs(self.targets[i].position - found[i].position) < ROUNDING for i in found):
             self.solved = (self.targets, ())
-            self.take(self.drag.pose(self.targets))
+            self.take(self.drag.make_pose(self.targets))
 
     @property
     def reached(self) -> Mapping[int, Target]:
@@ -262,11 +262,11 @@ class Pull(Promise):
         if layer is None:
             return False
         poses = list(layer.poses)
-        if history.unkeyed is not None:
-            poses.append(history.unkeyed.pose)
+        if history.preview_pose is not None:
+            poses.append(history.preview_pose.pose)
         return any(pose.phi is self.kept.phi for pose in poses)
 
-    def brought_to(self, pose: Pose) -> Settled:
+    def brought_to(self, pose: Pose) -> PoseReplacement:
         """Return how a layer of any step of history has a pose of this pull."""
         then = {handle.id: handle.position for handle in self.clip.layer.handles}
 

@@ -5,9 +5,9 @@ from typing import Self
 
 from app.document import Baseline, Clip, Document, Layer, PictureFile, Variant, clip_of
 from app.editor.work.derived import Derived
-from app.motion import CorrectedFrames, IntervalStore, PosableMesh, Shown, is_corrected
+from app.motion import CorrectedFrames, DeformMesh, DisplayedFrame, InbetweenCache, needs_correction
 from app.solving import Rig
-from app.storage import Cut, Picture, cut_picture
+from app.storage import CutOutResult, Picture, cut_picture
 from engine.arrays import Bytes
 from engine.domain import CutOut
 
@@ -19,7 +19,7 @@ class Twin:
     original: Layer  # the layer as it is
     layer: Layer  # the same by the other variant, where the method is one
     method: Variant | Baseline
-    shown: Shown | None = None
+    shown: DisplayedFrame | None = None
 
     def clip(self, document: Document) -> Clip:
         """Return it in the time of its scene."""
@@ -35,14 +35,14 @@ class Puppet:
     picture: Picture  # decoded from that
     is_opaque: bool  # whether it has no transparency: its background was found by its colour
     # Its in-betweens on a coarse mesh, and on its own one if that is another and is there.
-    store: IntervalStore
-    fine: IntervalStore | None = None
-    shown: Shown | None = None  # None before the first frame of the window
+    store: InbetweenCache
+    fine: InbetweenCache | None = None
+    shown: DisplayedFrame | None = None  # None before the first frame of the window
     corrected: CorrectedFrames | None = None  # the corrections of its frames
     rig: Rig | None = None  # for the poses to come; None before the first of them
-    cut: Derived[CutOut, Cut]  # what is left of the picture, as the newest cut-out has it
+    cut: Derived[CutOut, CutOutResult]  # what is left of the picture, as the newest cut-out has it
     # That made small, for the list of layers.
-    small: Derived[Cut, Bytes | None] = field(default_factory=lambda: Derived(None))
+    small: Derived[CutOutResult, Bytes | None] = field(default_factory=lambda: Derived(None))
     twin: Twin | None = None  # beside it, while the viewport is split
 
     @classmethod
@@ -55,7 +55,7 @@ class Puppet:
             picture=picture,
             is_opaque=picture.is_opaque,
             file=clip.layer.picture,
-            store=IntervalStore(mesh=PosableMesh.coarse(clip.layer.domain, among=among)),
+            store=InbetweenCache(mesh=DeformMesh.coarse(clip.layer.domain, among=among)),
             cut=Derived(
                 cut_picture(picture, clip.layer.cut_out, is_alone=among == 1), clip.layer.cut_out
             ),
@@ -66,7 +66,7 @@ class Puppet:
         if self.store.has_failed(clip, "series"):
             return 0
         stores = filter(None, (self.store, self.fine))
-        shown = sum(store.passing_bytes(clip) for store in stores)
+        shown = sum(store.releasable_bytes(clip) for store in stores)
         sampler = self.store.sampler
         outline = 0 if sampler is None else sampler.known.nbytes
         return shown + outline + (0 if self.corrected is None else self.corrected.nbytes)
@@ -77,10 +77,10 @@ class Puppet:
         It is most of what a layer with keys takes.
         """
         stores = [store for store in (self.store, self.fine) if store is not None]
-        if is_corrected(clip) or not all(store.has(clip) for store in stores):
+        if needs_correction(clip) or not all(store.has(clip) for store in stores):
             return
         for store in stores:
-            store.rest()
+            store.release_intermediates()
         if self.corrected is not None:
             self.corrected.rest()
         if self.store.sampler is not None:

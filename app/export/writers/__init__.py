@@ -2,7 +2,7 @@
 
 In: a plan, and its frames as straight-alpha pixels, or its layers as shapes.
 Out: files that are whole or absent.
-Imports: `app.export.plan`, `app.export.moving_shape`, `app.storage`, Pillow; PyAV only for a video.
+Imports: `app.export.plan`, `app.export.morph_mesh`, `app.storage`, Pillow; PyAV only for a video.
 """
 
 from app.export.writers.frame_writer import FrameWriter as FrameWriter

@@ -9,7 +9,7 @@ from fractions import Fraction
 from typing import IO, Final
 
 from app.export.plan import ExportPlan
-from app.export.writers.png import SIGNATURE, PngFrames, chunk
+from app.export.writers.png import SIGNATURE, PngFrames, png_chunk
 
 # A frame lasts a fraction of two numbers of 16 bits, in seconds; with some room for rounding.
 _LARGEST: Final = 65_000
@@ -65,7 +65,7 @@ class ApngWriter(PngFrames):
         return number
 
     def _write(self, kind: bytes, data: bytes) -> None:
-        self._file.write(chunk(kind, data))
+        self._file.write(png_chunk(kind, data))
 
 
 def _chunks(png: bytes) -> Iterator[tuple[bytes, bytes]]:

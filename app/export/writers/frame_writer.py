@@ -37,6 +37,6 @@ class FrameWriter:
         """Let go of what must not outlive the file, whether it is finished or not."""
 
 
-def duration(index: int, fps: float, *, per_second: int) -> int:
+def frame_duration(index: int, fps: float, *, per_second: int) -> int:
     """Return how many ticks of a clock a frame lasts, so that the sum never drifts."""
     return round((index + 1) * per_second / fps) - round(index * per_second / fps)

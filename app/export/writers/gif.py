@@ -11,7 +11,7 @@ import numpy as np
 from PIL import Image
 
 from app.export.plan import ExportPlan
-from app.export.writers.frame_writer import FrameWriter, duration
+from app.export.writers.frame_writer import FrameWriter, frame_duration
 from engine.arrays import Bytes
 
 OPAQUE_FROM: Final = 128  # levels of alpha; half of a pixel on a soft edge
@@ -48,7 +48,7 @@ class GifWriter(FrameWriter):
 
     def add(self, encoded: bytes) -> None:
         """Write a frame with its duration and place."""
-        lasts = min(duration(self._count, self._plan.fps, per_second=100), _LONGEST)
+        lasts = min(frame_duration(self._count, self._plan.fps, per_second=100), _LONGEST)
         self._count += 1
         flags = _CLEARED_AFTERWARDS | _HAS_CLEAR
         self._file.write(struct.pack("<BBBBHBB", _EXTENSION, 0xF9, 4, flags, lasts, _CLEAR, 0))

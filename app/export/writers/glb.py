@@ -10,8 +10,8 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from app.errors import shown_name
-from app.export.moving_shape import MovingScene, MovingShape
+from app.errors import display_name
+from app.export.morph_mesh import MorphMesh, MorphScene
 from app.export.plan import ExportPlan
 from app.export.writers.png import encode_png
 from app.storage import strict_json
@@ -28,10 +28,10 @@ _MOST_UINT16: Final = 65_534  # the last number ends strips
 _COMPONENTS: Final = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}
 
 
-def glb_file(scene: MovingScene, plan: ExportPlan) -> bytes:
+def build_glb(scene: MorphScene, plan: ExportPlan) -> bytes:
     """Return a glTF file of layers, the one behind all others first."""
     asset = _Asset(plan)
-    for shape in scene.shapes:
+    for shape in scene.meshes:
         asset.add(shape)
     return asset.file()
 
@@ -48,7 +48,7 @@ class _Asset:
         self._samplers: list[dict[str, Any]] = []
         self._plan = plan
 
-    def add(self, shape: MovingShape) -> None:
+    def add(self, shape: MorphMesh) -> None:
         """Add a layer as a node with a mesh, a material and an animation."""
         base, targets = shape.motion.base - self._origin, shape.motion.targets
         weights = np.clip(shape.motion.weights, 0.0, 1.0)
@@ -76,9 +76,10 @@ class _Asset:
         if len(targets) and len(weights) > 1:
             values = self._numbers(weights.ravel(), "SCALAR")
             self._animate(number, "weights", shape.motion.times, (values, "LINEAR"))
-        if len(shape.sights) > 1 or not shape.sights[0][1]:
+        if len(shape.visibility_changes) > 1 or not shape.visibility_changes[0][1]:
             moments, seen = (
-                np.array(column, dtype=np.float64) for column in zip(*shape.sights, strict=True)
+                np.array(column, dtype=np.float64)
+                for column in zip(*shape.visibility_changes, strict=True)
             )
             # What has no size is not seen.
             values = self._numbers(np.repeat(seen, 3), "VEC3")
@@ -86,7 +87,7 @@ class _Asset:
 
     def file(self) -> bytes:
         """Return the whole file."""
-        name = shown_name(self._plan.out.stem)
+        name = display_name(self._plan.out.stem)
         content: dict[str, Any] = {
             "asset": {
                 "version": "2.0",
@@ -162,10 +163,10 @@ class _Asset:
         places = np.column_stack([metres.real, metres.imag, np.zeros(len(metres))])
         return self._numbers(places, "VEC3", _VERTICES, extent=True)
 
-    def _indices(self, shape: MovingShape) -> int:
+    def _indices(self, shape: MorphMesh) -> int:
         is_small = len(shape.uv) <= _MOST_UINT16
         # There is one order for all times.
-        _, triangles = shape.orders[0]
+        _, triangles = shape.triangle_orders[0]
         indices = triangles.astype("<u2" if is_small else "<u4")
         entry = {
             "bufferView": self._view(indices.tobytes(), _INDICES),
@@ -175,7 +176,7 @@ class _Asset:
         }
         return self._list("accessors", entry)
 
-    def _material(self, shape: MovingShape) -> int:
+    def _material(self, shape: MorphMesh) -> int:
         picture = {
             "name": shape.name,
             "bufferView": self._view(encode_png(shape.texture)),

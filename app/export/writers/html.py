@@ -10,10 +10,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from app.document import Composite
-from app.errors import shown_name
-from app.export.framing import shown_box
-from app.export.moving_shape import MovingScene, MovingShape
+from app.document import CompositeGroup
+from app.errors import display_name
+from app.export.framing import find_shown_box
+from app.export.morph_mesh import MorphMesh, MorphScene
 from app.export.plan import ExportPlan
 from app.export.writers.png import encode_png
 from app.storage import shader_source, strict_json
@@ -33,9 +33,9 @@ _SHADERS: Final = (
 )
 
 
-def html_page(scene: MovingScene, plan: ExportPlan) -> bytes:
+def build_html_page(scene: MorphScene, plan: ExportPlan) -> bytes:
     """Return a page of layers, the one behind all others first."""
-    box = shown_box(plan.view)
+    box = find_shown_box(plan.view)
     (first, last), colour = plan.span, plan.background
     film = {
         "box": [box.lower.real, box.lower.imag, box.upper.real, box.upper.imag],
@@ -43,12 +43,12 @@ def html_page(scene: MovingScene, plan: ExportPlan) -> bytes:
         "fps": plan.fps,
         "loop": plan.loop,
         **{name: _HEADER + "\n".join(map(shader_source, files)) for name, files in _SHADERS},
-        "figures": [_packed(shape) for shape in scene.shapes],
+        "figures": [_packed(shape) for shape in scene.meshes],
         "parts": _parts(scene.parts),
         "colour": None if colour is None else [level / 255 for level in colour],
     }
     page = Template(_PAGE.read_text(encoding="utf-8")).substitute(
-        title=html.escape(shown_name(plan.out.stem)),
+        title=html.escape(display_name(plan.out.stem)),
         generator=f"Lissom {version('lissom')}",
         background="transparent" if colour is None else f"rgb{colour}",
         # Nothing in it may end the element that holds it.
@@ -57,7 +57,7 @@ def html_page(scene: MovingScene, plan: ExportPlan) -> bytes:
     return page.encode()
 
 
-def _packed(shape: MovingShape) -> dict[str, Any]:
+def _packed(shape: MorphMesh) -> dict[str, Any]:
     """Return a layer as the page unpacks it: numbers one after the other, and a picture."""
     motion = shape.motion
     numbers = [
@@ -68,20 +68,20 @@ def _packed(shape: MovingShape) -> dict[str, Any]:
         motion.weights,
     ]
     data = b"".join(part.astype("<f4").tobytes() for part in numbers)
-    data += b"".join(order.astype("<u4").tobytes() for _, order in shape.orders)
+    data += b"".join(order.astype("<u4").tobytes() for _, order in shape.triangle_orders)
     return {
         "texture": f"data:image/png;base64,{_text(encode_png(shape.texture))}",
         "data": _text(data),
         "vertices": len(shape.uv),
         "targets": len(motion.targets),
         "times": len(motion.times),
-        "triangles": len(shape.orders[0][1]),
-        "orders": [seconds for seconds, _ in shape.orders],
-        "sights": shape.sights,
+        "triangles": len(shape.triangle_orders[0][1]),
+        "orders": [seconds for seconds, _ in shape.triangle_orders],
+        "sights": shape.visibility_changes,
     }
 
 
-def _parts(parts: Sequence[int | Composite[int]]) -> list[Any]:
+def _parts(parts: Sequence[int | CompositeGroup[int]]) -> list[Any]:
     """Return how layers are composited: their numbers, and objects of such."""
     return [
         part
@@ -91,7 +91,7 @@ def _parts(parts: Sequence[int | Composite[int]]) -> list[Any]:
             "opacity": part.opacity,
             "blend": part.blend,
             "clipped": part.clipped,
-            "passes": part.passes,
+            "passes": part.is_pass_through,
         }
         for part in parts
     ]

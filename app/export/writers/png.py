@@ -34,8 +34,8 @@ def save_png(frame: Bytes, file: IO[bytes]) -> None:
     """Write a frame, uint8 (h, w, 4), as a PNG file in the colours of sRGB."""
     height, width, _ = frame.shape
     file.write(SIGNATURE)
-    file.write(chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, _DEPTH, _RGBA, 0, 0, 0)))
-    file.write(chunk(b"sRGB", _PERCEPTUAL))
+    file.write(png_chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, _DEPTH, _RGBA, 0, 0, 0)))
+    file.write(png_chunk(b"sRGB", _PERCEPTUAL))
     packer = zlib_ng.compressobj(_LEVEL, strategy=_STRATEGY)
     rows = frame.reshape(height, 4 * width)
     above = np.zeros(4 * width, dtype=np.uint8)
@@ -47,12 +47,12 @@ def save_png(frame: Bytes, file: IO[bytes]) -> None:
         np.subtract(piece[1:], piece[:-1], out=filtered[1 : len(piece), 1:])
         above = piece[-1]
         if packed := packer.compress(filtered[: len(piece)].data):
-            file.write(chunk(b"IDAT", packed))
-    file.write(chunk(b"IDAT", packer.flush()))
-    file.write(chunk(b"IEND", b""))
+            file.write(png_chunk(b"IDAT", packed))
+    file.write(png_chunk(b"IDAT", packer.flush()))
+    file.write(png_chunk(b"IEND", b""))
 
 
-def chunk(kind: bytes, data: bytes) -> bytes:
+def png_chunk(kind: bytes, data: bytes) -> bytes:
     """Return a chunk of a PNG file."""
     check = zlib_ng.crc32(data, zlib_ng.crc32(kind))
     return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", check)

@@ -11,9 +11,9 @@ from typing import IO, Final, NamedTuple
 
 import numpy as np
 
-from app.errors import LissomError, shown_name
+from app.errors import LissomError, display_name
 from app.export.plan import ExportPlan
-from app.export.writers.frame_writer import FrameWriter, duration
+from app.export.writers.frame_writer import FrameWriter, frame_duration
 from app.export.writers.png import save_png
 from app.storage import strict_json
 from engine.arrays import Bytes
@@ -34,7 +34,7 @@ class _Cell(NamedTuple):
         return self.pixels.shape[1], self.pixels.shape[0]
 
 
-class _Sheet(NamedTuple):
+class _SheetLayout(NamedTuple):
     """The size of a sheet, and the upper left corners of what lies on it."""
 
     size: tuple[int, int]
@@ -143,7 +143,7 @@ def _different(cells: Sequence[_Cell]) -> tuple[list[_Cell], list[int]]:
     return kept, places
 
 
-def _packed(sizes: Sequence[tuple[int, int]], plan: ExportPlan) -> _Sheet:
+def _packed(sizes: Sequence[tuple[int, int]], plan: ExportPlan) -> _SheetLayout:
     """Return the smallest of some sheets of rows."""
     padding = plan.sheet.padding
     widest = max(width for width, _ in sizes) + 2 * padding
@@ -159,7 +159,7 @@ def _packed(sizes: Sequence[tuple[int, int]], plan: ExportPlan) -> _Sheet:
     return min(fitting, key=lambda sheet: (math.prod(sheet.size), max(sheet.size)))
 
 
-def _rows(sizes: Sequence[tuple[int, int]], most: int, plan: ExportPlan) -> _Sheet:
+def _rows(sizes: Sequence[tuple[int, int]], most: int, plan: ExportPlan) -> _SheetLayout:
     """Lay cells side by side in rows of at most so many pixels, in their order."""
     padding = plan.sheet.padding
     left = top = padding
@@ -174,7 +174,7 @@ def _rows(sizes: Sequence[tuple[int, int]], most: int, plan: ExportPlan) -> _She
     size = right, top + row_height + padding
     if plan.sheet.power_of_two:
         size = 1 << (size[0] - 1).bit_length(), 1 << (size[1] - 1).bit_length()
-    return _Sheet(size, tuple(corners))
+    return _SheetLayout(size, tuple(corners))
 
 
 def _data(
@@ -191,12 +191,12 @@ def _data(
             "trimmed": cell.size != plan.view.size,
             "spriteSourceSize": _box((cell.left, cell.top), cell.size),
             "sourceSize": _size(plan.view.size),
-            "duration": duration(index, plan.fps, per_second=1000),
+            "duration": frame_duration(index, plan.fps, per_second=1000),
         }
     meta = {
         "app": "Lissom",
         "version": version("lissom"),
-        "image": shown_name(plan.out.name),
+        "image": display_name(plan.out.name),
         "format": "RGBA8888",
         "size": _size(size),
         "scale": "1",

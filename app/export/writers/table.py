@@ -6,13 +6,13 @@ from types import MappingProxyType
 from typing import IO, Final
 
 from app.export.destination import data_file
-from app.export.moving_shape import MovingScene
+from app.export.morph_mesh import MorphScene
 from app.export.plan import ExportPlan
 from app.export.writers.apng import ApngWriter
 from app.export.writers.frame_writer import FrameWriter
 from app.export.writers.gif import GifWriter
-from app.export.writers.glb import glb_file
-from app.export.writers.html import html_page
+from app.export.writers.glb import build_glb
+from app.export.writers.html import build_html_page
 from app.export.writers.png import PngPicture, PngSequence
 from app.export.writers.spritesheet import SpritesheetWriter
 from app.export.writers.webp import WebpWriter
@@ -47,8 +47,8 @@ FILE_WRITERS: Final[Mapping[str, Callable[[IO[bytes], ExportPlan], FrameWriter]]
 DATA_WRITERS: Final[Mapping[str, Callable[[IO[bytes], IO[bytes], ExportPlan], FrameWriter]]] = (
     MappingProxyType({"spritesheet": SpritesheetWriter})
 )
-SHAPE_WRITERS: Final[Mapping[str, Callable[[MovingScene, ExportPlan], bytes]]] = MappingProxyType(
-    {"glb": glb_file, "html": html_page}
+SHAPE_WRITERS: Final[Mapping[str, Callable[[MorphScene, ExportPlan], bytes]]] = MappingProxyType(
+    {"glb": build_glb, "html": build_html_page}
 )
 
 

@@ -10,7 +10,7 @@ import av
 import numpy as np
 
 from app.errors import LissomError
-from app.export.bleeding import bled
+from app.export.alpha_bleed import bleed_edges
 from app.export.plan import ExportPlan
 from app.export.writers.frame_writer import FrameWriter
 from app.export_formats import EXPORT_FORMATS
@@ -145,7 +145,7 @@ class VideoWriter(FrameWriter):
     def encode(self, frame: Bytes) -> Bytes:
         """Return the frame's pixels, of four bytes where they are transparent, else of three."""
         if self._plan.background is None:
-            return bled(frame)
+            return bleed_edges(frame)
         height, width, _ = frame.shape
         even = np.full((self._size[1], self._size[0], 3), self._plan.background, dtype=np.uint8)
         even[:height, :width] = frame[..., :3]

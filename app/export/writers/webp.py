@@ -11,7 +11,7 @@ from typing import IO, Final
 from PIL import Image
 
 from app.export.plan import ExportPlan
-from app.export.writers.frame_writer import FrameWriter, duration
+from app.export.writers.frame_writer import FrameWriter, frame_duration
 from engine.arrays import Bytes
 
 _ANIMATED, _ALPHA = 0x02, 0x10
@@ -43,7 +43,7 @@ class WebpWriter(FrameWriter):
 
     def add(self, encoded: bytes) -> None:
         """Take the picture data out of a WebP file and into the animation."""
-        lasts = min(duration(self._count, self._plan.fps, per_second=1000), _LONGEST)
+        lasts = min(frame_duration(self._count, self._plan.fps, per_second=1000), _LONGEST)
         self._count += 1
         numbers = (0, 0, *(side - 1 for side in self._size), lasts)
         pictures = b"".join(

@@ -6,9 +6,9 @@ Imports: `app.document`, `app.errors`, what else is in `app.motion`.
 """
 
 from app.motion.extents.extent import (
-    Box as Box,
-    box_around as box_around,
-    extent_source as extent_source,
+    BoundingBox as BoundingBox,
+    bounding_box as bounding_box,
+    extent_key as extent_key,
     measure_extent as measure_extent,
-    motion_box as motion_box,
+    motion_bounding_box as motion_bounding_box,
 )

@@ -47,11 +47,11 @@ class UnkeyedFrames(NamedTuple):
     phases: Sequence[int]  # the frames of each round that are measured, from its first one on
 
     @property
-    def rounds(self) -> int:
+    def period_count(self) -> int:
         """How many whole rounds there are."""
         return (self.last - self.first + 1) // self.period
 
-    def round(self, number: int) -> list[int]:
+    def frames_of_period(self, number: int) -> list[int]:
         """Return the frames of a round that are measured; after the last one, of what is left."""
         start = self.first + number * self.period
         return [start + phase for phase in self.phases if start + phase <= self.last]
@@ -90,13 +90,13 @@ class _Search:
     def begin(self, stretch: UnkeyedFrames, most: int) -> Iterator[_Gap]:
         """Measure the ends of a stretch and some rounds within; yield the gaps between these."""
         within = max(1, min(most, MOST_AT_FIRST // len(stretch.phases)))
-        if rest := stretch.round(stretch.rounds):
+        if rest := stretch.frames_of_period(stretch.period_count):
             self._reach(rest)
         # At uneven distances: what swings may be alike at even ones.
-        last = stretch.rounds - 1
+        last = stretch.period_count - 1
         shares = ((i + (i * GOLDEN) % 1 - 0.5) / (within + 1) for i in range(1, within + 1))
         numbers = sorted({0, last, *(round(last * share) for share in shares)})
-        reaches = [self._reach(stretch.round(number)) for number in numbers]
+        reaches = [self._reach(stretch.frames_of_period(number)) for number in numbers]
         for ends, both in zip(pairwise(numbers), pairwise(reaches), strict=True):
             yield from self._split(stretch, ends, both)
 
@@ -138,7 +138,7 @@ class _Search:
         if high - low < 2:
             return
         middle = (low + high) // 2
-        at = self._reach(stretch.round(middle))
+        at = self._reach(stretch.frames_of_period(middle))
         share = (middle - low) / (high - low)
         bent = np.abs(at - (before + share * (after - before)))
         moved = np.maximum(np.abs(at - before), np.abs(after - at))
@@ -154,7 +154,7 @@ def _stretches(document: Document, frames: FrameRange) -> list[UnkeyedFrames]:
     sprung = [each for each in document.layers if any(spring.enabled for spring in each.springs)]
     swinging = {each.id for each in sprung}
     # What carries springs sets them swinging, too.
-    swinging |= {each.id for layer in sprung for each in document.all_carriers(layer.id)}
+    swinging |= {each.id for layer in sprung for each in document.all_ancestors(layer.id)}
     keyed = {
         frame
         for layer in document.layers
@@ -177,10 +177,10 @@ def _keyed(document: Document, layer: Layer, settling: int) -> Iterator[int]:
 
     Springs that it sets swinging take `settling` frames after each of these.
     """
-    moves = [*layer.key_frames, *(key.frame for key in layer.movement)]
+    moves = [*layer.key_frames, *(key.frame for key in layer.transform_keys)]
     jumps = [frame for cycle in layer.cycles for frame in (cycle.first, cycle.last)]
     jumps += [cycle.until for cycle in layer.cycles if cycle.until is not None]
-    jumps += [frame for joint in layer.joints for frame in (joint.frame, joint.kept_from)]
+    jumps += [frame for joint in layer.attachments for frame in (joint.frame, joint.kept_from)]
     for track in layer.tracks:
         times = [track.delay + key.frame for key in track.keys]
         moves += times
@@ -191,7 +191,7 @@ def _keyed(document: Document, layer: Layer, settling: int) -> Iterator[int]:
         moves += [first + (frame - first) % max(length, 1) for frame in moves]
     for cycle in layer.cycles:
         until = document.frames.last if cycle.until is None else cycle.until
-        own = [frame for frame in moves if cycle.has(frame)]
+        own = [frame for frame in moves if cycle.contains(frame)]
         rounds = range(cycle.period, until - cycle.first + 1, cycle.period)
         if len(own) * len(rounds) * (1 + settling) <= MOST_REPEATED:
             moves += [frame + later for frame in own for later in rounds]

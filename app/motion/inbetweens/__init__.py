@@ -7,13 +7,17 @@ Imports: `app.document`, `app.errors`.
 
 from app.motion.inbetweens.animation import Animation as Animation
 from app.motion.inbetweens.auto_pins import AutoPins as AutoPins
-from app.motion.inbetweens.correction import SolvedTracks as SolvedTracks
-from app.motion.inbetweens.corrections import (
-    Corrections as Corrections,
-    Ground as Ground,
-    have_one_ground as have_one_ground,
-    is_corrected as is_corrected,
+from app.motion.inbetweens.frame_corrector import (
+    BaseMotionFrame as BaseMotionFrame,
+    FrameCorrector as FrameCorrector,
+    have_same_base_frames as have_same_base_frames,
+    needs_correction as needs_correction,
 )
-from app.motion.inbetweens.pairs import Pair as Pair, pair_of as pair_of, poses_of as poses_of
 from app.motion.inbetweens.pose_sampler import PoseSampler as PoseSampler
-from app.motion.inbetweens.swings import Carried as Carried
+from app.motion.inbetweens.secondary_correction import SecondaryCorrection as SecondaryCorrection
+from app.motion.inbetweens.segment_keys import (
+    SegmentKey as SegmentKey,
+    segment_key as segment_key,
+    segment_poses as segment_poses,
+)
+from app.motion.inbetweens.spring_offsets import ParentMotion as ParentMotion

@@ -1,10 +1,10 @@
 """A clip's motion at any frame: the one way to it for exports, joints and checks."""
 
 from app.document import Clip, Variant
-from app.motion.inbetweens.base_motion import BaseMotion
-from app.motion.inbetweens.corrections import Corrections, is_corrected
+from app.motion.inbetweens.frame_corrector import FrameCorrector, needs_correction
+from app.motion.inbetweens.keyframe_motion import KeyframeMotion
 from app.motion.inbetweens.pose_sampler import PoseSampler
-from app.motion.inbetweens.swings import Carried
+from app.motion.inbetweens.spring_offsets import ParentMotion
 from engine.arrays import Complexes
 from engine.interpolation import Frame
 
@@ -24,7 +24,7 @@ class Animation:
 
     Attributes
     ----------
-    base : BaseMotion
+    base : KeyframeMotion
         The motion from key to key, with handles that stay, and without tracks and springs.
     carried : callable, optional
         Where the layer hangs, at a frame, for what is planted in the scene; by itself without.
@@ -37,7 +37,7 @@ class Animation:
         *,
         points: Complexes | None = None,
         sampler: PoseSampler | None = None,
-        carried: Carried | None = None,
+        carried: ParentMotion | None = None,
     ) -> None:
         self.clip = clip
         self.variant: Variant = clip.layer.variant if variant is None else Variant(variant)
@@ -49,16 +49,16 @@ class Animation:
         ):
             sampler = PoseSampler(clip.layer.domain, anchor=clip.layer.anchor, points=points)
         self.sampler = sampler
-        self.base = BaseMotion(clip, self.variant, sampler)
+        self.base = KeyframeMotion(clip, self.variant, sampler)
         self.carried = carried
-        self._is_corrected = is_corrected(clip)
-        self._corrections: Corrections | None = None
+        self._is_corrected = needs_correction(clip)
+        self._corrections: FrameCorrector | None = None
 
     @property
-    def corrections(self) -> Corrections | None:
+    def corrections(self) -> FrameCorrector | None:
         """What is added to the base motion; None where nothing ever is."""
         if self._corrections is None and self._is_corrected:
-            self._corrections = Corrections(self.clip, self.variant, self.sampler, self.carried)
+            self._corrections = FrameCorrector(self.clip, self.variant, self.sampler, self.carried)
         return self._corrections
 
     def positions(self, frame: float) -> Complexes:
@@ -67,8 +67,8 @@ class Animation:
 
     def frame(self, frame: float) -> Frame:
         """Return positions and derivatives of the points at a frame."""
-        correction = None if self.corrections is None else self.corrections.at(frame)
+        correction = None if self.corrections is None else self.corrections.correction_at(frame)
         if correction is None:
             return self.base.frame(frame)
-        inbetweens, time = self.base.at(frame)
-        return inbetweens.corrected(correction.known, self.sampler.basis).frame(time)
+        inbetweens, time = self.base.segment_at(frame)
+        return inbetweens.corrected(correction.series, self.sampler.basis).frame(time)

@@ -8,12 +8,12 @@ from app.document import (
     Clip,
     PinnedSegment,
     Variant,
+    clip_segments,
     pinned_segments,
-    spans,
-    transits,
+    pose_segments,
 )
-from app.motion.inbetweens.pairs import pair_of
 from app.motion.inbetweens.pose_sampler import PoseSampler, prepare_corrector
+from app.motion.inbetweens.segment_keys import segment_key
 from engine.arrays import Complexes, Floats
 from engine.deform.correction import PointCorrector
 from engine.geometry import diameter
@@ -60,7 +60,7 @@ class AutoPins:
 
     def frame(self, number: int, sampler: PoseSampler, time: float) -> Frame:
         """Return one of these; of a variant that makes single frames."""
-        transit, bounds = transits(self.clip)[number], self.clip.layer.bounds
+        transit, bounds = pose_segments(self.clip)[number], self.clip.layer.bounds
         return sampler.frame_of(transit, bounds, self._variant, time, self.series(number))
 
     def series(self, number: int) -> CorrectionSeries | None:
@@ -68,12 +68,12 @@ class AutoPins:
         segment = self._segments[number]
         if segment is None:
             return None
-        key = pair_of(self.clip, number, self._variant)
+        key = segment_key(self.clip, number, self._variant)
         return self._known.known.pins_of(key, segment.poses, partial(self._solved, number, segment))
 
     def _base(self, number: int, sampler: PoseSampler) -> Inbetweens:
         bounds = self.clip.layer.bounds
-        return sampler.inbetweens_of(transits(self.clip)[number], bounds, self._variant)
+        return sampler.inbetweens_of(pose_segments(self.clip)[number], bounds, self._variant)
 
     def _solved(self, number: int, segment: PinnedSegment) -> CorrectionSeries:
         corrector, sampler = self.prepare()
@@ -97,17 +97,17 @@ class AutoPins:
     def _pins(self, number: int, segment: PinnedSegment, sampler: PoseSampler) -> SegmentPins:
         """Return where the handles are wanted during a segment."""
         clip, layer = self.clip, self.clip.layer
-        own = spans(clip)[number]
+        own = clip_segments(clip)[number]
         keys = [clip.keys[index] for index in (own.first, own.last)]
         ends = [sampler.samples(key.pose).positions for key in keys]
         slopes = np.zeros((2, len(layer.handles)), dtype=np.complex128)
-        for side, other in enumerate(segment.beyond):
+        for side, other in enumerate(segment.neighbours):
             pace = self._pace(number, side)
             if other is not None and SLOWEST < pace < np.inf:
                 # Pixels a frame there, against the velocity of the motion that has to stay.
                 away = self._velocity(other, 1 - side)
                 slopes[side] = -self._pace(other, 1 - side) * away / pace
-        anchor = layer.anchor if layer.hangs else None
+        anchor = layer.anchor if layer.has_parent else None
         return SegmentPins(
             is_pinned=segment.is_pinned,
             ends=np.array(ends),
@@ -119,9 +119,9 @@ class AutoPins:
 
     def _pace(self, number: int, side: int) -> float:
         """Return how fast the time of a segment's in-betweens runs at one of its ends, a frame."""
-        span, transit = spans(self.clip)[number], transits(self.clip)[number]
-        easing = self.clip.keys[span.first].easing.paces
-        pace = transit.paces[side] * easing[side] / span.frames
+        span, transit = clip_segments(self.clip)[number], pose_segments(self.clip)[number]
+        easing = self.clip.keys[span.first].easing.end_speeds
+        pace = transit.end_speeds[side] * easing[side] / span.frames
         return pace if np.isfinite(pace) else 0.0
 
     def _velocity(self, number: int, side: int) -> Complexes:

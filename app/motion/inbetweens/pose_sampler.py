@@ -7,11 +7,11 @@ from typing import Protocol
 
 import numpy as np
 
-from app.document import Layer, Pose, Transit, Variant, stiffened
-from app.errors import tell
+from app.document import Layer, Pose, PoseSegment, Variant, with_stiffness
+from app.errors import report_progress
 from app.motion.inbetweens.content_cache import ContentCache, digest
-from app.motion.inbetweens.correction import SolvedTracks
-from app.motion.inbetweens.pairs import Pair
+from app.motion.inbetweens.secondary_correction import SecondaryCorrection
+from app.motion.inbetweens.segment_keys import SegmentKey
 from engine.arrays import Complexes, freeze, held_bytes
 from engine.deform.correction import PointCorrector, corrector_of
 from engine.dirichlet import Extension, HilbertTransform
@@ -45,7 +45,7 @@ _SAMPLED = ContentCache(96 * 2**20)
 _TRANSFORMS = ContentCache(32 * 2**20)
 
 
-MOST_PINNED = 512  # segments of one outline whose pins are kept
+MAX_PINNED = 512  # segments of one outline whose pins are kept
 
 
 class _Sized(Protocol):
@@ -81,7 +81,7 @@ def prepare_corrector(
     points = np.array([each.position for each in layer.handles], dtype=np.complex128)
     if more is not None:
         points = np.append(points, more)
-    corrector = corrector_for(stiffened(layer, sites.boundary), sites.anchor, points)
+    corrector = corrector_for(with_stiffness(layer, sites.boundary), sites.anchor, points)
     sampler = PoseSampler(
         layer.domain,
         anchor=layer.anchor,
@@ -92,7 +92,7 @@ def prepare_corrector(
     return corrector, sampler
 
 
-class OutlineKnowledge:
+class OutlineCache:
     """What samplers of one outline and cage share, worked out when it is asked for first.
 
     Attributes
@@ -113,14 +113,14 @@ class OutlineKnowledge:
         self._lock = threading.RLock()
         self._transform: HilbertTransform | None = None
         self.nbytes = 0
-        self.corrections: dict[object, SolvedTracks] = {}
+        self.corrections: dict[object, SecondaryCorrection] = {}
         self.tangents: dict[tuple[tuple[Pose, ...], Joint, Bounds, Variant], Tangent] = {}
         self.guard = threading.Lock()
         # With the poses that keep the identities in their keys.
-        self._pins: dict[Pair, tuple[CorrectionSeries, tuple[Pose, ...]]] = {}
+        self._pins: dict[SegmentKey, tuple[CorrectionSeries, tuple[Pose, ...]]] = {}
 
     def pins_of(
-        self, pair: Pair, poses: tuple[Pose, ...], solve: Callable[[], CorrectionSeries]
+        self, pair: SegmentKey, poses: tuple[Pose, ...], solve: Callable[[], CorrectionSeries]
     ) -> CorrectionSeries:
         """Return the pins of a segment, solved where they are not known."""
         with self.guard:
@@ -129,7 +129,7 @@ class OutlineKnowledge:
             known = solve(), poses
         with self.guard:
             self._pins[pair] = known
-            while len(self._pins) > MOST_PINNED:
+            while len(self._pins) > MAX_PINNED:
                 del self._pins[next(iter(self._pins))]
         return known[0]
 
@@ -139,7 +139,7 @@ class OutlineKnowledge:
         with self._lock:
             if self._transform is None:
                 domain = self._domain
-                make = partial(HilbertTransform.on, domain, progress=tell)
+                make = partial(HilbertTransform.on, domain, progress=report_progress)
                 self._transform = _TRANSFORMS.find(self._key, make, _nbytes)
                 self.nbytes = self._transform.nbytes
             return self._transform
@@ -176,7 +176,7 @@ class PoseSampler:
     Attributes
     ----------
     sites : Sites
-    known : OutlineKnowledge
+    known : OutlineCache
     extension_bytes : int
         The bytes that `forget_extension` lets go.
     """
@@ -220,9 +220,7 @@ class PoseSampler:
         self.extension_bytes = 0
         # Of its own, so that nothing else waits for it.
         self._extension_lock = threading.RLock()
-        self.known: OutlineKnowledge = (
-            OutlineKnowledge(domain) if sibling is None else sibling.known
-        )
+        self.known: OutlineCache = OutlineCache(domain) if sibling is None else sibling.known
 
     @property
     def extension(self) -> Extension:
@@ -274,7 +272,7 @@ class PoseSampler:
         interval = self._interval(Passage.of(samples, sheets), variant, Bounds())
         return self._prepared(interval, variant)
 
-    def still(self, pose: Pose, variant: Variant) -> Inbetweens:
+    def still_inbetweens(self, pose: Pose, variant: Variant) -> Inbetweens:
         """Return the in-betweens of a pose with itself, which are corrected as its neighbours are.
 
         Of a variant that needs a transform or a scale those of η are the same.
@@ -291,9 +289,9 @@ class PoseSampler:
                 self._basis = SpanBasis.of(sites.boundary.span, sites.paths.nodes)
             return self._basis
 
-    def inbetweens_of(self, transit: Transit, bounds: Bounds, variant: Variant) -> Inbetweens:
+    def inbetweens_of(self, transit: PoseSegment, bounds: Bounds, variant: Variant) -> Inbetweens:
         """Return the in-betweens of a clip's interval; the motion through keys obeys the bounds."""
-        return self._prepared(self._interval_of(transit, bounds, variant), variant)
+        return self._prepared(self._engine_interval(transit, bounds, variant), variant)
 
     def makes_single_frames(self, variant: Variant) -> bool:
         """Tell whether one in-between alone takes less time than all of its interval."""
@@ -301,7 +299,7 @@ class PoseSampler:
 
     def frame_of(
         self,
-        transit: Transit,
+        transit: PoseSegment,
         bounds: Bounds,
         variant: Variant,
         weight: float,
@@ -318,9 +316,11 @@ class PoseSampler:
         pins : CorrectionSeries, optional
             Of handles that stay.
         """
-        return frame_at(weight, variant, self._interval_of(transit, bounds, variant), pins)
+        return frame_at(weight, variant, self._engine_interval(transit, bounds, variant), pins)
 
-    def kept(self, transit: Transit, bounds: Bounds, variant: Variant) -> tuple[float, float]:
+    def velocity_shares(
+        self, transit: PoseSegment, bounds: Bounds, variant: Variant
+    ) -> tuple[float, float]:
         """Return how much of its velocity the bounds leave to the motion at both keys.
 
         From 0, a stop, to 1, which it is too where the motion does not pass through.
@@ -331,7 +331,7 @@ class PoseSampler:
         )
         return start, end
 
-    def _ends(self, transit: Transit, bounds: Bounds, variant: Variant) -> list[End]:
+    def _ends(self, transit: PoseSegment, bounds: Bounds, variant: Variant) -> list[End]:
         return [
             self._tangent([transit.keys[index].pose for index in window], end, bounds, variant)
             if isinstance(end, Joint)
@@ -352,17 +352,19 @@ class PoseSampler:
                 self.known.tangents[key] = found
         return found
 
-    def _interval_of(self, transit: Transit, bounds: Bounds, variant: Variant) -> Interval:
+    def _engine_interval(self, transit: PoseSegment, bounds: Bounds, variant: Variant) -> Interval:
         samples = [self.samples(key.pose) for key in transit.keys]
         anchors = np.array([sample.anchor_fz for sample in samples])
-        if not transit.is_joined:
-            passage = Passage.of(samples, root_sheets(anchors, transit.turns))
+        if not transit.has_smooth_tangent:
+            passage = Passage.of(samples, root_sheets(anchors, transit.revolutions))
             return self._interval(passage, variant, Bounds())
         course = Course.between(*self._ends(transit, bounds, variant), apart=transit.apart)
         count = len(samples) - sum(transit.apart)
-        sheets = [*root_sheets(anchors[:count], transit.turns[: count - 1])]
+        sheets = [*root_sheets(anchors[:count], transit.revolutions[: count - 1])]
         # Those apart are reached from the key in the middle of their windows.
-        others = iter(zip(range(count, len(samples)), transit.turns[count - 1 :], strict=True))
+        others = iter(
+            zip(range(count, len(samples)), transit.revolutions[count - 1 :], strict=True)
+        )
         for side, (_, middle, _) in enumerate(transit.windows):
             if transit.apart[side]:
                 other, turns = next(others)

@@ -6,4 +6,4 @@ Imports: `app.document`, `app.motion.inbetweens`.
 """
 
 from app.motion.tracing.motion_paths import MotionPaths as MotionPaths, trace_paths as trace_paths
-from app.motion.tracing.tracked_points import TrackedPoints as TrackedPoints
+from app.motion.tracing.point_trails import PointTrails as PointTrails

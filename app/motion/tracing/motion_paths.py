@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.document import Clip
-from app.motion.inbetweens import Carried, PoseSampler
-from app.motion.tracing.tracked_points import TrackedPoints
+from app.motion.inbetweens import ParentMotion, PoseSampler
+from app.motion.tracing.point_trails import PointTrails
 from engine.arrays import Complexes, Indices, freeze
 
 MOST = 1000  # frames that are traced; of longer animations every second, third …
@@ -18,15 +18,15 @@ class MotionPaths:
 
     clip: Clip
     frames: Indices  # intp (f,)
-    places: Complexes  # complex128 (f, h): Of each handle, on the layer by itself
-    tracked: TrackedPoints | None  # of the worker alone; None where there are no handles
+    positions: Complexes  # complex128 (f, h): Of each handle, on the layer by itself
+    trails: PointTrails | None  # of the worker alone; None where there are no handles
 
 
 def trace_paths(
     clip: Clip,
     earlier: MotionPaths | None = None,
     sibling: PoseSampler | None = None,
-    carried: Carried | None = None,
+    carried: ParentMotion | None = None,
 ) -> MotionPaths:
     """Work out where a clip's handles are in all frames; exactly, since they are few points.
 
@@ -44,7 +44,7 @@ def trace_paths(
     points = np.array([handle.position for handle in clip.layer.handles], dtype=np.complex128)
     tracked, places = None, np.empty((len(frames), 0), dtype=np.complex128)
     if len(points):
-        known = earlier.tracked if earlier else None
-        tracked = TrackedPoints(clip, points, sibling, known, carried)
+        known = earlier.trails if earlier else None
+        tracked = PointTrails(clip, points, sibling, known, carried)
         places = np.array([tracked.at(float(frame)).positions for frame in frames])
-    return MotionPaths(clip=clip, frames=freeze(frames), places=freeze(places), tracked=tracked)
+    return MotionPaths(clip=clip, frames=freeze(frames), positions=freeze(places), trails=tracked)

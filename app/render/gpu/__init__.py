@@ -11,11 +11,11 @@ from app.render.gpu.context import (
     Context as Context,
     GlError as GlError,
     create_context as create_context,
+    describe_graphics as describe_graphics,
     finish_drawing as finish_drawing,
-    graphics_in_words as graphics_in_words,
     is_software as is_software,
     largest_size as largest_size,
-    probe as probe,
+    probe_backend as probe_backend,
     window_context as window_context,
 )
 from app.render.gpu.mesh import (
@@ -23,7 +23,7 @@ from app.render.gpu.mesh import (
     PosedMesh as PosedMesh,
     PositionBuffer as PositionBuffer,
     border_edges as border_edges,
-    singles as singles,
+    to_float32_points as to_float32_points,
 )
 from app.render.gpu.picture import GpuPicture as GpuPicture
 from app.render.gpu.programs import (

@@ -102,7 +102,7 @@ def is_software(context: moderngl.Context) -> bool:
     return any(name in renderer for name in ("llvmpipe", "softpipe", "swiftshader", "swr"))
 
 
-def graphics_in_words(context: moderngl.Context) -> str:
+def describe_graphics(context: moderngl.Context) -> str:
     """Return what draws, by its own name, and the version of OpenGL."""
     return f"{context.info['GL_RENDERER']}, OpenGL {context.info['GL_VERSION']}"
 
@@ -117,7 +117,7 @@ def finish_drawing(context: moderngl.Context) -> None:
     context.finish()
 
 
-def probe(backend: Backend) -> BackendReport:
+def probe_backend(backend: Backend) -> BackendReport:
     """Find out what a backend offers by making a context and letting it go again."""
     try:
         context = _create(backend)

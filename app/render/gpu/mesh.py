@@ -16,7 +16,7 @@ Attribute = tuple[moderngl.Buffer, str, str]
 """A buffer, its format, and the attribute of the shader that it feeds."""
 
 
-def singles(points: Complexes) -> Singles:
+def to_float32_points(points: Complexes) -> Singles:
     """Return points (v,) as the float32 (v, 2) that are uploaded."""
     return points.astype(np.complex64).view(np.float32).reshape(-1, 2)
 

@@ -41,9 +41,9 @@ class SeriesBuffer(VertexSource):
     def __init__(
         self, context: moderngl.Context, count: int, rows: int, *, seam: Seam | None = None
     ) -> None:
-        if rows > most_rows(context):
+        if rows > max_series_rows(context):
             raise LissomError(
-                f"this machine's graphics take {most_rows(context)} rows of a series, not {rows}"
+                f"this machine's graphics take {max_series_rows(context)} rows of a series, not {rows}"
             )
         pairs = (rows + 1) // 2
         buffer = context.buffer(reserve=16 * pairs * count, dynamic=True)
@@ -87,6 +87,6 @@ class SeriesBuffer(VertexSource):
         self._piece = piece
 
 
-def most_rows(context: moderngl.Context) -> int:
+def max_series_rows(context: moderngl.Context) -> int:
     """Return how many rows of a series a shader of this context takes."""
     return 2 * (int(context.info["GL_MAX_VERTEX_ATTRIBS"]) - _RESERVED)

@@ -5,7 +5,7 @@ Out: what it says of each layer, checked.
 Imports: `app.document`, `app.storage`.
 """
 
-from app.solving.script.layers import ScriptJoint as ScriptJoint
+from app.solving.script.layers import ScriptAttachment as ScriptAttachment
 from app.solving.script.pose_script import (
     LayerScript as LayerScript,
     PoseKey as PoseKey,

@@ -9,9 +9,15 @@ from dataclasses import dataclass
 from math import radians
 from typing import Any, TypeVar
 
-from app.document import CameraKey, MoveKey, OpacityKey
+from app.document import CameraKey, OpacityKey, TransformKey
 from app.errors import LissomError
-from app.solving.script.fields import fields_in, frame_of, made_of, passage_of, require_order
+from app.solving.script.fields import (
+    build_value,
+    check_frame_order,
+    read_easing_and_tangent,
+    read_fields,
+    read_frame,
+)
 from app.storage import (
     JsonObject,
     as_flag,
@@ -21,24 +27,24 @@ from app.storage import (
     as_point,
     as_text,
     as_whole,
-    shown,
+    repr_for_error,
 )
 
-CHOICE_FIELDS = ("name", "layers", "keys")
-JOINT_FIELDS = ("to", "at", "turn", "frame", "keep")
-WAY_FIELDS = ("frame", "ease", "passing")
-CAMERA_FIELDS = (*WAY_FIELDS, "centre", "zoom", "turn")
-MOVE_FIELDS = (*WAY_FIELDS, "shift", "turn")
+SWITCH_GROUP_FIELDS = ("name", "layers", "keys")
+ATTACHMENT_FIELDS = ("to", "at", "turn", "frame", "keep")
+TANGENT_FIELDS = ("frame", "ease", "passing")
+CAMERA_FIELDS = (*TANGENT_FIELDS, "centre", "zoom", "turn")
+TRANSFORM_FIELDS = (*TANGENT_FIELDS, "shift", "turn")
 # Where a layer comes to lie beside another one, and whether that is in front.
 SIDES = {"in_front_of": True, "behind": False}
 
-Key = TypeVar("Key", CameraKey, MoveKey)
+Key = TypeVar("Key", CameraKey, TransformKey)
 ZOOM_NOT_POSITIVE = "{where}.zoom must be above 0, not {zoom:g}"
 NO_KEYS = "{where}.keys must be a list of at least one key"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ScriptJoint:
+class ScriptAttachment:
     """The layer that a layer hangs on from a frame on, and where the joint is as it was drawn."""
 
     to: str | None  # None lets it go
@@ -49,7 +55,7 @@ class ScriptJoint:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ScriptChoice:
+class ScriptSwitchGroup:
     """Layers that take turns, by their names, and which is seen from which frame on."""
 
     name: str
@@ -57,17 +63,17 @@ class ScriptChoice:
     turns: tuple[tuple[int, str], ...] = ()
 
 
-def parse_joints(content: object, where: str) -> tuple[ScriptJoint, ...]:
+def parse_attachments(content: object, where: str) -> tuple[ScriptAttachment, ...]:
     """Return the joints of a layer: one, or several from one frame to the next."""
     if not isinstance(content, list):
         return (_joint(content, where),)
     joints = tuple(_joint(each, f"{where}[{index}]") for index, each in enumerate(content))
-    require_order([joint.frame for joint in joints], f"{where} is")
+    check_frame_order([joint.frame for joint in joints], f"{where} is")
     return joints
 
 
-def _joint(content: object, where: str) -> ScriptJoint:
-    joint = fields_in(content, where, JOINT_FIELDS)
+def _joint(content: object, where: str) -> ScriptAttachment:
+    joint = read_fields(content, where, ATTACHMENT_FIELDS)
     keeps = as_flag(joint.get("keep", False), f"{where}.keep")
     if joint["to"] is None:
         for name in ("at", "turn"):
@@ -75,26 +81,28 @@ def _joint(content: object, where: str) -> ScriptJoint:
                 raise LissomError(f"{where} lets go, so that it has no {name}; leave that out")
     to = None if joint["to"] is None else as_text(joint["to"], f"{where}.to")
     at = None if to is None or (keeps and "at" not in joint) else joint["at"]
-    return ScriptJoint(
+    return ScriptAttachment(
         to=to,
         at=None if at is None else as_point(at, f"{where}.at"),
         turns=as_flag(joint.get("turn", True), f"{where}.turn"),
-        frame=frame_of(joint, where) if "frame" in joint else 0,
+        frame=read_frame(joint, where) if "frame" in joint else 0,
         keeps=keeps,
     )
 
 
-def parse_visible(content: object, where: str) -> tuple[tuple[int, bool], ...]:
+def parse_visibility(content: object, where: str) -> tuple[tuple[int, bool], ...]:
     """Return from which frames on a layer is seen, or is not."""
     switches = [
         (frame, as_flag(visible, at))
         for at, frame, visible in _from_frames(content, where, "true or false")
     ]
-    require_order([frame for frame, _ in switches], f"{where} is")
+    check_frame_order([frame for frame, _ in switches], f"{where} is")
     return tuple(switches)
 
 
-def parse_choices(script: JsonObject, switched: Sequence[str]) -> tuple[ScriptChoice, ...]:
+def parse_switch_groups(
+    script: JsonObject, switched: Sequence[str]
+) -> tuple[ScriptSwitchGroup, ...]:
     """Return the choices of a script.
 
     Parameters
@@ -120,8 +128,8 @@ def parse_choices(script: JsonObject, switched: Sequence[str]) -> tuple[ScriptCh
     return tuple(choices)
 
 
-def _choice(content: object, where: str) -> ScriptChoice:
-    fields = fields_in(content, where, CHOICE_FIELDS)
+def _choice(content: object, where: str) -> ScriptSwitchGroup:
+    fields = read_fields(content, where, SWITCH_GROUP_FIELDS)
     layers = tuple(
         as_text(layer, f"{where}.layers") for layer in as_list(fields["layers"], f"{where}.layers")
     )
@@ -136,15 +144,15 @@ def _choice(content: object, where: str) -> ScriptChoice:
         if turn[1] not in layers:
             raise LissomError(f"{at} shows {turn[1]!r}, which is not among its layers")
         turns.append(turn)
-    require_order([frame for frame, _ in turns], f"{where}.keys are")
+    check_frame_order([frame for frame, _ in turns], f"{where}.keys are")
     name = as_text(fields["name"], f"{where}.name").strip()
     if not name:
         raise LissomError(f"{where}.name is empty, and a choice needs a name")
-    return ScriptChoice(name=name, layers=layers, turns=tuple(turns))
+    return ScriptSwitchGroup(name=name, layers=layers, turns=tuple(turns))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ScriptPlacing:
+class ScriptDrawOrder:
     """From a frame on a layer lies right in front of another one, by its name, or behind it."""
 
     frame: int
@@ -159,7 +167,7 @@ def parse_camera(content: object) -> tuple[CameraKey, ...]:
         zoom = as_number(read.get("zoom", 1.0), f"{where}.zoom")
         if not zoom > 0:
             raise LissomError(ZOOM_NOT_POSITIVE.format(where=where, zoom=zoom))
-        return made_of(
+        return build_value(
             CameraKey,
             where,
             centre=as_point(read["centre"], f"{where}.centre"),
@@ -168,70 +176,70 @@ def parse_camera(content: object) -> tuple[CameraKey, ...]:
             **way,
         )
 
-    return _moving_keys(content, "camera", CAMERA_FIELDS, key)
+    return _parse_keys(content, "camera", CAMERA_FIELDS, key)
 
 
-def parse_movement(content: object, where: str) -> tuple[MoveKey, ...]:
+def parse_transform_keys(content: object, where: str) -> tuple[TransformKey, ...]:
     """Return the keys by which a layer is moved as a whole."""
 
-    def key(read: JsonObject, where: str, **way: Any) -> MoveKey:
-        return made_of(
-            MoveKey,
+    def key(read: JsonObject, where: str, **way: Any) -> TransformKey:
+        return build_value(
+            TransformKey,
             where,
             shift=as_point(read.get("shift", [0.0, 0.0]), f"{where}.shift"),
             turn=radians(as_number(read.get("turn", 0.0), f"{where}.turn")),
             **way,
         )
 
-    return _moving_keys(content, where, MOVE_FIELDS, key)
+    return _parse_keys(content, where, TRANSFORM_FIELDS, key)
 
 
-def _moving_keys(
+def _parse_keys(
     content: object, where: str, fields: tuple[str, ...], make: Callable[..., Key]
 ) -> tuple[Key, ...]:
-    entries = as_list(fields_in(content, where, ("keys",))["keys"], f"{where}.keys")
+    entries = as_list(read_fields(content, where, ("keys",))["keys"], f"{where}.keys")
     if not entries:
         raise LissomError(NO_KEYS.format(where=where))
     keys = []
     for index, entry in enumerate(entries):
         at = f"{where}.keys[{index}]"
-        read = fields_in(entry, at, fields)
-        easing, passing = passage_of(read, at)
-        keys.append(make(read, at, frame=frame_of(read, at), easing=easing, passing=passing))
-    require_order([key.frame for key in keys], f"{where}.keys are")
+        read = read_fields(entry, at, fields)
+        easing, passing = read_easing_and_tangent(read, at)
+        keys.append(make(read, at, frame=read_frame(read, at), easing=easing, passing=passing))
+    check_frame_order([key.frame for key in keys], f"{where}.keys are")
     return tuple(keys)
 
 
 def parse_opacity(content: object, where: str) -> float | tuple[OpacityKey, ...]:
     """Return how opaque a layer is: a number, or keys."""
     if not isinstance(content, list):
-        return made_of(OpacityKey, where, frame=0, opacity=as_number(content, where)).opacity
+        return build_value(OpacityKey, where, frame=0, opacity=as_number(content, where)).opacity
     if not content:
         raise LissomError(f"{where} must be a number, or a list of at least one key")
     keys = tuple(
-        made_of(OpacityKey, at, frame=frame, opacity=as_number(opacity, at))
+        build_value(OpacityKey, at, frame=frame, opacity=as_number(opacity, at))
         for at, frame, opacity in _from_frames(content, where, "a number")
     )
-    require_order([key.frame for key in keys], f"{where} is")
+    check_frame_order([key.frame for key in keys], f"{where} is")
     return keys
 
 
-def parse_order(content: object, where: str) -> tuple[ScriptPlacing, ...]:
+def parse_draw_order(content: object, where: str) -> tuple[ScriptDrawOrder, ...]:
     """Return beside which layers a layer lies."""
     placings = []
     for at, frame, place in _from_frames(content, where, "where the layer lies, or null"):
         if place is None:
-            placings.append(ScriptPlacing(frame=frame, beside=None))
+            placings.append(ScriptDrawOrder(frame=frame, beside=None))
             continue
         read = as_object(place, at)
         (side, *others) = read or {"": ""}
         if others or side not in SIDES:
             raise LissomError(
-                f"{at} must have in_front_of or behind, with a layer, not {shown(place)}"
+                f"{at} must have in_front_of or behind, with a layer, not {repr_for_error(place)}"
             )
         beside = as_text(read[side], f"{at}.{side}")
-        placings.append(ScriptPlacing(frame=frame, beside=beside, in_front=SIDES[side]))
-    require_order([placing.frame for placing in placings], f"{where} is")
+        placings.append(ScriptDrawOrder(frame=frame, beside=beside, in_front=SIDES[side]))
+    check_frame_order([placing.frame for placing in placings], f"{where} is")
     return tuple(placings)
 
 
@@ -239,7 +247,7 @@ def parse_canvas(content: object) -> tuple[int, int]:
     """Return the size of the canvas."""
     sides = as_list(content, "canvas")
     if len(sides) != 2:
-        raise LissomError(f"canvas must be width and height, not {shown(content)}")
+        raise LissomError(f"canvas must be width and height, not {repr_for_error(content)}")
     width, height = (as_whole(side, "canvas") for side in sides)
     return width, height
 
@@ -251,6 +259,6 @@ def _from_frames(content: object, where: str, what: str) -> list[tuple[str, int,
         at = f"{where}[{index}]"
         pair = as_list(entry, at)
         if len(pair) != 2:
-            raise LissomError(f"{at} must be a frame and {what}, not {shown(pair)}")
-        found.append((at, frame_of({"frame": pair[0]}, at), pair[1]))
+            raise LissomError(f"{at} must be a frame and {what}, not {repr_for_error(pair)}")
+        found.append((at, read_frame({"frame": pair[0]}, at), pair[1]))
     return found

@@ -5,17 +5,17 @@ from dataclasses import dataclass
 
 from app.document import Bone
 from app.errors import LissomError
-from app.solving.script.fields import fields_in, require_handle
+from app.solving.script.fields import check_handle_name, read_fields
 from app.storage import as_list, as_number, as_object, as_point, as_text
 from engine.maps import SOFTEST, STIFFEST
 
-PART_FIELDS = ("around", "radius", "amount")
+REGION_FIELDS = ("around", "radius", "amount")
 BONE_FIELDS = ("from", "to", "amount")
 ROUNDED = 0.001  # 1/30 may be written as .0333
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class StiffPart:
+class StiffRegion:
     """What is painted within a radius around a point of the canvas, in pixels."""
 
     around: complex
@@ -25,7 +25,7 @@ class StiffPart:
 
 def parse_material(
     content: object, where: str, handles: Sequence[str]
-) -> tuple[tuple[StiffPart, ...], tuple[Bone, ...]]:
+) -> tuple[tuple[StiffRegion, ...], tuple[Bone, ...]]:
     """Return the parts and the bones; these tell handles by their places among `handles`."""
     parts, bones = [], []
     for index, entry in enumerate(as_list(content, where)):
@@ -37,24 +37,24 @@ def parse_material(
     return tuple(parts), tuple(bones)
 
 
-def _part(content: object, where: str) -> StiffPart:
-    part = fields_in(content, where, PART_FIELDS)
+def _part(content: object, where: str) -> StiffRegion:
+    part = read_fields(content, where, REGION_FIELDS)
     radius = as_number(part["radius"], f"{where}.radius")
     if not radius > 0:
         raise LissomError(f"{where}.radius must be above 0, not {radius:g}")
     around = as_point(part["around"], f"{where}.around")
-    return StiffPart(around=around, radius=radius, amount=_amount(part["amount"], where))
+    return StiffRegion(around=around, radius=radius, amount=_amount(part["amount"], where))
 
 
 def _bone(content: object, where: str, handles: Sequence[str]) -> Bone:
-    bone = fields_in(content, where, BONE_FIELDS)
+    bone = read_fields(content, where, BONE_FIELDS)
     names = [as_text(bone[end], f"{where}.{end}") for end in ("from", "to")]
     for name in names:
-        require_handle(name, handles, where)
+        check_handle_name(name, handles, where)
     if names[0] == names[1]:
         raise LissomError(f"{where} leads from {names[0]!r} to itself")
     first, second = map(list(handles).index, names)
-    return Bone(ends=(first, second), amount=_amount(bone["amount"], where))
+    return Bone(ends=(first, second), stiffness=_amount(bone["amount"], where))
 
 
 def _amount(content: object, where: str) -> float:

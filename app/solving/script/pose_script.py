@@ -15,36 +15,36 @@ from app.document import (
     CameraKey,
     Cycle,
     Easing,
-    MoveKey,
     OpacityKey,
-    Passing,
     Spring,
+    TangentMode,
     Track,
+    TransformKey,
     Variant,
 )
 from app.errors import LissomError
-from app.solving.script.clocks import parse_cycles, parse_springs, parse_tracks, require_rounds
 from app.solving.script.fields import (
-    fields_in,
-    frame_of,
-    passage_of,
-    require_handle,
-    require_order,
+    check_frame_order,
+    check_handle_name,
+    read_easing_and_tangent,
+    read_fields,
+    read_frame,
 )
 from app.solving.script.layers import (
-    ScriptChoice,
-    ScriptJoint,
-    ScriptPlacing,
+    ScriptAttachment,
+    ScriptDrawOrder,
+    ScriptSwitchGroup,
+    parse_attachments,
     parse_camera,
     parse_canvas,
-    parse_choices,
-    parse_joints,
-    parse_movement,
+    parse_draw_order,
     parse_opacity,
-    parse_order,
-    parse_visible,
+    parse_switch_groups,
+    parse_transform_keys,
+    parse_visibility,
 )
-from app.solving.script.material import StiffPart, parse_material
+from app.solving.script.material import StiffRegion, parse_material
+from app.solving.script.tracks import check_loop_periods, parse_cycles, parse_springs, parse_tracks
 from app.storage import (
     JsonObject,
     as_flag,
@@ -54,7 +54,7 @@ from app.storage import (
     as_point,
     as_text,
     load_json,
-    shown,
+    repr_for_error,
 )
 from engine.maps import Bounds
 
@@ -80,7 +80,7 @@ class PoseKey:
     targets: Mapping[str, complex]
     pull: float = inf  # how strongly each of them is pulled at most, over the shape's diameter
     ease: Easing = LINEAR
-    passing: Passing = Passing.THROUGH
+    passing: TangentMode = TangentMode.SMOOTH
     fronts: Mapping[str, float] = field(default_factory=dict)
     # By how much the shape turns at handles, in radians; others turn as they did before.
     turns: Mapping[str, float] = field(default_factory=dict)
@@ -114,14 +114,14 @@ class LayerScript:
     tracks: tuple[Track, ...] = ()
     springs: tuple[Spring, ...] = ()
     cycles: tuple[Cycle, ...] = ()
-    parts: tuple[StiffPart, ...] = ()
+    parts: tuple[StiffRegion, ...] = ()
     bones: tuple[Bone, ...] = ()
-    attach: tuple[ScriptJoint, ...] = ()
+    attach: tuple[ScriptAttachment, ...] = ()
     # When it is seen; None leaves that to the drawing.
     visible: tuple[tuple[int, bool], ...] | None = None
-    movement: tuple[MoveKey, ...] = ()
+    movement: tuple[TransformKey, ...] = ()
     opacity: float | tuple[OpacityKey, ...] | None = None  # None leaves that to the drawing
-    order: tuple[ScriptPlacing, ...] = ()
+    order: tuple[ScriptDrawOrder, ...] = ()
 
     @property
     def last(self) -> int:
@@ -141,7 +141,7 @@ class PoseScript:
     layers: tuple[LayerScript, ...]
     fps: float
     loop: bool
-    choices: tuple[ScriptChoice, ...] = ()
+    choices: tuple[ScriptSwitchGroup, ...] = ()
     camera: tuple[CameraKey, ...] = ()
     canvas: tuple[int, int] | None = None  # None takes the drawing's size
 
@@ -181,15 +181,15 @@ def parse_pose_script(content: object) -> PoseScript:
     lacking = [name for name in ("choices", "attach", "visible", "order") if name in read]
     if lacking and "layers" not in read:
         raise LissomError(f'{lacking[0]} needs "layers", which say what each layer does')
-    script = fields_in(content, "the script", (*SCENE_FIELDS, *own))
+    script = read_fields(content, "the script", (*SCENE_FIELDS, *own))
     schema = script.get("schema")
     if schema != SCHEMA or isinstance(schema, bool):
-        raise LissomError(WRONG_SCHEMA.format(own=SCHEMA, content=shown(schema)))
+        raise LissomError(WRONG_SCHEMA.format(own=SCHEMA, content=repr_for_error(schema)))
     usual = _options(script, "")
     layers = [] if "layers" in script else [_layer(script, "", usual)]
     for index, entry in enumerate(as_list(script.get("layers", []), "layers")):
         where = f"layers[{index}]."
-        fields = fields_in(entry, where[:-1], LAYER_FIELDS)
+        fields = read_fields(entry, where[:-1], LAYER_FIELDS)
         layers.append(_layer(fields, where, usual))
     names = [layer.layer for layer in layers]
     for name in names:
@@ -201,13 +201,13 @@ def parse_pose_script(content: object) -> PoseScript:
         layers=tuple(layers),
         fps=as_number(script.get("fps", 24.0), "fps"),
         loop=as_flag(script.get("loop", False), "loop"),
-        choices=parse_choices(script, [f.layer for f in layers if f.layer and f.visible]),
+        choices=parse_switch_groups(script, [f.layer for f in layers if f.layer and f.visible]),
         camera=parse_camera(script["camera"]) if script.get("camera") is not None else (),
         canvas=parse_canvas(script["canvas"]) if script.get("canvas") is not None else None,
     )
     for index, layer in enumerate(layers if parsed.loop else ()):
         where = "" if layer.layer is None else f"layers[{index}]."
-        require_rounds(layer.tracks, layer.springs, parsed.last, where)
+        check_loop_periods(layer.tracks, layer.springs, parsed.last, where)
     return parsed
 
 
@@ -224,18 +224,18 @@ def _layer(script: JsonObject, where: str, usual: Mapping[str, Any]) -> LayerScr
     if not isinstance(keys, list) or not keys:
         raise LissomError(f"{where}keys must be a list of at least one key")
     parsed = tuple(_key(key, f"{where}keys[{index}]", handles) for index, key in enumerate(keys))
-    require_order([key.frame for key in parsed], f"{where}keys are")
+    check_frame_order([key.frame for key in parsed], f"{where}keys are")
     if script.get("anchor") is not None:
         own["anchor"] = as_point(script["anchor"], f"{where}anchor")
     if script.get("attach") is not None:
-        own["attach"] = parse_joints(script["attach"], f"{where}attach")
+        own["attach"] = parse_attachments(script["attach"], f"{where}attach")
     if "visible" in script:
-        own["visible"] = parse_visible(script["visible"], f"{where}visible")
+        own["visible"] = parse_visibility(script["visible"], f"{where}visible")
     if script.get("movement") is not None:
-        own["movement"] = parse_movement(script["movement"], f"{where}movement")
+        own["movement"] = parse_transform_keys(script["movement"], f"{where}movement")
     if script.get("opacity") is not None:
         own["opacity"] = parse_opacity(script["opacity"], f"{where}opacity")
-    own["order"] = parse_order(script.get("order", []), f"{where}order")
+    own["order"] = parse_draw_order(script.get("order", []), f"{where}order")
     own["tracks"] = parse_tracks(script.get("tracks", []), f"{where}tracks", tuple(handles))
     own["springs"] = parse_springs(script.get("springs", []), f"{where}springs", tuple(handles))
     own["cycles"] = parse_cycles(
@@ -250,7 +250,7 @@ def _layer(script: JsonObject, where: str, usual: Mapping[str, Any]) -> LayerScr
 def _handle(content: object, where: str) -> ScriptHandle:
     if isinstance(content, list):
         return ScriptHandle(at=as_point(content, where))
-    handle = fields_in(content, where, HANDLE_FIELDS)
+    handle = read_fields(content, where, HANDLE_FIELDS)
     extent = handle.get("extent")
     return ScriptHandle(
         at=as_point(handle["at"], f"{where}.at"),
@@ -267,12 +267,14 @@ def _options(script: Mapping[str, Any], where: str) -> dict[str, Any]:
         if script["variant"] not in VARIANTS:
             raise LissomError(
                 NO_VARIANT.format(
-                    where=where, variants=", ".join(VARIANTS), content=shown(script["variant"])
+                    where=where,
+                    variants=", ".join(VARIANTS),
+                    content=repr_for_error(script["variant"]),
                 )
             )
         options["variant"] = Variant(script["variant"])
     if "bounds" in script:
-        bounds = fields_in(script["bounds"], f"{where}bounds", BOUND_FIELDS)
+        bounds = read_fields(script["bounds"], f"{where}bounds", BOUND_FIELDS)
         given = {name: as_number(value, f"{where}bounds.{name}") for name, value in bounds.items()}
         options["bounds"] = replace(NATURAL.bounds, **given)
     if "still" in script:
@@ -281,7 +283,7 @@ def _options(script: Mapping[str, Any], where: str) -> dict[str, Any]:
 
 
 def _key(content: object, where: str, handles: Mapping[str, ScriptHandle]) -> PoseKey:
-    key = fields_in(content, where, KEY_FIELDS)
+    key = read_fields(content, where, KEY_FIELDS)
     targets = {
         name: as_point(place, f"{where}.targets.{name}")
         for name, place in as_object(key.get("targets", {}), f"{where}.targets").items()
@@ -295,13 +297,13 @@ def _key(content: object, where: str, handles: Mapping[str, ScriptHandle]) -> Po
         for name, turn in as_object(key.get("turn", {}), f"{where}.turn").items()
     }
     for name in (*targets, *fronts, *turns):
-        require_handle(name, handles, where)
+        check_handle_name(name, handles, where)
     pull = as_number(key["pull"], f"{where}.pull") if "pull" in key else inf
     if not pull > 0:
         raise LissomError(f"{where}.pull must be positive, not {pull:g}")
-    ease, passing = passage_of(key, where)
+    ease, passing = read_easing_and_tangent(key, where)
     return PoseKey(
-        frame=frame_of(key, where),
+        frame=read_frame(key, where),
         targets=targets,
         pull=pull,
         ease=ease,

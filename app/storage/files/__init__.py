@@ -13,13 +13,13 @@ from app.storage.files.arrays import (
 from app.storage.files.atomic import (
     atomic_file as atomic_file,
     atomic_files as atomic_files,
-    clear_abandoned as clear_abandoned,
-    passing_picture as passing_picture,
+    remove_abandoned_files as remove_abandoned_files,
     sync_folder as sync_folder,
+    temporary_picture as temporary_picture,
     write_atomically as write_atomically,
 )
 from app.storage.files.cancellation import Cancellation as Cancellation
-from app.storage.files.hold import Hold as Hold, HoldError as HoldError
+from app.storage.files.file_lock import FileLock as FileLock, FileLockedError as FileLockedError
 from app.storage.files.locks import is_locked as is_locked, lock as lock
 from app.storage.files.outputs import (
     IS_FILE as IS_FILE,
@@ -32,8 +32,8 @@ from app.storage.files.outputs import (
 from app.storage.files.reading import (
     DAMAGED_ZIP as DAMAGED_ZIP,
     MOST_UNPACKED as MOST_UNPACKED,
-    opened_file as opened_file,
-    opened_zip as opened_zip,
+    open_file as open_file,
+    open_zip as open_zip,
     read_file as read_file,
     tail_digest as tail_digest,
 )

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from app.errors import LissomError
 from app.storage.files.atomic import write_atomically
-from app.storage.files.reading import DAMAGED_ZIP, MOST_UNPACKED, opened_file, opened_zip
+from app.storage.files.reading import DAMAGED_ZIP, MOST_UNPACKED, open_file, open_zip
 
 HEADERS = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
 TEXT = "US"  # as NumPy tells kinds of arrays by letters
@@ -45,7 +45,7 @@ def read_arrays(
         required array.
     """
     try:
-        with opened_file(path) as (file, size), opened_zip(file) as archive:
+        with open_file(path) as (file, size), open_zip(file) as archive:
             members = _members(archive, path, size, required, optional)
             return {name: _read_array(archive, member) for name, member in members.items()}
     except OSError as error:

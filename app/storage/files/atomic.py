@@ -32,7 +32,7 @@ NO_ROOM = {errno.ENOSPC, errno.EFBIG, getattr(errno, "EDQUOT", errno.ENOSPC)}
 NOT_ALLOWED = {errno.EACCES, errno.EPERM, errno.EROFS}
 
 
-class NoRoomError(LissomError):
+class DiskFullError(LissomError):
     """There is no room for a file; the message tells how much it takes and how much is free.
 
     Parameters
@@ -95,12 +95,12 @@ def write_atomically(
     try:
         with atomic_files(path, cancellation=cancellation, is_private=is_private) as (file,):
             return write(file)
-    except NoRoomError as error:
+    except DiskFullError as error:
         with suppress(OSError):
             whole = io.BytesIO()
             write(whole)
             needed = len(whole.getbuffer())
-            raise NoRoomError(path, error.cause, needed, is_whole=True) from error
+            raise DiskFullError(path, error.cause, needed, is_whole=True) from error
         raise
 
 
@@ -147,13 +147,13 @@ def atomic_files(
                 modes.append(mode)
                 files.append(opened.enter_context(os.fdopen(descriptor, "w+b")))
                 if cancellation is not None:
-                    cancellation.begin(part)
+                    cancellation.add_part(part)
             yield files
             for file in files:
                 file.flush()
                 os.fsync(file.fileno())
             if cancellation is not None:
-                cancellation.settle()
+                cancellation.commit()
             for part, mode in zip(parts, modes, strict=True):
                 if mode is not None:
                     part.chmod(mode)
@@ -170,7 +170,7 @@ def atomic_files(
             part.unlink(missing_ok=True)
 
 
-def clear_abandoned(folder: Path) -> None:
+def remove_abandoned_files(folder: Path) -> None:
     """Remove the files in a folder that killed processes left half written.
 
     What another process still writes stays, and so does all where the disk knows no locks.
@@ -185,7 +185,7 @@ def clear_abandoned(folder: Path) -> None:
             _remove_abandoned(part)
 
 
-def passing_picture(folder: Path) -> Path:
+def temporary_picture(folder: Path) -> Path:
     """Return a new name for a picture in a folder that is soon removed.
 
     If it is not, the next start removes it, like files half written, unless it is locked.
@@ -206,7 +206,7 @@ def sync_folder(folder: Path) -> None:
 @cache
 def _clear_once(folder: Path) -> None:
     """Clear a folder when this process writes there first: an export has thousands of files."""
-    clear_abandoned(folder)
+    remove_abandoned_files(folder)
 
 
 def _remove_abandoned(part: Path) -> None:
@@ -264,7 +264,7 @@ def _refusal(path: Path, error: OSError, parts: Sequence[Path]) -> LissomError:
     reason = error.strerror or str(error)
     if error.errno in NO_ROOM:
         written = sum(part.stat().st_size for part in parts)
-        return NoRoomError(path, error, written)
+        return DiskFullError(path, error, written)
     if error.errno in NOT_ALLOWED:
         reason += f": its folder {path.parent} may not be written to; choose another one"
     return LissomError(f"cannot write {path}: {reason}")

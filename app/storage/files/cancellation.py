@@ -17,7 +17,7 @@ class Cancellation:
         self._lock = threading.Lock()
         self._parts: set[Path] = set()
         self._is_cancelled = False
-        self._is_settled = False
+        self._is_committed = False
 
     def cancel(self) -> bool:
         """Let no more files take their places; return whether none has done so yet.
@@ -29,9 +29,9 @@ class Cancellation:
             for part in self._parts:
                 with suppress(OSError):  # Windows leaves it to whoever has it open
                     part.unlink(missing_ok=True)
-            return not self._is_settled
+            return not self._is_committed
 
-    def begin(self, part: Path) -> None:
+    def add_part(self, part: Path) -> None:
         """Note the hidden file in which a file is written until it is whole.
 
         Raises
@@ -54,7 +54,7 @@ class Cancellation:
         if self._is_cancelled:
             raise LissomError(CANCELLED)
 
-    def settle(self) -> None:
+    def commit(self) -> None:
         """Let the files that were begun take their places, whatever comes.
 
         Raises
@@ -66,4 +66,4 @@ class Cancellation:
             if self._parts:
                 self.check()
             self._parts.clear()
-            self._is_settled = True
+            self._is_committed = True

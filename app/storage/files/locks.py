@@ -15,7 +15,7 @@ else:
     import fcntl
 
 # What the system says of a lock that is held; other errors mean that it knows no locks there.
-HELD = (BlockingIOError, PermissionError)
+LOCK_HELD_ERRORS = (BlockingIOError, PermissionError)
 # Not through a link that somebody else put there, and not until somebody writes to a pipe.
 PLAIN = getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
 # The byte that is locked on Windows, the last one that can be: nobody else may read it there, and
@@ -51,13 +51,13 @@ def lock(descriptor: int) -> bool:
                 msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
         else:
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except HELD:
+    except LOCK_HELD_ERRORS:
         return False
     return True
 
 
 @contextmanager
-def beyond_content(descriptor: int) -> Iterator[None]:
+def at_lock_byte(descriptor: int) -> Iterator[None]:
     """Go to the byte of an open file that is locked, and back again after the `with` block."""
     place = os.lseek(descriptor, 0, os.SEEK_CUR)
     os.lseek(descriptor, LOCKED_BYTE, os.SEEK_SET)

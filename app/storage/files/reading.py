@@ -45,7 +45,7 @@ class OpenFile(NamedTuple):
 
 
 @contextmanager
-def opened_file(path: Path) -> Iterator[OpenFile]:
+def open_file(path: Path) -> Iterator[OpenFile]:
     """Lend a file for reading: the one door through which files that people name come in.
 
     Raises
@@ -68,7 +68,7 @@ def opened_file(path: Path) -> Iterator[OpenFile]:
 
 
 @contextmanager
-def opened_zip(file: IO[bytes]) -> Iterator[zipfile.ZipFile]:
+def open_zip(file: IO[bytes]) -> Iterator[zipfile.ZipFile]:
     """Open a zip file whose members are packed as nearly all are.
 
     Raises
@@ -103,7 +103,7 @@ def read_file(path: Path, *, largest: int = LARGEST_FILE) -> bytes:
         If the file is missing, unreadable, no ordinary file, or larger than `largest` bytes.
     """
     try:
-        with opened_file(path) as (file, size):
+        with open_file(path) as (file, size):
             if size <= largest:
                 return file.read(size)
     except OSError as error:

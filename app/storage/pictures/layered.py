@@ -10,9 +10,16 @@ from typing import NamedTuple
 import numpy as np
 from PIL import Image
 
-from app.document import DEEPEST, BlendMode, Group, paths_to
-from app.errors import NOTHING_TOLD, ImportSummary, LissomError, Told, shortened, shown_name
-from app.storage.pictures.cores import require_memory, side_by_side
+from app.document import MAX_GROUP_DEPTH, BlendMode, Group, ancestor_paths
+from app.errors import (
+    EMPTY_IMPORT_LOG,
+    ImportLog,
+    LissomError,
+    NoticeCollector,
+    display_name,
+    shortened,
+)
+from app.storage.pictures.parallel import require_memory, run_parallel
 from app.storage.pictures.picture import Picture
 from engine.arrays import readonly
 
@@ -72,18 +79,18 @@ class LayeredPicture:
         Width and height of the canvas in pixels.
     layers : tuple of ImportedLayer
         From the one behind all others to the one in front; there is always one.
-    summary : ImportSummary
+    summary : ImportLog
     groups : tuple of Group
         Those of the layers, each after the one that it is in.
     """
 
     size: tuple[int, int]
     layers: tuple[ImportedLayer, ...]
-    summary: ImportSummary = NOTHING_TOLD
+    summary: ImportLog = EMPTY_IMPORT_LOG
     groups: tuple[Group, ...] = ()
 
 
-class Names:
+class UniqueNames:
     """Names as they are given out: one that is taken gets the next number that is free.
 
     However many of them are alike, each takes as little time.
@@ -93,7 +100,7 @@ class Names:
         self._taken: set[str] = set()
         self._next: dict[str, int] = {}
 
-    def free(self, name: str) -> str:
+    def claim(self, name: str) -> str:
         """Take a name, with a number where it needs one, and return it."""
         free, number = name, self._next.get(name, 2)
         while free in self._taken:
@@ -103,11 +110,11 @@ class Names:
         return free
 
 
-class Groups:
+class GroupPaths:
     """The groups of a drawing as they are found, each with a path of its own."""
 
     def __init__(self) -> None:
-        self._names = Names()
+        self._names = UniqueNames()
         self._found: dict[str, Group] = {}
 
     def add(self, around: str, group: Group) -> str:
@@ -118,16 +125,16 @@ class Groups:
         LissomError
             If it lies too deep in others, there are too many, or its name is too long.
         """
-        if around.count("/") + bool(around) >= DEEPEST:
-            raise LissomError(GROUPS_DEEP.format(most=DEEPEST))
+        if around.count("/") + bool(around) >= MAX_GROUP_DEPTH:
+            raise LissomError(GROUPS_DEEP.format(most=MAX_GROUP_DEPTH))
         if len(self._found) == MOST_GROUPS:
             raise LissomError(
                 f"it has more than {MOST_GROUPS:,} groups, which Lissom does not take: merge some"
             )
         # A slash stands between groups.
-        name = shown_name(group.name).replace("/", "-").strip() or "group"
-        require_short(name)
-        path = self._names.free(f"{around}/{name}" if around else name)
+        name = display_name(group.name).replace("/", "-").strip() or "group"
+        check_name_length(name)
+        path = self._names.claim(f"{around}/{name}" if around else name)
         self._found[path] = replace(group, name=path)
         return path
 
@@ -135,14 +142,14 @@ class Groups:
         """Tell whether a group is seen only where what lies below it is."""
         return self._found[path].clipped
 
-    def of(self, layers: Sequence[ImportedLayer]) -> tuple[Group, ...]:
+    def groups_of(self, layers: Sequence[ImportedLayer]) -> tuple[Group, ...]:
         """Return the groups that these layers are in."""
-        filled = {path for layer in layers for path in paths_to(layer.group)}
+        filled = {path for layer in layers for path in ancestor_paths(layer.group)}
         return tuple(group for path, group in self._found.items() if path in filled)
 
 
-def layered_picture(
-    size: tuple[int, int], found: Sequence[ImportedLayer], groups: Groups, told: Told
+def build_layered_picture(
+    size: tuple[int, int], found: Sequence[ImportedLayer], groups: GroupPaths, told: NoticeCollector
 ) -> LayeredPicture:
     """Return the drawing of the layers that were found, each with a name of its own.
 
@@ -151,34 +158,34 @@ def layered_picture(
     size : tuple of int
     found : sequence of ImportedLayer
         From back to front; those of which nothing is to be seen are left out.
-    groups : Groups
+    groups : GroupPaths
         All of them.
-    told : Told
+    told : NoticeCollector
         About the layers, and added to.
     """
-    kept = _seen(found, groups, told)
+    kept = _drawn_layers(found, groups, told)
     if not kept:
         raise LissomError("it has no layer on which anything is drawn")
     # Layers may share a picture.
     distinct = list({id(layer.picture): layer for layer in kept}.values())
-    made = side_by_side(_trimmed, distinct, (layer.picture.size for layer in distinct))
+    made = run_parallel(_trimmed, distinct, (layer.picture.size for layer in distinct))
     trimmed = {id(layer.picture): each for layer, each in zip(distinct, made, strict=True)}
     kept = [trimmed[id(layer.picture)].of(layer) for layer in kept]
     own = Counter(layer.name for layer in kept)
-    names = Names()
+    names = UniqueNames()
     layers = []
     for layer in kept:
-        require_short(layer.name)
+        check_name_length(layer.name)
         has_twin = layer.group and own[layer.name] > 1
         name = f"{layer.group}/{layer.name}" if has_twin else layer.name
-        layers.append(replace(layer, name=names.free(name)))
+        layers.append(replace(layer, name=names.claim(name)))
     return LayeredPicture(
-        size=size, layers=tuple(layers), summary=told.summary, groups=groups.of(layers)
+        size=size, layers=tuple(layers), summary=told.import_log, groups=groups.groups_of(layers)
     )
 
 
-def _seen(
-    layers: Sequence[ImportedLayer], groups: Groups, told: Told, depth: int = 0
+def _drawn_layers(
+    layers: Sequence[ImportedLayer], groups: GroupPaths, told: NoticeCollector, depth: int = 0
 ) -> list[ImportedLayer]:
     """Return those of some layers, that are in the same groups so deep, of which a pixel is seen.
 
@@ -187,7 +194,7 @@ def _seen(
 
     def unit(layer: ImportedLayer) -> Hashable:
         """Return the group that lies next among these, or the layer."""
-        return (*paths_to(layer.group)[depth : depth + 1], layer)[0]
+        return (*ancestor_paths(layer.group)[depth : depth + 1], layer)[0]
 
     seen: list[ImportedLayer] = []
     empty = ""  # the last thing that clips others, where nothing is drawn on it
@@ -197,9 +204,13 @@ def _seen(
         is_clipped = groups.is_clipped(path) if path else run[0].clipped
         if is_clipped and empty:
             for layer in run:
-                told.note(layer.name, f"left out, since it is clipped by the empty {empty}")
+                told.add_note(layer.name, f"left out, since it is clipped by the empty {empty}")
             continue
-        drawn = _seen(run, groups, told, depth + 1) if path else _if_drawn(run[0], told)
+        drawn = (
+            _drawn_layers(run, groups, told, depth + 1)
+            if path
+            else _layer_unless_blank(run[0], told)
+        )
         if not is_clipped:
             name = f"group {path.rpartition('/')[2]}" if path else f"layer {run[0].name}"
             empty = "" if drawn else name
@@ -207,11 +218,11 @@ def _seen(
     return seen
 
 
-def _if_drawn(layer: ImportedLayer, told: Told) -> list[ImportedLayer]:
+def _layer_unless_blank(layer: ImportedLayer, told: NoticeCollector) -> list[ImportedLayer]:
     """Return a layer, or nothing where it is empty, which is told."""
     is_empty = is_blank(layer.picture)
     if is_empty:
-        told.note(layer.name, EMPTY)
+        told.add_note(layer.name, EMPTY)
     return [] if is_empty else [layer]
 
 
@@ -259,7 +270,7 @@ def encode_png(image: Image.Image) -> bytes:
     return file.getvalue()
 
 
-def require_few(count: int) -> None:
+def check_layer_count(count: int) -> None:
     """Refuse more layers than there is room for, before anything of them is read."""
     if count > MOST_LAYERS:
         raise LissomError(
@@ -267,7 +278,7 @@ def require_few(count: int) -> None:
         )
 
 
-def require_short(name: str) -> None:
+def check_name_length(name: str) -> None:
     """Refuse a name that would be told and shown everywhere, and stands in those of all inside."""
     if len(name) > LONGEST_NAME:
         raise LissomError(
@@ -276,9 +287,9 @@ def require_short(name: str) -> None:
         )
 
 
-def require_room(sizes: Sequence[tuple[int, int]]) -> None:
+def check_memory(sizes: Sequence[tuple[int, int]]) -> None:
     """Refuse more layers, or larger ones, than there is room for, before they are decoded."""
-    require_few(len(sizes))
+    check_layer_count(len(sizes))
     require_memory(sizes)
 
 

@@ -10,19 +10,19 @@ from dataclasses import dataclass, replace
 from math import isfinite
 from xml.etree import ElementTree as ET
 
-from app.document import BlendMode, Group, paths_to
-from app.errors import LissomError, Told, shortened
-from app.storage.files import DAMAGED_ZIP, opened_zip
+from app.document import BlendMode, Group, ancestor_paths
+from app.errors import LissomError, NoticeCollector, shortened
+from app.storage.files import DAMAGED_ZIP, open_zip
 from app.storage.pictures.layered import (
     EMPTY,
-    Groups,
+    GroupPaths,
     ImportedLayer,
     LayeredPicture,
+    build_layered_picture,
+    check_layer_count,
+    check_memory,
     corner_from_top,
     is_blank,
-    layered_picture,
-    require_few,
-    require_room,
 )
 from app.storage.pictures.picture import decode_pictures, stored_size
 
@@ -54,7 +54,7 @@ class _Place:
 def read_openraster(data: bytes) -> LayeredPicture:
     """Read the layers of an OpenRaster file."""
     try:
-        with opened_zip(io.BytesIO(data)) as archive:
+        with open_zip(io.BytesIO(data)) as archive:
             return _read(archive)
     except DAMAGE as error:
         raise LissomError("it is not an OpenRaster file, or it is damaged") from error
@@ -68,10 +68,10 @@ def _read(archive: zipfile.ZipFile) -> LayeredPicture:
     stack = image.find("stack")
     if image.tag != "image" or stack is None:
         raise LissomError("its stack.xml holds no stack of layers")
-    told, groups = Told(), Groups()
+    told, groups = NoticeCollector(), GroupPaths()
     # The stack counts from the front.
     elements = list(_layers(stack, _Place(), groups, told))[::-1]
-    require_few(len(elements))
+    check_layer_count(len(elements))
     sources = []
     for element, _ in elements:
         source = element.get("src", "")
@@ -83,7 +83,7 @@ def _read(archive: zipfile.ZipFile) -> LayeredPicture:
     if sum(archive.getinfo(source).file_size for source in distinct) > 2 * packed + MOST_UNPACKED:
         raise LissomError("its pictures would unpack to more than any drawing")
     members = {source: _member(archive, source, max(1 << 20, packed)) for source in distinct}
-    require_room([stored_size(members[source], source) for source in sources])
+    check_memory([stored_size(members[source], source) for source in sources])
     decoded = decode_pictures([(members[source], source) for source in distinct])
     pictures = dict(zip(distinct, decoded, strict=True))
     found: list[ImportedLayer] = []
@@ -92,7 +92,7 @@ def _read(archive: zipfile.ZipFile) -> LayeredPicture:
         name = element.get("name", "").strip() or "layer"
         if is_blank(picture):
             # It clips nothing: what else lies below does.
-            told.note(name, EMPTY)
+            told.add_note(name, EMPTY)
             continue
         layer = ImportedLayer(
             name=name,
@@ -106,32 +106,35 @@ def _read(archive: zipfile.ZipFile) -> LayeredPicture:
             group=place.group,
         )
         found.append(replace(layer, clipped=layer.clipped and _clips(found, layer, size, told)))
-    return layered_picture(size, found, groups, told)
+    return build_layered_picture(size, found, groups, told)
 
 
 def _clips(
-    found: Sequence[ImportedLayer], layer: ImportedLayer, size: tuple[int, int], told: Told
+    found: Sequence[ImportedLayer],
+    layer: ImportedLayer,
+    size: tuple[int, int],
+    told: NoticeCollector,
 ) -> bool:
     """Tell whether a layer is clipped, which here all that lies below it in its group does."""
-    depth = len(paths_to(layer.group))
+    depth = len(ancestor_paths(layer.group))
     below = set()
     for each in found:
-        if layer.group and layer.group not in paths_to(each.group):
+        if layer.group and layer.group not in ancestor_paths(each.group):
             continue
         covers = each.picture.is_opaque and each.picture.size >= size and each.opacity == 1
         if covers and each.visible and not each.corner:
             return False
         if not each.clipped:
             # Of a group in the group, all layers are one.
-            below.add((*paths_to(each.group)[depth : depth + 1], each)[0])
+            below.add((*ancestor_paths(each.group)[depth : depth + 1], each)[0])
     if len(below) > 1:
         what = "clipped by what lies right below it, not by all that does in its group"
-        told.lose(layer.name, what)
+        told.add_warning(layer.name, what)
     return bool(below)
 
 
 def _layers(
-    stack: ET.Element, around: _Place, groups: Groups, told: Told
+    stack: ET.Element, around: _Place, groups: GroupPaths, told: NoticeCollector
 ) -> Iterator[tuple[ET.Element, _Place]]:
     """Go through the layers of a stack and of the groups in it, from the front."""
     for element in stack:
@@ -155,7 +158,7 @@ def _layers(
             inner = replace(place, group=groups.add(around.group, group))
             yield from _layers(element, inner, groups, told)
         else:
-            told.lose(name or element.tag, "left out, since Lissom takes drawn layers only")
+            told.add_warning(name or element.tag, "left out, since Lissom takes drawn layers only")
 
 
 def _is_visible(element: ET.Element) -> bool:
@@ -179,12 +182,14 @@ def _is_clipped(element: ET.Element) -> bool:
     return element.get("composite-op") == "svg:src-atop" or element.get("alpha-preserve") == "true"
 
 
-def _blend(element: ET.Element, told: Told) -> BlendMode:
+def _blend(element: ET.Element, told: NoticeCollector) -> BlendMode:
     """Return how an element is blended; a mode that is not taken over is told."""
     mode = element.get("composite-op", "")
     if mode not in MODES:
         name = element.get("name", "").strip() or element.tag
-        told.lose(name, f"drawn normally, not in the mode {shortened(mode.removeprefix('svg:'))!r}")
+        told.add_warning(
+            name, f"drawn normally, not in the mode {shortened(mode.removeprefix('svg:'))!r}"
+        )
     return MODES.get(mode, "normal")
 
 

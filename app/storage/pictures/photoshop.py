@@ -14,17 +14,17 @@ import numpy as np
 from PIL import Image
 
 from app.document import BlendMode, Group
-from app.errors import LissomError, Told, missing, shortened
+from app.errors import LissomError, NoticeCollector, install_hint, shortened
 from app.storage.pictures.layered import (
-    Groups,
+    GroupPaths,
     ImportedLayer,
     LayeredPicture,
+    build_layered_picture,
+    check_memory,
     corner_from_top,
     encode_png,
-    layered_picture,
-    require_room,
 )
-from app.storage.pictures.photoshop_masks import Masked, is_masked, masked_pixels
+from app.storage.pictures.photoshop_masks import MaskedGroup, is_masked, masked_pixels
 from app.storage.pictures.picture import Picture, decode_picture
 from engine.arrays import freeze
 
@@ -73,7 +73,7 @@ class _Place:
     """Where a layer is."""
 
     group: str = ""  # its path
-    masks: tuple[Masked, ...] = ()  # the groups around it by whose masks it is to be cut
+    masks: tuple[MaskedGroup, ...] = ()  # the groups around it by whose masks it is to be cut
 
 
 def read_photoshop(data: bytes) -> LayeredPicture:
@@ -93,7 +93,7 @@ def read_photoshop(data: bytes) -> LayeredPicture:
         import psd_tools  # noqa: PLC0415 - it is an extra
     except ImportError as error:
         raise LissomError(
-            f"Photoshop files need psd-tools: {missing('psd')}; or save the drawing as OpenRaster "
+            f"Photoshop files need psd-tools: {install_hint('psd')}; or save the drawing as OpenRaster "
             "(.ora)"
         ) from error
     # It says its own words about what it skips, where nobody listens on standard error.
@@ -127,9 +127,9 @@ def _require_few_records(data: bytes) -> None:
 
 
 def _read(drawing: Any) -> LayeredPicture:
-    told, groups = Told(), Groups()
+    told, groups = NoticeCollector(), GroupPaths()
     found = list(_drawn_layers(drawing, _Place(), groups, told))
-    require_room([(layer.width, layer.height) for _, layer, _ in found])
+    check_memory([(layer.width, layer.height) for _, layer, _ in found])
     layers = []
     for place, layer, is_clipped in found:
         name = layer.name.strip() or "layer"
@@ -150,7 +150,7 @@ def _read(drawing: Any) -> LayeredPicture:
             group=place.group,
         )
         layers.append(read)
-    if not found and not told.summary:
+    if not found and not told.import_log:
         # Saved without layers: the picture that all programs see.
         whole = drawing._record.image_data  # noqa: SLF001 - as of channels
         rows = drawing.height * drawing.channels
@@ -158,11 +158,11 @@ def _read(drawing: Any) -> LayeredPicture:
         file = encode_png(drawing.topil().convert("RGBA"))
         flat = decode_picture(file, "the picture")
         layers = [ImportedLayer(name="picture", data=file, picture=flat)]
-    return layered_picture((drawing.width, drawing.height), layers, groups, told)
+    return build_layered_picture((drawing.width, drawing.height), layers, groups, told)
 
 
 def _drawn_layers(
-    around: Any, place: _Place, groups: Groups, told: Told
+    around: Any, place: _Place, groups: GroupPaths, told: NoticeCollector
 ) -> Iterator[tuple[_Place, Any, bool]]:
     """Go through what is drawn, from the back: where it is, and whether it is clipped.
 
@@ -184,43 +184,47 @@ def _drawn_layers(
                 blend="pass-through" if passes else _blend(layer, told),
                 clipped=is_clipped,
             )
-            _tell_left_out(layer, name, told)
+            _warn_left_out(layer, name, told)
             if is_masked(layer, told):
                 canvas = np.zeros((around._psd.height, around._psd.width), bool)  # noqa: SLF001
-                masks = (*masks, Masked(layer, canvas))
-                told.note(name, "its mask is cut into the layers of the group, as they are drawn")
+                masks = (*masks, MaskedGroup(layer, canvas))
+                told.add_note(
+                    name, "its mask is cut into the layers of the group, as they are drawn"
+                )
             inner = _Place(group=groups.add(place.group, group), masks=masks)
             drawn = list(_drawn_layers(layer, inner, groups, told))
             yield from drawn or [(inner, layer, False)]
         elif layer.kind in DRAWN:
-            _tell_left_out(layer, name, told)
+            _warn_left_out(layer, name, told)
             if layer.kind == "type":
-                told.note(name, "text, drawn as a picture")
+                told.add_note(name, "text, drawn as a picture")
             yield replace(place, masks=masks), layer, is_clipped
         else:
             kind = "a fill" if layer.kind.endswith("fill") else "an adjustment"
-            told.lose(name, f"left out, since it is {kind} layer")
+            told.add_warning(name, f"left out, since it is {kind} layer")
             clips = clips and _is_clipping(layer)
             continue
         has_base = has_base or not is_clipped
         clips = clips or not _is_clipping(layer)
 
 
-def _tell_left_out(layer: Any, name: str, told: Told) -> None:
+def _warn_left_out(layer: Any, name: str, told: NoticeCollector) -> None:
     """Tell of what changes how a layer or group looks and is not taken over."""
     if layer.has_effects():
         effects = dict.fromkeys(
-            _in_words(type(effect).__name__) for effect in layer.effects if effect.enabled
+            _split_camel_case(type(effect).__name__) for effect in layer.effects if effect.enabled
         )
-        told.lose(name, f"drawn without effects ({', '.join(effects)})")
+        told.add_warning(name, f"drawn without effects ({', '.join(effects)})")
     if layer.kind == "artboard":
-        told.lose(name, "an artboard, of which neither the background nor the edges are drawn")
+        told.add_warning(
+            name, "an artboard, of which neither the background nor the edges are drawn"
+        )
     ranges = layer._record.blending_ranges  # noqa: SLF001 - as of channels
     pairs = [ranges.composite_ranges or [], *(ranges.channel_ranges or [])]
     if any(each not in ALL_LEVELS for pair in pairs for each in pair):
-        told.lose(name, "drawn at all brightnesses, whatever its “Blend If” says")
+        told.add_warning(name, "drawn at all brightnesses, whatever its “Blend If” says")
     if layer.tagged_blocks.get_data(KNOCKOUT):
-        told.lose(name, "drawn over what is behind, which it knocks out in the file")
+        told.add_warning(name, "drawn over what is behind, which it knocks out in the file")
 
 
 def _is_clipping(layer: Any) -> bool:
@@ -228,17 +232,17 @@ def _is_clipping(layer: Any) -> bool:
     return bool(layer._record.clipping.name == "NON_BASE")  # noqa: SLF001 - as of channels
 
 
-def _in_words(name: str) -> str:
+def _split_camel_case(name: str) -> str:
     """Return the name of a class, as "DropShadow", in words."""
     return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name).lower()
 
 
-def _blend(layer: Any, told: Told) -> BlendMode:
+def _blend(layer: Any, told: NoticeCollector) -> BlendMode:
     """Return how a layer is blended; a mode that is not taken over is told."""
     mode = layer.blend_mode.name
     if mode not in MODES:
         what = f"drawn normally, not in the mode {mode.lower().replace('_', ' ')!r}"
-        told.lose(layer.name.strip() or "layer", what)
+        told.add_warning(layer.name.strip() or "layer", what)
     return MODES.get(mode, "normal")
 
 

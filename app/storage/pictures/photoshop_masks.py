@@ -7,7 +7,7 @@ from typing import Any, Final
 import numpy as np
 from PIL import Image, ImageChops, ImageFilter
 
-from app.errors import Told
+from app.errors import NoticeCollector
 from engine.arrays import Booleans
 
 # Levels of a mask at which what lies behind a layer would be seen through it.
@@ -15,16 +15,18 @@ HALF_SEEN: Final = [2 < level < 253 for level in range(256)]
 
 
 @dataclass(slots=True, eq=False)
-class Masked:
+class MaskedGroup:
     """A group with a mask, by which its layers are to be cut."""
 
     group: Any
     # Pixels of the canvas (h, w) that are half seen through it and have a layer there already.
     covered: Booleans
-    is_told: bool = False  # that its layers shine through each other
+    has_warned: bool = False  # that its layers shine through each other
 
 
-def masked_pixels(layer: Any, around: Sequence[Masked], told: Told) -> Image.Image | None:
+def masked_pixels(
+    layer: Any, around: Sequence[MaskedGroup], told: NoticeCollector
+) -> Image.Image | None:
     """Return what is seen of a layer through its own mask and those of groups around it.
 
     None where it has no pixels.
@@ -40,22 +42,22 @@ def masked_pixels(layer: Any, around: Sequence[Masked], told: Told) -> Image.Ima
         _cut(pixels, _seen_through(layer.mask, corner, pixels.size))
     for each in around:
         mask = _seen_through(each.group.mask, corner, pixels.size)
-        if _shines_through(each, corner, pixels, mask) and not each.is_told:
-            each.is_told = True
+        if _shines_through(each, corner, pixels, mask) and not each.has_warned:
+            each.has_warned = True
             what = "half seen through its mask, so that its layers shine through each other"
-            told.lose(each.group.name.strip() or "layer", what)
+            told.add_warning(each.group.name.strip() or "layer", what)
         _cut(pixels, mask)
     return pixels
 
 
-def is_masked(layer: Any, told: Told) -> bool:
+def is_masked(layer: Any, told: NoticeCollector) -> bool:
     """Tell whether a layer or group has a mask of pixels; one that is not taken over is told."""
     mask = layer.mask
     is_masked = mask is not None and not mask.disabled
     # Programs store what is seen through a mask of paths as one of pixels, too.
     is_by_paths = layer.kind != "shape" and mask is None and layer.has_vector_mask()
     if is_by_paths and not layer.vector_mask.disabled:
-        told.lose(layer.name.strip() or "layer", "drawn without its vector mask")
+        told.add_warning(layer.name.strip() or "layer", "drawn without its vector mask")
     return is_masked
 
 
@@ -64,7 +66,7 @@ def _cut(pixels: Image.Image, mask: Image.Image) -> None:
 
 
 def _shines_through(
-    around: Masked, corner: tuple[int, int], pixels: Image.Image, mask: Image.Image
+    around: MaskedGroup, corner: tuple[int, int], pixels: Image.Image, mask: Image.Image
 ) -> bool:
     """Tell whether a layer lies over another one where both are half seen through a group's mask.
 

@@ -15,7 +15,7 @@ from PIL import Image, ImageFile, ImageOps, UnidentifiedImageError
 
 from app.errors import LissomError
 from app.storage.pictures.colour import to_srgb
-from app.storage.pictures.cores import require_memory, side_by_side
+from app.storage.pictures.parallel import require_memory, run_parallel
 from engine.arrays import Booleans, Bytes, Floats, freeze
 from engine.domain import Mask
 
@@ -105,8 +105,8 @@ def decode_pictures(files: Sequence[tuple[bytes, str]]) -> list[Picture]:
         require_memory(sizes)
     except LissomError as error:
         raise LissomError(f"{files[0][1]} is too large: {error}") from error
-    with _only_bombs_told():
-        return side_by_side(lambda file: _decode(*file), files, sizes)
+    with _only_size_warnings():
+        return run_parallel(lambda file: _decode(*file), files, sizes)
 
 
 def decode_mask(data: bytes, name: str) -> Mask:
@@ -128,15 +128,15 @@ def stored_size(data: bytes, name: str) -> tuple[int, int]:
     if not data:
         raise LissomError(f"{name} is empty")
     with (
-        _only_bombs_told(),
-        _told(name),
+        _only_size_warnings(),
+        _naming_errors(name),
         Image.open(io.BytesIO(data), formats=tuple(FORMATS)) as image,
     ):
         return image.size
 
 
 @contextmanager
-def _only_bombs_told() -> Iterator[None]:
+def _only_size_warnings() -> Iterator[None]:
     """Let Pillow tell of pictures that are too large, and of nothing else.
 
     What is told is one setting of the whole process, so that it is set around all threads that
@@ -150,7 +150,7 @@ def _only_bombs_told() -> Iterator[None]:
 
 
 @contextmanager
-def _told(name: str) -> Iterator[None]:
+def _naming_errors(name: str) -> Iterator[None]:
     """Turn what Pillow raises into a `LissomError` that calls the file by its name."""
     try:
         yield
@@ -165,7 +165,7 @@ def _told(name: str) -> Iterator[None]:
 
 
 def _decode(data: bytes, name: str) -> Picture:
-    with _told(name):
+    with _naming_errors(name):
         return _decoded(data)
 
 
@@ -180,7 +180,7 @@ def _decoded(data: bytes) -> Picture:
     rgba = _load(file)
     image: Image.Image = file
     profile = image.info.get("icc_profile")
-    image, notice = upright(image)
+    image, notice = apply_orientation(image)
     if notice:
         notices.append(notice)
     if image.mode.startswith("I;16") or image.mode in {"I", "F"}:
@@ -205,7 +205,7 @@ def _load(file: ImageFile.ImageFile) -> Bytes | None:
     return rgba if file.im is place else None
 
 
-def upright(image: Image.Image) -> tuple[Image.Image, str]:
+def apply_orientation(image: Image.Image) -> tuple[Image.Image, str]:
     """Return a picture turned as its camera noted, and what happened, in words; none if nothing."""
     try:
         if image.getexif().get(EXIF_ORIENTATION, 1) not in range(2, 9):

@@ -11,7 +11,7 @@ from app.storage.project.archive import (
     Archive as Archive,
     write_archive as write_archive,
 )
-from app.storage.project.content import (
+from app.storage.project.document_json import (
     SCHEMA as SCHEMA,
     read_document as read_document,
     write_document as write_document,

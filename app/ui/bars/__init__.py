@@ -5,11 +5,11 @@ Out: actions.
 Imports: `app.ui.style`, `app.ui.shortcuts`.
 """
 
-from app.ui.bars.icons import draw_icons as draw_icons
-from app.ui.bars.menus import draw_menu as draw_menu
-from app.ui.bars.methods import draw_methods as draw_methods
+from app.ui.bars.icons import draw_icon_bar as draw_icon_bar
+from app.ui.bars.menus import draw_main_menu as draw_main_menu
+from app.ui.bars.methods import draw_method_menu as draw_method_menu
 from app.ui.bars.status import (
-    draw_status as draw_status,
-    facts as facts,
-    limit_of_pose as limit_of_pose,
+    describe_pose_limit as describe_pose_limit,
+    draw_status_bar as draw_status_bar,
+    list_status_items as list_status_items,
 )

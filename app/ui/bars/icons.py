@@ -3,7 +3,7 @@
 from imgui_bundle import ImVec2, imgui
 
 from app.editor import Action, Project, Session
-from app.ui.shortcuts import bound_button
+from app.ui.shortcuts import draw_action_button
 from app.ui.style import Look
 
 # By their names in the table of shortcuts; there is a gap between two groups.
@@ -14,12 +14,12 @@ GROUPS = (
 )
 
 
-def draw_icons(session: Session, look: Look, _: Project) -> list[Action]:
+def draw_icon_bar(session: Session, look: Look, _: Project) -> list[Action]:
     """Draw the bar."""
     actions: list[Action] = []
     for number, names in enumerate(GROUPS):
         if number:
             imgui.dummy(ImVec2(0, 0.4 * look.em))
         for name in names:
-            actions += bound_button(session, look, name)
+            actions += draw_action_button(session, look, name)
     return actions

@@ -7,24 +7,26 @@ from imgui_bundle import imgui
 from app.document import PRESETS
 from app.editor import Action, Session, do
 from app.editor.actions import files, keys, viewing
-from app.errors import shown_name
+from app.errors import display_name
 from app.storage import CHECKER
-from app.ui.bars.methods import draw_methods
+from app.ui.bars.methods import draw_method_menu
 from app.ui.panel import Panel, is_in_front
-from app.ui.shortcuts import MENUS, bound_item
-from app.ui.style import Look, colour_field, tip
+from app.ui.shortcuts import MENUS, draw_action_item
+from app.ui.style import Look, colour_field, draw_tooltip
 
 PATH_REACHES = {0: "All that play", 6: "6 around the playhead", 12: "12", 24: "24", 48: "48"}
 BACKDROPS = {"Checker": CHECKER, "White": "#ffffff", "Grey": "#808080", "Black": "#000000"}
 
 
-def draw_menu(session: Session, _: Look, *, title: str, panels: Sequence[Panel]) -> list[Action]:
+def draw_main_menu(
+    session: Session, _: Look, *, title: str, panels: Sequence[Panel]
+) -> list[Action]:
     """Draw what is in an open menu, as the table of shortcuts has it; `panels` are the window's."""
     actions: list[Action] = []
     for name, binding in MENUS[title].items():
-        if binding.parted:
+        if binding.has_separator:
             imgui.separator()
-        actions += bound_item(session, name)
+        actions += draw_action_item(session, name)
         if name in BELOW:
             actions += BELOW[name](session)
         if name == "reset layout":
@@ -94,7 +96,7 @@ def _methods(session: Session) -> list[Action]:
     project = session.project
     if not imgui.begin_menu("In-betweens", project is not None):
         return []
-    actions = draw_methods(project) if project is not None else []
+    actions = draw_method_menu(project) if project is not None else []
     imgui.end_menu()
     return actions
 
@@ -110,10 +112,10 @@ def _recent(session: Session) -> list[Action]:
         colour = imgui.Col_.text if is_there else imgui.Col_.text_disabled
         imgui.push_style_color(imgui.Col_.text, imgui.get_style_color_vec4(colour))
         note = "" if is_there else "not found"
-        if imgui.menu_item(f"{shown_name(path.name)}###recent {index}", note, False)[0]:  # noqa: FBT003
+        if imgui.menu_item(f"{display_name(path.name)}###recent {index}", note, False)[0]:  # noqa: FBT003
             actions.append(do(files.open_recent, path))
         imgui.pop_style_color()
-        tip(shown_name(path))
+        draw_tooltip(display_name(path))
     imgui.end_menu()
     return actions
 

@@ -6,20 +6,20 @@ from app.document import shape_commands
 from app.editor import Action, Project, do
 from app.editor.actions import editing, keys
 from app.ui.methods import VARIANTS
-from app.ui.style import tip
+from app.ui.style import draw_tooltip
 
 
-def draw_methods(project: Project) -> list[Action]:
+def draw_method_menu(project: Project) -> list[Action]:
     """Draw the entries, within a menu or a list that is open."""
     actions: list[Action] = []
     for variant, text in VARIANTS.items():
         if imgui.menu_item(text.title, "", variant == project.layer.variant)[0]:
             actions.append(do(keys.set_variant, variant))
-        tip(text.what)
+        draw_tooltip(text.what)
     imgui.separator()
-    stays = project.layer.stillness
+    stays = project.layer.has_auto_pins
     if imgui.menu_item("Handles stay between keys", "", stays)[0]:
-        command = shape_commands.set_stillness(project.active, stillness=not stays)
+        command = shape_commands.set_auto_pins(project.active, stillness=not stays)
         actions.append(do(editing.edit, command))
-    tip("Handles stay in between where two keys have them at one place")
+    draw_tooltip("Handles stay in between where two keys have them at one place")
     return actions

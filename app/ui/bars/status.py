@@ -5,57 +5,57 @@ from typing import NamedTuple
 
 from imgui_bundle import ImColor, ImVec2, imgui, imspinner
 
-from app.document import Extremes, falls_short, find_shortfall, loosened
+from app.document import DistortionRange, measure_target_errors, misses_target, relax_limits
 from app.editor import Action, Kind, Project, Session, do, promises
 from app.editor.actions import exporting, rebuilding, upkeep
-from app.errors import shown_name
-from app.ui.style import Look, shortened, tip
+from app.errors import display_name
+from app.ui.style import Look, draw_tooltip, shorten_text
 
 LEAST_ROOM = 6.0  # em: narrower, a hint is left out
 SLOW = 0.3  # seconds after which a job is told of; shorter ones would only flicker
 ENDLESS = 5.0  # seconds after which a job can be given up
 SLOWED, STOPPED = 0.5, 0.05  # of the velocity at a key, below which that is told
-MOST_TOLD = 3  # keys
+MOST_LISTED = 3  # keys
 
 
-class Remedy(NamedTuple):
+class WarningAction(NamedTuple):
     """What a button beside a warning does."""
 
     verb: Callable[[Session], None]
-    what: str  # in its tooltip
+    hint: str  # in its tooltip
 
 
-PULL_AGAIN = Remedy(
+RELAX_POSE_LIMITS = WarningAction(
     rebuilding.loosen, "Let this drawing stretch further, and pull the handles again"
 )
-GO_ON = Remedy(
+RELAX_MOTION_LIMITS = WarningAction(
     rebuilding.loosen_bounds,
     "Let this drawing stretch further between its keys, so that the motion can go on through them",
 )
 
 
-class Fact(NamedTuple):
+class StatusItem(NamedTuple):
     """Something at the right of the status bar."""
 
     text: str
-    what: str  # in its tooltip
-    warns: bool = False
+    hint: str  # in its tooltip
+    is_warning: bool = False
 
 
-def draw_status(session: Session, look: Look) -> list[Action]:
+def draw_status_bar(session: Session, look: Look) -> list[Action]:
     """Draw the status bar: what goes on, and how the project and the window are."""
     gap = 1.6 * look.em
-    told = facts(session)
+    told = list_status_items(session)
     width = sum(imgui.calc_text_size(fact.text).x + gap for fact in told)
     end = imgui.get_window_width() - width + gap - look.em
     actions: list[Action] = []
-    held_back, slowed = limit_of_pose(session), limit_of_motion(session)
+    held_back, slowed = describe_pose_limit(session), describe_motion_limit(session)
     slow = session.jobs.running_for(SLOW)
     if held_back:
-        actions += _warn(session, look, held_back, PULL_AGAIN)
+        actions += _warn(session, look, held_back, RELAX_POSE_LIMITS)
         imgui.same_line(0, gap)
     elif slowed:
-        actions += _warn(session, look, slowed, GO_ON)
+        actions += _warn(session, look, slowed, RELAX_MOTION_LIMITS)
         imgui.same_line(0, gap)
     hint = session.hint if held_back or slowed else session.hint or "Ready"
     room = end - imgui.get_cursor_pos_x() - gap
@@ -63,11 +63,11 @@ def draw_status(session: Session, look: Look) -> list[Action]:
     exported = _export(session)
     if exported:
         _spinner(look)
-        imgui.text_unformatted(shortened(exported, max(room - 6 * look.em, 0.0)))
+        imgui.text_unformatted(shorten_text(exported, max(room - 6 * look.em, 0.0)))
         imgui.same_line(0, 0.8 * look.em)
         if imgui.small_button("Cancel"):
             actions.append(do(exporting.cancel))
-        tip("Give the export up")
+        draw_tooltip("Give the export up")
     elif slow or waiting:
         _spinner(look)
         share = session.jobs.share_of(slow[0]) if slow else None
@@ -75,17 +75,17 @@ def draw_status(session: Session, look: Look) -> list[Action]:
         imgui.text_unformatted(f"{waiting or slow[0].label}…{how_far}")
         actions += _cancel(session, look, slow)
     elif room > LEAST_ROOM * look.em:
-        imgui.text_disabled(shortened(hint, room))
+        imgui.text_disabled(shorten_text(hint, room))
     imgui.same_line(end)
     for fact in told:
-        imgui.text_colored(look.palette.warning if fact.warns else look.palette.dim, fact.text)
-        tip(fact.what)
+        imgui.text_colored(look.palette.warning if fact.is_warning else look.palette.dim, fact.text)
+        draw_tooltip(fact.hint)
         imgui.same_line(0, gap)
     imgui.new_line()
     return actions
 
 
-def limit_of_pose(session: Session) -> str:
+def describe_pose_limit(session: Session) -> str:
     """Return which handle the limits hold back in what is shown, and how far; else "".
 
     It is wanted elsewhere by the pose, or by its track.
@@ -96,11 +96,11 @@ def limit_of_pose(session: Session) -> str:
         return ""
     layer, correction, lags = shown.clip.layer, shown.correction, dict[int, float]()
     if shown.pose is not None:
-        shortfall = find_shortfall(layer, shown.pose)
-        lags |= shortfall.lags if shortfall.at_limits else {}
-    if correction is not None and correction.is_held_back:
-        own = correction.misses.items()
-        lags |= {handle: miss for handle, miss in own if falls_short(layer, miss)}
+        shortfall = measure_target_errors(layer, shown.pose)
+        lags |= shortfall.errors if shortfall.at_limits else {}
+    if correction is not None and correction.is_limited:
+        own = correction.target_errors.items()
+        lags |= {handle: miss for handle, miss in own if misses_target(layer, miss)}
     if not lags:
         return ""
     farthest = max(lags, key=lags.__getitem__)
@@ -109,7 +109,7 @@ def limit_of_pose(session: Session) -> str:
     return f"Stretch limit reached – {text}" + (f", {others} more too" if others else "")
 
 
-def limit_of_motion(session: Session) -> str:
+def describe_motion_limit(session: Session) -> str:
     """Return at which keys the limits slow the motion down that should pass through; else ""."""
     project = session.project
     if project is None or project.is_posing or project.playhead.since is not None:
@@ -124,9 +124,9 @@ def limit_of_motion(session: Session) -> str:
     if not slowed:
         return ""
     verb, frames = ("stops", stopped) if stopped else ("slows down", slowed)
-    told = [f"{frame}" for frame in frames[:MOST_TOLD]]
-    if len(frames) > MOST_TOLD:
-        told.append(f"{len(frames) - MOST_TOLD} more")
+    told = [f"{frame}" for frame in frames[:MOST_LISTED]]
+    if len(frames) > MOST_LISTED:
+        told.append(f"{len(frames) - MOST_LISTED} more")
     where = f"{', '.join(told[:-1])} and {told[-1]}" if len(told) > 1 else told[0]
     noun = "frame" if len(frames) == 1 else "frames"
     return f"The motion {verb} at {noun} {where} to keep within the stretch limit"
@@ -139,7 +139,7 @@ def _export(session: Session) -> str:
         return ""
     if run.for_clipboard:
         return "Copying the picture…"
-    total, name = len(run.plan.times), shown_name(run.plan.out.name)
+    total, name = len(run.plan.times), display_name(run.plan.out.name)
     return f"Exporting {name}: {run.done} of {total}" if run.done < total else f"Finishing {name}…"
 
 
@@ -151,23 +151,23 @@ def _cancel(session: Session, look: Look, slow: Sequence[Kind]) -> list[Action]:
         return []
     imgui.same_line(0, 0.8 * look.em)
     is_pressed = imgui.small_button("Cancel")
-    tip(f"Give this up: {endless[0].label}")
+    draw_tooltip(f"Give this up: {endless[0].label}")
     return [do(upkeep.give_up, endless[0])] if is_pressed else []
 
 
-def _warn(session: Session, look: Look, text: str, remedy: Remedy) -> list[Action]:
+def _warn(session: Session, look: Look, text: str, remedy: WarningAction) -> list[Action]:
     """Tell what the limits prevent, and offer the remedy."""
     imgui.text_colored(look.palette.warning, text)
     project = session.project
-    if project is None or loosened(project.layer.bounds) is None:
+    if project is None or relax_limits(project.layer.bounds) is None:
         return []
     imgui.same_line(0, 0.8 * look.em)
     is_pressed = imgui.small_button("Loosen")
-    tip(remedy.what)
+    draw_tooltip(remedy.hint)
     return [do(remedy.verb)] if is_pressed else []
 
 
-def facts(session: Session) -> list[Fact]:
+def list_status_items(session: Session) -> list[StatusItem]:
     """Return what the right end of the bar says."""
     facts = []
     project = session.project
@@ -175,38 +175,40 @@ def facts(session: Session) -> list[Fact]:
         distortion = _distortion(project)
         facts += [distortion] if distortion else []
         count = len(project.layer.handles)
-        facts.append(Fact(f"{count} handle{'' if count == 1 else 's'}", "Handles of this drawing"))
+        facts.append(
+            StatusItem(f"{count} handle{'' if count == 1 else 's'}", "Handles of this drawing")
+        )
     if session.solver_seconds:
         milliseconds = 1e3 * session.solver_seconds
-        facts.append(Fact(f"pose {milliseconds:.0f} ms", "What the last step of a pose took"))
+        facts.append(StatusItem(f"pose {milliseconds:.0f} ms", "What the last step of a pose took"))
     if project is not None and project.playhead.since is not None:
-        facts.append(Fact(f"{imgui.get_io().framerate:.0f} fps", "Frames drawn in a second"))
+        facts.append(StatusItem(f"{imgui.get_io().framerate:.0f} fps", "Frames drawn in a second"))
     return facts
 
 
-def _distortion(project: Project) -> Fact | None:
+def _distortion(project: Project) -> StatusItem | None:
     """Return the largest distortion that is shown, of the kind that is nearest to its bound."""
     shown, curves = project.puppet.shown, project.curves.value
     if shown is None:
         return None
     if shown.pose is not None:
-        extremes = Extremes.of(shown.pose)
+        extremes = DistortionRange.of(shown.pose)
     elif curves is not None and curves.clip == project.clip:
         extremes = curves.extremes_at(shown.frame)
     else:
         return None
     uses = extremes.uses(project.layer.bounds)
     most = max(uses, key=lambda use: use.share)
-    return Fact(
-        f"{most.word.capitalize()} {most.value:.2f}, limit {most.bound:.2f}",
+    return StatusItem(
+        f"{most.word.capitalize()} {most.value:.2f}, limit {most.limit:.2f}",
         "\n".join(
             ["Largest distortion of the whole shape, and its limit", ""]
             + [
-                f"{use.word.capitalize()} ({use.name}) {use.value:.3f}, limit {use.bound:.3f}"
+                f"{use.word.capitalize()} ({use.name}) {use.value:.3f}, limit {use.limit:.3f}"
                 for use in uses
             ]
         ),
-        warns=most.is_all,
+        is_warning=most.is_all,
     )
 
 

@@ -18,12 +18,12 @@ from app.editor import (
     failures,
 )
 from app.editor.actions import answer, browse, close_dialog, use_own_dialogs
-from app.errors import shown_name
+from app.errors import display_name
 from app.ui.dialogs.file_browser import FileBrowser, LookUp
 from app.ui.dialogs.native_dialog import NativeDialog
-from app.ui.dialogs.problem import draw_problem
-from app.ui.dialogs.recovery import draw_recovery
-from app.ui.shortcuts import GESTURES, MENUS
+from app.ui.dialogs.problem import draw_problem_dialog
+from app.ui.dialogs.recovery import draw_recovery_dialog
+from app.ui.shortcuts import MENUS, POINTER_HELP
 from app.ui.style import Look, heading, main_button
 
 HEADING = 2  # rows that the heading of a group takes
@@ -91,9 +91,9 @@ class Dialogs:
             case FileDialog():
                 return self._browser.draw(dialog, session, look, thumbnail)
             case Recovery():
-                return draw_recovery(dialog, look)
+                return draw_recovery_dialog(dialog, look)
             case ProblemReport():
-                return draw_problem(dialog, look)
+                return draw_problem_dialog(dialog, look)
             case ShortcutSheet():
                 _shortcuts(look)
                 return []
@@ -139,7 +139,7 @@ def _question(question: Question, look: Look) -> list[Action]:
     # Keys press a button only where one sees which.
     imgui.set_nav_cursor_visible(True)
     imgui.push_text_wrap_pos(30 * look.em)
-    imgui.text_unformatted(shown_name(question.text))
+    imgui.text_unformatted(display_name(question.text))
     imgui.pop_text_wrap_pos()
     imgui.dummy(ImVec2(0, 0.4 * look.em))
     for index, (text, action) in enumerate(question.answers):
@@ -159,13 +159,13 @@ def _question(question: Question, look: Look) -> list[Action]:
 def _shortcuts(look: Look) -> None:
     rows: dict[str, list[tuple[str, str]]] = {
         menu: [
-            (binding.label, binding.keys_in_words)
+            (binding.label, binding.shown_keys)
             for binding in bindings.values()
-            if binding.keys_in_words
+            if binding.shown_keys
         ]
         for menu, bindings in MENUS.items()
     }
-    rows["Pointer"] = [(gesture.what, gesture.how) for gesture in GESTURES]
+    rows["Pointer"] = [(gesture.effect, gesture.gesture) for gesture in POINTER_HELP]
     style = imgui.get_style()
     # Closer than elsewhere: all keys are to be seen at once.
     imgui.push_style_var(imgui.StyleVar_.item_spacing, ImVec2(style.item_spacing.x, 0.2 * look.em))

@@ -9,13 +9,26 @@ from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.editor import Action, FileDialog, Session, do
 from app.editor.actions import browse, choose, close_dialog
-from app.errors import shown_name
+from app.errors import display_name
 from app.render import Thumbnail
 from app.storage import home_folder
+from app.ui.dialogs.browser_shortcuts import (
+    BrowserShortcut,
+    list_recent_shortcuts,
+    list_standard_shortcuts,
+)
 from app.ui.dialogs.folder_listing import Entry, Listing, read_folder
-from app.ui.dialogs.places import Place, recent_places, usual_places
-from app.ui.shortcuts import ALT, in_words
-from app.ui.style import Look, icon_button, ink, main_button, shortened, show_picture, small, tip
+from app.ui.shortcuts import ALT, format_chord
+from app.ui.style import (
+    Look,
+    colour_u32,
+    draw_tooltip,
+    icon_button,
+    main_button,
+    shorten_text,
+    show_picture,
+    small_text,
+)
 
 LookUp = Callable[[Path], Thumbnail | None]
 WIDTH, HEIGHT = 52.0, 24.0  # em, where the window has room for them
@@ -50,8 +63,8 @@ class FileBrowser:
     """The browser; it reads a folder again only when that has changed."""
 
     def __init__(self) -> None:
-        self._usual: tuple[Place, ...] = ()
-        self._recent: tuple[Place, ...] = ()
+        self._usual: tuple[BrowserShortcut, ...] = ()
+        self._recent: tuple[BrowserShortcut, ...] = ()
         self._listing: Listing | None = None
         self._order = (0, False)  # column, and whether downwards
         self._entries: list[Entry] = []  # of the listing, in this order
@@ -64,7 +77,10 @@ class FileBrowser:
         size = ImVec2(min(WIDTH * look.em, 0.85 * room.x), min(HEIGHT * look.em, 0.52 * room.y))
         appears = imgui.is_window_appearing()
         if appears:
-            self._usual, self._recent = usual_places(), recent_places(session.preferences.recent)
+            self._usual, self._recent = (
+                list_standard_shortcuts(),
+                list_recent_shortcuts(session.preferences.recent),
+            )
         now = _way(dialog, look, size.x)
         now, by_key = self._step(now)
         now = self._places(now, look, size.y)
@@ -87,7 +103,7 @@ class FileBrowser:
         if path is not None and now.writes and _is(Path.is_file, path):
             imgui.same_line()
             imgui.align_text_to_frame_padding()
-            imgui.text_colored(look.palette.warning, f"{shown_name(path.name)} will be replaced.")
+            imgui.text_colored(look.palette.warning, f"{display_name(path.name)} will be replaced.")
         if is_accepted and folder is not None:
             now = _enter(now, folder)
         elif is_accepted and path is not None:
@@ -114,17 +130,17 @@ class FileBrowser:
         for title, places in (("Places", self._usual), ("Recent", self._recent)):
             if not places:
                 continue
-            small(look, title)
+            small_text(look, title)
             for index, place in enumerate(places):
                 is_here = place.folder == dialog.folder
                 if imgui.selectable(f"###{title} {index}", is_here, PLACE_FLAGS)[0]:
                     dialog = _enter(dialog, place.folder)
-                tip(shown_name(place.folder))
+                draw_tooltip(display_name(place.folder))
                 imgui.same_line(0.3 * look.em)
                 imgui.text_colored(look.palette.dim, place.icon)
                 imgui.same_line(2.0 * look.em)
                 room = imgui.get_content_region_avail().x
-                imgui.text_unformatted(shortened(place.name, room))
+                imgui.text_unformatted(shorten_text(place.name, room))
             imgui.dummy(ImVec2(0, 0.4 * look.em))
         imgui.end_child()
         return dialog
@@ -168,7 +184,7 @@ class FileBrowser:
         if not self._entries:
             imgui.table_next_row()
             imgui.table_next_column()
-            small(look, self._listing.problem if self._listing else "")
+            small_text(look, self._listing.problem if self._listing else "")
         imgui.end_table()
         return dialog, is_opened
 
@@ -191,7 +207,7 @@ class FileBrowser:
 def _way(dialog: FileDialog, look: Look, width: float) -> FileDialog:
     """Draw the ways out of the folder: up, home, and the folders that it is in."""
     start = imgui.get_cursor_pos_x()
-    if icon_button(look, icons.ICON_FA_ARROW_UP, "up", "The folder above", keys=in_words(UP)):
+    if icon_button(look, icons.ICON_FA_ARROW_UP, "up", "The folder above", keys=format_chord(UP)):
         return _enter(dialog, dialog.folder.parent)
     imgui.same_line(0, 0)
     if icon_button(look, icons.ICON_FA_HOUSE, "home", "Your own folder"):
@@ -202,14 +218,14 @@ def _way(dialog: FileDialog, look: Look, width: float) -> FileDialog:
     gap = imgui.calc_text_size(SEPARATOR).x
     shown: list[Path] = []
     for folder in (dialog.folder, *dialog.folder.parents):
-        name = imgui.calc_text_size(shown_name(folder.name or folder.anchor))
+        name = imgui.calc_text_size(display_name(folder.name or folder.anchor))
         room -= name.x + 2 * style.frame_padding.x + gap
         if shown and room < 0:
             break
         shown.insert(0, folder)
     for folder in shown:
         imgui.push_style_color(imgui.Col_.button, (0, 0, 0, 0))
-        if imgui.button(f"{shown_name(folder.name or folder.anchor)}###in {len(folder.parts)}"):
+        if imgui.button(f"{display_name(folder.name or folder.anchor)}###in {len(folder.parts)}"):
             dialog = _enter(dialog, folder)
         imgui.pop_style_color()
         if folder is not shown[-1]:
@@ -225,7 +241,7 @@ def _row(entry: Entry, look: Look, thumbnail: LookUp, *, is_marked: bool) -> boo
     imgui.table_next_row()
     imgui.table_next_column()
     palette, em = look.palette, look.em
-    name, height = shown_name(entry.path.name), ROW * em
+    name, height = display_name(entry.path.name), ROW * em
     corner = imgui.get_cursor_screen_pos()
     clicked, _ = imgui.selectable(f"###entry {name}", is_marked, ROW_FLAGS, ImVec2(0, height))
     middle = corner.y + (height - imgui.get_text_line_height()) / 2
@@ -235,18 +251,18 @@ def _row(entry: Entry, look: Look, thumbnail: LookUp, *, is_marked: bool) -> boo
         show_picture(image.texture, image.size, corner, ImVec2(2 * em, height))
     else:
         icon = icons.ICON_FA_FOLDER if entry.is_folder else icons.ICON_FA_FILE
-        colour = ink(palette.accent if entry.is_folder else palette.dim)
+        colour = colour_u32(palette.accent if entry.is_folder else palette.dim)
         inset = (2 * em - imgui.calc_text_size(icon).x) / 2
         draw_list.add_text(ImVec2(corner.x + inset, middle), colour, icon)
     left = corner.x + 2.5 * em
     room = corner.x + imgui.get_column_width() - left - 0.5 * em
-    draw_list.add_text(ImVec2(left, middle), ink(palette.text), shortened(name, room))
+    draw_list.add_text(ImVec2(left, middle), colour_u32(palette.text), shorten_text(name, room))
     imgui.table_next_column()
     size = entry.size_in_words
     at_end = imgui.get_content_region_avail().x - imgui.calc_text_size(size).x
     for text, inset in ((size, max(at_end, 0)), (entry.changed_in_words, 0)):
         place = imgui.get_cursor_screen_pos()
-        draw_list.add_text(ImVec2(place.x + inset, middle), ink(palette.dim), text)
+        draw_list.add_text(ImVec2(place.x + inset, middle), colour_u32(palette.dim), text)
         if text is size:
             imgui.table_next_column()
     return clicked
@@ -263,7 +279,7 @@ def _name_field(dialog: FileDialog, width: float, *, is_new: bool, is_set: bool)
             state.reload_user_buf_and_move_to_end()
     imgui.set_next_item_width(width)
     hint = "Name of the folder" if dialog.wants_folder else "Name of the file"
-    shown = shown_name(dialog.name)
+    shown = display_name(dialog.name)
     _, name = imgui.input_text_with_hint(NAME_FIELD, hint, shown)
     return dialog if name == shown else replace(dialog, name=name, marked="")
 

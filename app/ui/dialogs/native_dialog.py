@@ -9,8 +9,8 @@ from imgui_bundle import portable_file_dialogs
 
 from app.editor import Action, FileDialog, Question, do
 from app.editor.actions import choose, close_dialog, show_dialog, use_own_dialogs
-from app.errors import shown_name
-from app.export import folder_within
+from app.errors import display_name
+from app.export import choose_frame_folder
 
 # Any of them shows the file dialogs of a Linux desktop.
 PROGRAMS: Final = ("zenity", "kdialog", "matedialog", "qarma")
@@ -65,13 +65,13 @@ Running = (
 
 def _open(dialog: FileDialog) -> Running:
     # With a slash at its end a folder is where to begin, and not what to choose.
-    folder = shown_name(f"{dialog.folder}/")
+    folder = display_name(f"{dialog.folder}/")
     if dialog.wants_folder:
         return portable_file_dialogs.select_folder(dialog.title, folder)
     filters = _filters(dialog.suffixes)
     if dialog.writes:
         # macOS begins only at what exists.
-        start = folder if sys.platform == "darwin" else shown_name(dialog.folder / dialog.name)
+        start = folder if sys.platform == "darwin" else display_name(dialog.folder / dialog.name)
         return portable_file_dialogs.save_file(dialog.title, start, filters)
     return portable_file_dialogs.open_file(dialog.title, folder, filters)
 
@@ -84,7 +84,7 @@ def _filters(suffixes: tuple[str, ...]) -> list[str]:
 
 def _follow(dialog: FileDialog, chosen: Path) -> Action:
     if dialog.wants_folder:
-        return do(choose, dialog, folder_within(chosen, dialog.name, dialog.is_frame))
+        return do(choose, dialog, choose_frame_folder(chosen, dialog.name, dialog.is_frame))
     path = dialog.path_of(str(chosen))
     if path == chosen or not path.exists():
         return do(choose, dialog, path)

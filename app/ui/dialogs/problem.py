@@ -9,7 +9,7 @@ from app.ui.style import Look, main_button
 WIDTH, HEIGHT, MARGIN = 46.0, 22.0, 6.0  # em: of the text, and what the window has around it
 
 
-def draw_problem(report: ProblemReport, look: Look) -> list[Action]:
+def draw_problem_dialog(report: ProblemReport, look: Look) -> list[Action]:
     """Draw the text, which can be changed, and what can be done with it."""
     actions: list[Action] = []
     room = imgui.get_main_viewport().size

@@ -4,16 +4,16 @@ from imgui_bundle import ImVec2, imgui
 
 from app.editor import Action, Leftover, Recovery, do, failures
 from app.editor.actions import answer, close_dialog, files
-from app.errors import shown_name
+from app.errors import display_name
 from app.ui.dialogs.folder_listing import Entry
-from app.ui.style import Look, main_button, shortened, tip
+from app.ui.style import Look, draw_tooltip, main_button, shorten_text
 
 WIDEST = 14.0  # em, of a name
-WIDTH, TOLD_AT, BUTTONS_AT = 36.0, 14.5, 27.5  # em
+WIDTH, SUMMARY_AT, BUTTONS_AT = 36.0, 14.5, 27.5  # em
 TALLEST = 20.0  # em, of all rows; the others are scrolled to
 
 
-def draw_recovery(recovery: Recovery, look: Look) -> list[Action]:
+def draw_recovery_dialog(recovery: Recovery, look: Look) -> list[Action]:
     """Draw what there is, each with what can be done with it."""
     actions: list[Action] = []
     imgui.push_text_wrap_pos(30 * look.em)
@@ -45,9 +45,9 @@ def _row(leftover: Leftover, look: Look, *, is_main: bool) -> list[Action]:
     entry = Entry(path=leftover.path, is_folder=False, size=leftover.size, changed=leftover.kept)
     imgui.align_text_to_frame_padding()
     origin = leftover.origin
-    imgui.text_unformatted(shortened(origin.name, WIDEST * look.em))
-    tip(shown_name(origin.path) if origin.path else "Never saved")
-    imgui.same_line(TOLD_AT * look.em)
+    imgui.text_unformatted(shorten_text(origin.name, WIDEST * look.em))
+    draw_tooltip(display_name(origin.path) if origin.path else "Never saved")
+    imgui.same_line(SUMMARY_AT * look.em)
     imgui.text_disabled(f"{entry.changed_in_words}   {entry.size_in_words}   ")
     imgui.same_line(BUTTONS_AT * look.em)
     if main_button(look, "Open") if is_main else imgui.button("Open"):

@@ -11,6 +11,6 @@ from app.ui.panels import (
     export as export,
     handle as handle,
     layers as layers,
-    motion as motion,
+    motion_preset as motion,
     poses as poses,
 )

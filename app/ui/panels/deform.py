@@ -4,7 +4,14 @@ from dataclasses import dataclass, replace
 
 from imgui_bundle import icons_fontawesome_6 as icons, imgui
 
-from app.document import STRETCHES, Shortfall, find_shortfall, intervals, stretch_of, time_of
+from app.document import (
+    LIMIT_PRESETS,
+    TargetErrors,
+    find_limit_preset,
+    measure_target_errors,
+    segment_keys,
+    segment_time_at,
+)
 from app.editor import Action, Project, Session, do
 from app.editor.actions import playback, rebuilding
 from app.ui.style import (
@@ -13,16 +20,16 @@ from app.ui.style import (
     SMALL,
     Look,
     Scale,
-    at_end,
+    align_right,
+    draw_tooltip,
     heading,
-    number,
-    progress,
-    segments,
-    sized,
-    small,
+    number_field,
+    option_buttons,
+    progress_bar,
+    push_text_size,
+    slider_track,
+    small_text,
     text_button,
-    tip,
-    track,
 )
 from engine.maps import Bounds, Certificate
 
@@ -31,7 +38,7 @@ NEAR = 0.85  # of a bound: from here on a bar warns
 
 
 @dataclass(frozen=True, slots=True)
-class Limit:
+class LimitRow:
     """One of the bounds: its field in `Bounds` and `Certificate`, and how it is shown."""
 
     field: str
@@ -44,14 +51,14 @@ class Limit:
 
 # From no distortion at the left to what hardly bounds anything at the right.
 LIMITS = (
-    Limit(
+    LimitRow(
         "k",
         "Shear",
         "k",
         "How far angles change: 0 keeps them, 1 is a collapse",
         Scale(left=0.0, right=0.98),
     ),
-    Limit(
+    LimitRow(
         "sigma_a",
         "Stretch",
         "σa",
@@ -59,7 +66,7 @@ LIMITS = (
         Scale(left=1.0, right=20.0, logarithmic=True),
         " ×",
     ),
-    Limit(
+    LimitRow(
         "sigma_b",
         "Squeeze",
         "σb",
@@ -71,7 +78,7 @@ LIMITS = (
 LEAST = {"k": 0.05, "sigma_a": 1.05, "sigma_b": 0.95}  # the tightest bounds on the tracks
 
 
-def draw(session: Session, look: Look, project: Project) -> list[Action]:
+def draw_deform_panel(session: Session, look: Look, project: Project) -> list[Action]:
     """Draw the bounds with what the pose makes of them, the solver's state, and all keys."""
     if project.puppet.shown is None:
         return []
@@ -79,7 +86,7 @@ def draw(session: Session, look: Look, project: Project) -> list[Action]:
     actions = _stretch(look, bounds)
     if imgui.tree_node_ex("Details", _DETAILS):
         reached, what = _reached(project)
-        small(look, f"Poses never exceed these limits. Bars: what {what} uses.")
+        small_text(look, f"Poses never exceed these limits. Bars: what {what} uses.")
         for limit in LIMITS:
             actions += _limit(look, limit, bounds, reached)
     heading(look, "Pose")
@@ -100,22 +107,22 @@ def _reached(project: Project) -> tuple[tuple[Certificate, ...], str]:
     shown, clip = project.puppet.shown, project.clip
     if shown is not None and shown.pose is not None:
         return (shown.pose.certificate,), "this pose"
-    pair = intervals(clip)[time_of(clip, shown.frame if shown else 0).interval]
+    pair = segment_keys(clip)[segment_time_at(clip, shown.frame if shown else 0).segment]
     return tuple(clip.keys[index].pose.certificate for index in pair), "the keys around it"
 
 
 def _stretch(look: Look, bounds: Bounds) -> list[Action]:
     """Draw the one word for all three bounds, and what it means."""
     heading(look, "Stretch")
-    present = stretch_of(bounds)
-    words = [(stretch.name, stretch.name) for stretch in STRETCHES]
-    chosen = segments(look, "stretch", words, present.name if present else "")
-    small(look, f"{present.hint}." if present else "Limits of your own, under “Details”.")
-    return [do(rebuilding.choose_bounds, s.bounds) for s in STRETCHES if s.name == chosen]
+    present = find_limit_preset(bounds)
+    words = [(stretch.name, stretch.name) for stretch in LIMIT_PRESETS]
+    chosen = option_buttons(look, "stretch", words, present.name if present else "")
+    small_text(look, f"{present.hint}." if present else "Limits of your own, under “Details”.")
+    return [do(rebuilding.choose_bounds, s.bounds) for s in LIMIT_PRESETS if s.name == chosen]
 
 
 def _limit(
-    look: Look, limit: Limit, bounds: Bounds, reached: tuple[Certificate, ...]
+    look: Look, limit: LimitRow, bounds: Bounds, reached: tuple[Certificate, ...]
 ) -> list[Action]:
     """Draw one bound: its name and value on one line, under them the track that it ends."""
     palette = look.palette
@@ -125,18 +132,18 @@ def _limit(
     imgui.text_unformatted(limit.name)
     imgui.same_line(0, 0.35 * look.em)
     imgui.text_colored(palette.dim, limit.symbol)
-    tip(limit.hint)
+    draw_tooltip(limit.hint)
     text = f"{used:.2f}{limit.unit}  of"
     room = FIELD * look.em + imgui.get_style().item_inner_spacing.x
-    at_end(room + imgui.calc_text_size(text).x)
+    align_right(room + imgui.calc_text_size(text).x)
     colour = _colour(look, limit, used, bound)
     imgui.text_colored(colour, text)
     imgui.same_line(0, imgui.get_style().item_inner_spacing.x)
     imgui.set_next_item_width(FILL)
-    entered = number(f"bound {limit.field}", bound)
-    tip(f"{limit.hint}: type its limit")
+    entered = number_field(f"bound {limit.field}", bound)
+    draw_tooltip(f"{limit.hint}: type its limit")
     imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - 0.5 * imgui.get_style().item_spacing.y)
-    moved = track(
+    moved = slider_track(
         look,
         f"bound {limit.field} track",
         bound,
@@ -145,7 +152,7 @@ def _limit(
         colour=colour,
         used=used,
     )
-    tip(f"{limit.hint}: drag its limit")
+    draw_tooltip(f"{limit.hint}: drag its limit")
     imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - 0.5 * imgui.get_style().item_spacing.y)
     if entered is not None:
         return [do(rebuilding.enter_bound, bounds, limit.field, entered)]
@@ -157,7 +164,7 @@ def _limit(
     return [do(rebuilding.choose_bounds if moved.is_final else rebuilding.draft_bounds, wanted)]
 
 
-def _colour(look: Look, limit: Limit, used: float, bound: float) -> imgui.ImVec4:
+def _colour(look: Look, limit: LimitRow, used: float, bound: float) -> imgui.ImVec4:
     palette, scale = look.palette, limit.scale
     share = scale.share(used) / max(scale.share(bound), 1e-6)
     return palette.danger if share > 1.0 else palette.warning if share > NEAR else palette.good
@@ -168,28 +175,28 @@ def _solver(session: Session, look: Look, project: Project) -> None:
     pose = None if shown is None else shown.pose
     if project.pull is not None and not project.pull.is_at_rest:
         _status(look, icons.ICON_FA_ARROWS_SPIN, palette.accent, "Following the handles")
-        small(look, f"{1000 * session.solver_seconds:.0f} ms for the last steps")
+        small_text(look, f"{1000 * session.solver_seconds:.0f} ms for the last steps")
         return
     if shown is None or pose is None:
         _status(look, icons.ICON_FA_FILM, palette.dim, "An in-between")
-        small(look, "It stays within the distortion of its two keys.")
+        small_text(look, "It stays within the distortion of its two keys.")
         return
-    shortfall = find_shortfall(shown.clip.layer, pose)
+    shortfall = measure_target_errors(shown.clip.layer, pose)
     is_proven = shown.clip.layer.is_proven(pose)
     if not is_proven:
         _status(look, icons.ICON_FA_TRIANGLE_EXCLAMATION, palette.danger, "Beyond the limits")
-    elif shortfall.lags:
+    elif shortfall.errors:
         _status(look, icons.ICON_FA_HAND, palette.warning, _lag_in_words(shortfall))
         remedy = "A looser stretch lets" if shortfall.at_limits else "More weight lets"
-        small(look, f"{shortfall.reason.capitalize()}. {remedy} a handle come nearer.")
+        small_text(look, f"{shortfall.reason.capitalize()}. {remedy} a handle come nearer.")
     else:
         _status(look, icons.ICON_FA_CIRCLE_CHECK, palette.good, "Every handle is in its place")
     if is_proven:
-        small(look, "Proven: nothing folds, and no point exceeds the limits.")
+        small_text(look, "Proven: nothing folds, and no point exceeds the limits.")
 
 
-def _lag_in_words(shortfall: Shortfall) -> str:
-    count, most = len(shortfall.lags), max(shortfall.lags.values())
+def _lag_in_words(shortfall: TargetErrors) -> str:
+    count, most = len(shortfall.errors), max(shortfall.errors.values())
     if count == 1:
         return f"1 handle is {most:.0f} px short of its target"
     return f"{count} handles are up to {most:.0f} px short"
@@ -208,7 +215,7 @@ def _keys(session: Session, look: Look, project: Project) -> list[Action]:
     flags = imgui.TableFlags_.sizing_stretch_prop | imgui.TableFlags_.pad_outer_x
     if not imgui.begin_table("keys", 1 + len(LIMITS), flags):
         return actions
-    with sized(SMALL):
+    with push_text_size(SMALL):
         imgui.table_next_row()
         for title in ("Frame", *(limit.symbol for limit in LIMITS)):
             imgui.table_next_column()
@@ -238,8 +245,10 @@ def _keys(session: Session, look: Look, project: Project) -> list[Action]:
 
 def _solving(project: Project) -> list[Action]:
     renewal = project.renewal
-    if renewal is not None and renewal.into is None:
-        return [do(rebuilding.cancel)] if progress(renewal.progress, renewal.now) else []
+    if renewal is not None and renewal.new_layer is None:
+        return (
+            [do(rebuilding.cancel)] if progress_bar(renewal.progress, renewal.status_text) else []
+        )
     is_possible = renewal is None and bool(project.layer.handles)
     hint = "Pull the handles of every key to their targets again, within the limits"
     is_pressed = text_button("Pose all keys again", FILL, hint, enabled=is_possible)

@@ -2,16 +2,18 @@
 
 from imgui_bundle import imgui
 
-from app.document import USUAL_EXTENT, Handle, Keyframe, Layer, layer_commands
+from app.document import DEFAULT_DEPTH_EXTENT, Handle, Keyframe, Layer, layer_commands
 from app.editor import Action, Project, Session, do
 from app.editor.actions import editing, playback, viewing
-from app.ui.style import Look, Scale, heading, label, slider, small, tip
+from app.ui.style import Look, Scale, draw_tooltip, heading, label, slider, small_text
 from engine.geometry import diameter
 
 DEPTHS = Scale(left=-1.0, right=1.0)
 
 
-def draw(session: Session, look: Look, project: Project, handle: Handle) -> list[Action]:
+def draw_depth_settings(
+    session: Session, look: Look, project: Project, handle: Handle
+) -> list[Action]:
     """Draw the depth of a handle, its extent, and from which key on it holds."""
     heading(look, "In front")
     layer, frame = project.layer, playback.posed_frame(session, project)
@@ -43,31 +45,31 @@ def _depth(session: Session, look: Look, project: Project, handle: Handle) -> li
 
 def _extent(look: Look, layer: Layer, handle: Handle) -> list[Action]:
     label(look, "Extent")
-    usual = USUAL_EXTENT * diameter(layer.domain.outline)
+    usual = DEFAULT_DEPTH_EXTENT * diameter(layer.domain.outline)
     extents = Scale(left=0.1 * usual, right=8 * usual, logarithmic=True)
     hint = "How far around the handle that holds, in pixels along the drawing"
     entered = slider(look, "extent", handle.extent or usual, extents, text="%.0f", hint=hint)
     if entered is None or entered.value <= 0:
         return []
-    return [_set(handle, handle.front, round(entered.value, 1))]
+    return [_set(handle, handle.depth, round(entered.value, 1))]
 
 
 def _from_key(look: Look, handle: Handle, key: Keyframe | None) -> list[Action]:
     """Draw whether the depth is that of a key, from which on it holds."""
-    front = key.fronts.get(handle.id) if key else None
+    front = key.depths.get(handle.id) if key else None
     imgui.begin_disabled(key is None)
     changed, keyed = imgui.checkbox("From this key on", front is not None)
     imgui.end_disabled()
-    tip("The depth holds from this key until another one says otherwise")
+    draw_tooltip("The depth holds from this key until another one says otherwise")
     if key is None:
-        small(look, "Go to a key to let the depth change there.")
+        small_text(look, "Go to a key to let the depth change there.")
         return []
-    return [_set_in_key(key, handle, handle.front if keyed else None)] if changed else []
+    return [_set_in_key(key, handle, handle.depth if keyed else None)] if changed else []
 
 
 def _set_in_key(key: Keyframe, handle: Handle, front: float | None) -> Action:
-    return do(editing.edit_layer, layer_commands.key_front, key.frame, handle.id, front)
+    return do(editing.edit_layer, layer_commands.key_depth, key.frame, handle.id, front)
 
 
 def _set(handle: Handle, front: float, extent: float | None) -> Action:
-    return do(editing.edit_layer, layer_commands.set_front, handle.id, front, extent)
+    return do(editing.edit_layer, layer_commands.set_depth, handle.id, front, extent)

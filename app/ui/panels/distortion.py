@@ -9,12 +9,23 @@ from imgui_bundle import ImVec2, ImVec4, icons_fontawesome_6 as icons, imgui, im
 
 from app.editor import Action, CurveKind, HeatMap, Project, Session, Twin, do
 from app.editor.actions import playback, saving, viewing
-from app.motion import Shown
-from app.render import heat_ramp
-from app.reports import TIMES, Curves, broken_lines
+from app.motion import DisplayedFrame
+from app.render import heat_colormap
+from app.reports import TIMES, Curves, split_at_keys
 from app.ui.methods import METHODS
-from app.ui.style import SMALL, Look, beside, faint, heading, ink, segments, small, text_button, tip
-from app.ui.viewport import heat_limits, measure
+from app.ui.style import (
+    SMALL,
+    Look,
+    colour_u32,
+    draw_tooltip,
+    heading,
+    option_buttons,
+    small_text,
+    split_line,
+    text_button,
+    with_alpha,
+)
+from app.ui.viewport import heat_limits, measure_distortion
 from engine.arrays import Floats
 from engine.domain.meshing import Mesh
 from engine.maps import Bounds
@@ -40,7 +51,7 @@ QUIET = (
 )
 
 
-def draw(session: Session, look: Look, project: Project) -> list[Action]:
+def draw_distortion_panel(session: Session, look: Look, project: Project) -> list[Action]:
     """Draw the choice of the heat map, the histogram, and the curves."""
     if project.puppet.shown is None:
         return []
@@ -48,7 +59,7 @@ def draw(session: Session, look: Look, project: Project) -> list[Action]:
     heading(look, "On the drawing")
     actions: list[Action] = []
     heat_map = session.overlays.heat_map
-    match segments(look, "heat map", HEAT_MAPS, heat_map):
+    match option_buttons(look, "heat map", HEAT_MAPS, heat_map):
         case "none" | "k" | "sigma_a" | "sigma_b" as chosen:
             actions.append(do(viewing.show_heat_map, chosen))
     _spread(look, project, project.puppet.shown, "k" if heat_map == "none" else heat_map)
@@ -56,7 +67,7 @@ def draw(session: Session, look: Look, project: Project) -> list[Action]:
     actions += _compare(session, look)
     heading(look, "Over time")
     if len(project.layer.keys) < 2:
-        small(look, "Make a second key to see how the in-betweens distort.")
+        small_text(look, "Make a second key to see how the in-betweens distort.")
         return actions
     return [*actions, *_over_time(session, look, project)]
 
@@ -74,11 +85,11 @@ def _compare(session: Session, look: Look) -> list[Action]:
             is_chosen = split is not None and split.method == method
             if imgui.selectable(text.title, is_chosen)[0]:
                 actions.append(do(viewing.compare_with, method))
-            tip(text.what)
+            draw_tooltip(text.what)
         imgui.end_combo()
-    tip("The same keys by another method, beside this drawing's own")
+    draw_tooltip("The same keys by another method, beside this drawing's own")
     if split is not None:
-        chosen = segments(look, "split", SPLITS, "beside" if split.beside else "divider")
+        chosen = option_buttons(look, "split", SPLITS, "beside" if split.beside else "divider")
         if chosen is not None and (chosen == "beside") != split.beside:
             actions.append(do(viewing.lay_beside, chosen == "beside"))
     return actions
@@ -110,8 +121,8 @@ class _Histogram(NamedTuple):
 
 
 @lru_cache(maxsize=2)
-def _histogram(shown: Shown, heat_map: HeatMap, low: float, high: float) -> _Histogram:
-    values = measure(shown, heat_map)
+def _histogram(shown: DisplayedFrame, heat_map: HeatMap, low: float, high: float) -> _Histogram:
+    values = measure_distortion(shown, heat_map)
     ends = np.array([low, high, values.min(), values.max()])
     shares, edges = np.histogram(
         values,
@@ -135,11 +146,11 @@ def _colours(first: float, last: float, low: float, high: float) -> tuple[int, .
     """Return the heat map's colours at the middles of the bins."""
     middles = first + (np.arange(BINS) + 0.5) / BINS * (last - first)
     places = np.clip((middles - low) / (high - low), 0.0, 1.0)
-    rows = heat_ramp()[np.rint(255 * places).astype(int)]
+    rows = heat_colormap()[np.rint(255 * places).astype(int)]
     return tuple(imgui.IM_COL32(red, green, blue, 255) for red, green, blue in rows.tolist())
 
 
-def _spread(look: Look, project: Project, shown: Shown, heat_map: HeatMap) -> None:
+def _spread(look: Look, project: Project, shown: DisplayedFrame, heat_map: HeatMap) -> None:
     """Draw which part of the drawing has how much, in the colours of the heat map."""
     low, high = heat_limits(project, heat_map)
     histogram = _histogram(shown, heat_map, low, high)
@@ -155,7 +166,7 @@ def _spread(look: Look, project: Project, shown: Shown, heat_map: HeatMap) -> No
         _rule("bound", [high], look.palette.danger, width=LIMIT * look.em)
         implot.end_plot()
     name = NAMES[heat_map]
-    small(look, f"{name} over the area: {histogram.worst:.2f} at worst, limit {high:.2f}.")
+    small_text(look, f"{name} over the area: {histogram.worst:.2f} at worst, limit {high:.2f}.")
 
 
 def _bars(look: Look, histogram: _Histogram, colours: tuple[int, ...]) -> None:
@@ -179,12 +190,12 @@ def _bars(look: Look, histogram: _Histogram, colours: tuple[int, ...]) -> None:
 
 def _over_time(session: Session, look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
-    match segments(look, "curves", KINDS, session.curves):
+    match option_buttons(look, "curves", KINDS, session.curves):
         case "relative" | "absolute" as kind:
             actions.append(do(viewing.show_curves, kind))
     curves = project.curves.value
     if curves is None:
-        small(look, "Measuring…")
+        small_text(look, "Measuring…")
         return actions
     height = _plot_height(look)
     bounds = project.layer.bounds
@@ -194,14 +205,14 @@ def _over_time(session: Session, look: Look, project: Project) -> list[Action]:
     if twin is not None and twin_curves.value is not None:
         if twin_curves.follows(twin.clip(project.document)):
             other_upper, other_lower = _plots(session.curves, twin_curves.value, bounds)
-        _tell_both(look, twin, curves, twin_curves.value)
+        _draw_comparison_tooltip(look, twin, curves, twin_curves.value)
     actions += _plot(session, look, curves, (upper, other_upper), height)
     actions += _plot(session, look, curves, (lower, other_lower), height + FRAMES * look.em)
     if session.curves == "relative":
-        small(look, "Each point relative to its larger key. Red: theoretical limit.")
+        small_text(look, "Each point relative to its larger key. Red: theoretical limit.")
     else:
-        small(look, "Red: the limits of poses.")
-    halves, is_new = beside(2), curves.clip == project.clip
+        small_text(look, "Red: the limits of poses.")
+    halves, is_new = split_line(2), curves.clip == project.clip
     png, csv = f"{icons.ICON_FA_IMAGE}  Save as PNG…", f"{icons.ICON_FA_TABLE}  Save as CSV…"
     if text_button(f"{png}###png", next(halves), enabled=is_new):
         actions.append(do(saving.ask_curves_png))
@@ -256,14 +267,14 @@ def _lines(curves: Curves, values: Floats) -> tuple[Floats, Floats]:
     wanted = max(4, SEGMENTS * TIMES // len(curves.frames))
     pieces = np.linspace(0, TIMES - 1, min(wanted, TIMES)).round().astype(int)
     kept = np.append(pieces, TIMES)  # the break after each interval, too
-    frames, lines = (line.reshape(-1, TIMES + 1) for line in broken_lines(curves, values))
+    frames, lines = (line.reshape(-1, TIMES + 1) for line in split_at_keys(curves, values))
     return frames[:, kept].ravel(), lines[:, kept].ravel()
 
 
-def _tell_both(look: Look, twin: Twin, own: Curves, other: Curves) -> None:
+def _draw_comparison_tooltip(look: Look, twin: Twin, own: Curves, other: Curves) -> None:
     """Tell which curves are whose, and how far each goes."""
     if (other.clip.layer, other.clip.baseline or twin.method) != (twin.layer, twin.method):
-        small(look, "Measuring the other method…")
+        small_text(look, "Measuring the other method…")
         return
     palette = look.palette
     for curves, colour in ((own, palette.accent), (other, palette.warning)):
@@ -299,19 +310,19 @@ def _plot(
     _rule("keys", [key.frame for key in project.layer.keys], palette.line)
     alpha = 0.10 if curves.clip != project.clip else 0.30
     if other is not None:
-        _trace("others", other, faint(palette.warning, alpha))
-    _trace("points", plot, faint(palette.accent, alpha))
+        _trace("others", other, with_alpha(palette.warning, alpha))
+    _trace("points", plot, with_alpha(palette.accent, alpha))
     _rule("bound", [plot.bound], palette.danger, width=LIMIT * look.em, across=True)
     _rule("now", [playback.current_frame(session, project)], palette.text)
     corner = implot.get_plot_pos()
     place = corner + ImVec2(0.5 * look.em, 0.2 * look.em)
-    implot.get_plot_draw_list().add_text(place, ink(palette.text), plot.title)
+    implot.get_plot_draw_list().add_text(place, colour_u32(palette.text), plot.title)
     # A plot that takes no inputs of its own never counts as hovered.
     is_over = imgui.is_mouse_hovering_rect(corner, corner + implot.get_plot_size())
     if is_over and imgui.is_window_hovered() and imgui.is_mouse_clicked(imgui.MouseButton_.left):
         actions.append(do(playback.seek, round(implot.get_plot_mouse_pos().x)))
     implot.end_plot()
-    tip("Click to go to that frame")
+    draw_tooltip("Click to go to that frame")
     return actions
 
 

@@ -4,35 +4,35 @@ from dataclasses import replace
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
-from app.document import ExportSettings, FrameRange, exported_frames, scene_commands
+from app.document import ExportSettings, FrameRange, export_frame_range, scene_commands
 from app.editor import Action, Project, Session, do
 from app.editor.actions import editing, exporting
-from app.errors import LIBRARIES, LissomError, missing, shown_name
-from app.export import frame_view, shown_box
+from app.errors import LIBRARIES, LissomError, display_name, install_hint
+from app.export import find_shown_box, frame_view
 from app.export_formats import EXPORT_FORMATS
-from app.motion import Box, box_around, extent_source
+from app.motion import BoundingBox, bounding_box, extent_key
 from app.render import View
-from app.ui.panels.format_options import draw_options
-from app.ui.panels.sizes import LARGEST, size_fields
+from app.ui.panels.format_options import draw_format_options
+from app.ui.panels.sizes import LARGEST, draw_size_fields
 from app.ui.shortcuts import BINDINGS
 from app.ui.style import (
     FILL,
     SMALL,
     Look,
-    beside,
     colour_field,
+    colour_u32,
+    draw_tooltip,
     heading,
     icon_button,
-    ink,
     label,
     main_button,
-    progress,
+    option_buttons,
+    progress_bar,
+    push_text_size,
     rgb,
-    segments,
-    sized,
-    small,
+    small_text,
+    split_line,
     text_button,
-    tip,
 )
 
 BACKGROUNDS = (("transparent", "Transparent"), ("colour", "Colour"))
@@ -41,19 +41,19 @@ RANGES = (("all", "All frames"), ("own", "From – to"))
 WHITE = "#ffffff"
 MEASURES = "Measuring where the motion reaches…"
 LEAVES = "The motion leaves the frame; “All motion” shows all of it."
-FILMED = "Each frame is what the camera shows then."
+CAMERA_HINT = "Each frame is what the camera shows then."
 KEEPS = "All of the motion is in the frame."
 PREVIEW, LARGEST_PREVIEW = 3.2, 6.0  # em: at least and at most
 
 
-def draw(session: Session, look: Look, project: Project) -> list[Action]:
+def draw_export_panel(session: Session, look: Look, project: Project) -> list[Action]:
     """Draw the settings of the export with a preview of its frame, or its progress."""
     if project.puppet.shown is None:
         return []
     settings = project.document.export
-    motion = project.extent.value or box_around(project.puppet.shown.positions)
+    motion = project.extent.value or bounding_box(project.puppet.shown.positions)
     view = frame_view(settings, project.document, motion)
-    box = shown_box(view)
+    box = find_shown_box(view)
     # The camera's frame is shown at all times.
     actions = [] if project.document.camera else [do(exporting.show_frame, box)]
     heading(look, "Picture")
@@ -70,7 +70,7 @@ def draw(session: Session, look: Look, project: Project) -> list[Action]:
     heading(look, "Frames")
     if EXPORT_FORMATS[settings.format].is_still:
         now = project.playhead.frame_at(project.document, session.clock())
-        small(look, f"Frame {now}, where the playhead is, with its pose as it is shown.")
+        small_text(look, f"Frame {now}, where the playhead is, with its pose as it is shown.")
     else:
         chosen = _frames(look, project, chosen)
     if chosen != settings:
@@ -92,13 +92,13 @@ def _format(look: Look, settings: ExportSettings) -> ExportSettings:
             if imgui.selectable(format_.label, name == settings.format)[0]:
                 settings = _with_format(settings, name)
             imgui.indent()
-            small(look, format_.use)
+            small_text(look, format_.use)
             imgui.unindent()
         imgui.end_combo()
     look.note_place("format")
-    tip(now.use)
-    if now.extra and (remedy := missing(now.extra)):
-        small(look, f"It needs {LIBRARIES[now.extra]}: {remedy}")
+    draw_tooltip(now.use)
+    if now.extra and (remedy := install_hint(now.extra)):
+        small_text(look, f"It needs {LIBRARIES[now.extra]}: {remedy}")
     return settings
 
 
@@ -106,10 +106,10 @@ def _picture(look: Look, project: Project, settings: ExportSettings) -> ExportSe
     label(look, "Background")
     settings = _background(look, settings)
     if project.document.camera:
-        small(look, FILMED)
+        small_text(look, CAMERA_HINT)
         return settings
     label(look, "Framing")
-    match segments(look, "framing", FRAMINGS, settings.framing):
+    match option_buttons(look, "framing", FRAMINGS, settings.framing):
         case "canvas" | "fit" as framing:
             settings = replace(settings, framing=framing)
     return settings
@@ -121,7 +121,7 @@ def _details(look: Look, settings: ExportSettings) -> ExportSettings:
     if not format_.suffixes:
         settings = _names(look, settings)
     if format_.options:
-        options = draw_options(look, settings.options()[format_.options])
+        options = draw_format_options(look, settings.options()[format_.options])
         settings = replace(settings, **{format_.options: options})
     return settings
 
@@ -130,12 +130,12 @@ def _names(look: Look, settings: ExportSettings) -> ExportSettings:
     label(look, "File names")
     _, names = imgui.input_text("##names", settings.names)
     done = imgui.is_item_deactivated_after_edit()
-    tip("One # for each digit of a frame's number; {name} is the project's name")
+    draw_tooltip("One # for each digit of a frame's number; {name} is the project's name")
     try:
         entered = replace(settings, names=names) if names else settings
     except LissomError as error:
         # It is told while it is typed; then the field shows again what holds.
-        small(look, str(error), look.palette.danger)
+        small_text(look, str(error), look.palette.danger)
         return settings
     return entered if done else settings
 
@@ -151,12 +151,12 @@ def _background(look: Look, settings: ExportSettings) -> ExportSettings:
     size = 0.0 if is_clear else imgui.get_frame_height() + imgui.get_style().item_inner_spacing.x
     format_ = EXPORT_FORMATS[settings.format]
     imgui.begin_disabled(not format_.is_transparent and not is_clear)
-    chosen = segments(
+    chosen = option_buttons(
         look, "background", BACKGROUNDS, "transparent" if is_clear else "colour", room=size
     )
     imgui.end_disabled()
     if not format_.is_transparent:
-        tip(f"{format_.label} has no transparency")
+        draw_tooltip(f"{format_.label} has no transparency")
     match chosen:
         case "transparent":
             return replace(settings, background="transparent")
@@ -177,7 +177,7 @@ def _size(
     label(look, "Size")
     gap = imgui.get_style().item_inner_spacing.x
     room = 2 * (1.15 * imgui.get_frame_height() + gap)
-    entered = size_fields("", view.size, room)
+    entered = draw_size_fields("", view.size, room)
     imgui.same_line(0, gap)
     keeps = session.keeps_aspect
     icon = icons.ICON_FA_LOCK if keeps else icons.ICON_FA_LOCK_OPEN
@@ -207,7 +207,7 @@ def _canvas(look: Look, project: Project) -> list[Action]:
     document = project.document
     label(look, "Canvas")
     gap = imgui.get_style().item_inner_spacing.x
-    entered = size_fields("canvas ", document.canvas, 1.15 * imgui.get_frame_height() + gap)
+    entered = draw_size_fields("canvas ", document.canvas, 1.15 * imgui.get_frame_height() + gap)
     imgui.same_line(0, gap)
     hint = "Back to the size of the picture behind all others"
     is_own = document.canvas != document.layers[0].picture.size
@@ -220,9 +220,9 @@ def _canvas(look: Look, project: Project) -> list[Action]:
 
 def _frames(look: Look, project: Project, settings: ExportSettings) -> ExportSettings:
     document = project.document
-    frames = exported_frames(document)
+    frames = export_frame_range(document)
     label(look, "Range")
-    match segments(look, "range", RANGES, "all" if settings.frames is None else "own"):
+    match option_buttons(look, "range", RANGES, "all" if settings.frames is None else "own"):
         case "all":
             settings = replace(settings, frames=None)
         case "own":
@@ -230,7 +230,7 @@ def _frames(look: Look, project: Project, settings: ExportSettings) -> ExportSet
     label(look, "First, last")
     imgui.begin_disabled(settings.frames is None)
     ends = []
-    widths = beside(2, imgui.get_style().item_inner_spacing.x)
+    widths = split_line(2, imgui.get_style().item_inner_spacing.x)
     both = zip(("first", "last"), (frames.first, frames.last), widths, strict=True)
     for name, frame, width in both:
         imgui.set_next_item_width(width)
@@ -244,9 +244,9 @@ def _frames(look: Look, project: Project, settings: ExportSettings) -> ExportSet
     count = frames.last - frames.first + 1
     text = "1 picture" if count == 1 else f"{count} pictures"
     if EXPORT_FORMATS[settings.format].is_drawn:
-        small(look, f"{text}, {count / document.fps:.1f} s at {document.fps:g} fps")
+        small_text(look, f"{text}, {count / document.fps:.1f} s at {document.fps:g} fps")
     else:
-        small(look, f"{count / document.fps:.1f} s, at any rate")
+        small_text(look, f"{count / document.fps:.1f} s, at any rate")
     return settings
 
 
@@ -258,9 +258,9 @@ def _output(session: Session, look: Look, project: Project) -> list[Action]:
     gap = imgui.get_style().item_inner_spacing.x
     imgui.set_next_item_width(imgui.get_content_region_avail().x - button - gap)
     imgui.begin_disabled(True)  # noqa: FBT003 - chosen by the button beside it
-    imgui.input_text("##out", shown_name(out.name) if out else "not chosen yet")
+    imgui.input_text("##out", display_name(out.name) if out else "not chosen yet")
     imgui.end_disabled()
-    tip(shown_name(out) if out else "Choose where to")
+    draw_tooltip(display_name(out) if out else "Choose where to")
     imgui.same_line(0, gap)
     if icon_button(look, icons.ICON_FA_FOLDER_OPEN, "choose output", "Choose where to…"):
         actions.append(do(exporting.choose))
@@ -272,14 +272,14 @@ def _output(session: Session, look: Look, project: Project) -> list[Action]:
             total = len(run.plan.times)
             share = run.done / total
             text = f"{run.done} of {total}" if run.done < total else "Finishing…"
-        return [*actions, do(exporting.cancel)] if progress(share, text) else actions
+        return [*actions, do(exporting.cancel)] if progress_bar(share, text) else actions
     if main_button(look, f"{icons.ICON_FA_FILE_EXPORT}  Export###start", FILL):
         actions.append(do(exporting.repeat))
     look.note_place("start export")
-    tip("Export now", BINDINGS["export again"].keys_in_words)
+    draw_tooltip("Export now", BINDINGS["export again"].shown_keys)
     if EXPORT_FORMATS[project.document.export.format].is_still:
         text, hint = f"{icons.ICON_FA_COPY}  Copy###copy", "Put the picture on the clipboard"
-        if text_button(text, FILL, hint, BINDINGS["copy picture"].keys_in_words):
+        if text_button(text, FILL, hint, BINDINGS["copy picture"].shown_keys):
             actions.append(do(exporting.copy_picture))
     return actions
 
@@ -293,10 +293,10 @@ def _preview_height(look: Look) -> float:
 
 
 def _preview(
-    look: Look, project: Project, settings: ExportSettings, frame: Box, motion: Box
+    look: Look, project: Project, settings: ExportSettings, frame: BoundingBox, motion: BoundingBox
 ) -> None:
     """Draw the export's frame around the drawing and all that moves."""
-    canvas = Box(0j, complex(*project.document.canvas))
+    canvas = BoundingBox(0j, complex(*project.document.canvas))
     around = frame.joined(canvas).joined(motion)
     width, height = imgui.get_content_region_avail().x, _preview_height(look)
     corner = imgui.get_cursor_screen_pos()
@@ -308,31 +308,31 @@ def _preview(
         offset = (point - middle) * scale
         return ImVec2(corner.x + width / 2 + offset.real, corner.y + height / 2 - offset.imag)
 
-    def ends(box: Box) -> tuple[ImVec2, ImVec2]:
+    def ends(box: BoundingBox) -> tuple[ImVec2, ImVec2]:
         upper_left = complex(box.lower.real, box.upper.imag)
         return place(upper_left), place(complex(box.upper.real, box.lower.imag))
 
     palette, draw_list = look.palette, imgui.get_window_draw_list()
     opposite = corner + ImVec2(width, height)
-    draw_list.add_rect_filled(corner, opposite, ink(palette.desk), 0.4 * look.em)
+    draw_list.add_rect_filled(corner, opposite, colour_u32(palette.desk), 0.4 * look.em)
     is_clear = settings.background == "transparent"
     colour = palette.raised if is_clear else rgb(settings.background)
-    draw_list.add_rect_filled(*ends(frame), ink(colour))
+    draw_list.add_rect_filled(*ends(frame), colour_u32(colour))
     if project.puppet.shown is not None:
         count = len(project.puppet.shown.mesh.domain.outline)
         for point in project.puppet.shown.positions[:count]:
             draw_list.path_line_to(place(complex(point)))
-        draw_list.path_stroke(ink(palette.dim), 1.3, imgui.ImDrawFlags_.closed)
-    draw_list.add_rect(*ends(canvas), ink(palette.dim, 0.6))
-    draw_list.add_rect(*ends(motion), ink(palette.warning, 0.8))
-    draw_list.add_rect(*ends(frame), ink(palette.accent), 0.0, 1.6)
+        draw_list.path_stroke(colour_u32(palette.dim), 1.3, imgui.ImDrawFlags_.closed)
+    draw_list.add_rect(*ends(canvas), colour_u32(palette.dim, 0.6))
+    draw_list.add_rect(*ends(motion), colour_u32(palette.warning, 0.8))
+    draw_list.add_rect(*ends(frame), colour_u32(palette.accent), 0.0, 1.6)
     imgui.dummy(ImVec2(width, height))
-    tip(
+    draw_tooltip(
         "Blue: what the export shows, as in the viewport. Grey: the picture's canvas.\n"
         "Orange: where the motion reaches."
     )
-    is_known = project.extent.follows(extent_source(project.document))
-    if not is_known and not project.extent.has_failed(extent_source(project.document)):
+    is_known = project.extent.follows(extent_key(project.document))
+    if not is_known and not project.extent.has_failed(extent_key(project.document)):
         note = MEASURES
     else:
         note = LEAVES if not frame.contains(motion, slack=1.0) else KEEPS
@@ -342,9 +342,9 @@ def _preview(
 def _note(look: Look, text: str) -> None:
     """Write one of the notes, in the room that the longest of them takes."""
     width, notes = imgui.get_content_region_avail().x, (MEASURES, LEAVES, KEEPS)
-    with sized(SMALL):
+    with push_text_size(SMALL):
         room = max(imgui.calc_text_size(note, wrap_width=width).y for note in notes)
     top = imgui.get_cursor_pos_y()
-    small(look, text)
+    small_text(look, text)
     imgui.set_cursor_pos_y(top + room + imgui.get_style().item_spacing.y)
     imgui.dummy(ImVec2(0, 0))

@@ -6,14 +6,14 @@ from typing import Any, TypeVar
 from imgui_bundle import imgui
 
 from app.export_formats import FormatOptions, Option
-from app.ui.style import FILL, Look, label, segments, tip
+from app.ui.style import FILL, Look, draw_tooltip, label, option_buttons
 
 T = TypeVar("T", bound=FormatOptions)
 
 
-def draw_options(look: Look, options: T) -> T:
+def draw_format_options(look: Look, options: T) -> T:
     """Draw the options of a format, one below the other; return them with what was chosen."""
-    for name, option in options.asked().items():
+    for name, option in options.option_fields().items():
         label(look, option.label)
         value = _chosen(look, name, option, getattr(options, name))
         options = replace(options, **{name: value})
@@ -23,16 +23,16 @@ def draw_options(look: Look, options: T) -> T:
 def _chosen(look: Look, name: str, option: Option, value: Any) -> Any:
     """Draw an option; return the value that was chosen, or the present one."""
     has_number = value is not None and not isinstance(value, bool)
-    if option.words:
-        words = [(word, word) for _, word in option.words]
+    if option.choices:
+        words = [(word, word) for _, word in option.choices]
         # A number that has no word of its own goes by the one for numbers, which is the last.
-        present = next((word for each, word in option.words if each == value), words[-1][0])
+        present = next((word for each, word in option.choices if each == value), words[-1][0])
         room = 4.0 * look.em if has_number else 0.0
-        chosen = segments(look, name, words, present, room=room)
+        chosen = option_buttons(look, name, words, present, room=room)
         if option.tip:
-            tip(option.tip)
+            draw_tooltip(option.tip)
         if chosen is not None:
-            return next(each for each, word in option.words if word == chosen)
+            return next(each for each, word in option.choices if word == chosen)
         if has_number:
             imgui.same_line(0, imgui.get_style().item_inner_spacing.x)
             imgui.set_next_item_width(FILL)
@@ -45,6 +45,6 @@ def _chosen(look: Look, name: str, option: Option, value: Any) -> Any:
         _, entered = imgui.input_float(f"##{name}", value, 0.0, 0.0, "%.3g px")
         entered = round(entered, 6)
     done = imgui.is_item_deactivated_after_edit()
-    if option.tip and not option.words:
-        tip(option.tip)
-    return min(max(entered, option.least), option.most) if done else value
+    if option.tip and not option.choices:
+        draw_tooltip(option.tip)
+    return min(max(entered, option.minimum), option.maximum) if done else value

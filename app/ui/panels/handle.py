@@ -7,54 +7,60 @@ from dataclasses import replace
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.document import (
-    HOLDS,
+    WEIGHT_PRESETS,
     Handle,
-    Shortfall,
     Target,
-    find_shortfall,
+    TargetErrors,
     handle_commands,
+    measure_target_errors,
     shape_commands,
 )
 from app.editor import Action, Project, Session, do
 from app.editor.actions import editing, posing, viewing
 from app.ui.panels import depth
-from app.ui.panels.clocks import draw_spring, draw_stillness, draw_track
-from app.ui.shortcuts import BINDINGS, CTRL, bound_button, bound_text_button, with_key
+from app.ui.panels.handle_motion import draw_auto_pin, draw_spring, draw_track
+from app.ui.shortcuts import (
+    BINDINGS,
+    CTRL,
+    draw_action_button,
+    draw_action_text_button,
+    format_modified,
+)
 from app.ui.style import (
     FILL,
     Look,
     Scale,
-    at_end,
-    beside,
+    align_right,
+    draw_tooltip,
     heading,
     icon_button,
     label,
     main_button,
-    number,
-    segments,
-    shortened,
+    number_field,
+    option_buttons,
+    shorten_text,
     slider,
-    small,
+    small_text,
+    split_line,
     text_button,
-    tip,
 )
-from app.ui.viewport import staying
+from app.ui.viewport import find_auto_pinned
 
 MOST_ROWS = 5.5
 WEIGHTS = Scale(left=0.01, right=100.0, logarithmic=True)
 
 
-def draw(session: Session, look: Look, project: Project) -> list[Action]:
+def draw_handle_panel(session: Session, look: Look, project: Project) -> list[Action]:
     """Draw the list of handles and the one that is selected."""
     if project.puppet.shown is None:
         return []
     layer = project.layer
     if not layer.handles:
         heading(look, "Handles")
-        small(look, "There are none yet. Click on the drawing to add one, then drag it, or:")
+        small_text(look, "There are none yet. Click on the drawing to add one, then drag it, or:")
         suggest = BINDINGS["suggest handles"]
         is_pressed = main_button(look, f"{suggest.icon}  {suggest.label}###{suggest.label}", FILL)
-        tip(suggest.hint)
+        draw_tooltip(suggest.hint)
         return [suggest.action] if is_pressed else []
     actions = _heading_with_delete(session, look, project)
     actions += _list(look, project)
@@ -63,13 +69,13 @@ def draw(session: Session, look: Look, project: Project) -> list[Action]:
         actions += _details(session, look, project, chosen[0])
     elif chosen:
         heading(look, f"{len(chosen)} handles")
-        small(look, "Dragging one of them moves them all; arrows nudge them.")
+        small_text(look, "Dragging one of them moves them all; arrows nudge them.")
         actions += _firmness(session, look, chosen)
         track = layer.track_of(chosen[0].id)
         if track is not None and set(track.handles) >= {handle.id for handle in chosen}:
             actions += draw_track(session, look, project, layer.handle(track.handles[0]))
     else:
-        small(look, "Select a handle to see its settings.")
+        small_text(look, "Select a handle to see its settings.")
     if len(chosen) != 1 and session.tint == "depth":
         actions.append(do(viewing.tint, None))
     heading(look, "Anchor")
@@ -78,8 +84,8 @@ def draw(session: Session, look: Look, project: Project) -> list[Action]:
 
 def _heading_with_delete(session: Session, look: Look, project: Project) -> list[Action]:
     heading(look, "Handles", framed=True)
-    at_end(2 * 1.15 * imgui.get_frame_height() + imgui.get_style().item_inner_spacing.x)
-    actions = bound_button(session, look, "suggest handles")
+    align_right(2 * 1.15 * imgui.get_frame_height() + imgui.get_style().item_inner_spacing.x)
+    actions = draw_action_button(session, look, "suggest handles")
     imgui.same_line(0, imgui.get_style().item_inner_spacing.x)
     if icon_button(
         look,
@@ -96,7 +102,7 @@ def _heading_with_delete(session: Session, look: Look, project: Project) -> list
 def _list(look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
     layer = project.layer
-    lags = _shortfall(project).lags
+    lags = _find_target_errors(project).errors
     style = imgui.get_style()
     rows = min(len(layer.handles), MOST_ROWS) * imgui.get_text_line_height_with_spacing()
     height = rows - style.item_spacing.y + 2 * style.window_padding.y
@@ -132,24 +138,24 @@ def _row(look: Look, project: Project, handle: Handle, lag: float | None) -> lis
     text = handle.group if lag is None else f"{lag:.0f} px"
     beside = imgui.calc_text_size(text).x + 0.6 * look.em
     room = imgui.get_content_region_avail().x - beside
-    imgui.text_unformatted(shortened(handle.name, room))
+    imgui.text_unformatted(shorten_text(handle.name, room))
     if text:
-        at_end(beside - 0.3 * look.em)
+        align_right(beside - 0.3 * look.em)
         imgui.text_colored(palette.dim if lag is None else palette.warning, text)
     return actions
 
 
-def _shortfall(project: Project) -> Shortfall:
+def _find_target_errors(project: Project) -> TargetErrors:
     """Return which handles fall short in the pose that is shown; of an in-between none."""
     shown = project.puppet.shown
     if shown is None or shown.pose is None:
-        return Shortfall(lags={}, at_limits=False)
-    return find_shortfall(shown.clip.layer, shown.pose)
+        return TargetErrors(errors={}, at_limits=False)
+    return measure_target_errors(shown.clip.layer, shown.pose)
 
 
 def _details(session: Session, look: Look, project: Project, handle: Handle) -> list[Action]:
     actions: list[Action] = []
-    heading(look, shortened(handle.name, 0.9 * imgui.get_content_region_avail().x))
+    heading(look, shorten_text(handle.name, 0.9 * imgui.get_content_region_avail().x))
     label(look, "Name")
     _, name = imgui.input_text("##name", handle.name)
     if imgui.is_item_deactivated_after_edit() and name.strip() and name != handle.name:
@@ -161,11 +167,11 @@ def _details(session: Session, look: Look, project: Project, handle: Handle) -> 
     placed = _point(look, project, "At rest", handle.position, hint)
     if placed is not None:
         actions.append(do(editing.edit_layer, handle_commands.move_handle, handle.id, placed))
-    actions += _wish(look, project, handle)
-    actions += draw_stillness(look, project, handle)
+    actions += _draw_target(look, project, handle)
+    actions += draw_auto_pin(look, project, handle)
     actions += draw_track(session, look, project, handle)
     actions += draw_spring(look, project, handle)
-    return actions + depth.draw(session, look, project, handle)
+    return actions + depth.draw_depth_settings(session, look, project, handle)
 
 
 def _firmness(session: Session, look: Look, chosen: Sequence[Handle]) -> list[Action]:
@@ -175,28 +181,28 @@ def _firmness(session: Session, look: Look, chosen: Sequence[Handle]) -> list[Ac
     weights = {handle.weight for handle in chosen}
     label(look, "Hold")
     weight = weights.pop() if len(weights) == 1 else math.nan
-    word = next((word for word, value in HOLDS.items() if value == weight), "")
-    taken = segments(look, "hold", [(word, word) for word in HOLDS], word)
-    tip("How firmly it holds against the others where not all can have their way")
+    word = next((word for word, value in WEIGHT_PRESETS.items() if value == weight), "")
+    taken = option_buttons(look, "hold", [(word, word) for word in WEIGHT_PRESETS], word)
+    draw_tooltip("How firmly it holds against the others where not all can have their way")
     if taken is not None:
-        weigh = handle_commands.weigh_handles
-        actions.append(do(editing.edit_layer, weigh, identities, HOLDS[taken]))
+        weigh = handle_commands.set_handle_weight
+        actions.append(do(editing.edit_layer, weigh, identities, WEIGHT_PRESETS[taken]))
     label(look, "")
     hint = "How strongly it pulls, relative to the others: 1 is normal"
     weighed = slider(look, "weight", chosen[0].weight, WEIGHTS, hint=hint)
     if weighed is not None:
-        weigh, value = handle_commands.weigh_handles, float(f"{weighed.value:.3g}")
+        weigh, value = handle_commands.set_handle_weight, float(f"{weighed.value:.3g}")
         actions.append(do(editing.edit_layer, weigh, identities, value))
     names = ["pin here", "lock", "group" if len(chosen) > 1 else "mirror", "mirrored"]
     if any(handle.group for handle in chosen):
         names[2] = "ungroup"
     for pair in (names[:2], names[2:]):
-        for name, width in zip(pair, beside(2), strict=True):
-            actions += bound_text_button(session, name, width)
-    return actions + bound_text_button(session, "key handle", FILL)
+        for name, width in zip(pair, split_line(2), strict=True):
+            actions += draw_action_text_button(session, name, width)
+    return actions + draw_action_text_button(session, "key handle", FILL)
 
 
-def _wish(look: Look, project: Project, handle: Handle) -> list[Action]:
+def _draw_target(look: Look, project: Project, handle: Handle) -> list[Action]:
     """Draw where the pose wants a handle; as many lines between keys, where it wants nothing."""
     actions: list[Action] = []
     shown = project.puppet.shown
@@ -206,43 +212,47 @@ def _wish(look: Look, project: Project, handle: Handle) -> list[Action]:
     target = shown.pose.targets.get(handle.id) if shown.pose else None
     is_wanted = target is not None
     if target is None:
-        target = Target(position=complex(shown.handle_places[identities.index(handle.id)]))
+        target = Target(position=complex(shown.handle_positions[identities.index(handle.id)]))
     hint = "Where this pose wants it, in pixels from the upper left corner"
     wished = _point(look, project, "Target", target.position, hint)
     if wished is not None:
         actions.append(do(posing.wish, {handle.id: replace(target, position=wished)}))
-    actions += _turn(look, project, handle, target)
-    shortfall = _shortfall(project)
-    lag = shortfall.lags.get(handle.id)
+    actions += _draw_rotation(look, project, handle, target)
+    shortfall = _find_target_errors(project)
+    lag = shortfall.errors.get(handle.id)
     if lag is None:
-        goes = "stays until the next key" if handle.id in staying(shown) else "goes with the shape"
-        small(look, "" if is_wanted else f"Between keys it {goes}.")
+        goes = (
+            "stays until the next key"
+            if handle.id in find_auto_pinned(shown)
+            else "goes with the shape"
+        )
+        small_text(look, "" if is_wanted else f"Between keys it {goes}.")
     else:
         is_coming = project.pull is not None and not project.pull.is_at_rest
         why = "on its way" if is_coming else shortfall.reason
-        small(look, f"{lag:.0f} px short of its target, {why}", look.palette.warning)
+        small_text(look, f"{lag:.0f} px short of its target, {why}", look.palette.warning)
     return actions
 
 
-def _turn(look: Look, project: Project, handle: Handle, target: Target) -> list[Action]:
+def _draw_rotation(look: Look, project: Project, handle: Handle, target: Target) -> list[Action]:
     """Draw whether the pose turns the shape at a handle, and by how much."""
     label(look, "Turn")
     is_turned = target.rotation is not None
     changed, turns = imgui.checkbox("##turns", is_turned)
-    tip("Turn the shape at this handle by an angle, or let it turn freely")
+    draw_tooltip("Turn the shape at this handle by an angle, or let it turn freely")
     if changed and not turns:
         return [do(posing.free_turn, handle.id)]
     if changed and project.puppet.shown is not None:
         index = [other.id for other in project.layer.handles].index(handle.id)
-        now = project.puppet.shown.handle_turns[index]
+        now = project.puppet.shown.handle_rotations[index]
         return [do(posing.wish, {handle.id: replace(target, rotation=now)})]
     imgui.same_line()
     if target.rotation is None:
         imgui.text_colored(look.palette.dim, "freely")
         return []
     imgui.set_next_item_width(FILL)
-    entered = number("angle", math.degrees(target.rotation), "%.1f°")
-    tip("Counter-clockwise, in degrees; drag the ring around the handle to turn it")
+    entered = number_field("angle", math.degrees(target.rotation), "%.1f°")
+    draw_tooltip("Counter-clockwise, in degrees; drag the ring around the handle to turn it")
     if entered is None:
         return []
     return [do(posing.wish, {handle.id: replace(target, rotation=math.radians(entered))})]
@@ -253,11 +263,11 @@ def _point(look: Look, project: Project, text: str, place: complex, hint: str) -
     height = project.document.canvas[1]
     label(look, text)
     entered = []
-    widths = beside(2, imgui.get_style().item_inner_spacing.x)
+    widths = split_line(2, imgui.get_style().item_inner_spacing.x)
     for axis, at, width in zip("xy", (place.real, height - place.imag), widths, strict=True):
         imgui.set_next_item_width(width)
-        entered.append(number(f"{text.lower()} {axis}", at, "%.1f"))
-        tip(hint)
+        entered.append(number_field(f"{text.lower()} {axis}", at, "%.1f"))
+        draw_tooltip(hint)
     x, y = entered
     if x is None and y is None:
         return None
@@ -269,18 +279,18 @@ def _anchor(look: Look, project: Project, chosen: list[Handle]) -> list[Action]:
     layer = project.layer
     holder = next((h.name for h in layer.handles if h.position == layer.anchor), None)
     if layer.anchor is None:
-        small(look, "Automatic: the middle of the shape stays calm between keys.")
+        small_text(look, "Automatic: the middle of the shape stays calm between keys.")
     elif holder is not None:
-        name = shortened(holder, 12 * look.em)
-        small(look, f"“{name}” stays calm between keys: it goes the straightest way.")
+        name = shorten_text(holder, 12 * look.em)
+        small_text(look, f"“{name}” stays calm between keys: it goes the straightest way.")
     else:
         anchor = layer.anchor
         y = project.document.canvas[1] - anchor.imag
-        small(look, f"The point {anchor.real:.0f}, {y:.0f} stays calm between keys.")
+        small_text(look, f"The point {anchor.real:.0f}, {y:.0f} stays calm between keys.")
     is_chosen = len(chosen) == 1 and chosen[0].position != layer.anchor
-    halves, actions = beside(2), list[Action]()
+    halves, actions = split_line(2), list[Action]()
     text = f"{icons.ICON_FA_ANCHOR}  Follow this handle###anchor here"
-    hint, keys = "Let this point stay calm between keys", with_key(CTRL, "click")
+    hint, keys = "Let this point stay calm between keys", format_modified(CTRL, "click")
     if text_button(text, next(halves), hint, keys, enabled=is_chosen):
         actions.append(do(posing.anchor_at, chosen[0].id))
     has_own = layer.anchor is not None

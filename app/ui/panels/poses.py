@@ -5,30 +5,30 @@ from itertools import groupby
 
 from imgui_bundle import ImVec2, imgui
 
-from app.document import KeptPose, Pose, written_pairs
+from app.document import LibraryPose, Pose, format_pairs
 from app.editor import Action, Project, Session, do
 from app.editor.actions import viewing
 from app.editor.poses import flipping, library, pasting
-from app.ui.shortcuts import bound_button, bound_text_button
+from app.ui.shortcuts import draw_action_button, draw_action_text_button
 from app.ui.style import (
     POSE_PAYLOAD,
     SMALL,
     Look,
     Scale,
-    at_end,
-    beside,
-    density,
+    align_right,
+    colour_u32,
+    draw_tooltip,
     heading,
-    ink,
     label,
     name_popup,
-    number,
-    shortened,
-    sized,
-    small,
+    number_field,
+    pixel_density,
+    push_text_size,
+    shorten_text,
+    slider_track,
+    small_text,
+    split_line,
     text_button,
-    tip,
-    track,
 )
 
 TILE, LEAST_GAP = 6.6, 0.6  # em: side of a picture, and between two
@@ -36,23 +36,25 @@ SHARES = Scale(left=0.0, right=1.0)
 Pictures = Callable[[int, Pose, int], int | None]
 
 
-def draw(session: Session, look: Look, project: Project, pictures: Pictures) -> list[Action]:
+def draw_poses_panel(
+    session: Session, look: Look, project: Project, pictures: Pictures
+) -> list[Action]:
     """Draw the poses that are kept, each as a picture of some pixels a side, and flipping them."""
     if project.puppet.shown is None:
         return []
     heading(look, "Poses", framed=True)
-    at_end(1.15 * imgui.get_frame_height())
-    actions = bound_button(session, look, "keep pose")
+    align_right(1.15 * imgui.get_frame_height())
+    actions = draw_action_button(session, look, "keep pose")
     offers = library.offers(project)
     if offers:
         actions += _libraries(look, project, offers, pictures)
-        small(
+        small_text(
             look,
             "Click a pose to use it at this frame, drag it onto the timeline, or drag the bar "
             "below it to blend it in.",
         )
     else:
-        small(look, "Keep a pose to use it again: here, at other frames, or blended in.")
+        small_text(look, "Keep a pose to use it again: here, at other frames, or blended in.")
     heading(look, "Flip")
     return actions + _flip(session, look, project)
 
@@ -66,7 +68,7 @@ def _libraries(
     for owner, group in groupby(numbered, key=lambda each: each[1].owner.id):
         if owner != project.active:
             name = project.document.layer(owner).name
-            title = f"Of {shortened(name, imgui.get_content_region_avail().x - 4 * look.em)}"
+            title = f"Of {shorten_text(name, imgui.get_content_region_avail().x - 4 * look.em)}"
             if not imgui.tree_node_ex(f"{title}###of {owner}", imgui.TreeNodeFlags_.default_open):
                 continue
         imgui.push_id(owner)
@@ -94,7 +96,7 @@ def _tiles(
             imgui.same_line(left + (place % columns) * (side + gap))
         imgui.begin_group()
         imgui.push_id(kept.name)
-        texture = pictures(owner.id, kept.pose, round(TILE * em * density()))
+        texture = pictures(owner.id, kept.pose, round(TILE * em * pixel_density()))
         actions += _tile(look, project, library.PoseOffer(owner, kept), index, texture)
         actions += _blend(look, project, library.PoseOffer(owner, kept), side)
         if owner.id == project.active:
@@ -119,17 +121,19 @@ def _tile(
         actions.append(do(library.apply, kept.name, owner.id))
     hot = imgui.is_item_hovered()
     high = low + ImVec2(TILE * em, TILE * em)
-    draw_list.add_rect_filled(low, high, ink(palette.desk), 0.4 * em)
+    draw_list.add_rect_filled(low, high, colour_u32(palette.desk), 0.4 * em)
     if texture is not None:
         _show(texture, low, high, 0.4 * em)
     is_picked = (owner.id, kept.name) == project.picked_pose
     if hot or is_picked:
-        draw_list.add_rect(low, high, ink(palette.accent, 1.0 if hot else 0.6), 0.4 * em, 1.5)
-    with sized(SMALL):
-        text = shortened(kept.name, TILE * em)
+        draw_list.add_rect(
+            low, high, colour_u32(palette.accent, 1.0 if hot else 0.6), 0.4 * em, 1.5
+        )
+    with push_text_size(SMALL):
+        text = shorten_text(kept.name, TILE * em)
         x = (low.x + high.x - imgui.calc_text_size(text).x) / 2
         colour = palette.text if hot or is_picked else palette.dim
-        draw_list.add_text(ImVec2(x, high.y + 0.15 * em), ink(colour), text)
+        draw_list.add_text(ImVec2(x, high.y + 0.15 * em), colour_u32(colour), text)
     if imgui.begin_drag_drop_source():
         imgui.set_drag_drop_payload_py_id(POSE_PAYLOAD, index)
         corner = imgui.get_cursor_screen_pos()
@@ -137,7 +141,7 @@ def _tile(
         if texture is not None:
             _show(texture, corner, imgui.get_item_rect_max(), 0.2 * em)
         imgui.end_drag_drop_source()
-    tip(f"{kept.name}: click to use it at this frame, right click for more")
+    draw_tooltip(f"{kept.name}: click to use it at this frame, right click for more")
     return actions + _menu(kept, owner.id, is_own=owner.id == project.active)
 
 
@@ -159,15 +163,17 @@ def _blend(look: Look, project: Project, offer: library.PoseOffer, width: float)
     share = begun.share if begun is not None and is_this else 0.0
     # Near the name above it.
     imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - 0.5 * look.em)
-    moved = track(look, "blend", share, SHARES, width, colour=look.palette.accent)
-    tip(f"{100 * share:.0f}% blended in" if share else "Drag to blend it into the present pose")
+    moved = slider_track(look, "blend", share, SHARES, width, colour=look.palette.accent)
+    draw_tooltip(
+        f"{100 * share:.0f}% blended in" if share else "Drag to blend it into the present pose"
+    )
     if moved is None:
         return []
     actions = [do(library.blend, name, moved.value, owner)]
     return [*actions, do(library.end_blend)] if moved.is_final else actions
 
 
-def _menu(kept: KeptPose, owner: int, *, is_own: bool) -> list[Action]:
+def _menu(kept: LibraryPose, owner: int, *, is_own: bool) -> list[Action]:
     actions: list[Action] = []
     asks = False
     if imgui.begin_popup_context_item("menu"):
@@ -184,19 +190,19 @@ def _menu(kept: KeptPose, owner: int, *, is_own: bool) -> list[Action]:
 
 def _flip(session: Session, look: Look, project: Project) -> list[Action]:
     layer, actions = project.layer, list[Action]()
-    widths = beside(2)
+    widths = split_line(2)
     for name in ("paste flipped", "paste swapped"):
-        actions += bound_text_button(session, name, next(widths))
+        actions += draw_action_text_button(session, name, next(widths))
     label(look, "Axis")
     if imgui.checkbox("##axis", session.overlays.mirror)[0]:
         actions.append(do(viewing.toggle, "mirror"))
-    tip("Show in the viewport where poses are flipped; drag it by its grip")
+    draw_tooltip("Show in the viewport where poses are flipped; drag it by its grip")
     imgui.same_line()
     button = 6 * look.em
     gap = imgui.get_style().item_inner_spacing.x
     imgui.set_next_item_width(imgui.get_content_region_avail().x - button - gap)
-    placed = number("axis x", layer.axis, "%.1f")
-    tip("In pixels from the left edge")
+    placed = number_field("axis x", layer.axis, "%.1f")
+    draw_tooltip("In pixels from the left edge")
     if placed is not None:
         actions.append(do(flipping.place_axis, placed))
     imgui.same_line(0, gap)
@@ -204,11 +210,13 @@ def _flip(session: Session, look: Look, project: Project) -> list[Action]:
     if text_button("Middle", button, hint, enabled=layer.mirror is not None):
         actions.append(do(flipping.place_axis, None))
     label(look, "Pairs")
-    _, text = imgui.input_text("##pairs", written_pairs(project.document.pairs))
+    _, text = imgui.input_text("##pairs", format_pairs(project.document.pairs))
     if imgui.is_item_deactivated_after_edit():
         actions.append(do(pasting.set_pairs, text))
-    tip("Words that tell two sides apart, or two whole names, with a slash between: L/R, near/far")
-    small(
+    draw_tooltip(
+        "Words that tell two sides apart, or two whole names, with a slash between: L/R, near/far"
+    )
+    small_text(
         look,
         "Layers and handles are pairs by their names, such as “paw.L” and “paw.R”, or by their "
         "places. Flipped mirrors, swapped does not.",

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from imgui_bundle import imgui
 
-from app.ui.style import tip
+from app.ui.style import draw_tooltip
 
 LARGEST = 65_535
 
@@ -16,7 +16,7 @@ class EnteredSize(NamedTuple):
     by_width: bool
 
 
-def size_fields(name: str, size: tuple[int, int], room: float) -> EnteredSize | None:
+def draw_size_fields(name: str, size: tuple[int, int], room: float) -> EnteredSize | None:
     """Draw two fields, with so many pixels left beside them; return what was entered, if it was."""
     gap = imgui.get_style().item_inner_spacing.x
     times = imgui.calc_text_size("×").x
@@ -27,7 +27,7 @@ def size_fields(name: str, size: tuple[int, int], room: float) -> EnteredSize | 
         imgui.set_next_item_width(each)
         _, entered[side] = imgui.input_int(f"##{name}{word}", size[side], 0)
         ended.append(imgui.is_item_deactivated_after_edit())
-        tip(f"{word.capitalize()} in pixels")
+        draw_tooltip(f"{word.capitalize()} in pixels")
         if not side:
             imgui.same_line(0, gap)
             imgui.text_disabled("×")

@@ -34,7 +34,7 @@ KEYS = {
 
 
 @cache
-def chords_of(text: str) -> tuple[int, ...]:
+def parse_chords(text: str) -> tuple[int, ...]:
     """Return ImGui's key chords of a text such as "Ctrl+Shift+Z, Ctrl+Y"."""
     by_name = {name: modifier for modifier, name in MODIFIERS.items()} | KEYS
     chords = text.split(", ") if text else []
@@ -42,7 +42,7 @@ def chords_of(text: str) -> tuple[int, ...]:
 
 
 @cache
-def in_words(chord: int, *, is_mac: bool = IS_MAC) -> str:
+def format_chord(chord: int, *, is_mac: bool = IS_MAC) -> str:
     """Return a key chord as menus show it: "Ctrl+Shift+S", or "⇧⌘S" on macOS."""
     names = MAC_MODIFIERS if is_mac else MODIFIERS
     key = imgui.get_key_name(Key(chord & ~sum(MODIFIERS)))
@@ -51,6 +51,6 @@ def in_words(chord: int, *, is_mac: bool = IS_MAC) -> str:
 
 
 @cache
-def with_key(modifier: int, what: str, *, is_mac: bool = IS_MAC) -> str:
+def format_modified(modifier: int, what: str, *, is_mac: bool = IS_MAC) -> str:
     """Return what the pointer does while a modifier is held: "Ctrl+click", or "⌘ click"."""
     return f"{MAC_MODIFIERS[modifier]} {what}" if is_mac else f"{MODIFIERS[modifier]}+{what}"

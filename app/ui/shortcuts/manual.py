@@ -20,12 +20,12 @@ PAGES = {
 }
 
 
-def open_manual(session: Session) -> None:
+def open_manual_page(session: Session) -> None:
     """Open the manual at what is in hand, or else at the tab in front."""
-    viewing.open_manual(session, page_in_front(session))
+    viewing.open_manual(session, find_manual_page(session))
 
 
-def page_in_front(session: Session) -> str:
+def find_manual_page(session: Session) -> str:
     """Return the page of the manual about what a person does just now."""
     project = session.project
     if project is None:

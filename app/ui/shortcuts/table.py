@@ -31,8 +31,8 @@ from app.editor.actions import (
 from app.editor.poses import copying, library, pasting, receiving
 from app.editor.tools import moving
 from app.ui.panel import bring_to_front
-from app.ui.shortcuts.binding import Binding
-from app.ui.shortcuts.manual import open_manual
+from app.ui.shortcuts.action_spec import ActionSpec
+from app.ui.shortcuts.manual import open_manual_page
 
 
 def _undo_label(_: Session, project: Project) -> str:
@@ -134,7 +134,7 @@ def _all_locked(session: Session) -> bool:
 
 
 def _has_summary(_: Session, project: Project) -> bool:
-    return bool(project.document.told)
+    return bool(project.document.import_log)
 
 
 def _loops(session: Session) -> bool:
@@ -162,13 +162,13 @@ def _export(session: Session) -> None:
         exporting.ask(session)
 
 
-def _overlay(label: str, name: OverlayName, keys: str, **more: Any) -> Binding:
+def _overlay(label: str, name: OverlayName, keys: str, **more: Any) -> ActionSpec:
     """Return what shows or hides an overlay."""
 
     def is_shown(session: Session) -> bool:
         return bool(getattr(session.overlays, name))
 
-    return Binding(label, do(viewing.toggle, name), keys, active=is_shown, **more)
+    return ActionSpec(label, do(viewing.toggle, name), keys, active=is_shown, **more)
 
 
 def _reset_layout(_: Session) -> None:
@@ -176,61 +176,61 @@ def _reset_layout(_: Session) -> None:
     hello_imgui.get_runner_params().docking_params.layout_reset = True
 
 
-MENUS: dict[str, dict[str, Binding]] = {
+MENUS: dict[str, dict[str, ActionSpec]] = {
     "File": {
-        "open": Binding("Open…", do(files.ask_open), "Ctrl+O", needs_project=False),
-        "save": Binding("Save", do(saving.save), "Ctrl+S", parted=True),
-        "save as": Binding("Save as…", do(saving.save_as), "Ctrl+Shift+S"),
-        "export": Binding("Export…", do(_export), "Ctrl+E", parted=True),
-        "export again": Binding("Export again", do(exporting.repeat), "Ctrl+Shift+E"),
-        "copy picture": Binding("Copy picture", do(exporting.copy_picture), "Ctrl+Shift+C"),
-        "unsaved work": Binding(
-            "Unsaved work…", do(files.show_recovery), parted=True, needs_project=False
+        "open": ActionSpec("Open…", do(files.ask_open), "Ctrl+O", needs_project=False),
+        "save": ActionSpec("Save", do(saving.save), "Ctrl+S", has_separator=True),
+        "save as": ActionSpec("Save as…", do(saving.save_as), "Ctrl+Shift+S"),
+        "export": ActionSpec("Export…", do(_export), "Ctrl+E", has_separator=True),
+        "export again": ActionSpec("Export again", do(exporting.repeat), "Ctrl+Shift+E"),
+        "copy picture": ActionSpec("Copy picture", do(exporting.copy_picture), "Ctrl+Shift+C"),
+        "unsaved work": ActionSpec(
+            "Unsaved work…", do(files.show_recovery), has_separator=True, needs_project=False
         ),
-        "close": Binding("Close", do(saving.close), "Ctrl+W", parted=True),
-        "quit": Binding("Quit", do(saving.quit_lissom), "Ctrl+Q", needs_project=False),
+        "close": ActionSpec("Close", do(saving.close), "Ctrl+W", has_separator=True),
+        "quit": ActionSpec("Quit", do(saving.quit_lissom), "Ctrl+Q", needs_project=False),
     },
     "Edit": {
-        "undo": Binding(
+        "undo": ActionSpec(
             "Undo",
             do(editing.undo),
             "Ctrl+Z",
-            possible=_undo_label,
-            repeats=True,
+            condition=_undo_label,
+            repeats_while_held=True,
             detail=_undo_label,
         ),
-        "redo": Binding(
+        "redo": ActionSpec(
             "Redo",
             do(editing.redo),
             "Ctrl+Shift+Z, Ctrl+Y",
-            possible=_redo_label,
-            repeats=True,
+            condition=_redo_label,
+            repeats_while_held=True,
             detail=_redo_label,
         ),
-        "copy": Binding("Copy", do(copying.copy), "Ctrl+C", parted=True, detail=_copied),
-        "copy all": Binding(
+        "copy": ActionSpec("Copy", do(copying.copy), "Ctrl+C", has_separator=True, detail=_copied),
+        "copy all": ActionSpec(
             "Copy poses of all layers",
             do(copying.copy_all),
             "Ctrl+Alt+C",
-            possible=lambda _, project: len(project.document.layers) > 1,
+            condition=lambda _, project: len(project.document.layers) > 1,
         ),
-        "paste": Binding(
+        "paste": ActionSpec(
             "Paste",
             do(pasting.paste),
             "Ctrl+V",
             detail=partial(_onto, way="as it is"),
-            why_not=partial(pasting.why_not, way="as it is"),
+            explain_disabled=partial(pasting.why_not, way="as it is"),
         ),
-        "paste flipped": Binding(
+        "paste flipped": ActionSpec(
             "Paste flipped",
             do(pasting.paste, "flipped"),
             "Ctrl+Shift+V",
             icon=icons.ICON_FA_PASTE,
             hint="Put what was copied in a key at this frame, mirrored: left and right exchange",
             detail=partial(_onto, way="flipped"),
-            why_not=partial(pasting.why_not, way="flipped"),
+            explain_disabled=partial(pasting.why_not, way="flipped"),
         ),
-        "paste swapped": Binding(
+        "paste swapped": ActionSpec(
             "Paste swapped",
             do(pasting.paste, "swapped"),
             "Ctrl+Shift+X",
@@ -238,113 +238,113 @@ MENUS: dict[str, dict[str, Binding]] = {
             hint="Put what was copied in a key at this frame: near and far, or left and right, "
             "exchange, and nothing is mirrored",
             detail=partial(_onto, way="swapped"),
-            why_not=partial(pasting.why_not, way="swapped"),
+            explain_disabled=partial(pasting.why_not, way="swapped"),
         ),
-        "paste on selected": Binding(
+        "paste on selected": ActionSpec(
             "Paste on selected handles",
             do(pasting.paste_on_selected),
             "Ctrl+Alt+V",
-            why_not=partial(pasting.why_not_on_selected, way="as it is"),
+            explain_disabled=partial(pasting.why_not_on_selected, way="as it is"),
         ),
-        "flip on selected": Binding(
+        "flip on selected": ActionSpec(
             "Paste flipped on selected",
             do(pasting.paste_on_selected, "flipped"),
             "Ctrl+Alt+Shift+V",
-            why_not=partial(pasting.why_not_on_selected, way="flipped"),
+            explain_disabled=partial(pasting.why_not_on_selected, way="flipped"),
         ),
-        "keep pose": Binding(
+        "keep pose": ActionSpec(
             "Keep pose",
             do(library.keep),
             "Shift+K",
             icon=icons.ICON_FA_PLUS,
             hint="Put this pose into the library of poses",
         ),
-        "select all": Binding(
-            "Select all", do(editing.select_all), "Ctrl+A", parted=True, detail=_all
+        "select all": ActionSpec(
+            "Select all", do(editing.select_all), "Ctrl+A", has_separator=True, detail=_all
         ),
-        "deselect": Binding("Deselect", do(editing.deselect), "Escape", possible=_can_deselect),
-        "move": Binding(
+        "deselect": ActionSpec("Deselect", do(editing.deselect), "Escape", condition=_can_deselect),
+        "move": ActionSpec(
             "Move the whole layer",
             do(moving.take_up),
             "V",
             icon=icons.ICON_FA_UP_DOWN_LEFT_RIGHT,
             hint="Drags and arrows move all of the layer, as it is, in this frame",
             active=lambda session: session.moves,
-            parted=True,
+            has_separator=True,
         ),
-        "cut out": Binding(
+        "cut out": ActionSpec(
             "Cut out by a brush",
             do(cutting.begin_or_swap),
             "X",
             active=lambda session: session.cutting is not None,
         ),
-        "smaller brush": Binding(
+        "smaller brush": ActionSpec(
             "Smaller brush",
             do(cutting.shrink_brush),
             "LeftBracket",
-            possible=_brushes,
-            repeats=True,
+            condition=_brushes,
+            repeats_while_held=True,
         ),
-        "larger brush": Binding(
+        "larger brush": ActionSpec(
             "Larger brush",
             do(cutting.enlarge_brush),
             "RightBracket",
-            possible=_brushes,
-            repeats=True,
+            condition=_brushes,
+            repeats_while_held=True,
         ),
-        "pose": Binding("Back to posing", do(moving.pose), "Escape", possible=_can_pose),
-        "delete": Binding(
+        "pose": ActionSpec("Back to posing", do(moving.pose), "Escape", condition=_can_pose),
+        "delete": ActionSpec(
             "Delete",
             do(editing.delete),
             "Delete, Backspace",
-            possible=_can_delete,
+            condition=_can_delete,
         ),
-        "rename layer": Binding("Rename layer", do(_rename_layer), "F2", parted=True),
+        "rename layer": ActionSpec("Rename layer", do(_rename_layer), "F2", has_separator=True),
     },
     "Handles": {
-        "suggest handles": Binding(
+        "suggest handles": ActionSpec(
             "Suggest handles",
             do(posing.suggest_handles),
             icon=icons.ICON_FA_WAND_MAGIC_SPARKLES,
             hint="Put handles on body and head and at tips and joints of limbs, each with a name",
         ),
-        "pin here": Binding(
+        "pin here": ActionSpec(
             "Pin here",
             do(posing.pin_here),
             "P",
             icon=icons.ICON_FA_THUMBTACK,
             hint="Let the selected handles stay where they are in this frame",
-            possible=_selected,
-            parted=True,
+            condition=_selected,
+            has_separator=True,
         ),
-        "lock": Binding(
+        "lock": ActionSpec(
             "Lock",
             do(editing.lock),
             "Shift+L",
             icon=icons.ICON_FA_LOCK,
             hint="Locked handles hold their places and are not dragged",
-            possible=_selected,
+            condition=_selected,
             active=_all_locked,
         ),
-        "key handle": Binding(
+        "key handle": ActionSpec(
             "Key this handle only",
             do(tracks.key_selected),
             "Shift+I",
             icon=icons.ICON_FA_KEY,
             hint="Give it a key of its own in this frame: it gets a track beside the keys of poses",
-            possible=_selected,
-            parted=True,
+            condition=_selected,
+            has_separator=True,
         ),
-        "stiffen": Binding(
+        "stiffen": ActionSpec(
             "Make parts stiff",
             do(material.take_up, "stiff"),
             "G",
             icon=icons.ICON_FA_CUBE,
             hint="Brush over what is to bend and stretch less than the rest",
             active=lambda session: session.material in material.BRUSHES,
-            parted=True,
+            has_separator=True,
         ),
-        "bone": Binding(
+        "bone": ActionSpec(
             "Draw bones",
             do(material.take_up, "bone"),
             "Shift+B",
@@ -352,91 +352,95 @@ MENUS: dict[str, dict[str, Binding]] = {
             hint="Drag from a handle to another one: the limb between them is stiff",
             active=lambda session: session.material == "bone",
         ),
-        "bone between": Binding(
+        "bone between": ActionSpec(
             "Bone between two handles",
             do(material.bone_between),
-            possible=lambda _, project: len(project.selected) == 2,
+            condition=lambda _, project: len(project.selected) == 2,
         ),
-        "group": Binding(
+        "group": ActionSpec(
             "Group",
             do(editing.group),
             "Ctrl+G",
             icon=icons.ICON_FA_OBJECT_GROUP,
             hint="Select and drag these handles together from now on",
-            possible=lambda _, project: len(project.selected) > 1,
-            parted=True,
+            condition=lambda _, project: len(project.selected) > 1,
+            has_separator=True,
         ),
-        "ungroup": Binding(
+        "ungroup": ActionSpec(
             "Ungroup",
             do(editing.ungroup),
             "Ctrl+Shift+G",
             icon=icons.ICON_FA_OBJECT_UNGROUP,
             hint="Let each of these handles be dragged alone",
-            possible=_grouped,
+            condition=_grouped,
         ),
-        "mirror": Binding(
+        "mirror": ActionSpec(
             "Mirror",
             do(posing.mirror_handles),
             icon=icons.ICON_FA_LEFT_RIGHT,
             hint="Add partners on the other side, named by .L and .R or left and right",
-            possible=_selected,
-            parted=True,
+            condition=_selected,
+            has_separator=True,
         ),
-        "mirrored": Binding(
+        "mirrored": ActionSpec(
             "Select partners",
             do(editing.select_mirrored),
             "Shift+M",
             icon=icons.ICON_FA_RIGHT_LEFT,
             hint="Select the handles on the other side that have the same names",
-            possible=_selected,
+            condition=_selected,
         ),
     },
     "Motion": {
-        "give motion": Binding(
+        "give motion": ActionSpec(
             "Give it a motion…",
             do(drafting.begin),
             "A",
             icon=icons.ICON_FA_PERSON_WALKING,
             hint="Let it walk, wave or breathe: say where its joints are, and which motion it is",
-            why_not=drafting.why_not,
+            explain_disabled=drafting.why_not,
             active=lambda session: session.project is not None and session.project.draft,
         ),
-        "mirror joints": Binding(
+        "mirror joints": ActionSpec(
             "Mirror the joints",
             do(placing.mirror),
             icon=icons.ICON_FA_LEFT_RIGHT,
             hint="Put the joints of one side where those of the other one are, seen in a mirror",
-            possible=_has_sides,
-            parted=True,
+            condition=_has_sides,
+            has_separator=True,
         ),
-        "find joints": Binding(
+        "find joints": ActionSpec(
             "Find the joints again",
             do(placing.suggest_again),
             icon=icons.ICON_FA_WAND_MAGIC_SPARKLES,
             hint="Put all joints back where they were found",
-            possible=lambda _, project: project.draft is not None and project.draft.suggested,
+            condition=lambda _, project: project.draft is not None and project.draft.suggested,
         ),
-        "no motion": Binding(
-            "Stop giving the motion", do(giving.cancel), "Escape", possible=_gives, parted=True
+        "no motion": ActionSpec(
+            "Stop giving the motion",
+            do(giving.cancel),
+            "Escape",
+            condition=_gives,
+            has_separator=True,
         ),
     },
     "View": {
-        "fit": Binding(
+        "fit": ActionSpec(
             "Fit pose",
             do(viewing.fit_pose),
             "Home",
             icon=icons.ICON_FA_EXPAND,
             hint="Show all of the shape as it is in this frame",
         ),
-        "fit motion": Binding("Fit motion", do(viewing.fit_motion), "Shift+Home"),
-        "fit selection": Binding("Fit selection", do(viewing.fit_selection), "F"),
-        "fit picture": Binding("Fit picture", do(viewing.look_from, None)),
-        "actual size": Binding("Actual size", do(viewing.actual_size), "1"),
-        "look through": Binding(
+        "fit motion": ActionSpec("Fit motion", do(viewing.fit_motion), "Shift+Home"),
+        "fit selection": ActionSpec("Fit selection", do(viewing.fit_selection), "F"),
+        "fit picture": ActionSpec("Fit picture", do(viewing.look_from, None)),
+        "actual size": ActionSpec("Actual size", do(viewing.actual_size), "1"),
+        "look through": ActionSpec(
             "Look through the camera",
             do(layering.look_through),
             hint="Show what the camera shows in each frame, until you look elsewhere",
-            possible=lambda _, project: bool(project.document.camera),
+            condition=lambda _, project: bool(project.document.camera),
             active=_looks_through,
         ),
         "handles": _overlay(
@@ -461,7 +465,7 @@ MENUS: dict[str, dict[str, Binding]] = {
             icon=icons.ICON_FA_VECTOR_SQUARE,
             hint="Show the edge of the shape",
         ),
-        "heat map": Binding(
+        "heat map": ActionSpec(
             "Heat map",
             do(viewing.toggle_heat_map),
             "D",
@@ -469,7 +473,7 @@ MENUS: dict[str, dict[str, Binding]] = {
             hint="Colour the shape by its distortion",
             active=lambda session: session.overlays.heat_map != "none",
         ),
-        "split view": Binding(
+        "split view": ActionSpec(
             "Split view",
             do(viewing.toggle_split),
             "U",
@@ -492,73 +496,77 @@ MENUS: dict[str, dict[str, Binding]] = {
             icon=icons.ICON_FA_ROUTE,
             hint="Show where the selected handles go, with a dot for each frame",
         ),
-        "theme": Binding(
-            "Light or dark", do(viewing.toggle_theme), needs_project=False, parted=True
+        "theme": ActionSpec(
+            "Light or dark", do(viewing.toggle_theme), needs_project=False, has_separator=True
         ),
-        "larger": Binding(
+        "larger": ActionSpec(
             "Larger interface",
             do(viewing.scale_up),
             "Ctrl+Equal, Ctrl+KeypadAdd",
             needs_project=False,
         ),
-        "smaller": Binding(
+        "smaller": ActionSpec(
             "Smaller interface",
             do(viewing.scale_down),
             "Ctrl+Minus, Ctrl+KeypadSubtract",
             needs_project=False,
         ),
-        "reset layout": Binding(
-            "Reset layout", do(_reset_layout), parted=True, needs_project=False
+        "reset layout": ActionSpec(
+            "Reset layout", do(_reset_layout), has_separator=True, needs_project=False
         ),
     },
     "Time": {
-        "play": Binding(
+        "play": ActionSpec(
             "Play",
             do(playback.toggle_play),
             icon=icons.ICON_FA_PLAY,
             hint="Play or stop",
             active=_plays,
-            told="Space",
+            key_text="Space",
         ),
-        "start": Binding(
+        "start": ActionSpec(
             "First frame", do(playback.to_start), "Ctrl+PageUp", icon=icons.ICON_FA_BACKWARD_FAST
         ),
-        "end": Binding(
+        "end": ActionSpec(
             "Last frame", do(playback.to_end), "Ctrl+PageDown", icon=icons.ICON_FA_FORWARD_FAST
         ),
-        "back": Binding(
+        "back": ActionSpec(
             "Previous frame",
             do(playback.step, -1),
             "PageUp",
             icon=icons.ICON_FA_BACKWARD_STEP,
-            repeats=True,
+            repeats_while_held=True,
         ),
-        "on": Binding(
+        "on": ActionSpec(
             "Next frame",
             do(playback.step, 1),
             "PageDown",
             icon=icons.ICON_FA_FORWARD_STEP,
-            repeats=True,
+            repeats_while_held=True,
         ),
-        "previous key": Binding(
+        "previous key": ActionSpec(
             "Previous key",
             do(playback.to_key, -1),
             "DownArrow",
-            possible=_frees_arrows,
-            repeats=True,
+            condition=_frees_arrows,
+            repeats_while_held=True,
         ),
-        "next key": Binding(
-            "Next key", do(playback.to_key, 1), "UpArrow", possible=_frees_arrows, repeats=True
+        "next key": ActionSpec(
+            "Next key",
+            do(playback.to_key, 1),
+            "UpArrow",
+            condition=_frees_arrows,
+            repeats_while_held=True,
         ),
-        "insert key": Binding(
+        "insert key": ActionSpec(
             "Insert key",
             do(keys.insert),
             "I",
             icon=icons.ICON_FA_DIAMOND,
             hint="Keep this pose in a key",
-            parted=True,
+            has_separator=True,
         ),
-        "loop": Binding(
+        "loop": ActionSpec(
             "Loop",
             do(keys.toggle_loop),
             "L",
@@ -566,7 +574,7 @@ MENUS: dict[str, dict[str, Binding]] = {
             hint="Loop: the end leads back to the start",
             active=_loops,
         ),
-        "auto-key": Binding(
+        "auto-key": ActionSpec(
             "Auto-key",
             do(viewing.toggle_auto_key),
             "K",
@@ -574,42 +582,42 @@ MENUS: dict[str, dict[str, Binding]] = {
             hint="Posing makes and changes keys",
             active=lambda session: session.preferences.auto_key,
         ),
-        "record": Binding(
+        "record": ActionSpec(
             "Record a drag",
             do(tracking.take_up),
             "R",
             icon=icons.ICON_FA_CIRCLE,
             hint="Record how the next handle is dragged, while the timeline plays",
-            possible=lambda session, _: session.cutting is None,
+            condition=lambda session, _: session.cutting is None,
             active=lambda session: session.records,
         ),
-        "record nothing": Binding(
-            "Give the recording up", do(tracking.give_up), "Escape", possible=_records
+        "record nothing": ActionSpec(
+            "Give the recording up", do(tracking.give_up), "Escape", condition=_records
         ),
-        "preview start": Binding(
-            "Start preview range here", do(keys.start_preview_here), "B", parted=True
+        "preview start": ActionSpec(
+            "Start preview range here", do(keys.start_preview_here), "B", has_separator=True
         ),
-        "preview end": Binding("End preview range here", do(keys.end_preview_here), "N"),
-        "preview none": Binding(
+        "preview end": ActionSpec("End preview range here", do(keys.end_preview_here), "N"),
+        "preview none": ActionSpec(
             "Play all frames",
             do(keys.play_all),
             "Alt+P",
-            possible=lambda _, project: project.document.preview is not None,
+            condition=lambda _, project: project.document.preview is not None,
         ),
-        "marker": Binding("Add marker", do(keys.mark_here), "M", parted=True),
-        "key camera": Binding(
+        "marker": ActionSpec("Add marker", do(keys.mark_here), "M", has_separator=True),
+        "key camera": ActionSpec(
             "Key the camera",
             do(layering.key_camera),
             icon=icons.ICON_FA_VIDEO,
             hint="From here on frames show what the viewport shows now",
         ),
-        "previous marker": Binding(
-            "Previous marker", do(playback.to_marker, -1), "Shift+PageUp", repeats=True
+        "previous marker": ActionSpec(
+            "Previous marker", do(playback.to_marker, -1), "Shift+PageUp", repeats_while_held=True
         ),
-        "next marker": Binding(
-            "Next marker", do(playback.to_marker, 1), "Shift+PageDown", repeats=True
+        "next marker": ActionSpec(
+            "Next marker", do(playback.to_marker, 1), "Shift+PageDown", repeats_while_held=True
         ),
-        "fit time": Binding(
+        "fit time": ActionSpec(
             "Fit timeline",
             do(timeline_pointing.fit),
             "Ctrl+Home",
@@ -618,34 +626,40 @@ MENUS: dict[str, dict[str, Binding]] = {
         ),
     },
     "Keys": {
-        "pass": Binding("Pass keys otherwise", do(keys.pass_otherwise), "T"),
-        "ease": Binding("Ease in and out", do(keys.ease, PRESETS["in-out"]), "F9"),
-        "ease in": Binding("Ease in", do(keys.ease, PRESETS["in"]), "Shift+F9"),
-        "ease out": Binding("Ease out", do(keys.ease, PRESETS["out"]), "Ctrl+Shift+F9"),
-        "ease not": Binding("Linear", do(keys.ease, LINEAR), "Alt+F9"),
-        "repeat": Binding(
+        "pass": ActionSpec("Pass keys otherwise", do(keys.pass_otherwise), "T"),
+        "ease": ActionSpec("Ease in and out", do(keys.ease, PRESETS["in-out"]), "F9"),
+        "ease in": ActionSpec("Ease in", do(keys.ease, PRESETS["in"]), "Shift+F9"),
+        "ease out": ActionSpec("Ease out", do(keys.ease, PRESETS["out"]), "Ctrl+Shift+F9"),
+        "ease not": ActionSpec("Linear", do(keys.ease, LINEAR), "Alt+F9"),
+        "repeat": ActionSpec(
             "Repeat",
             do(cycles.repeat),
             detail=_stretch,
-            possible=lambda _, project: cycles.chosen_stretch(project),
-            parted=True,
+            condition=lambda _, project: cycles.chosen_stretch(project),
+            has_separator=True,
         ),
-        "repeats into keys": Binding(
-            "Make repeats into keys", do(cycles.make_keys), possible=cycles.cycle_here
+        "repeats into keys": ActionSpec(
+            "Make repeats into keys", do(cycles.make_keys), condition=cycles.cycle_here
         ),
-        "repeat no more": Binding("Stop repeating", do(cycles.stop), possible=cycles.cycle_here),
+        "repeat no more": ActionSpec(
+            "Stop repeating", do(cycles.stop), condition=cycles.cycle_here
+        ),
     },
     "Help": {
-        "manual": Binding("Manual", do(open_manual), "F1", needs_project=False),
-        "shortcuts": Binding(
+        "manual": ActionSpec("Manual", do(open_manual_page), "F1", needs_project=False),
+        "shortcuts": ActionSpec(
             "Keys and mouse", do(viewing.show_shortcuts), "Shift+F1", needs_project=False
         ),
-        "first animation": Binding(
-            "Make a giraffe bow", do(guiding.begin), needs_project=False, parted=True
+        "first animation": ActionSpec(
+            "Make a giraffe bow", do(guiding.begin), needs_project=False, has_separator=True
         ),
-        "leave guide": Binding("Leave the guide", do(guiding.leave), "Escape", possible=_can_leave),
-        "report": Binding("Report a problem…", do(failures.ask_report), needs_project=False),
-        "import": Binding("What opening it told", do(files.show_summary), possible=_has_summary),
+        "leave guide": ActionSpec(
+            "Leave the guide", do(guiding.leave), "Escape", condition=_can_leave
+        ),
+        "report": ActionSpec("Report a problem…", do(failures.ask_report), needs_project=False),
+        "import": ActionSpec(
+            "What opening it told", do(files.show_summary), condition=_has_summary
+        ),
     },
 }
 BINDINGS = {name: binding for menu in MENUS.values() for name, binding in menu.items()}

@@ -4,25 +4,25 @@ from imgui_bundle import imgui, imgui_ctx
 
 from app.editor import Action, Session
 from app.ui.shortcuts.table import BINDINGS
-from app.ui.style import Look, icon_button, text_button, tip
+from app.ui.style import Look, draw_tooltip, icon_button, text_button
 
 
-def bound_item(session: Session, name: str) -> list[Action]:
+def draw_action_item(session: Session, name: str) -> list[Action]:
     """Draw the menu entry of a named action."""
     binding = BINDINGS[name]
     clicked, _ = imgui.menu_item(
-        binding.title(session),
-        binding.keys_in_words,
+        binding.menu_title(session),
+        binding.shown_keys,
         binding.is_active(session),
         binding.is_possible(session),
     )
-    reason = binding.hindrance(session)
+    reason = binding.disabled_reason(session)
     if reason:
-        tip(reason)
+        draw_tooltip(reason)
     return [binding.action] if clicked else []
 
 
-def bound_text_button(session: Session, name: str, width: float) -> list[Action]:
+def draw_action_text_button(session: Session, name: str, width: float) -> list[Action]:
     """Draw the button of a named action with its icon and its words."""
     binding = BINDINGS[name]
     is_active = binding.is_active(session)
@@ -31,14 +31,14 @@ def bound_text_button(session: Session, name: str, width: float) -> list[Action]
         is_pressed = text_button(
             f"{binding.icon}  {binding.label}###{name}",
             width,
-            binding.hindrance(session) or binding.hint or binding.label,
-            binding.keys_in_words,
+            binding.disabled_reason(session) or binding.hint or binding.label,
+            binding.shown_keys,
             enabled=binding.is_possible(session),
         )
     return [binding.action] if is_pressed else []
 
 
-def bound_button(session: Session, look: Look, name: str, icon: str = "") -> list[Action]:
+def draw_action_button(session: Session, look: Look, name: str, icon: str = "") -> list[Action]:
     """Draw the button of a named action, with its icon or another one."""
     binding = BINDINGS[name]
     is_pressed = icon_button(
@@ -46,7 +46,7 @@ def bound_button(session: Session, look: Look, name: str, icon: str = "") -> lis
         icon or binding.icon,
         binding.label,
         binding.hint or binding.label,
-        keys=binding.keys_in_words,
+        keys=binding.shown_keys,
         active=binding.is_active(session),
         enabled=binding.is_possible(session),
     )

@@ -6,14 +6,14 @@ from typing import NamedTuple
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
-from app.ui.style.theme import Look, ink
-from app.ui.style.widgets import FILL, tip
+from app.ui.style.theme import Look, colour_u32
+from app.ui.style.widgets import FILL, draw_tooltip
 
 FIELD = 4.3  # em
 BAR, KNOB = 0.28, 0.42  # em: thickness of the track, radius of the knob
 
 
-class Edit(NamedTuple):
+class SliderEdit(NamedTuple):
     """A value that was entered; while the knob is dragged it is not final yet."""
 
     value: float
@@ -60,7 +60,7 @@ def slider(
     text: str = "%.2f",
     hint: str = "",
     field: float = FIELD,
-) -> Edit | None:
+) -> SliderEdit | None:
     """Draw a track with a knob, and the value in a field, over the rest of the line's width.
 
     Parameters
@@ -77,23 +77,23 @@ def slider(
     """
     gap = imgui.get_style().item_inner_spacing.x
     width = imgui.get_content_region_avail().x - field * look.em - gap
-    moved = track(look, f"{name} track", value, scale, width, colour=look.palette.accent)
-    tip(hint)
+    moved = slider_track(look, f"{name} track", value, scale, width, colour=look.palette.accent)
+    draw_tooltip(hint)
     imgui.same_line(0, gap)
     imgui.set_next_item_width(FILL)
-    entered = number(name, value, text)
-    tip(hint)
-    return moved if entered is None else Edit(scale.clamp(entered), is_final=True)
+    entered = number_field(name, value, text)
+    draw_tooltip(hint)
+    return moved if entered is None else SliderEdit(scale.clamp(entered), is_final=True)
 
 
-def number(name: str, value: float, text: str = "%.2f") -> float | None:
+def number_field(name: str, value: float, text: str = "%.2f") -> float | None:
     """Draw a field for a number; return it when it was entered and is another."""
     _, entered = imgui.input_float(f"##{name}", value, 0.0, 0.0, text)
     done = imgui.is_item_deactivated_after_edit()
     return entered if done and math.isfinite(entered) and entered != value else None
 
 
-def track(
+def slider_track(
     look: Look,
     name: str,
     value: float,
@@ -102,7 +102,7 @@ def track(
     *,
     colour: ImVec4,
     used: float | None = None,
-) -> Edit | None:
+) -> SliderEdit | None:
     """Draw a thin track whose knob is dragged along it.
 
     Parameters
@@ -130,18 +130,20 @@ def track(
         share = (imgui.get_mouse_pos().x - low) / (high - low)
         # In the frame of the press, another widget may have ended its own edit.
         if not imgui.is_item_activated():
-            edit = Edit(scale.value(share), is_final=not is_held)
+            edit = SliderEdit(scale.value(share), is_final=not is_held)
             value = edit.value
     place = low + scale.share(value) * (high - low)
     end = place if used is None else low + scale.share(used) * (high - low)
     top, bottom = middle - bar / 2, middle + bar / 2
     draw_list.add_rect_filled(
-        ImVec2(low - bar, top), ImVec2(high + bar, bottom), ink(palette.pressed), bar / 2
+        ImVec2(low - bar, top), ImVec2(high + bar, bottom), colour_u32(palette.pressed), bar / 2
     )
-    draw_list.add_rect_filled(ImVec2(low - bar, top), ImVec2(end, bottom), ink(colour), bar / 2)
+    draw_list.add_rect_filled(
+        ImVec2(low - bar, top), ImVec2(end, bottom), colour_u32(colour), bar / 2
+    )
     is_hot = is_held or imgui.is_item_hovered()
-    draw_list.add_circle_filled(ImVec2(place, middle), knob + bar / 2, ink(palette.panel))
+    draw_list.add_circle_filled(ImVec2(place, middle), knob + bar / 2, colour_u32(palette.panel))
     draw_list.add_circle_filled(
-        ImVec2(place, middle), knob, ink(palette.accent if is_hot else palette.text)
+        ImVec2(place, middle), knob, colour_u32(palette.accent if is_hot else palette.text)
     )
     return edit

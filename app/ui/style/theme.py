@@ -15,12 +15,12 @@ def rgb(code: str) -> ImVec4:
     return ImVec4(red, green, blue, 1.0)
 
 
-def faint(colour: ImVec4, alpha: float) -> ImVec4:
+def with_alpha(colour: ImVec4, alpha: float) -> ImVec4:
     """Return a colour with another opacity."""
     return ImVec4(colour.x, colour.y, colour.z, alpha)
 
 
-def ink(colour: ImVec4, alpha: float = 1.0) -> int:
+def colour_u32(colour: ImVec4, alpha: float = 1.0) -> int:
     """Return a colour as draw lists take it, more transparent by `alpha`."""
     return imgui.color_convert_float4_to_u32(ImVec4(colour.x, colour.y, colour.z, colour.w * alpha))
 
@@ -118,7 +118,7 @@ def interface_scale(scale: float) -> float:
     return scale * imgui.get_style().font_scale_dpi
 
 
-def density() -> float:
+def pixel_density() -> float:
     """Return how many pixels of a picture there are to a pixel of the window."""
     return imgui.get_io().display_framebuffer_scale.x or 1.0
 
@@ -219,7 +219,7 @@ def _colour(style: imgui.Style, palette: Palette) -> None:
         "button": palette.raised,
         "button_hovered": palette.hovered,
         "button_active": palette.pressed,
-        "header": faint(palette.accent, CHOSEN),
+        "header": with_alpha(palette.accent, CHOSEN),
         "header_hovered": palette.hovered,
         "header_active": palette.pressed,
         "separator": palette.line,
@@ -236,12 +236,12 @@ def _colour(style: imgui.Style, palette: Palette) -> None:
         "tab_dimmed": palette.desk,
         "tab_dimmed_selected": palette.panel,
         "tab_dimmed_selected_overline": none,
-        "docking_preview": faint(palette.accent, 0.4),
+        "docking_preview": with_alpha(palette.accent, 0.4),
         "docking_empty_bg": palette.desk,
         "plot_lines": palette.accent,
         "plot_lines_hovered": palette.accent,
         # Of bars of progress, which texts are written over.
-        "plot_histogram": faint(palette.accent, 0.4),
+        "plot_histogram": with_alpha(palette.accent, 0.4),
         "plot_histogram_hovered": palette.accent,
         "table_header_bg": palette.raised,
         "table_border_strong": palette.line,
@@ -249,15 +249,15 @@ def _colour(style: imgui.Style, palette: Palette) -> None:
         "table_row_bg": none,
         "table_row_bg_alt": none,
         "text_link": palette.accent,
-        "text_selected_bg": faint(palette.accent, 0.35),
+        "text_selected_bg": with_alpha(palette.accent, 0.35),
         "tree_lines": palette.line,
         "drag_drop_target": palette.accent,
-        "drag_drop_target_bg": faint(palette.accent, 0.1),
+        "drag_drop_target_bg": with_alpha(palette.accent, 0.1),
         "unsaved_marker": palette.text,
         "nav_cursor": palette.accent,
         "nav_windowing_highlight": palette.accent,
-        "nav_windowing_dim_bg": faint(palette.desk, 0.5),
-        "modal_window_dim_bg": faint(rgb("000000"), 0.45),
+        "nav_windowing_dim_bg": with_alpha(palette.desk, 0.5),
+        "modal_window_dim_bg": with_alpha(rgb("000000"), 0.45),
     }
     for name, colour in colours.items():
         style.set_color_(imgui.Col_[name], colour)

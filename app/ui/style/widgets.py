@@ -14,12 +14,12 @@ POSE_PAYLOAD = "pose of the library"  # what is dragged from there to the timeli
 TIP_ROOM = (28.0, 8.0)  # em: width and height that hardly any tooltip exceeds
 
 
-def sized(size: float, font: imgui.ImFont | None = None) -> AbstractContextManager[object]:
+def push_text_size(size: float, font: imgui.ImFont | None = None) -> AbstractContextManager[object]:
     """Write in another size of type, relative to the text's, and maybe in another font."""
     return imgui_ctx.push_font(font, size * imgui.get_style().font_size_base)
 
 
-def bold(look: Look, text: str) -> None:
+def bold_text(look: Look, text: str) -> None:
     """Write something bold."""
     with imgui_ctx.push_font(look.bold, 0):
         imgui.text(text)
@@ -31,12 +31,12 @@ def heading(look: Look, text: str, *, framed: bool = False) -> None:
         imgui.dummy(ImVec2(0, 0.3 * look.em))
     if framed:
         imgui.align_text_to_frame_padding()
-    bold(look, text)
+    bold_text(look, text)
 
 
-def small(look: Look, text: str, colour: ImVec4 | None = None) -> None:
+def small_text(look: Look, text: str, colour: ImVec4 | None = None) -> None:
     """Write a remark, smaller than the text and by default dimmer, wrapped to the panel."""
-    with sized(SMALL), imgui_ctx.push_text_wrap_pos(0.0):
+    with push_text_size(SMALL), imgui_ctx.push_text_wrap_pos(0.0):
         imgui.text_colored(colour or look.palette.dim, text)
 
 
@@ -48,13 +48,13 @@ def label(look: Look, text: str) -> None:
     imgui.set_next_item_width(FILL)
 
 
-def at_end(width: float) -> None:
+def align_right(width: float) -> None:
     """Go on at the end of the line, where `width` pixels are left."""
     imgui.same_line()
     imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + imgui.get_content_region_avail().x - width)
 
 
-def begin_tip() -> bool:
+def begin_tooltip() -> bool:
     """Begin a tooltip where the pointer rests on the last item; it covers no message.
 
     Returns
@@ -76,9 +76,9 @@ def begin_tip() -> bool:
     return imgui.begin_tooltip()
 
 
-def tip(text: str, keys: str = "") -> None:
+def draw_tooltip(text: str, keys: str = "") -> None:
     """Explain the last item where the pointer rests on it, and name its keys."""
-    if begin_tip():
+    if begin_tooltip():
         room = TIP_ROOM[0] * imgui.get_font_size()
         imgui.push_text_wrap_pos(room)
         imgui.text_unformatted(text)
@@ -120,7 +120,7 @@ def icon_button(
     pressed = imgui.button(f"{icon}###{name}", ImVec2(size * 1.15, size))
     imgui.pop_style_color(2)
     imgui.end_disabled()
-    tip(hint, keys)
+    draw_tooltip(hint, keys)
     return pressed
 
 
@@ -145,11 +145,11 @@ def text_button(
     pressed = imgui.button(text, ImVec2(width, 0))
     imgui.end_disabled()
     if hint:
-        tip(hint, keys)
+        draw_tooltip(hint, keys)
     return pressed
 
 
-def beside(count: int, gap: float | None = None, *, room: float = 0.0) -> Iterator[float]:
+def split_line(count: int, gap: float | None = None, *, room: float = 0.0) -> Iterator[float]:
     """Lay items side by side over the rest of the line: yield the width of each, before it.
 
     Parameters
@@ -167,7 +167,7 @@ def beside(count: int, gap: float | None = None, *, room: float = 0.0) -> Iterat
         yield width
 
 
-def progress(share: float, text: str) -> bool:
+def progress_bar(share: float, text: str) -> bool:
     """Draw how far something is, and a button that cancels it; return whether it was pressed."""
     imgui.progress_bar(share, ImVec2(FILL, 0), text)
     return imgui.button("Cancel###stop", ImVec2(FILL, 0))
@@ -187,11 +187,11 @@ def name_popup(
     imgui.set_next_item_width(NAME_WIDTH * look.em)
     flags = imgui.InputTextFlags_.auto_select_all | imgui.InputTextFlags_.enter_returns_true
     entered, name = imgui.input_text("##name", name, flags)
-    tip("Enter takes the name, Esc leaves it")
+    draw_tooltip("Enter takes the name, Esc leaves it")
     name = name.strip()
     is_free = name not in taken
     if not is_free:
-        small(look, f"Another {kind} has this name.")
+        small_text(look, f"Another {kind} has this name.")
     elif entered:
         imgui.close_current_popup()
     imgui.end_popup()
@@ -207,7 +207,7 @@ def colour_field(name: str, code: str, flags: int = 0) -> str | None:
     return f"#{bytes(round(255 * min(max(level, 0.0), 1.0)) for level in levels[:3]).hex()}"
 
 
-def segments(
+def option_buttons(
     look: Look,
     name: str,
     options: Sequence[tuple[str, str]],
@@ -230,7 +230,7 @@ def segments(
     chosen = None
     palette = look.palette
     imgui.push_id(name)
-    widths = beside(len(options), 0.12 * look.em, room=room)
+    widths = split_line(len(options), 0.12 * look.em, room=room)
     for (value, text), width in zip(options, widths, strict=True):
         is_current = value == current
         imgui.push_style_color(imgui.Col_.button, palette.pressed if is_current else palette.raised)
@@ -258,7 +258,7 @@ def show_picture(
     )
 
 
-def shortened(text: str, width: float) -> str:
+def shorten_text(text: str, width: float) -> str:
     """Return a text as far as it fits into `width` pixels, with an ellipsis where it does not."""
     if imgui.calc_text_size(text).x <= width:
         return text
@@ -272,7 +272,7 @@ def shortened(text: str, width: float) -> str:
     return f"{text[:fits].rstrip()}…"
 
 
-def in_hand() -> bool:
+def is_hovered_or_held() -> bool:
     """Tell whether the pointer is over the last item, or holds it."""
     return imgui.is_item_hovered() or imgui.is_item_active()
 

@@ -7,12 +7,12 @@ from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 from app.editor import Action, Project, Session, do
 from app.editor.actions import keys, playback, tracking, viewing
 from app.storage import LARGEST_GHOST_STEP, MOST_GHOSTS
-from app.ui.bars import draw_methods
+from app.ui.bars import draw_method_menu
 from app.ui.methods import VARIANTS
-from app.ui.shortcuts import BINDINGS, bound_button
-from app.ui.style import Look, icon_button, ink, tip
-from app.ui.timeline.bands import in_seconds
-from app.ui.timeline.menus import time_menu
+from app.ui.shortcuts import BINDINGS, draw_action_button
+from app.ui.style import Look, colour_u32, draw_tooltip, icon_button
+from app.ui.timeline.layout import format_seconds
+from app.ui.timeline.menus import draw_time_menu
 
 # Names and what they mean.
 GAP, TIGHT, WIDE = 0.35, 0.1, 1.1  # em between what belongs together closely, and less so
@@ -24,7 +24,7 @@ KEY_BUTTONS = (
 )
 
 
-def draw_bar(session: Session, look: Look, project: Project) -> list[Action]:
+def draw_transport_bar(session: Session, look: Look, project: Project) -> list[Action]:
     """Draw the bar."""
     actions = _transport(session, look, project)
     _gap(look)
@@ -45,7 +45,7 @@ def _gap(look: Look) -> None:
     imgui.get_window_draw_list().add_line(
         ImVec2(corner.x, corner.y + 0.25 * height),
         ImVec2(corner.x, corner.y + 0.75 * height),
-        ink(look.palette.line),
+        colour_u32(look.palette.line),
     )
     imgui.dummy(ImVec2(1, height))
     imgui.same_line(0, WIDE / 2 * look.em)
@@ -56,11 +56,11 @@ def _transport(session: Session, look: Look, project: Project) -> list[Action]:
     is_playing = project.playhead.since is not None
     for name in ("start", "back", "play", "on", "end"):
         icon = icons.ICON_FA_PAUSE if name == "play" and is_playing else ""
-        actions += bound_button(session, look, name, icon)
+        actions += draw_action_button(session, look, name, icon)
         imgui.same_line(0, TIGHT * look.em)
-    actions += bound_button(session, look, "loop")
+    actions += draw_action_button(session, look, "loop")
     imgui.same_line(0, TIGHT * look.em)
-    actions += bound_button(session, look, "record")
+    actions += draw_action_button(session, look, "record")
     imgui.same_line(0, TIGHT * look.em)
     return actions + _recording_speed(session, look)
 
@@ -75,7 +75,7 @@ def _recording_speed(session: Session, look: Look) -> list[Action]:
             if imgui.selectable(f"{speed:.0%}", speed == session.recording_speed)[0]
         ]
         imgui.end_combo()
-    tip("How fast the timeline plays while a drag is recorded")
+    draw_tooltip("How fast the timeline plays while a drag is recorded")
     return actions
 
 
@@ -89,28 +89,28 @@ def _key_buttons(session: Session, look: Look, project: Project) -> list[Action]
         frame = playback.posed_frame(session, project)
     is_free = project.unkeyed is not None or not playback.is_keyed(project, frame)
     imgui.begin_disabled(not is_free)
-    actions += bound_button(session, look, "insert key")
+    actions += draw_action_button(session, look, "insert key")
     imgui.end_disabled()
     if project.unkeyed is not None:
         high = imgui.get_item_rect_max()
         imgui.get_window_draw_list().add_circle_filled(
             ImVec2(high.x - 0.4 * look.em, high.y - 1.3 * look.em),
             0.22 * look.em,
-            ink(look.palette.warning),
+            colour_u32(look.palette.warning),
         )
     imgui.same_line(0, TIGHT * look.em)
     actions += _to_key(look, *following)
     imgui.same_line(0, TIGHT * look.em)
-    actions += bound_button(session, look, "auto-key")
+    actions += draw_action_button(session, look, "auto-key")
     imgui.same_line(0, TIGHT * look.em)
     if icon_button(look, icons.ICON_FA_ELLIPSIS, "more", "Reverse, scale time, preview range"):
         imgui.open_popup("menu of time")
-    return actions + time_menu(session, look, project)
+    return actions + draw_time_menu(session, look, project)
 
 
 def _to_key(look: Look, name: str, icon: str) -> list[Action]:
     binding = BINDINGS[name]
-    keys_in_words = binding.keys_in_words
+    keys_in_words = binding.shown_keys
     pressed = icon_button(look, icon, binding.label, binding.label, keys=keys_in_words)
     return [binding.action] if pressed else []
 
@@ -124,7 +124,7 @@ def _frame(session: Session, look: Look, project: Project) -> list[Action]:
     changed, wanted = imgui.drag_int(
         "##frame", frame, 0.2, document.frames.first, document.frames.last
     )
-    tip("The present frame: drag, or click to type")
+    draw_tooltip("The present frame: drag, or click to type")
     if changed:
         actions.append(do(playback.scrub, wanted))
     imgui.same_line(0, GAP * look.em)
@@ -133,11 +133,11 @@ def _frame(session: Session, look: Look, project: Project) -> list[Action]:
     imgui.set_next_item_width(3.8 * look.em)
     flags = imgui.InputTextFlags_.enter_returns_true
     changed, last = imgui.input_int("##last", document.frames.last, 0, 0, flags)
-    tip("The last frame: type it, or drag the end on the track")
+    draw_tooltip("The last frame: type it, or drag the end on the track")
     if changed:
         actions.append(do(keys.set_last_frame, last))
     imgui.same_line(0, 0.8 * look.em)
-    imgui.text_disabled(in_seconds(frame, document.fps))
+    imgui.text_disabled(format_seconds(frame, document.fps))
     return actions
 
 
@@ -149,7 +149,7 @@ def _right(session: Session, look: Look, project: Project) -> list[Action]:
         (square, lambda: _onion_skin(session, look)),
         (4.4 * em, lambda: _speed(project)),
         (5.2 * em, lambda: _fps(project)),
-        (square, lambda: bound_button(session, look, "fit time")),
+        (square, lambda: draw_action_button(session, look, "fit time")),
     ]
     imgui.same_line(0, WIDE * em)
     begin = imgui.get_cursor_pos_x()
@@ -175,7 +175,7 @@ def _width(look: Look, parts: list[tuple[float, Callable[[], list[Action]]]]) ->
 def _fps(project: Project) -> list[Action]:
     fps = project.document.fps
     changed, wanted = imgui.drag_float("##fps", fps, 0.1, SLOWEST, FASTEST, "%.4g fps")
-    tip("Frames per second: drag, or click to type")
+    draw_tooltip("Frames per second: drag, or click to type")
     return [do(keys.set_fps, round(wanted, 3))] if changed else []
 
 
@@ -189,7 +189,7 @@ def _speed(project: Project) -> list[Action]:
             if imgui.selectable(f"{speed:g}×", speed == current)[0]
         ]
         imgui.end_combo()
-    tip("How fast it plays here; the animation itself stays as it is")
+    draw_tooltip("How fast it plays here; the animation itself stays as it is")
     return actions
 
 
@@ -205,7 +205,7 @@ def _onion_skin(session: Session, look: Look) -> list[Action]:
     if imgui.checkbox(binding.label, overlays.onion)[0]:
         actions.append(binding.action)
     imgui.same_line()
-    imgui.text_disabled(binding.keys_in_words)
+    imgui.text_disabled(binding.shown_keys)
     values = [preferences.ghosts_before, preferences.ghosts_after, preferences.ghost_step]
     before = list(values)
     sliders = (
@@ -218,7 +218,7 @@ def _onion_skin(session: Session, look: Look) -> list[Action]:
     if values != before:
         actions.append(do(viewing.set_ghosts, *values))
     changed, in_front = imgui.checkbox("In front of the drawing", preferences.ghosts_in_front)
-    tip("Over all layers, and not behind those that are posed")
+    draw_tooltip("Over all layers, and not behind those that are posed")
     if changed:
         actions.append(do(viewing.put_ghosts_in_front, in_front))
     imgui.end_popup()
@@ -228,7 +228,7 @@ def _onion_skin(session: Session, look: Look) -> list[Action]:
 def _variant(project: Project) -> list[Action]:
     actions: list[Action] = []
     if imgui.begin_combo("##variant", VARIANTS[project.layer.variant].name):
-        actions += draw_methods(project)
+        actions += draw_method_menu(project)
         imgui.end_combo()
-    tip("How in-betweens are made")
+    draw_tooltip("How in-betweens are made")
     return actions

@@ -5,11 +5,11 @@ from imgui_bundle import ImVec2, imgui
 from app.document import LAST_FRAME
 from app.editor import Action, do
 from app.editor.poses import library
-from app.ui.style import POSE_PAYLOAD, ink
-from app.ui.timeline.bands import Bands, tag
+from app.ui.style import POSE_PAYLOAD, colour_u32
+from app.ui.timeline.layout import TimelineLayout, draw_time_tag
 
 
-def draw_dropped(bands: Bands) -> list[Action]:
+def accept_dropped_pose(bands: TimelineLayout) -> list[Action]:
     """Show where a pose that is dragged here would make a key; make it where it is let go."""
     payload = imgui.get_drag_drop_payload_py_id()
     if payload is None or payload.type != POSE_PAYLOAD:
@@ -25,10 +25,10 @@ def draw_dropped(bands: Bands) -> list[Action]:
     is_over = bands.left <= mouse.x <= bands.right and bands.top <= mouse.y <= bands.bottom
     if not is_over or not 0 <= frame <= LAST_FRAME:
         return []
-    draw_list, accent = imgui.get_window_draw_list(), ink(bands.look.palette.accent)
+    draw_list, accent = imgui.get_window_draw_list(), colour_u32(bands.look.palette.accent)
     x = bands.x(frame)
     draw_list.add_line(ImVec2(x, bands.track_top), ImVec2(x, bands.track_bottom), accent, 2.0)
-    tag(bands, x, f"{frame}")
+    draw_time_tag(bands, x, f"{frame}")
     if imgui.is_mouse_released(imgui.MouseButton_.left):
         owner, kept = offers[payload.data_id]
         return [do(library.apply_at, kept.name, frame, owner.id)]

@@ -2,10 +2,20 @@
 
 from imgui_bundle import ImVec2, imgui
 
-from app.document import MOST_TURNS, PRESETS, Easing, Keyframe
+from app.document import MAX_REVOLUTIONS, PRESETS, Easing, Keyframe
 from app.editor import Action, KeysOf, Project, do
 from app.editor.actions import keys
-from app.ui.style import SMALL, Look, bold, in_hand, ink, label, sized, small, tip
+from app.ui.style import (
+    SMALL,
+    Look,
+    bold_text,
+    colour_u32,
+    draw_tooltip,
+    is_hovered_or_held,
+    label,
+    push_text_size,
+    small_text,
+)
 
 SIDE = 12.0  # em: of the editor's square
 TILE = 4.4  # em: width of a preset
@@ -13,7 +23,9 @@ LABELS = {"linear": "Linear", "in": "In", "out": "Out", "in-out": "In-out", "hol
 DIGITS = 3  # to which the pointer sets control points
 
 
-def draw_curve(easing: Easing, corner: ImVec2, size: ImVec2, colour: int, thickness: float) -> None:
+def draw_easing_curve(
+    easing: Easing, corner: ImVec2, size: ImVec2, colour: int, thickness: float
+) -> None:
     """Draw how much of the way is done over time, from the lower left to the upper right."""
     draw_list = imgui.get_window_draw_list()
     if easing.curve is None:
@@ -26,7 +38,9 @@ def draw_curve(easing: Easing, corner: ImVec2, size: ImVec2, colour: int, thickn
     draw_list.path_stroke(colour, thickness)
 
 
-def fill_curve(easing: Easing, corner: ImVec2, size: ImVec2, below: float, colour: int) -> None:
+def fill_easing_curve(
+    easing: Easing, corner: ImVec2, size: ImVec2, below: float, colour: int
+) -> None:
     """Fill what is under a curve, and a stripe below it."""
     if easing.curve is None or size.x < 1 or size.y < 1:
         return
@@ -49,7 +63,7 @@ def _point(x: float, y: float, corner: ImVec2, size: ImVec2) -> ImVec2:
     return ImVec2(corner.x + x * size.x, corner.y + (1 - y) * size.y)
 
 
-def easing_popup(name: str, look: Look, project: Project, key: Keyframe) -> list[Action]:
+def draw_easing_popup(name: str, look: Look, project: Project, key: Keyframe) -> list[Action]:
     """Draw the popup in which the way from a key to the next one is changed, if it is open.
 
     It changes those of all chosen keys, if the key is one of them.
@@ -61,7 +75,7 @@ def easing_popup(name: str, look: Look, project: Project, key: Keyframe) -> list
         return []
     taken = project.keys_with(project.active, key.frame)
     count = sum(map(len, taken.values()))
-    bold(look, "Easing")
+    bold_text(look, "Easing")
     imgui.same_line()
     imgui.text_disabled(f"after {count} keys" if count > 1 else f"after frame {key.frame}")
     actions: list[Action] = []
@@ -70,10 +84,10 @@ def easing_popup(name: str, look: Look, project: Project, key: Keyframe) -> list
     chosen = _numbers(look, key.easing) or chosen
     if chosen is not None:
         actions.append(do(keys.set_easing, taken, chosen))
-    actions += _turns(look, key, taken)
+    actions += _draw_revolutions(look, key, taken)
     if imgui.button("Use for new keys"):
         actions.append(do(keys.ease_new_keys, key.easing))
-    tip("Ways from keys that are made later begin like this one")
+    draw_tooltip("Ways from keys that are made later begin like this one")
     imgui.end_popup()
     return actions
 
@@ -96,17 +110,19 @@ def _tile(look: Look, name: str, preset: Easing, *, current: bool) -> bool:
     high = imgui.get_item_rect_max()
     hovered = imgui.is_item_hovered()
     draw_list.add_rect_filled(
-        low, high, ink(palette.hovered if hovered else palette.raised), 0.4 * em
+        low, high, colour_u32(palette.hovered if hovered else palette.raised), 0.4 * em
     )
     if current:
-        draw_list.add_rect(low, high, ink(palette.accent), 0.4 * em, 1.5)
+        draw_list.add_rect(low, high, colour_u32(palette.accent), 0.4 * em, 1.5)
     colour = palette.accent if current else palette.text
     corner, size = ImVec2(low.x + 0.9 * em, low.y + 0.6 * em), ImVec2((TILE - 1.8) * em, 1.6 * em)
-    draw_curve(preset, corner, size, ink(colour), 0.12 * em)
-    with sized(SMALL):
+    draw_easing_curve(preset, corner, size, colour_u32(colour), 0.12 * em)
+    with push_text_size(SMALL):
         width = imgui.calc_text_size(LABELS[name]).x
         place = ImVec2((low.x + high.x - width) / 2, high.y - 1.25 * em)
-        draw_list.add_text(place, ink(palette.text if current else palette.dim), LABELS[name])
+        draw_list.add_text(
+            place, colour_u32(palette.text if current else palette.dim), LABELS[name]
+        )
     return clicked
 
 
@@ -116,18 +132,18 @@ def _editor(look: Look, easing: Easing) -> Easing | None:
     low = imgui.get_cursor_screen_pos()
     room = ImVec2(SIDE * 1.9 * em, SIDE * em)
     high = low + room
-    draw_list.add_rect_filled(low, high, ink(palette.desk), 0.4 * em)
+    draw_list.add_rect_filled(low, high, colour_u32(palette.desk), 0.4 * em)
     # As wide as high, so that linear is at 45 degrees.
     pad = 1.0 * em
     side = room.y - 2 * pad
     corner, size = ImVec2(low.x + (room.x - side) / 2, low.y + pad), ImVec2(side, side)
     for part in range(5):
         x, y = corner.x + part / 4 * side, corner.y + part / 4 * side
-        colour = ink(palette.line, 1.0 if part in {0, 4} else 0.6)
+        colour = colour_u32(palette.line, 1.0 if part in {0, 4} else 0.6)
         draw_list.add_line(ImVec2(x, corner.y), ImVec2(x, corner.y + side), colour)
         draw_list.add_line(ImVec2(corner.x, y), ImVec2(corner.x + side, y), colour)
-    fill_curve(easing, corner, size, 0.0, ink(palette.accent, 0.12))
-    draw_curve(easing, corner, size, ink(palette.accent), 0.16 * em)
+    fill_easing_curve(easing, corner, size, 0.0, colour_u32(palette.accent, 0.12))
+    draw_easing_curve(easing, corner, size, colour_u32(palette.accent), 0.16 * em)
     moved = None
     if easing.curve is not None:
         moved = _control_points(look, easing.curve, corner, size)
@@ -145,15 +161,21 @@ def _control_points(
     for index, end in enumerate((_point(0, 0, corner, size), _point(1, 1, corner, size))):
         x, y = curve[2 * index : 2 * index + 2]
         centre = _point(x, y, corner, size)
-        draw_list.add_line(end, centre, ink(palette.dim), 1.5)
+        draw_list.add_line(end, centre, colour_u32(palette.dim), 1.5)
         imgui.set_cursor_screen_pos(ImVec2(centre.x - radius, centre.y - radius))
         imgui.set_next_item_allow_overlap()
         imgui.invisible_button(f"control {index + 1}", ImVec2(2 * radius, 2 * radius))
-        hot = in_hand()
-        tip("Drag: both points stay inside the square, so that in-betweens keep their limits")
-        draw_list.add_circle_filled(centre, 0.5 * em if hot else 0.42 * em, ink(palette.desk))
+        hot = is_hovered_or_held()
+        draw_tooltip(
+            "Drag: both points stay inside the square, so that in-betweens keep their limits"
+        )
         draw_list.add_circle_filled(
-            centre, 0.4 * em if hot else 0.32 * em, ink(palette.accent if hot else palette.text)
+            centre, 0.5 * em if hot else 0.42 * em, colour_u32(palette.desk)
+        )
+        draw_list.add_circle_filled(
+            centre,
+            0.4 * em if hot else 0.32 * em,
+            colour_u32(palette.accent if hot else palette.text),
         )
         if imgui.is_item_active() and imgui.is_mouse_dragging(imgui.MouseButton_.left, 0):
             mouse = imgui.get_mouse_pos()
@@ -167,20 +189,22 @@ def _control_points(
 def _numbers(look: Look, easing: Easing) -> Easing | None:
     """Draw the control points as numbers."""
     if easing.curve is None:
-        small(look, "Holds the pose until the next key.")
+        small_text(look, "Holds the pose until the next key.")
         return None
     imgui.set_next_item_width(SIDE * 1.9 * look.em)
     changed, values = imgui.drag_float4("##numbers", list(easing.curve), 0.005, 0.0, 1.0, "%.2f")
-    tip("x and y of the first control point, then of the second")
+    draw_tooltip("x and y of the first control point, then of the second")
     return _curve([_unit(value) for value in values], easing.curve) if changed else None
 
 
-def _turns(look: Look, key: Keyframe, taken: KeysOf) -> list[Action]:
+def _draw_revolutions(look: Look, key: Keyframe, taken: KeysOf) -> list[Action]:
     label(look, "Whole turns")
-    changed, turns = imgui.input_int("##turns", key.turns, 1, 1)
-    tip("Full turns on the way to the next key, counter-clockwise; negative ones go clockwise")
-    turns = min(max(turns, -MOST_TURNS), MOST_TURNS)
-    return [do(keys.set_turns, taken, turns)] if changed and turns != key.turns else []
+    changed, turns = imgui.input_int("##turns", key.revolutions, 1, 1)
+    draw_tooltip(
+        "Full turns on the way to the next key, counter-clockwise; negative ones go clockwise"
+    )
+    turns = min(max(turns, -MAX_REVOLUTIONS), MAX_REVOLUTIONS)
+    return [do(keys.set_turns, taken, turns)] if changed and turns != key.revolutions else []
 
 
 def _curve(values: list[float], current: tuple[float, float, float, float]) -> Easing | None:

@@ -2,7 +2,7 @@
 
 from imgui_bundle import ImVec2, ImVec4, icons_fontawesome_6 as icons, imgui
 
-from app.document import Keyframe, Passing
+from app.document import Keyframe, TangentMode
 from app.editor import (
     Action,
     KeyBox,
@@ -17,65 +17,65 @@ from app.editor import (
     layering,
 )
 from app.editor.actions import editing, keys, timeline_pointing, tracks
-from app.ui.shortcuts import CTRL, with_key
-from app.ui.style import begin_tip, in_hand, ink, is_pressed, tip
-from app.ui.timeline.bands import (
+from app.ui.shortcuts import CTRL, format_modified
+from app.ui.style import begin_tooltip, colour_u32, draw_tooltip, is_hovered_or_held, is_pressed
+from app.ui.timeline.layout import (
     ROUNDING,
-    Bands,
     LayerRow,
+    TimelineLayout,
     TrackLane,
-    in_seconds,
-    least_gap,
-    tag,
+    draw_time_tag,
+    find_least_gap,
+    format_seconds,
     was_dragged,
 )
-from app.ui.timeline.menus import PASSINGS, key_menu, track_menu
-from app.ui.timeline.misses import told
+from app.ui.timeline.menus import TANGENT_MODES, draw_key_menu, draw_track_menu
+from app.ui.timeline.track_residuals import describe_residual
 
 REACH, SMALLEST = 0.55, 0.26  # em: half a key's diagonal, with room and among many
 SMALLER = 0.7  # keys of layers that are not the active one, as a part of what theirs would be
 GRIP = 1.45  # half the side of the box in which the pointer takes a key, as a part of that
 
 
-def draw_ground(bands: Bands) -> list[Action]:
+def draw_track_background(bands: TimelineLayout) -> list[Action]:
     """Draw the frames that there are, and take what the pointer does where nothing else is."""
     palette, draw_list = bands.look.palette, imgui.get_window_draw_list()
     low, high = ImVec2(bands.left, bands.track_top), ImVec2(bands.right, bands.track_bottom)
-    draw_list.add_rect_filled(low, high, ink(palette.desk), ROUNDING * bands.look.em)
+    draw_list.add_rect_filled(low, high, colour_u32(palette.desk), ROUNDING * bands.look.em)
     draw_list.push_clip_rect(low, high, intersect_with_current_clip_rect=True)
     document = bands.project.document
-    for frames, alpha in ((document.frames, 0.45), (document.played, 1.0)):
+    for frames, alpha in ((document.frames, 0.45), (document.played_frames, 1.0)):
         begin, end = bands.x(frames.first), bands.x(frames.last)
         draw_list.add_rect_filled(
-            ImVec2(begin, low.y), ImVec2(end, high.y), ink(palette.panel, alpha)
+            ImVec2(begin, low.y), ImVec2(end, high.y), colour_u32(palette.panel, alpha)
         )
     draw_list.pop_clip_rect()
-    return _press_ground(bands, low, high)
+    return _press_background(bands, low, high)
 
 
-def _press_ground(bands: Bands, low: ImVec2, high: ImVec2) -> list[Action]:
+def _press_background(bands: TimelineLayout, low: ImVec2, high: ImVec2) -> list[Action]:
     actions: list[Action] = []
     clicked = bands.button("ground", low, high, right=True)
     if is_pressed():
-        actions += begin_box(bands)
+        actions += begin_key_box(bands)
     if clicked and is_plain_click():
-        actions += choose_row(bands.pointed_keys, {})
+        actions += select_row(bands.pointed_keys, {})
     twice = imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton_.left)
     row, lane = bands.pointed_keys, bands.pointed_row
     if isinstance(lane, TrackLane) and bands.project.timing.gesture is None:
-        miss = told(bands.project, lane.layer, lane.track, round(bands.pointed))
+        miss = describe_residual(bands.project, lane.layer, lane.track, round(bands.pointed))
         if miss:
-            tip(miss)
+            draw_tooltip(miss)
     if twice and round(bands.pointed) in bands.project.document.frames:
         actions.append(do(keys.insert_at, round(bands.pointed)))
     if imgui.is_item_clicked(imgui.MouseButton_.right):
         if row != bands.project.row:
-            actions += choose_row(row, {})
+            actions += select_row(row, {})
         imgui.open_popup("menu of track")
-    return actions + track_menu(bands)
+    return actions + draw_track_menu(bands)
 
 
-def choose_row(row: KeyRow, chosen_of: KeysOf) -> list[Action]:
+def select_row(row: KeyRow, chosen_of: KeysOf) -> list[Action]:
     """Let the layer of a row be the active one, choose the row, and choose keys."""
     return [
         do(layering.choose, layer_of(row)),
@@ -84,11 +84,11 @@ def choose_row(row: KeyRow, chosen_of: KeysOf) -> list[Action]:
     ]
 
 
-def begin_box(bands: Bands) -> list[Action]:
+def begin_key_box(bands: TimelineLayout) -> list[Action]:
     """Begin to choose keys by a box; with Shift besides those that are chosen."""
     keeps = bands.project.chosen_of if imgui.get_io().key_shift else {}
     box = KeyBox(start=bands.pointed, row=bands.pointed_keys, keeps=keeps)
-    return [do(timeline_pointing.begin, box, bands.strip)]
+    return [do(timeline_pointing.begin, box, bands.time_view)]
 
 
 def is_plain_click() -> bool:
@@ -97,7 +97,7 @@ def is_plain_click() -> bool:
     return released and not was_dragged() and not imgui.get_io().key_shift
 
 
-def draw_box(bands: Bands) -> None:
+def draw_key_box(bands: TimelineLayout) -> None:
     """Draw the box that the pointer spans."""
     gesture = bands.project.timing.gesture
     if not isinstance(gesture, KeyBox) or not was_dragged():
@@ -109,14 +109,14 @@ def draw_box(bands: Bands) -> None:
     left, right = sorted((bands.x(gesture.start), mouse.x))
     low = ImVec2(left, max(top, bands.track_top))
     high = ImVec2(right, min(bottom, bands.track_bottom))
-    draw_list.add_rect_filled(low, high, ink(accent, 0.14), 2.0)
-    draw_list.add_rect(low, high, ink(accent, 0.8), 2.0)
+    draw_list.add_rect_filled(low, high, colour_u32(accent, 0.14), 2.0)
+    draw_list.add_rect(low, high, colour_u32(accent, 0.8), 2.0)
 
 
-def draw_keys(bands: Bands) -> list[Action]:
+def draw_keys(bands: TimelineLayout) -> list[Action]:
     """Draw the keys of all layers, and take what the pointer does to them."""
     actions: list[Action] = []
-    bands.push_clip()
+    bands.push_track_clip()
     for row in bands.rows:
         if bands.shows_row(row) and (not row.layer.still or row.is_active):
             # The same buttons when another layer becomes the active one.
@@ -127,7 +127,7 @@ def draw_keys(bands: Bands) -> list[Action]:
     return actions
 
 
-def _draw_row(bands: Bands, row: LayerRow) -> list[Action]:
+def _draw_row(bands: TimelineLayout, row: LayerRow) -> list[Action]:
     actions: list[Action] = []
     radius = _radius(bands, row)
     grip = GRIP * radius
@@ -136,25 +136,25 @@ def _draw_row(bands: Bands, row: LayerRow) -> list[Action]:
         key = row.layer.keys[index]
         x = bands.x(key.frame)
         box = ImVec2(x - grip, row.middle - grip), ImVec2(x + grip, row.middle + grip)
-        origin = origin_of(gesture, identity, key.frame)
+        origin = find_drag_origin(gesture, identity, key.frame)
         bands.button(f"key {origin}", *box, right=True)
-        is_large = in_hand() or is_dragged(gesture, identity, key.frame)
+        is_large = is_hovered_or_held() or is_key_dragged(gesture, identity, key.frame)
         _draw_key(bands, row, key, 1.15 * radius if is_large else radius)
-        actions += take_key(bands, identity, key.frame)
+        actions += begin_key_drag(bands, identity, key.frame)
         if gesture is None:
-            _tell(bands, row, key)
-        actions += key_menu(bands, identity, key)
+            _draw_key_tooltip(bands, row, key)
+        actions += draw_key_menu(bands, identity, key)
     return actions
 
 
-def _radius(bands: Bands, row: LayerRow) -> float:
+def _radius(bands: TimelineLayout, row: LayerRow) -> float:
     """Return how large keys are, in pixels: smaller where they would cover each other."""
-    gap = least_gap(row.layer, None)
+    gap = find_least_gap(row.layer, None)
     part = 1.0 if row.is_active else SMALLER
-    return part * min(max(0.48 * gap * bands.strip.scale, SMALLEST), REACH) * bands.look.em
+    return part * min(max(0.48 * gap * bands.time_view.scale, SMALLEST), REACH) * bands.look.em
 
 
-def is_dragged(gesture: TimeGesture | None, row: KeyRow, frame: int) -> bool:
+def is_key_dragged(gesture: TimeGesture | None, row: KeyRow, frame: int) -> bool:
     """Tell whether a key of a row is the one that is dragged."""
     return (
         isinstance(gesture, KeyDrag)
@@ -163,7 +163,7 @@ def is_dragged(gesture: TimeGesture | None, row: KeyRow, frame: int) -> bool:
     )
 
 
-def origin_of(gesture: TimeGesture | None, row: KeyRow, frame: int) -> int:
+def find_drag_origin(gesture: TimeGesture | None, row: KeyRow, frame: int) -> int:
     """Return at which frame a key was before the drag, so that its button stays the same one."""
     if isinstance(gesture, KeyDrag) and not gesture.copies:
         before = frame - gesture.by
@@ -171,20 +171,20 @@ def origin_of(gesture: TimeGesture | None, row: KeyRow, frame: int) -> int:
     return frame
 
 
-def take_key(bands: Bands, row: KeyRow, frame: int) -> list[Action]:
+def begin_key_drag(bands: TimelineLayout, row: KeyRow, frame: int) -> list[Action]:
     """Take what the pointer does to the last item, the key of a row at a frame."""
     actions = _press(bands, row, frame) if is_pressed() else []
     if imgui.is_item_clicked(imgui.MouseButton_.right):
         chosen_of = bands.project.chosen_of
         if frame not in chosen_of.get(row, ()):
-            actions += choose_row(row, {row: frozenset({frame})})
+            actions += select_row(row, {row: frozenset({frame})})
         elif row != bands.project.row:
-            actions += choose_row(row, chosen_of)
+            actions += select_row(row, chosen_of)
         imgui.open_popup(f"menu of key {frame}")
     return actions
 
 
-def _press(bands: Bands, row: KeyRow, frame: int) -> list[Action]:
+def _press(bands: TimelineLayout, row: KeyRow, frame: int) -> list[Action]:
     chosen_of, io = bands.project.chosen_of, imgui.get_io()
     chosen = chosen_of.get(row, frozenset())
     if io.key_shift:
@@ -200,55 +200,57 @@ def _press(bands: Bands, row: KeyRow, frame: int) -> list[Action]:
         before=bands.project.document,
         after=bands.project.document,
     )
-    return [*choose_row(row, chosen_of), do(timeline_pointing.begin, drag, bands.strip)]
+    return [*select_row(row, chosen_of), do(timeline_pointing.begin, drag, bands.time_view)]
 
 
-def _draw_key(bands: Bands, row: LayerRow, key: Keyframe, radius: float) -> None:
+def _draw_key(bands: TimelineLayout, row: LayerRow, key: Keyframe, radius: float) -> None:
     palette, draw_list, em = bands.look.palette, imgui.get_window_draw_list(), bands.look.em
     x, y = bands.x(key.frame), row.middle
     chosen = key.frame in bands.project.chosen_of.get(row.layer.id, ())
     warns = _warning(bands, row, key)
     fill = palette.accent if chosen else warns or (palette.text if row.is_active else palette.dim)
-    passing, centre = key.shown_passing, ImVec2(x, y)
+    passing, centre = key.shown_tangent_mode, ImVec2(x, y)
     if chosen:
-        draw_mark(passing, centre, radius + 0.24 * em, ink(palette.accent, 0.35))
-    draw_mark(passing, centre, radius + 0.12 * em, ink(palette.desk))
-    draw_mark(passing, centre, radius, ink(fill))
-    tag_dragged(bands, row.layer.id, key.frame, x)
+        draw_key_mark(passing, centre, radius + 0.24 * em, colour_u32(palette.accent, 0.35))
+    draw_key_mark(passing, centre, radius + 0.12 * em, colour_u32(palette.desk))
+    draw_key_mark(passing, centre, radius, colour_u32(fill))
+    label_dragged_key(bands, row.layer.id, key.frame, x)
     if warns and chosen:
-        draw_mark(passing, centre, 0.45 * radius, ink(warns))
+        draw_key_mark(passing, centre, 0.45 * radius, colour_u32(warns))
     if warns and row.is_active:
-        draw_list.add_circle_filled(ImVec2(x, bands.bar_top - 0.1 * em), 0.2 * em, ink(warns))
+        draw_list.add_circle_filled(
+            ImVec2(x, bands.bar_top - 0.1 * em), 0.2 * em, colour_u32(warns)
+        )
 
 
-def _warning(bands: Bands, row: LayerRow, key: Keyframe) -> ImVec4 | None:
+def _warning(bands: TimelineLayout, row: LayerRow, key: Keyframe) -> ImVec4 | None:
     """Return the colour of a key's warning if there is one."""
     palette = bands.look.palette
     if not key.pose.certificate.certified:
         return palette.danger
-    return palette.warning if row.is_active and lags(bands.project, key) else None
+    return palette.warning if row.is_active and describe_target_errors(bands.project, key) else None
 
 
-def tag_dragged(bands: Bands, row: KeyRow, frame: int, x: float) -> None:
+def label_dragged_key(bands: TimelineLayout, row: KeyRow, frame: int, x: float) -> None:
     """Write beside a key to which frame it is dragged, if it is."""
     gesture = bands.project.timing.gesture
-    if isinstance(gesture, KeyDrag) and gesture.by and is_dragged(gesture, row, frame):
-        tag(bands, x, f"{frame}  ({gesture.by:+d})")
+    if isinstance(gesture, KeyDrag) and gesture.by and is_key_dragged(gesture, row, frame):
+        draw_time_tag(bands, x, f"{frame}  ({gesture.by:+d})")
 
 
-def draw_mark(passing: Passing, centre: ImVec2, radius: float, colour: int) -> None:
+def draw_key_mark(passing: TangentMode, centre: ImVec2, radius: float, colour: int) -> None:
     """Draw a key's mark: round where the motion goes on, pointed, pinched, or square for a hold."""
     draw_list, x, y = imgui.get_window_draw_list(), centre.x, centre.y
     across = radius / 2**0.5
     match passing:
-        case Passing.THROUGH:
+        case TangentMode.SMOOTH:
             draw_list.add_circle_filled(centre, 0.86 * radius, colour)
-        case Passing.HOLD:
+        case TangentMode.HOLD:
             half = 1.06 * across
             draw_list.add_rect_filled(
                 ImVec2(x - half, y - half), ImVec2(x + half, y + half), colour
             )
-        case Passing.STOP:
+        case TangentMode.STOP:
             half, waist = 1.1 * across, 0.3 * across
             for side in (-1, 1):
                 draw_list.add_quad_filled(
@@ -268,7 +270,7 @@ def draw_mark(passing: Passing, centre: ImVec2, radius: float, colour: int) -> N
             )
 
 
-def lags(project: Project, key: Keyframe) -> list[str]:
+def describe_target_errors(project: Project, key: Keyframe) -> list[str]:
     """Return which handles fall short of their targets in a key of the active layer, in words."""
     short = project.timing.shortfalls.value.get(key.pose, {})
     names = {handle.id: handle.name for handle in project.layer.handles}
@@ -279,22 +281,24 @@ def lags(project: Project, key: Keyframe) -> list[str]:
     ]
 
 
-def _tell(bands: Bands, row: LayerRow, key: Keyframe) -> None:
+def _draw_key_tooltip(bands: TimelineLayout, row: LayerRow, key: Keyframe) -> None:
     """Explain a key in a tooltip."""
-    if not begin_tip():
+    if not begin_tooltip():
         return
     palette, document = bands.look.palette, bands.project.document
     imgui.text_unformatted(f"Key at frame {key.frame}")
     imgui.same_line()
-    imgui.text_disabled(in_seconds(key.frame, document.fps))
-    name, hint = PASSINGS[key.shown_passing]
+    imgui.text_disabled(format_seconds(key.frame, document.fps))
+    name, hint = TANGENT_MODES[key.shown_tangent_mode]
     imgui.text_unformatted(f"{name}: {hint[0].lower()}{hint[1:]}")
     if not key.pose.certificate.certified:
         imgui.text_colored(
             palette.danger,
             f"{icons.ICON_FA_TRIANGLE_EXCLAMATION}  Beyond the limits: in-betweens may fold here",
         )
-    for text in lags(bands.project, key) if row.is_active else ():
+    for text in describe_target_errors(bands.project, key) if row.is_active else ():
         imgui.text_colored(palette.warning, f"{icons.ICON_FA_TRIANGLE_EXCLAMATION}  {text}")
-    imgui.text_disabled(f"Drag to move, {with_key(CTRL, 'drag')} to copy, right click for more")
+    imgui.text_disabled(
+        f"Drag to move, {format_modified(CTRL, 'drag')} to copy, right click for more"
+    )
     imgui.end_tooltip()

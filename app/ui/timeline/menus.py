@@ -2,26 +2,26 @@
 
 from imgui_bundle import imgui
 
-from app.document import PRESETS, Keyframe, Passing, TrackKey, track_commands
+from app.document import PRESETS, Keyframe, TangentMode, TrackKey, track_commands
 from app.editor import Action, KeyRow, Project, Session, TrackRow, do, frames_in, seen_at
 from app.editor.actions import cycles, editing, keys, playback, tracks
 from app.editor.poses import copying
-from app.ui.shortcuts import BINDINGS, bound_item
-from app.ui.style import Look, shortened, tip
-from app.ui.timeline.bands import Bands
+from app.ui.shortcuts import BINDINGS, draw_action_item
+from app.ui.style import Look, draw_tooltip, shorten_text
 from app.ui.timeline.easing_curve import LABELS
+from app.ui.timeline.layout import TimelineLayout
 
-PASSINGS = {
-    Passing.THROUGH: ("Through", "The motion goes on smoothly, between two other keys"),
-    Passing.CORNER: ("Corner", "The motion comes and goes straight, and turns sharply"),
-    Passing.STOP: ("Stop", "The motion slows down to rest, and starts again"),
-    Passing.HOLD: ("Hold", "The pose stays until the next key"),
+TANGENT_MODES = {
+    TangentMode.SMOOTH: ("Through", "The motion goes on smoothly, between two other keys"),
+    TangentMode.CORNER: ("Corner", "The motion comes and goes straight, and turns sharply"),
+    TangentMode.STOP: ("Stop", "The motion slows down to rest, and starts again"),
+    TangentMode.HOLD: ("Hold", "The pose stays until the next key"),
 }
 NAME = 9.0  # em: width of a layer's name at most
 FACTORS = ((0.5, "Half as long"), (2.0, "Twice as long"))
 
 
-def key_menu(bands: Bands, row: KeyRow, key: Keyframe | TrackKey) -> list[Action]:
+def draw_key_menu(bands: TimelineLayout, row: KeyRow, key: Keyframe | TrackKey) -> list[Action]:
     """Draw the menu of a key of a row, if it is open."""
     actions: list[Action] = []
     if not imgui.begin_popup(f"menu of key {key.frame}"):
@@ -31,9 +31,9 @@ def key_menu(bands: Bands, row: KeyRow, key: Keyframe | TrackKey) -> list[Action
     count = sum(map(len, taken.values()))
     many = f" {count} keys" if count > 1 else ""
     delete = BINDINGS["delete"]
-    if imgui.menu_item_simple(f"Delete{many}###Delete", delete.keys_in_words):
+    if imgui.menu_item_simple(f"Delete{many}###Delete", delete.shown_keys):
         actions.append(delete.action)
-    if imgui.menu_item_simple(f"Copy{many}###Copy", BINDINGS["copy"].keys_in_words):
+    if imgui.menu_item_simple(f"Copy{many}###Copy", BINDINGS["copy"].shown_keys):
         actions.append(do(copying.copy_keys))
     seen = seen_at(project.document, project.track_in(row), key.frame)
     actions += _paste_items(bands.session, seen)
@@ -41,11 +41,11 @@ def key_menu(bands: Bands, row: KeyRow, key: Keyframe | TrackKey) -> list[Action
     if imgui.menu_item_simple("Go to this key", "Click"):
         actions.append(do(playback.scrub, seen))
     if imgui.begin_menu("Passing"):
-        for passing, (name, hint) in PASSINGS.items():
-            chosen = key.shown_passing is passing
+        for passing, (name, hint) in TANGENT_MODES.items():
+            chosen = key.shown_tangent_mode is passing
             if imgui.menu_item(f"{name}###{passing}", "", chosen)[0]:
                 actions.append(do(keys.set_passing, taken, passing))
-            tip(hint)
+            draw_tooltip(hint)
         imgui.end_menu()
     if imgui.begin_menu("Easing"):
         for name, preset in PRESETS.items():
@@ -64,12 +64,12 @@ def _paste_items(session: Session, frame: int) -> list[Action]:
     pasted = [
         action
         for name in ("paste", "paste swapped", "paste flipped")
-        for action in bound_item(session, name)
+        for action in draw_action_item(session, name)
     ]
     return [do(playback.scrub, frame), *pasted] if pasted else []
 
 
-def track_menu(bands: Bands) -> list[Action]:
+def draw_track_menu(bands: TimelineLayout) -> list[Action]:
     """Draw the menu of a place between the keys, if it is open."""
     actions: list[Action] = []
     if not imgui.begin_popup("menu of track"):
@@ -80,10 +80,12 @@ def track_menu(bands: Bands) -> list[Action]:
     if imgui.menu_item_simple(f"Insert key at frame {frame}###Insert key"):
         actions.append(do(keys.insert_at, frame))
     track = bands.project.track_in(row)
-    if track is not None and not track.planted:
+    if track is not None and not track.is_scene_space:
         if imgui.menu_item_simple(f"Insert key in the pose at frame {frame}###Insert in pose"):
             actions += [do(playback.scrub, frame), do(tracks.put, track.handles[0], 0j, 0.0)]
-        tip("Where the pose has the handle: the track begins and ends there without a jump")
+        draw_tooltip(
+            "Where the pose has the handle: the track begins and ends there without a jump"
+        )
     actions += _paste_items(bands.session, frame)
     if imgui.menu_item_simple(f"Add marker at frame {frame}###Add marker"):
         actions.append(do(keys.add_marker, frame))
@@ -98,7 +100,7 @@ def track_menu(bands: Bands) -> list[Action]:
     return actions
 
 
-def time_menu(session: Session, look: Look, project: Project) -> list[Action]:
+def draw_time_menu(session: Session, look: Look, project: Project) -> list[Action]:
     """Draw the menu of the whole timeline, if it is open."""
     actions: list[Action] = []
     if imgui.begin_popup("menu of time"):
@@ -107,7 +109,7 @@ def time_menu(session: Session, look: Look, project: Project) -> list[Action]:
     return actions
 
 
-def _cycle_items(bands: Bands, frame: int) -> list[Action]:
+def _cycle_items(bands: TimelineLayout, frame: int) -> list[Action]:
     """Draw what can be done with what repeats at a frame."""
     actions: list[Action] = []
     cycle = cycles.cycle_here(bands.session, bands.project, frame)
@@ -116,7 +118,9 @@ def _cycle_items(bands: Bands, frame: int) -> list[Action]:
     imgui.separator()
     if imgui.menu_item_simple("Make repeats into keys"):
         actions.append(do(cycles.make_keys, frame))
-    tip(f"{cycle.told.capitalize()} are edited in one place; then each repeat is by itself")
+    draw_tooltip(
+        f"{cycle.description.capitalize()} are edited in one place; then each repeat is by itself"
+    )
     if imgui.menu_item_simple("Stop repeating"):
         actions.append(do(cycles.stop, frame))
     return actions
@@ -124,12 +128,14 @@ def _cycle_items(bands: Bands, frame: int) -> list[Action]:
 
 def _time_items(session: Session, look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
-    actions += bound_item(session, "repeat")
+    actions += draw_action_item(session, "repeat")
     count, chosen = len(frames_in(project.document, project.row)), project.count_chosen
     several = f"{chosen} keys" if chosen > 1 else "all keys"
     # The time of a scene is scaled as a whole, but not reversed.
     is_scene = chosen < 2 and len(project.document.layers) > 1
-    whose = f"{several} of {shortened(project.layer.name, NAME * look.em)}" if is_scene else several
+    whose = (
+        f"{several} of {shorten_text(project.layer.name, NAME * look.em)}" if is_scene else several
+    )
     if imgui.menu_item_simple(f"Reverse {whose}###Reverse", enabled=max(count, chosen) > 1):
         actions.append(do(keys.reverse))
     if imgui.begin_menu(f"Scale time of {several}###Scale time"):
@@ -153,5 +159,5 @@ def _time_items(session: Session, look: Look, project: Project) -> list[Action]:
         actions.append(do(keys.match_ends))
     imgui.separator()
     for name in ("preview start", "preview end", "preview none"):
-        actions += bound_item(session, name)
+        actions += draw_action_item(session, name)
     return actions

@@ -20,22 +20,22 @@ from app.editor import (
 )
 from app.editor.actions import editing, playback, timeline_pointing
 from app.editor.tools import pointing
-from app.ui.shortcuts import CTRL, with_key
+from app.ui.shortcuts import CTRL, format_modified
 from app.ui.style import Look
-from app.ui.timeline.bands import THIN, Bands, TrackLane, in_seconds, was_dragged
-from app.ui.timeline.bar import draw_bar
-from app.ui.timeline.dropping import draw_dropped
-from app.ui.timeline.intervals import draw_cycles, draw_intervals
-from app.ui.timeline.keys import draw_box, draw_ground, draw_keys
-from app.ui.timeline.rows import draw_rows
+from app.ui.timeline.bar import draw_transport_bar
+from app.ui.timeline.dropping import accept_dropped_pose
+from app.ui.timeline.keys import draw_key_box, draw_keys, draw_track_background
+from app.ui.timeline.layout import THIN, TimelineLayout, TrackLane, format_seconds, was_dragged
+from app.ui.timeline.rows import draw_layer_rows
 from app.ui.timeline.ruler import (
-    draw_camera,
-    draw_edges,
+    draw_camera_row,
     draw_markers,
     draw_overview,
     draw_playhead,
+    draw_range_edges,
     draw_ruler,
 )
+from app.ui.timeline.segments import draw_cycle_bars, draw_pose_segments
 from app.ui.timeline.tracks import draw_track_keys
 
 ZOOM_STEP = 1.2  # a notch of the wheel
@@ -45,34 +45,34 @@ PULL = 0.12
 FLAGS = imgui.WindowFlags_.no_scrollbar | imgui.WindowFlags_.no_scroll_with_mouse
 
 
-def draw(session: Session, look: Look, project: Project) -> list[Action]:
+def draw_timeline_panel(session: Session, look: Look, project: Project) -> list[Action]:
     """Draw the timeline of the open project."""
-    actions = draw_bar(session, look, project)
+    actions = draw_transport_bar(session, look, project)
     imgui.begin_child("track", imgui.get_content_region_avail(), 0, FLAGS)
-    bands = Bands(session, look, project)
+    bands = TimelineLayout(session, look, project)
     if bands.is_usable:
         actions += _draw_track(bands, playback.current_frame(session, project))
     imgui.end_child()
     return actions
 
 
-def _draw_track(bands: Bands, frame: int) -> list[Action]:
+def _draw_track(bands: TimelineLayout, frame: int) -> list[Action]:
     actions = draw_ruler(bands, frame)
-    actions += draw_ground(bands)
-    actions += draw_rows(bands, frame)
+    actions += draw_track_background(bands)
+    actions += draw_layer_rows(bands, frame)
     actions += _navigate(bands)
-    actions += draw_intervals(bands)
-    actions += draw_cycles(bands)
-    actions += draw_edges(bands)
+    actions += draw_pose_segments(bands)
+    actions += draw_cycle_bars(bands)
+    actions += draw_range_edges(bands)
     actions += draw_markers(bands)
-    actions += draw_camera(bands)
+    actions += draw_camera_row(bands)
     actions += draw_playhead(bands, frame)
     actions += draw_keys(bands)
     actions += draw_track_keys(bands)
-    draw_box(bands)
+    draw_key_box(bands)
     actions += draw_overview(bands, frame)
     actions += _go_on(bands)
-    actions += draw_dropped(bands)
+    actions += accept_dropped_pose(bands)
     actions += _follow(bands, frame) + _follow_active(bands)
     if imgui.is_window_hovered() or bands.project.timing.gesture is not None:
         actions.append(do(pointing.explain, _hint(bands)))
@@ -81,13 +81,13 @@ def _draw_track(bands: Bands, frame: int) -> list[Action]:
     return actions
 
 
-def _navigate(bands: Bands) -> list[Action]:
+def _navigate(bands: TimelineLayout) -> list[Action]:
     """Scroll by the wheel or the middle button; zoom at the pointer with Ctrl."""
     io = imgui.get_io()
     if not imgui.is_window_hovered(imgui.HoveredFlags_.allow_when_blocked_by_active_item):
         return []
     em, frames = bands.look.em, bands.project.document.frames
-    strip = bands.strip
+    strip = bands.time_view
     wheels_rows = imgui.get_mouse_pos().x < bands.left and not io.key_ctrl
     if wheels_rows and io.mouse_wheel:
         to = bands.project.timing.scrolled - THIN * io.mouse_wheel
@@ -99,12 +99,12 @@ def _navigate(bands: Bands) -> list[Action]:
         strip = strip.panned(-SCROLL_STEP * (io.mouse_wheel + io.mouse_wheel_h))
     if imgui.is_mouse_down(imgui.MouseButton_.middle) and io.mouse_delta.x:
         strip = strip.panned(-io.mouse_delta.x / em)
-    if strip is bands.strip:
+    if strip is bands.time_view:
         return []
     return [do(timeline_pointing.look_at, strip.kept_near(frames, bands.width))]
 
 
-def _go_on(bands: Bands) -> list[Action]:
+def _go_on(bands: TimelineLayout) -> list[Action]:
     """Follow the pointer in what it began; end it where the button is let go."""
     timeline = bands.project.timing
     gesture = timeline.gesture
@@ -117,13 +117,13 @@ def _go_on(bands: Bands) -> list[Action]:
     keys = bands.pointed_keys
     moves = [do(timeline_pointing.move, bands.pointed, keys)] if goes_on else []
     if imgui.is_mouse_down(imgui.MouseButton_.left):
-        return [*moves, *_pull(bands)] if goes_on else []
+        return [*moves, *_scroll_beyond_edges(bands)] if goes_on else []
     if not was_dragged():
         moves += _click(bands, gesture)
     return [*moves, do(timeline_pointing.end)]
 
 
-def _click(bands: Bands, gesture: TimeGesture) -> list[Action]:
+def _click(bands: TimelineLayout, gesture: TimeGesture) -> list[Action]:
     """Return what a press on something does that is let go where it was."""
     match gesture:
         case Scrub():
@@ -142,13 +142,13 @@ def _click(bands: Bands, gesture: TimeGesture) -> list[Action]:
             return []
 
 
-def _pull(bands: Bands) -> list[Action]:
+def _scroll_beyond_edges(bands: TimelineLayout) -> list[Action]:
     """Scroll where the pointer goes beyond the edges."""
     x = imgui.get_mouse_pos().x
     beyond = min(x - bands.left, 0.0) + max(x - bands.right, 0.0)
     if not beyond:
         return []
-    strip = bands.strip.panned(PULL * beyond / bands.look.em)
+    strip = bands.time_view.panned(PULL * beyond / bands.look.em)
     if isinstance(bands.project.timing.gesture, TimeDrag):
         return [do(timeline_pointing.look_at, strip)] if strip.frame(bands.width / 2) > 0 else []
     return [
@@ -156,19 +156,19 @@ def _pull(bands: Bands) -> list[Action]:
     ]
 
 
-def _follow(bands: Bands, frame: int) -> list[Action]:
+def _follow(bands: TimelineLayout, frame: int) -> list[Action]:
     """Keep the playhead on the screen where it moves by itself."""
     timeline = bands.project.timing
     if frame == timeline.seen:
         return []
-    strip = bands.strip
+    strip = bands.time_view
     if timeline.gesture is None and timeline.strip is not None:
         is_playing = bands.project.playhead.since is not None
         strip = strip.showing(frame, bands.width, turns=is_playing)
-    return [do(timeline_pointing.follow, frame, strip if strip is not bands.strip else None)]
+    return [do(timeline_pointing.follow, frame, strip if strip is not bands.time_view else None)]
 
 
-def _follow_active(bands: Bands) -> list[Action]:
+def _follow_active(bands: TimelineLayout) -> list[Action]:
     """Scroll the rows to one that has come to be chosen, or to the tracks that have come to it."""
     timing, row, em = bands.project.timing, bands.row, bands.look.em
     if timing.seen_rows == (bands.project.row, timing.unfolded):
@@ -183,18 +183,18 @@ def _follow_active(bands: Bands) -> list[Action]:
     return [do(timeline_pointing.scroll_rows, scrolled + by / em)]
 
 
-def _hint(bands: Bands) -> str:
+def _hint(bands: TimelineLayout) -> str:
     gesture = bands.project.timing.gesture
     if isinstance(gesture, KeyDrag):
         what = "Copied" if gesture.copies else "Moved"
-        seconds = in_seconds(gesture.by, bands.project.document.fps)
+        seconds = format_seconds(gesture.by, bands.project.document.fps)
         return f"{what} by {gesture.by:+d} frames, {seconds}: Esc takes it back"
     if gesture is not None:
         return "Esc takes it back" if isinstance(gesture, TimeDrag) else ""
     return _hint_of_place(bands)
 
 
-def _hint_of_place(bands: Bands) -> str:
+def _hint_of_place(bands: TimelineLayout) -> str:
     x, y = imgui.get_mouse_pos()
     if x < bands.left:
         if isinstance(bands.pointed_row, TrackLane):
@@ -202,14 +202,14 @@ def _hint_of_place(bands: Bands) -> str:
         return "Click a layer to see its handles and keys, wheel to see more layers"
     if y < bands.ruler_top:
         return "Drag the ends of the preview range, double-click to play all frames"
-    if bands.marks_top <= y < bands.track_top:
+    if bands.markers_top <= y < bands.track_top:
         if y >= bands.camera_top:
             what, more = "a key of the camera", "right-click for more"
         else:
             what, more = "a marker", "double-click to name it"
         return f"Click {what} to go there, drag it to move it, {more}"
     if y < bands.track_top:
-        return f"Drag to move the playhead, wheel to scroll, {with_key(CTRL, 'wheel')} to zoom"
-    return (
-        f"Drag keys to move them, {with_key(CTRL, 'drag')} to copy, click between keys for easing"
-    )
+        return (
+            f"Drag to move the playhead, wheel to scroll, {format_modified(CTRL, 'wheel')} to zoom"
+        )
+    return f"Drag keys to move them, {format_modified(CTRL, 'drag')} to copy, click between keys for easing"

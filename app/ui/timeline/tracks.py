@@ -8,50 +8,72 @@ from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 from app.document import Layer, Track, TrackKey, track_commands
 from app.editor import Action, KeyDrag, TrackRow, do, row_of
 from app.editor.actions import editing, timeline_pointing
-from app.ui.shortcuts import CTRL, with_key
-from app.ui.style import CHOSEN, SMALL, begin_tip, in_hand, ink, shortened, sized, tip
-from app.ui.timeline.bands import THIN, Bands, LayerRow, TrackLane, in_seconds, least_gap
-from app.ui.timeline.keys import (
-    choose_row,
-    draw_mark,
-    is_dragged,
-    origin_of,
-    tag_dragged,
-    take_key,
+from app.ui.shortcuts import CTRL, format_modified
+from app.ui.style import (
+    CHOSEN,
+    SMALL,
+    begin_tooltip,
+    colour_u32,
+    draw_tooltip,
+    is_hovered_or_held,
+    push_text_size,
+    shorten_text,
 )
-from app.ui.timeline.menus import PASSINGS, key_menu
-from app.ui.timeline.misses import misses_of
+from app.ui.timeline.keys import (
+    begin_key_drag,
+    draw_key_mark,
+    find_drag_origin,
+    is_key_dragged,
+    label_dragged_key,
+    select_row,
+)
+from app.ui.timeline.layout import (
+    THIN,
+    LayerRow,
+    TimelineLayout,
+    TrackLane,
+    find_least_gap,
+    format_seconds,
+)
+from app.ui.timeline.menus import TANGENT_MODES, draw_key_menu
+from app.ui.timeline.track_residuals import find_residuals
 
 RADIUS, GRIP = 0.4, 0.55  # em: half a key's diagonal, and of the box that takes it
-WAY, LATE = 0.22, 0.1  # em: heights of the line where a track acts, and of that of its delay
-FOLD = 1.1  # em: width of the triangle that folds tracks away
+SEGMENT_HEIGHT, DELAY_HEIGHT = (
+    0.22,
+    0.1,
+)  # em: heights of the line where a track acts, and of that of its delay
+EXPANDER_WIDTH = 1.1  # em: width of the triangle that folds tracks away
 
 
-def name_of(layer: Layer, track: Track) -> str:
+def format_track_name(layer: Layer, track: Track) -> str:
     """Return what a track is called: by its handles."""
     return ", ".join(layer.handle(identity).name for identity in track.handles)
 
 
-def draw_fold(bands: Bands, row: LayerRow, left: float) -> list[Action]:
+def draw_expander(bands: TimelineLayout, row: LayerRow, left: float) -> list[Action]:
     """Draw the triangle by which the tracks of a layer are folded away, if it has any."""
     layer, em = row.layer, bands.look.em
     if not layer.tracks:
         return []
     half = THIN / 2 * em
-    low, high = ImVec2(left, row.middle - half), ImVec2(left + FOLD * em, row.middle + half)
+    low, high = (
+        ImVec2(left, row.middle - half),
+        ImVec2(left + EXPANDER_WIDTH * em, row.middle + half),
+    )
     clicked = bands.button(f"fold {layer.id}", low, high)
     is_open = layer.id in bands.project.timing.unfolded
     many = f"{len(layer.tracks)} tracks" if len(layer.tracks) > 1 else "its track"
-    tip(f"Fold {many} away" if is_open else f"Show {many}")
+    draw_tooltip(f"Fold {many} away" if is_open else f"Show {many}")
     palette = bands.look.palette
     icon = icons.ICON_FA_CARET_DOWN if is_open else icons.ICON_FA_CARET_RIGHT
     top = row.middle - imgui.get_text_line_height() / 2
-    colour = ink(palette.text if in_hand() else palette.dim)
+    colour = colour_u32(palette.text if is_hovered_or_held() else palette.dim)
     imgui.get_window_draw_list().add_text(ImVec2(left + 0.3 * em, top), colour, icon)
     return [do(timeline_pointing.unfold, layer.id)] if clicked else []
 
 
-def draw_names(bands: Bands) -> list[Action]:
+def draw_track_names(bands: TimelineLayout) -> list[Action]:
     """Draw the names of tracks beside their rows, and what switches them on and off."""
     actions: list[Action] = []
     for lane in filter(bands.shows_row, bands.track_rows):
@@ -61,32 +83,34 @@ def draw_names(bands: Bands) -> list[Action]:
     return actions
 
 
-def _draw_name(bands: Bands, lane: TrackLane) -> list[Action]:
+def _draw_name(bands: TimelineLayout, lane: TrackLane) -> list[Action]:
     palette, draw_list, em = bands.look.palette, imgui.get_window_draw_list(), bands.look.em
     layer, track, row = lane.layer, lane.track, row_of(lane.layer, lane.track)
     low = ImVec2(bands.corner.x, lane.top)
     high = ImVec2(bands.left - 0.3 * em, lane.bottom)
     actions: list[Action] = []
     if bands.button("name", low, high):
-        actions += choose_row(row, {})
+        actions += select_row(row, {})
         actions.append(do(editing.select, frozenset(track.handles)))
-    if lane.is_chosen or in_hand():
-        colour = ink(palette.accent, CHOSEN) if lane.is_chosen else ink(palette.hovered)
+    if lane.is_chosen or is_hovered_or_held():
+        colour = (
+            colour_u32(palette.accent, CHOSEN) if lane.is_chosen else colour_u32(palette.hovered)
+        )
         draw_list.add_rect_filled(low, high, colour, 0.2 * em)
-    tip("Click to choose the track: drags of its handle and keys go there then")
+    draw_tooltip("Click to choose the track: drags of its handle and keys go there then")
     switch = high.x - 2.0 * em
-    with sized(SMALL):
+    with push_text_size(SMALL):
         top = lane.middle - imgui.get_text_line_height() / 2
-        icon = icons.ICON_FA_THUMBTACK if track.planted else icons.ICON_FA_ROUTE
-        text = shortened(name_of(layer, track), switch - low.x - 3.4 * em)
-        colour = ink(palette.text if track.enabled else palette.dim)
-        draw_list.add_text(ImVec2(low.x + 1.4 * em, top), ink(palette.dim), icon)
+        icon = icons.ICON_FA_THUMBTACK if track.is_scene_space else icons.ICON_FA_ROUTE
+        text = shorten_text(format_track_name(layer, track), switch - low.x - 3.4 * em)
+        colour = colour_u32(palette.text if track.enabled else palette.dim)
+        draw_list.add_text(ImVec2(low.x + 1.4 * em, top), colour_u32(palette.dim), icon)
         draw_list.add_text(ImVec2(low.x + 2.9 * em, top), colour, text)
     clicked = bands.button("switch", ImVec2(switch, lane.top), high)
-    tip("Switch the track off: its keys stay" if track.enabled else "Switch the track on")
+    draw_tooltip("Switch the track off: its keys stay" if track.enabled else "Switch the track on")
     icon = icons.ICON_FA_TOGGLE_ON if track.enabled else icons.ICON_FA_TOGGLE_OFF
-    colour = ink(palette.accent if track.enabled else palette.dim)
-    with sized(SMALL):
+    colour = colour_u32(palette.accent if track.enabled else palette.dim)
+    with push_text_size(SMALL):
         draw_list.add_text(ImVec2(switch + 0.3 * em, top), colour, icon)
     if clicked:
         command = track_commands.enable_track(layer.id, track.handles[0], enabled=not track.enabled)
@@ -94,18 +118,18 @@ def _draw_name(bands: Bands, lane: TrackLane) -> list[Action]:
     return actions
 
 
-def draw_ways(bands: Bands) -> None:
+def draw_track_segments(bands: TimelineLayout) -> None:
     """Draw the grounds of tracks' rows, when each one acts, and where it is out of reach."""
     palette, draw_list, em = bands.look.palette, imgui.get_window_draw_list(), bands.look.em
     for lane in filter(bands.shows_row, bands.track_rows):
         low, high = ImVec2(bands.left, lane.top), ImVec2(bands.right, lane.bottom)
-        draw_list.add_rect_filled(low, high, ink(palette.desk, 0.45))
+        draw_list.add_rect_filled(low, high, colour_u32(palette.desk, 0.45))
         if lane.is_chosen:
-            draw_list.add_rect_filled(low, high, ink(palette.accent, 0.16))
-        draw_list.add_line(ImVec2(low.x, high.y), high, ink(palette.line))
-        colour = ink(palette.text if lane.track.enabled else palette.dim, 0.35)
+            draw_list.add_rect_filled(low, high, colour_u32(palette.accent, 0.16))
+        draw_list.add_line(ImVec2(low.x, high.y), high, colour_u32(palette.line))
+        colour = colour_u32(palette.text if lane.track.enabled else palette.dim, 0.35)
         for first, last in _stretches(bands, lane.track):
-            half = WAY / 2 * em
+            half = SEGMENT_HEIGHT / 2 * em
             draw_list.add_rect_filled(
                 ImVec2(bands.x(first), lane.middle - half),
                 ImVec2(bands.x(last), lane.middle + half),
@@ -113,15 +137,15 @@ def draw_ways(bands: Bands) -> None:
                 half,
             )
         _draw_delay(bands, lane)
-        for first, last in _runs(misses_of(bands.project, lane.layer, lane.track)):
+        for first, last in _runs(find_residuals(bands.project, lane.layer, lane.track)):
             draw_list.add_rect_filled(
                 ImVec2(bands.x(first - 0.5), lane.top + 1),
                 ImVec2(bands.x(last + 0.5), lane.bottom - 1),
-                ink(palette.danger, 0.55),
+                colour_u32(palette.danger, 0.55),
             )
 
 
-def _stretches(bands: Bands, track: Track) -> list[tuple[int, int]]:
+def _stretches(bands: TimelineLayout, track: Track) -> list[tuple[int, int]]:
     """Return from where to where a track acts, in parts where a loop ends between them."""
     document = bands.project.document
     first, last = track.keys[0].frame + track.delay, track.keys[-1].frame + track.delay
@@ -134,17 +158,17 @@ def _stretches(bands: Bands, track: Track) -> list[tuple[int, int]]:
     return [(first, frames.last), (frames.first, last - period)]
 
 
-def _draw_delay(bands: Bands, lane: TrackLane) -> None:
+def _draw_delay(bands: TimelineLayout, lane: TrackLane) -> None:
     """Draw by how much a track is late, from where its first key would be without that."""
     if not lane.track.delay:
         return
     em, first = bands.look.em, lane.track.keys[0].frame
     begin, end = bands.x(first), bands.x(first + lane.track.delay)
-    y, colour = lane.bottom - 0.22 * em, ink(bands.look.palette.anchor, 0.9)
+    y, colour = lane.bottom - 0.22 * em, colour_u32(bands.look.palette.anchor, 0.9)
     draw_list = imgui.get_window_draw_list()
-    draw_list.add_line(ImVec2(begin, y), ImVec2(end, y), colour, LATE * em)
+    draw_list.add_line(ImVec2(begin, y), ImVec2(end, y), colour, DELAY_HEIGHT * em)
     draw_list.add_line(
-        ImVec2(begin, y - 0.15 * em), ImVec2(begin, y + 0.15 * em), colour, LATE * em
+        ImVec2(begin, y - 0.15 * em), ImVec2(begin, y + 0.15 * em), colour, DELAY_HEIGHT * em
     )
 
 
@@ -156,10 +180,10 @@ def _runs(frames: Collection[int]) -> list[tuple[int, int]]:
     return [(ordered[begin], ordered[end - 1]) for begin, end in parts]
 
 
-def draw_track_keys(bands: Bands) -> list[Action]:
+def draw_track_keys(bands: TimelineLayout) -> list[Action]:
     """Draw the keys of tracks, and take what the pointer does to them."""
     actions: list[Action] = []
-    bands.push_clip()
+    bands.push_track_clip()
     for lane in filter(bands.shows_row, bands.track_rows):
         imgui.push_id(f"track {lane.layer.id} {lane.track.handles[0]}")
         for index in _in_view(bands, lane.track):
@@ -169,7 +193,7 @@ def draw_track_keys(bands: Bands) -> list[Action]:
     return actions
 
 
-def _in_view(bands: Bands, track: Track) -> list[int]:
+def _in_view(bands: TimelineLayout, track: Track) -> list[int]:
     """Return the indices of a track's keys on the screen; in a loop late ones come round."""
     document = bands.project.document
     round_ = document.frames.last - document.frames.first
@@ -177,49 +201,55 @@ def _in_view(bands: Bands, track: Track) -> list[int]:
     return sorted({index for late in shifts for index in bands.in_view(track.keys, late=late)})
 
 
-def _key(bands: Bands, lane: TrackLane, key: TrackKey) -> list[Action]:
+def _key(bands: TimelineLayout, lane: TrackLane, key: TrackKey) -> list[Action]:
     em, gesture = bands.look.em, bands.project.timing.gesture
     row = TrackRow(lane.layer.id, lane.track.handles[0])
-    gap = least_gap(lane.layer, lane.track.handles[0])
-    room = max(0.48 * gap * bands.strip.scale, 0.24)
+    gap = find_least_gap(lane.layer, lane.track.handles[0])
+    room = max(0.48 * gap * bands.time_view.scale, 0.24)
     x, grip, radius = bands.x_of(lane.track, key.frame), GRIP * em, min(room, RADIUS) * em
     if not bands.shows(x - grip, x + grip):
         return []
     grip = min(grip, 1.4 * radius)
     low, high = ImVec2(x - grip, lane.middle - grip), ImVec2(x + grip, lane.middle + grip)
-    bands.button(f"key {origin_of(gesture, row, key.frame)}", low, high, right=True)
-    is_large = in_hand() or is_dragged(gesture, row, key.frame)
+    bands.button(f"key {find_drag_origin(gesture, row, key.frame)}", low, high, right=True)
+    is_large = is_hovered_or_held() or is_key_dragged(gesture, row, key.frame)
     _draw_key(bands, lane, key, ImVec2(x, lane.middle), (1.15 if is_large else 1.0) * radius)
-    actions = take_key(bands, row, key.frame)
-    tag_dragged(bands, row, key.frame, x)
+    actions = begin_key_drag(bands, row, key.frame)
+    label_dragged_key(bands, row, key.frame, x)
     if not isinstance(gesture, KeyDrag):
-        _tell(bands, lane, key)
-    return actions + key_menu(bands, row, key)
+        _draw_track_key_tooltip(bands, lane, key)
+    return actions + draw_key_menu(bands, row, key)
 
 
-def _draw_key(bands: Bands, lane: TrackLane, key: TrackKey, centre: ImVec2, radius: float) -> None:
-    palette, em, passing = bands.look.palette, bands.look.em, key.shown_passing
+def _draw_key(
+    bands: TimelineLayout, lane: TrackLane, key: TrackKey, centre: ImVec2, radius: float
+) -> None:
+    palette, em, passing = bands.look.palette, bands.look.em, key.shown_tangent_mode
     row = TrackRow(lane.layer.id, lane.track.handles[0])
     is_chosen = key.frame in bands.project.chosen_of.get(row, ())
     colour = palette.text if lane.track.enabled else palette.dim
     if is_chosen:
-        draw_mark(passing, centre, radius + 0.2 * em, ink(palette.accent, 0.35))
-    draw_mark(passing, centre, radius + 0.1 * em, ink(palette.desk))
-    draw_mark(passing, centre, radius, ink(palette.accent if is_chosen else colour))
+        draw_key_mark(passing, centre, radius + 0.2 * em, colour_u32(palette.accent, 0.35))
+    draw_key_mark(passing, centre, radius + 0.1 * em, colour_u32(palette.desk))
+    draw_key_mark(passing, centre, radius, colour_u32(palette.accent if is_chosen else colour))
 
 
-def _tell(bands: Bands, lane: TrackLane, key: TrackKey) -> None:
+def _draw_track_key_tooltip(bands: TimelineLayout, lane: TrackLane, key: TrackKey) -> None:
     """Explain a key in a tooltip."""
-    if not begin_tip():
+    if not begin_tooltip():
         return
     document, track = bands.project.document, lane.track
-    imgui.text_unformatted(f"Key of {name_of(lane.layer, track)} at frame {key.frame}")
+    imgui.text_unformatted(f"Key of {format_track_name(lane.layer, track)} at frame {key.frame}")
     if track.delay:
         imgui.same_line()
-        imgui.text_disabled(f"{track.delay} frames late, {in_seconds(track.delay, document.fps)}")
-    name, hint = PASSINGS[key.shown_passing]
+        imgui.text_disabled(
+            f"{track.delay} frames late, {format_seconds(track.delay, document.fps)}"
+        )
+    name, hint = TANGENT_MODES[key.shown_tangent_mode]
     imgui.text_unformatted(f"{name}: {hint[0].lower()}{hint[1:]}")
     if key.velocity is not None:
         imgui.text_disabled("At a velocity of its own, until a passing or an easing is chosen")
-    imgui.text_disabled(f"Drag to move, {with_key(CTRL, 'drag')} to copy, right click for more")
+    imgui.text_disabled(
+        f"Drag to move, {format_modified(CTRL, 'drag')} to copy, right click for more"
+    )
     imgui.end_tooltip()

@@ -10,9 +10,9 @@ from app.document import camera_at
 from app.editor import Project
 from app.render import Backdrop
 from app.storage import CHECKER
-from app.ui.style import PALETTES, Look, Palette, ink, rgb
-from app.ui.viewport.marks import plain
-from app.ui.viewport.screen import Screen
+from app.ui.style import PALETTES, Look, Palette, colour_u32, rgb
+from app.ui.viewport.marks import to_rgba
+from app.ui.viewport.screen import ScreenMapping
 from engine.arrays import Bytes, Floats
 
 SQUARE = 12.0  # pixels at a scale of 1
@@ -40,7 +40,7 @@ def measure_brightness(picture: Bytes) -> Floats:
     return np.asarray(shares / max(shares.sum(), 1.0))
 
 
-def background(backdrop: str, palette: Palette, brightness: Floats, scale: float) -> Backdrop:
+def make_backdrop(backdrop: str, palette: Palette, brightness: Floats, scale: float) -> Backdrop:
     """Return the backdrop; the squares of the other theme, where the drawing is lost on its own's.
 
     Parameters
@@ -55,11 +55,11 @@ def background(backdrop: str, palette: Palette, brightness: Floats, scale: float
         Pixels of the screen that a pixel of the design takes.
     """
     if backdrop != CHECKER:
-        return Backdrop(colour=plain(rgb(backdrop)))
+        return Backdrop(colour=to_rgba(rgb(backdrop)))
     if _lost(brightness, palette.paper) > MUCH:
         papers = PALETTES.values()
         palette = min(papers, key=lambda other: _lost(brightness, other.paper))
-    paper, check = plain(palette.paper), plain(palette.check)
+    paper, check = to_rgba(palette.paper), to_rgba(palette.check)
     return Backdrop(colour=paper, checks=check, square=SQUARE * scale)
 
 
@@ -70,14 +70,16 @@ def _lost(brightness: Floats, paper: ImVec4) -> float:
     return float(brightness[is_near].sum())
 
 
-def draw_camera(look: Look, project: Project, screen: Screen, room: tuple[ImVec2, ImVec2]) -> None:
+def draw_camera_frame(
+    look: Look, project: Project, screen: ScreenMapping, room: tuple[ImVec2, ImVec2]
+) -> None:
     """Draw the camera's frame at the frame that is shown, if there is a camera.
 
     Parameters
     ----------
     look : Look
     project : Project
-    screen : Screen
+    screen : ScreenMapping
     room : tuple of ImVec2
         The upper left corner of the viewport, and its size.
     """
@@ -87,11 +89,11 @@ def draw_camera(look: Look, project: Project, screen: Screen, room: tuple[ImVec2
     corner, size = room
     draw_list = imgui.get_window_draw_list()
     draw_list.push_clip_rect(corner, corner + size, intersect_with_current_clip_rect=True)
-    corners = shot.frame(project.document.canvas)
+    corners = shot.frame_corners(project.document.canvas)
     inner, outer = (screen.points(shot.centre + by * (corners - shot.centre)) for by in (1.0, FAR))
     # The frame is convex: its outside is four trapezoids, one beyond each edge. Where they meet,
     # smooth edges would be seen: these are sharp.
-    dim, white = ink(look.palette.desk, DIM), imgui.get_font_tex_uv_white_pixel()
+    dim, white = colour_u32(look.palette.desk, DIM), imgui.get_font_tex_uv_white_pixel()
     for here, there in zip(range(4), np.roll(range(4), -1).tolist(), strict=True):
         draw_list.prim_reserve(6, 4)
         draw_list.prim_quad_uv(
@@ -107,5 +109,5 @@ def draw_camera(look: Look, project: Project, screen: Screen, room: tuple[ImVec2
         )
     for point in inner:
         draw_list.path_line_to(point)
-    draw_list.path_stroke(ink(look.palette.accent), 1.5, imgui.ImDrawFlags_.closed)
+    draw_list.path_stroke(colour_u32(look.palette.accent), 1.5, imgui.ImDrawFlags_.closed)
     draw_list.pop_clip_rect()

@@ -7,24 +7,31 @@ from itertools import takewhile
 
 import numpy as np
 
-from app.document import Composite, Layer, composed, is_visible, seen_alone, time_of
+from app.document import (
+    CompositeGroup,
+    Layer,
+    composite_layers,
+    is_visible,
+    segment_time_at,
+    without_foreign_clips,
+)
 from app.editor import HeatMap, Project, Puppet, Session
-from app.motion import PosableMesh, Shown
+from app.motion import DeformMesh, DisplayedFrame
 from app.render import Ghost, Heat, Painted, Renderer, Scene, Wireframe
 from app.render.gpu import PosedMesh, RenderTarget
 from app.ui.style import PALETTES
-from app.ui.viewport.backdrop import background
-from app.ui.viewport.cut_view import mark_holes
-from app.ui.viewport.drawing import Drawing
-from app.ui.viewport.marks import forget_places, mark_all, pixel_scale, plain
-from app.ui.viewport.pose_pictures import PosePictures
+from app.ui.viewport.backdrop import make_backdrop
+from app.ui.viewport.cutout_overlay import mark_holes
+from app.ui.viewport.gpu_resources import GpuResources
+from app.ui.viewport.marks import clear_mark_caches, mark_all, pixel_scale, to_rgba
+from app.ui.viewport.pose_thumbnails import PosePictures
 from engine.arrays import Floats
 
 GHOST_BEFORE, GHOST_AFTER = (0.93, 0.36, 0.36), (0.30, 0.62, 0.98)
 GHOST_OPACITY = 0.38
 # A mesh is posed several times for one picture. These copies are numbered: 0 is the drawing itself,
 # ghosts count from 1, the picture of another method and those of the library have their own.
-TWIN, SMALL_PICTURE = -2, -1
+COMPARISON, SMALL_PICTURE = -2, -1
 
 
 class Canvas:
@@ -34,7 +41,7 @@ class Canvas:
         self._renderer = renderer
         self._targets: list[RenderTarget] = []
         self._retired: list[RenderTarget] = []
-        self.drawing: Drawing | None = None
+        self.resources: GpuResources | None = None
         self._drawn: tuple[object, ...] = ()
         self.pose_pictures = PosePictures(renderer)
 
@@ -44,13 +51,13 @@ class Canvas:
         return self._targets[0].texture.glo if self._targets else None
 
     @property
-    def twin_texture(self) -> int | None:
+    def comparison_texture(self) -> int | None:
         """The same of the picture by another method; None where the viewport is not split."""
         return self._targets[1].texture.glo if len(self._targets) > 1 else None
 
     def release_others(self, project: Project | None) -> bool:
         """Let go of any other project than this; return whether there was one."""
-        if self.drawing is None or self.drawing.project is project:
+        if self.resources is None or self.resources.project is project:
             return False
         self._forget_drawing()
         return True
@@ -65,17 +72,17 @@ class Canvas:
         is_split = all(twin is not None and twin.shown is not None for twin in twins)
         is_split &= session.cutting is None
         self._fit_targets(session.screen, 1 + is_split)
-        if self.drawing is None:
-            self.drawing = Drawing(self._renderer, project)
-        posable = partial(self.drawing.drawn_mesh, number=SMALL_PICTURE)
+        if self.resources is None:
+            self.resources = GpuResources(self._renderer, project)
+        posable = partial(self.resources.drawn_mesh, number=SMALL_PICTURE)
         self.pose_pictures.draw(session, project, posable)
         inputs = _inputs(session, project)
         if paints and inputs != self._drawn:
             view = project.view(session.screen)
-            scene = _scene(session, project, project.puppet.shown, self.drawing)
+            scene = _scene(session, project, project.puppet.shown, self.resources)
             self._renderer.draw(self._targets[0], view, scene)
             if is_split:
-                twin = _twin_scene(session, project, scene, self.drawing)
+                twin = _comparison_scene(session, project, scene, self.resources)
                 self._renderer.draw(self._targets[1], view, twin)
             self._drawn = inputs
 
@@ -98,11 +105,11 @@ class Canvas:
         self._drawn = ()
 
     def _forget_drawing(self) -> None:
-        if self.drawing is not None:
-            self.drawing.release()
-            self.drawing = None
+        if self.resources is not None:
+            self.resources.release()
+            self.resources = None
             self._drawn = ()
-            forget_places()
+            clear_mark_caches()
 
 
 def _inputs(session: Session, project: Project) -> tuple[object, ...]:
@@ -131,7 +138,7 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
         session.tint,
         project.document.layers,
         project.document.groups,
-        project.document.choices,
+        project.document.switch_groups,
         project.solo,
         session.overlays,
         session.export_frame,
@@ -152,7 +159,9 @@ def heat_limits(project: Project, heat_map: HeatMap) -> tuple[float, float]:
             return 0.0, bounds.k
 
 
-def _scene(session: Session, project: Project, shown: Shown, drawing: Drawing) -> Scene:
+def _scene(
+    session: Session, project: Project, shown: DisplayedFrame, drawing: GpuResources
+) -> Scene:
     palette = PALETTES[session.preferences.theme]
     overlays = session.overlays
     puppets = project.puppets.values()
@@ -161,7 +170,9 @@ def _scene(session: Session, project: Project, shown: Shown, drawing: Drawing) -
     if session.cutting is not None:
         scale = pixel_scale(session)
         return Scene(
-            background=background(session.preferences.backdrop, palette, drawing.brightness, scale),
+            background=make_backdrop(
+                session.preferences.backdrop, palette, drawing.brightness, scale
+            ),
             meshes=drawing.cut_view().meshes(),
             discs=mark_holes(project, palette, scale) if session.cutting == "holes" else (),
         )
@@ -172,11 +183,11 @@ def _scene(session: Session, project: Project, shown: Shown, drawing: Drawing) -
     elif overlays.heat_map != "none":
         low, high = heat_limits(project, overlays.heat_map)
         heat = Heat(low=low, high=high)
-    wireframe = Wireframe(colour=plain(palette.text, 0.35)) if overlays.wireframe else None
+    wireframe = Wireframe(colour=to_rgba(palette.text, 0.35)) if overlays.wireframe else None
     lines, discs = mark_all(session, project, shown, palette)
     meshes = _posed(session, project, shows, drawing)
     return Scene(
-        background=background(
+        background=make_backdrop(
             session.preferences.backdrop, palette, drawing.brightness, pixel_scale(session)
         ),
         meshes=meshes,
@@ -189,10 +200,12 @@ def _scene(session: Session, project: Project, shown: Shown, drawing: Drawing) -
     )
 
 
-def _twin_scene(session: Session, project: Project, scene: Scene, drawing: Drawing) -> Scene:
+def _comparison_scene(
+    session: Session, project: Project, scene: Scene, drawing: GpuResources
+) -> Scene:
     """Return the same scene by the method that is compared, without the poses around."""
     shows = {layer: puppet.twin.shown for layer, puppet in project.puppets.items() if puppet.twin}
-    meshes = _posed(session, project, shows, drawing, number=TWIN)
+    meshes = _posed(session, project, shows, drawing, number=COMPARISON)
     twin = replace(scene, meshes=meshes, ghosts=())
     # Handles are where the drawing's own method has them: beside it they would mark nothing.
     is_beside = session.split is not None and session.split.beside
@@ -202,8 +215,8 @@ def _twin_scene(session: Session, project: Project, scene: Scene, drawing: Drawi
 def _posed(
     session: Session,
     project: Project,
-    shows: Mapping[int, Shown | None],
-    drawing: Drawing,
+    shows: Mapping[int, DisplayedFrame | None],
+    drawing: GpuResources,
     *,
     number: int = 0,
 ) -> tuple[Painted, ...]:
@@ -226,12 +239,12 @@ def _posed(
         elif heat_map != "none":
             drawing.heat(pose, shown, heat_map)
     frame = max((shown.frame for shown in shows.values() if shown), default=0)
-    alone = seen_alone(document, project.solo) if project.solo else document
-    return composed(alone, poses, frame)
+    alone = without_foreign_clips(document, project.solo) if project.solo else document
+    return composite_layers(alone, poses, frame)
 
 
 def _tinted(
-    session: Session, project: Project, drawing: Drawing, layer: Layer, shown: Shown
+    session: Session, project: Project, drawing: GpuResources, layer: Layer, shown: DisplayedFrame
 ) -> Floats:
     """Return by what the vertices of a layer are coloured, (v,), −1 to 1."""
     if layer.id != project.active:
@@ -241,7 +254,7 @@ def _tinted(
     return shown.mesh.order.depths(shown.clip, shown.frame)
 
 
-def _meshes(puppet: Puppet) -> set[PosableMesh]:
+def _meshes(puppet: Puppet) -> set[DeformMesh]:
     """Return the meshes on which a layer is shown, or may be soon."""
     meshes = {store.mesh for store in (puppet.store, puppet.fine) if store is not None}
     twin = puppet.twin
@@ -249,7 +262,7 @@ def _meshes(puppet: Puppet) -> set[PosableMesh]:
     return meshes | {shown.mesh for shown in shows if shown is not None}
 
 
-def _ghosts(session: Session, project: Project, drawing: Drawing) -> tuple[Ghost, ...]:
+def _ghosts(session: Session, project: Project, drawing: GpuResources) -> tuple[Ghost, ...]:
     """Return the poses before and after, of all layers that are seen then and look otherwise."""
     if project.playhead.since is not None or project.puppet.shown is None:
         return ()
@@ -267,13 +280,13 @@ def _ghosts(session: Session, project: Project, drawing: Drawing) -> tuple[Ghost
             }
             seen = {layer: pose for layer, pose in poses.items() if pose is not None}
             if seen:
-                meshes = composed(project.document, seen, project.document.in_time(at))
+                meshes = composite_layers(project.document, seen, project.document.loop_frame(at))
                 ghosts.append(Ghost(meshes=meshes, tint=tint, opacity=GHOST_OPACITY / step**0.5))
     return tuple(ghosts)
 
 
 def _ghost(
-    project: Project, drawing: Drawing, layer: Layer, now: int, at: int, number: int
+    project: Project, drawing: GpuResources, layer: Layer, now: int, at: int, number: int
 ) -> PosedMesh | None:
     """Return a layer as it is at another frame; None where it looks no otherwise, or is not seen.
 
@@ -287,8 +300,12 @@ def _ghost(
     placed = project.placed_at(layer.id, [now, at])
     if project.solo and layer.id not in project.solo:
         return None
-    was_seen, is_seen = (is_visible(document, layer, document.in_time(f)) for f in (now, at))
-    stays = time_of(known, at) == time_of(known, now) and placed and placed[0] == placed[1]
+    was_seen, is_seen = (is_visible(document, layer, document.loop_frame(f)) for f in (now, at))
+    stays = (
+        segment_time_at(known, at) == segment_time_at(known, now)
+        and placed
+        and placed[0] == placed[1]
+    )
     if placed is None or not is_seen or (was_seen and stays):
         return None
     correction = puppet.corrected.at(known, at) if puppet.corrected else None
@@ -308,14 +325,14 @@ def _behind_ghosts(session: Session, project: Project, meshes: int) -> int:
     document, shows = project.document, project.puppets
     frame = max((each.shown.frame for each in shows.values() if each.shown), default=0)
     still = {
-        each.id: each.still and not each.movement
+        each.id: each.still and not each.transform_keys
         for each in document.layers
         if (shown := shows[each.id].shown) is not None
         and is_visible(document, each, shown.frame)
         and (not project.solo or each.id in project.solo)
     }
-    return sum(1 for _ in takewhile(_is_still, composed(document, still, frame)))
+    return sum(1 for _ in takewhile(_is_still, composite_layers(document, still, frame)))
 
 
-def _is_still(part: bool | Composite[bool]) -> bool:  # noqa: FBT001 - of a composition
-    return all(map(_is_still, part.parts)) if isinstance(part, Composite) else part
+def _is_still(part: bool | CompositeGroup[bool]) -> bool:  # noqa: FBT001 - of a composition
+    return all(map(_is_still, part.parts)) if isinstance(part, CompositeGroup) else part

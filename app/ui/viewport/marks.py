@@ -5,11 +5,11 @@ from functools import lru_cache
 import numpy as np
 from imgui_bundle import ImVec4
 
-from app.document import Clip, Track, falls_short, pinned_handles, time_of, track_at
+from app.document import Clip, Track, misses_target, pinned_handles, segment_time_at, track_at
 from app.editor import Project, Session
-from app.motion import AttachedPoints, Box, MotionPaths, PosableMesh, Shown
+from app.motion import BoundingBox, DeformMesh, DisplayedFrame, MeshPoints, MotionPaths
 from app.render import Colour, Disc, HandleMark, Line, mark_anchor, mark_handles
-from app.ui.style import Palette, density, interface_scale
+from app.ui.style import Palette, interface_scale, pixel_density
 from app.ui.viewport.paths import mark_path
 from engine.arrays import Booleans, Complexes
 from engine.domain import MeshedDomain
@@ -23,16 +23,16 @@ DOT, KEY_DOT = 2.4, 4.4  # pixels: radius of a frame on a path, and of a key
 
 def pixel_scale(session: Session) -> float:
     """Return how many pixels of the picture a pixel of the design takes."""
-    return interface_scale(session.preferences.scale) * density()
+    return interface_scale(session.preferences.scale) * pixel_density()
 
 
-def plain(colour: ImVec4, alpha: float = 1.0) -> Colour:
+def to_rgba(colour: ImVec4, alpha: float = 1.0) -> Colour:
     """Return a colour of the theme as the renderer takes it."""
     return colour.x, colour.y, colour.z, alpha * colour.w
 
 
 def mark_all(
-    session: Session, project: Project, shown: Shown, palette: Palette
+    session: Session, project: Project, shown: DisplayedFrame, palette: Palette
 ) -> tuple[tuple[Line, ...], tuple[Disc, ...]]:
     """Return all lines and discs that mark what is shown, in the order in which they are drawn."""
     scale = pixel_scale(session)
@@ -46,7 +46,7 @@ def mark_all(
         path_lines, dots = _paths(session, project, palette, scale)
         lines += path_lines
     if project.playhead.since is None or project.take is not None:
-        colours = plain(palette.accent), plain(palette.text), plain(palette.desk, 0.8)
+        colours = to_rgba(palette.accent), to_rgba(palette.text), to_rgba(palette.desk, 0.8)
         path_lines, path_dots = mark_path(project, *colours, scale)
         lines, dots = [*lines, *path_lines], (*dots, *path_dots)
     if session.export_frame is not None:
@@ -62,56 +62,58 @@ def mark_all(
     return (*lines, *handle_lines), (*dots, *faint, *below, *discs)
 
 
-def _handles(session: Session, project: Project, shown: Shown) -> list[HandleMark]:
-    layer, wishes = shown.clip.layer, unreached(project, shown)
+def _handles(session: Session, project: Project, shown: DisplayedFrame) -> list[HandleMark]:
+    layer, wishes = shown.clip.layer, find_off_target(project, shown)
     return [
         HandleMark(
             place=_on(shown, place),
-            wish=_on(shown, wishes[handle.id]) if handle.id in wishes else None,
+            target=_on(shown, wishes[handle.id]) if handle.id in wishes else None,
             anchor=handle.position == layer.anchor,
             selected=handle.id in project.selected,
             hovered=handle.id == session.hovered,
             locked=handle.locked,
         )
-        for handle, place in zip(layer.handles, shown.handle_places.tolist(), strict=True)
+        for handle, place in zip(layer.handles, shown.handle_positions.tolist(), strict=True)
     ]
 
 
-def unreached(project: Project, shown: Shown) -> dict[int, complex]:
+def find_off_target(project: Project, shown: DisplayedFrame) -> dict[int, complex]:
     """Return where handles that have not arrived are wanted, by their ids.
 
     Those that go their own ways, by tracks or springs, are not where the pose wants them for that.
     """
     layer, targets = shown.clip.layer, shown.pose.targets if shown.pose else {}
-    own = {handle for track in _acting(shown) for handle in track.handles} | layer.followers
+    own = {handle for track in _acting(shown) for handle in track.handles} | layer.sprung_handles
     if project.pull and project.pull.asked is not None:
         targets = project.pull.asked
-    places = zip(layer.handles, shown.handle_places.tolist(), strict=True)
+    places = zip(layer.handles, shown.handle_positions.tolist(), strict=True)
     wanted = ((handle.id, targets.get(handle.id), place) for handle, place in places)
     short = {
         identity: target.position
         for identity, target, place in wanted
         if target is not None and identity not in own
-        if falls_short(layer, abs(target.position - place))
+        if misses_target(layer, abs(target.position - place))
     }
-    return {**short, **_missed(shown)}
+    return {**short, **_find_off_track(shown)}
 
 
-def _missed(shown: Shown) -> dict[int, complex]:
+def _find_off_track(shown: DisplayedFrame) -> dict[int, complex]:
     """Return where handles are wanted by their tracks, by their ids, that cannot go there."""
     layer, found = shown.clip.layer, shown.correction
-    if found is None or shown.stand_in is not None:
+    if found is None or shown.placeholder is not None:
         return {}
-    return {i: found.wishes[i] for i, miss in found.misses.items() if falls_short(layer, miss)}
+    return {
+        i: found.targets[i] for i, miss in found.target_errors.items() if misses_target(layer, miss)
+    }
 
 
-def _acting(shown: Shown) -> list[Track]:
+def _acting(shown: DisplayedFrame) -> list[Track]:
     """Return the tracks that want something in the frame that is shown."""
     clip = shown.clip
     return [track for track in clip.layer.tracks if track_at(track, clip, shown.frame) is not None]
 
 
-def find_anchor(project: Project, shown: Shown) -> complex | None:
+def find_anchor(project: Project, shown: DisplayedFrame) -> complex | None:
     """Return where the anchor is in what is shown; None where a handle marks it, or none is yet."""
     layer, sampler = shown.clip.layer, project.puppet.store.sampler
     rest = layer.anchor
@@ -122,10 +124,10 @@ def find_anchor(project: Project, shown: Shown) -> complex | None:
         rest = _deepest_point(layer.domain)
     if rest is None or any(handle.position == rest for handle in layer.handles):
         return None
-    return complex(_located(shown.mesh, rest).on(shown.positions)[0])
+    return complex(_located(shown.mesh, rest).positions_on(shown.positions)[0])
 
 
-def forget_places() -> None:
+def clear_mark_caches() -> None:
     """Forget what was found out about a project that was closed."""
     _deepest_point.cache_clear()
     _located.cache_clear()
@@ -138,7 +140,7 @@ def _deepest_point(domain: MeshedDomain) -> complex:
 
 
 @lru_cache(maxsize=4)
-def _located(mesh: PosableMesh, place: complex) -> AttachedPoints:
+def _located(mesh: DeformMesh, place: complex) -> MeshPoints:
     return mesh.locate(np.array([place]), mesh.domain.mesh.vertices)
 
 
@@ -147,13 +149,13 @@ def _still(clip: Clip) -> Booleans:
     return pinned_handles(clip)
 
 
-def staying(shown: Shown) -> frozenset[int]:
+def find_auto_pinned(shown: DisplayedFrame) -> frozenset[int]:
     """Return the ids of the handles that stay between the two keys around what is shown.
 
     Those that their own tracks move there are none.
     """
     clip, still = shown.clip, _still(shown.clip)
-    interval = time_of(clip, shown.frame).interval
+    interval = segment_time_at(clip, shown.frame).segment
     if interval >= len(still):
         return frozenset()
     moved = {identity for track in _acting(shown) for identity in track.handles}
@@ -161,11 +163,13 @@ def staying(shown: Shown) -> frozenset[int]:
     return frozenset(handle.id for handle, stays in pairs if stays and handle.id not in moved)
 
 
-def _grounds(session: Session, project: Project, shown: Shown, scale: float) -> list[Line]:
+def _grounds(session: Session, project: Project, shown: DisplayedFrame, scale: float) -> list[Line]:
     """Return a short line below each handle that stays, as if it stood on the ground there."""
     per_pixel = scale / project.view(session.screen).scale
-    stays, lines = staying(shown), list[Line]()
-    for handle, place in zip(shown.clip.layer.handles, shown.handle_places.tolist(), strict=True):
+    stays, lines = find_auto_pinned(shown), list[Line]()
+    for handle, place in zip(
+        shown.clip.layer.handles, shown.handle_positions.tolist(), strict=True
+    ):
         if handle.id not in stays:
             continue
         middle = _on(shown, place) - GROUND_BELOW * per_pixel * 1j
@@ -183,16 +187,16 @@ def _others(project: Project, scale: float) -> tuple[Disc, ...]:
         Disc(centre=complex(place), radius=FAINT * scale, fill=(1.0, 1.0, 1.0, 0.35))
         for layer, puppet in project.puppets.items()
         if layer != project.active and puppet.shown is not None
-        for place in puppet.shown.placement.on(puppet.shown.handle_places)
+        for place in puppet.shown.placement.on(puppet.shown.handle_positions)
     )
 
 
-def _on(shown: Shown, place: complex) -> complex:
+def _on(shown: DisplayedFrame, place: complex) -> complex:
     """Return where a place of the layer by itself is in the scene."""
     return complex(shown.placement.on(np.array([place]))[0])
 
 
-def moved_loops(shown: Shown) -> list[Complexes]:
+def transform_loops(shown: DisplayedFrame) -> list[Complexes]:
     """Return the outline, and those of holes, moved with the shape."""
     # The vertices of a mesh begin with those of the loops.
     ends = np.cumsum([len(loop) for loop in shown.mesh.domain.loops])
@@ -201,7 +205,7 @@ def moved_loops(shown: Shown) -> list[Complexes]:
 
 def _frames_of_paths(session: Session, project: Project, paths: MotionPaths) -> Booleans:
     """Tell of which frames paths are drawn: of those that play, or of some around the playhead."""
-    played, reach = project.document.played, session.preferences.path_reach
+    played, reach = project.document.played_frames, session.preferences.path_reach
     frames = (paths.frames >= played.first) & (paths.frames <= played.last)
     return frames & (abs(paths.frames - project.playhead.frame) <= reach) if reach else frames
 
@@ -220,7 +224,7 @@ def _paths(
     placements = project.placed_at(project.active, paths.frames[frames].tolist())
     if placements is None or np.count_nonzero(frames) < 2:
         return [], ()
-    rows = zip(placements, paths.places[frames], strict=True)
+    rows = zip(placements, paths.positions[frames], strict=True)
     places = np.array([placement.on(row) for placement, row in rows])
     keys = np.isin(paths.frames[frames], [key.frame for key in project.layer.keys])
     lines, discs = [], []
@@ -228,13 +232,13 @@ def _paths(
         # What does not move would only be a blot on its handle.
         if handle.id not in project.selected or np.abs(path - path[0]).max() <= STILL:
             continue
-        lines.append(Line(points=path, colour=plain(palette.accent, 0.55), width=1.2 * scale))
+        lines.append(Line(points=path, colour=to_rgba(palette.accent, 0.55), width=1.2 * scale))
         discs += [
             Disc(
                 centre=place,
                 radius=(KEY_DOT if is_key else DOT) * scale,
-                fill=plain(palette.text if is_key else palette.accent),
-                rim=plain(palette.desk, 0.8),
+                fill=to_rgba(palette.text if is_key else palette.accent),
+                rim=to_rgba(palette.desk, 0.8),
                 rim_width=scale,
             )
             for place, is_key in zip(path.tolist(), keys.tolist(), strict=True)
@@ -242,24 +246,24 @@ def _paths(
     return lines, tuple(discs)
 
 
-def _outlines(shown: Shown, palette: Palette, scale: float) -> list[Line]:
+def _outlines(shown: DisplayedFrame, palette: Palette, scale: float) -> list[Line]:
     return [
         Line(
             points=shown.placement.on(points),
-            colour=plain(palette.accent),
+            colour=to_rgba(palette.accent),
             width=1.5 * scale,
             closed=True,
         )
-        for points in moved_loops(shown)
+        for points in transform_loops(shown)
     ]
 
 
-def _cages(shown: Shown, palette: Palette, scale: float) -> list[Line]:
+def _cages(shown: DisplayedFrame, palette: Palette, scale: float) -> list[Line]:
     """Return the cages, which stay around the shape at rest and in its holes, where it hangs."""
     return [
         Line(
             points=shown.placement.on(cage),
-            colour=plain(palette.warning, 0.8),
+            colour=to_rgba(palette.warning, 0.8),
             width=1.5 * scale,
             dash=5.0 * scale,
             closed=True,
@@ -268,10 +272,10 @@ def _cages(shown: Shown, palette: Palette, scale: float) -> list[Line]:
     ]
 
 
-def _frame(box: Box, palette: Palette, scale: float) -> Line:
+def _frame(box: BoundingBox, palette: Palette, scale: float) -> Line:
     """Return the edge of what an export shows."""
     low, high = box
     corners = [low, complex(high.real, low.imag), high, complex(low.real, high.imag)]
     return Line(
-        points=np.array(corners), colour=plain(palette.accent), width=1.5 * scale, closed=True
+        points=np.array(corners), colour=to_rgba(palette.accent), width=1.5 * scale, closed=True
     )

@@ -12,7 +12,7 @@ MOST = 500  # frames of which the path is drawn; of longer animations every seco
 DOT, KEY_DOT = 1.8, 4.4  # pixels: radius of a frame on a path, and of a key
 
 
-def keys_on_path(project: Project) -> list[tuple[int, Complexes]]:
+def find_path_keys(project: Project) -> list[tuple[int, Complexes]]:
     """Return at which frames the keys of the chosen track are seen, and where in the scene, (1,).
 
     Those whose places are not known yet are left out.
@@ -41,7 +41,7 @@ def mark_path(
     if len(path) > 1:
         points = np.concatenate([place for _, place in path])
         lines.append(Line(points=points, colour=(*accent[:3], 0.7 * accent[3]), width=1.4 * scale))
-    for radius, fill, places in ((DOT, accent, path), (KEY_DOT, key, keys_on_path(project))):
+    for radius, fill, places in ((DOT, accent, path), (KEY_DOT, key, find_path_keys(project))):
         discs += [
             Disc(
                 centre=complex(place[0]),
@@ -65,7 +65,7 @@ def _places(project: Project, track: Track, frames: list[int]) -> list[tuple[int
     shown = project.puppet.shown
     if shown is None:
         return []
-    if not track.planted and project.placed_at(project.active, frames) is None:
+    if not track.is_scene_space and project.placed_at(project.active, frames) is None:
         return []
     wished = [tracking.wished(project, track, frame) for frame in frames]
     # Where a planted one is in the scene, it is wherever its layer is.

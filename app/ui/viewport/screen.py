@@ -5,26 +5,28 @@ from imgui_bundle import ImVec2, imgui
 
 from app.editor import Project, Session, layering
 from app.editor.tools import Spot
-from app.motion import Shown
-from app.ui.style import Look, density
-from app.ui.viewport.marks import find_anchor, moved_loops
+from app.motion import DisplayedFrame
+from app.ui.style import Look, pixel_density
+from app.ui.viewport.marks import find_anchor, transform_loops
 from engine.arrays import Complexes
 from engine.geometry import contains
 
 GRIP = 0.75  # em: radius within which a handle is grabbed
 
 
-class Screen:
+class ScreenMapping:
     """The viewport's picture of the layer that is posed, on the screen from a corner on.
 
     Places are those of the layer by itself, unless they are said to be of the scene.
     """
 
-    def __init__(self, session: Session, project: Project, shown: Shown, corner: ImVec2) -> None:
+    def __init__(
+        self, session: Session, project: Project, shown: DisplayedFrame, corner: ImVec2
+    ) -> None:
         self.project = project
         self.shown = shown
         self.view = project.view(session.screen)
-        self.density = density()
+        self.density = pixel_density()
         self._corner = complex(corner.x, corner.y)
 
     @property
@@ -60,10 +62,10 @@ class Screen:
         pixels = self.view.to_pixels(in_scene) / self.density + self._corner
         return [ImVec2(pixel.real, pixel.imag) for pixel in pixels.tolist()]
 
-    def spot(self, look: Look, handle: int | None, *, on_ring: bool, on_axis: bool) -> Spot:
+    def hit_test(self, look: Look, handle: int | None, *, on_ring: bool, on_axis: bool) -> Spot:
         """Return where the pointer is, and what is under it, as far as that is not given."""
         io, place = imgui.get_io(), self.pointer
-        outline, *holes = moved_loops(self.shown)
+        outline, *holes = transform_loops(self.shown)
         return Spot(
             place=place,
             handle=handle,

@@ -8,7 +8,15 @@ from app.document import Baseline, Variant
 from app.editor import Action, Project, Session, do
 from app.editor.actions import viewing
 from app.ui.methods import METHODS
-from app.ui.style import Look, draw_knob, in_hand, ink, outlined, tip, write_in
+from app.ui.style import (
+    Look,
+    colour_u32,
+    draw_centred_text,
+    draw_knob,
+    draw_tooltip,
+    is_hovered_or_held,
+    outline_strokes,
+)
 
 GRIP, LINE = 0.55, 0.12  # em: half the width that takes the pointer, and the line's
 KNOB = 0.85  # em: radius of what is seen of the grip
@@ -18,10 +26,10 @@ class SplitTextures(NamedTuple):
     """OpenGL's names of the picture, and of the one by another method where there is one."""
 
     own: int | None = None
-    twin: int | None = None
+    comparison: int | None = None
 
 
-class Parts(NamedTuple):
+class SplitLayout(NamedTuple):
     """Where the two pictures are on the screen: corner, and width and height of each.
 
     `room` is what the drawing's own picture takes, with handles and all else.
@@ -32,18 +40,18 @@ class Parts(NamedTuple):
     divider: float
 
 
-def divide(session: Session, corner: ImVec2, room: ImVec2) -> Parts:
+def divide_viewport(session: Session, corner: ImVec2, room: ImVec2) -> SplitLayout:
     """Return how a viewport is divided."""
     split = session.split
     if split is None or session.cutting is not None:
-        return Parts(corner, room, corner.x + room.x)
+        return SplitLayout(corner, room, corner.x + room.x)
     if split.beside:
         half = ImVec2(room.x / 2, room.y)
-        return Parts(corner, half, corner.x + half.x)
-    return Parts(corner, room, corner.x + split.place * room.x)
+        return SplitLayout(corner, half, corner.x + half.x)
+    return SplitLayout(corner, room, corner.x + split.place * room.x)
 
 
-def draw_pictures(parts: Parts, own: int, twin: int | None) -> None:
+def draw_split_pictures(parts: SplitLayout, own: int, twin: int | None) -> None:
     """Show the drawing, and right of the divider what the other method makes of it."""
     draw_list = imgui.get_window_draw_list()
     corner, room = parts.corner, parts.room
@@ -69,7 +77,7 @@ def draw_pictures(parts: Parts, own: int, twin: int | None) -> None:
     )
 
 
-def draw_divider(session: Session, look: Look, parts: Parts, room: float) -> list[Action]:
+def draw_divider(session: Session, look: Look, parts: SplitLayout, room: float) -> list[Action]:
     """Draw the divider with the methods' names beside it; dragged, it moves.
 
     Before the canvas: what comes first gets the pointer.
@@ -84,21 +92,21 @@ def draw_divider(session: Session, look: Look, parts: Parts, room: float) -> lis
     if not split.beside:
         imgui.set_cursor_screen_pos(ImVec2(x - GRIP * look.em, top))
         imgui.invisible_button("divider", ImVec2(2 * GRIP * look.em, height))
-        is_hot = in_hand()
+        is_hot = is_hovered_or_held()
         if is_hot:
             imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
         if imgui.is_item_active() and imgui.get_io().mouse_delta.x:
             place = (imgui.get_mouse_pos().x - parts.corner.x) / room
             actions.append(do(viewing.move_divider, place))
-        tip("Drag to compare")
+        draw_tooltip("Drag to compare")
     palette = look.palette
     colour = palette.accent if is_hot else palette.text
-    for tone, width in outlined(look, ink(colour), LINE):
+    for tone, width in outline_strokes(look, colour_u32(colour), LINE):
         draw_list.add_line(ImVec2(x, top), ImVec2(x, top + height), tone, width)
     if not split.beside:
         knob = ImVec2(x, top + height / 2)
         draw_knob(look, knob, KNOB, colour)
-        write_in(knob, knob, icons.ICON_FA_LEFT_RIGHT, ink(palette.on_accent))
+        draw_centred_text(knob, knob, icons.ICON_FA_LEFT_RIGHT, colour_u32(palette.on_accent))
     _names(look, project, split.method, x, top)
     return actions
 
@@ -113,5 +121,5 @@ def _names(look: Look, project: Project, method: Variant | Baseline, x: float, t
         size = imgui.calc_text_size(text)
         low = ImVec2(left - pad, top + pad)
         high = ImVec2(left + size.x + pad, top + size.y + 2 * pad)
-        draw_list.add_rect_filled(low, high, ink(look.palette.desk, 0.8), 0.3 * look.em)
-        draw_list.add_text(ImVec2(left, top + 1.5 * pad), ink(look.palette.text), text)
+        draw_list.add_rect_filled(low, high, colour_u32(look.palette.desk, 0.8), 0.3 * look.em)
+        draw_list.add_text(ImVec2(left, top + 1.5 * pad), colour_u32(look.palette.text), text)

@@ -6,34 +6,39 @@ from typing import NamedTuple
 import numpy as np
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui, imgui_ctx
 
-from app.document import HOLDS, Handle, handle_commands
+from app.document import WEIGHT_PRESETS, Handle, handle_commands
 from app.editor import Action, Project, Session, do, layering
 from app.editor.actions import editing, posing, viewing
 from app.editor.tools import Spot, pointing
 from app.ui.panel import is_in_front
-from app.ui.shortcuts import ALT, CTRL, bound_item, with_key
-from app.ui.style import Look, density, in_hand, is_pressed
-from app.ui.viewport.backdrop import draw_camera
-from app.ui.viewport.cut_view import draw_brush
-from app.ui.viewport.hand import (
-    draw_axis,
+from app.ui.shortcuts import ALT, CTRL, draw_action_item, format_modified
+from app.ui.style import Look, is_hovered_or_held, is_pressed, pixel_density
+from app.ui.viewport.backdrop import draw_camera_frame
+from app.ui.viewport.cutout_overlay import draw_brush_ring
+from app.ui.viewport.interaction import (
+    add_mirror_axis_gizmo,
+    add_track_key_gizmos,
     draw_badges,
-    draw_coming_strokes,
+    draw_cuts,
     draw_joints,
-    draw_mode,
-    draw_ring,
-    draw_slits,
-    draw_take,
-    find_ring,
-    go_on,
-    hint_at,
-    lay_axis,
-    lay_track_keys,
+    draw_mirror_axis,
+    draw_mode_badge,
+    draw_pending_strokes,
+    draw_recording_bar,
+    draw_rotation_gizmo,
+    find_hint,
+    find_rotation_gizmo,
+    follow_pointer,
 )
-from app.ui.viewport.marks import unreached
-from app.ui.viewport.material_view import draw_bones
-from app.ui.viewport.screen import GRIP, Screen
-from app.ui.viewport.split_view import SplitTextures, divide, draw_divider, draw_pictures
+from app.ui.viewport.marks import find_off_target
+from app.ui.viewport.screen import GRIP, ScreenMapping
+from app.ui.viewport.split_view import (
+    SplitTextures,
+    divide_viewport,
+    draw_divider,
+    draw_split_pictures,
+)
+from app.ui.viewport.stiffness_overlay import draw_bones
 
 ZOOM_STEP = 1.15  # a notch of the wheel
 SMALLEST_ZOOM, LARGEST_ZOOM = 0.02, 64.0
@@ -49,81 +54,87 @@ CANVAS = (
 DEPTHS = {"In front": 1.0, "In its usual order": 0.0, "Behind": -1.0}
 
 
-def draw_ground(session: Session, project: Project, pictures: SplitTextures) -> list[Action]:
+def draw_viewport_pictures(
+    session: Session, project: Project, pictures: SplitTextures
+) -> list[Action]:
     """Show the pictures that were drawn of the project.
 
     Where the viewport is divided into two, `pictures` has the other method's picture, too.
     """
-    parts = divide(session, imgui.get_window_pos(), imgui.get_window_size())
+    parts = divide_viewport(session, imgui.get_window_pos(), imgui.get_window_size())
     if project.puppet.shown is not None and pictures.own is not None and min(parts.room) >= 1:
-        draw_pictures(parts, pictures.own, pictures.twin)
+        draw_split_pictures(parts, pictures.own, pictures.comparison)
     return _fit(session, parts.room)
 
 
-def draw(session: Session, look: Look, project: Project, pictures: SplitTextures) -> list[Action]:
+def draw_viewport_panel(
+    session: Session, look: Look, project: Project, pictures: SplitTextures
+) -> list[Action]:
     """Show what lies over the pictures, and take what the pointer does there."""
     corner, whole = imgui.get_window_pos(), imgui.get_window_size()
-    parts, actions = divide(session, corner, whole), list[Action]()
+    parts, actions = divide_viewport(session, corner, whole), list[Action]()
     if project.puppet.shown is None or pictures.own is None or min(parts.room) < 1:
         return actions
-    screen = Screen(session, project, project.puppet.shown, corner)
+    screen = ScreenMapping(session, project, project.puppet.shown, corner)
     if session.cutting is None:
-        draw_camera(look, project, screen, (corner, parts.room))
+        draw_camera_frame(look, project, screen, (corner, parts.room))
     # Before the canvas: what comes first gets the pointer. Were they laid over it, a press in the
     # frame in which the pointer arrives would be the canvas's, or nobody's.
     with imgui_ctx.push_clip_rect(corner, corner + parts.room, True):  # noqa: FBT003 - within its own
-        actions += draw_take(look, project, corner)
-        handles = _lay_handles(session, look, screen)
-        track_key, is_key_pressed = lay_track_keys(session, look, screen)
-        axis = lay_axis(session, look, screen)
+        actions += draw_recording_bar(look, project, corner)
+        handles = _add_handle_buttons(session, look, screen)
+        track_key, is_key_pressed = add_track_key_gizmos(session, look, screen)
+        axis = add_mirror_axis_gizmo(session, look, screen)
     actions += draw_divider(session, look, parts, whole.x)
     imgui.set_cursor_screen_pos(corner)
     imgui.invisible_button("canvas", parts.room, ANY_BUTTON)
-    on_canvas, ring = imgui.is_item_hovered(), find_ring(session, screen)
+    on_canvas, ring = imgui.is_item_hovered(), find_rotation_gizmo(session, screen)
     on_ring = on_canvas and handles.hovered is None and ring is not None and ring.is_pointed(look)
-    spot = screen.spot(look, handles.hovered, on_ring=on_ring, on_axis=axis.is_hot)
+    spot = screen.hit_test(look, handles.hovered, on_ring=on_ring, on_axis=axis.is_hot)
     spot = replace(spot, at_target=handles.at_target, track_key=track_key)
     if handles.is_pressed or is_key_pressed or axis.is_pressed or _is_canvas_pressed():
         actions.append(do(pointing.press, spot))
     actions += _canvas_menu(session, is_pointed=on_canvas and handles.hovered is None)
     actions += _navigate(screen)
     actions += handles.actions
-    actions += go_on(session, look, screen)
+    actions += follow_pointer(session, look, screen)
     is_over = on_canvas or axis.is_hot or not handles.hovered is track_key is None
     if session.moves and is_over and session.cutting is None:
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_all)
     if handles.hovered != session.hovered:
         actions.append(do(pointing.hover, handles.hovered))
-    draw_axis(look, axis)
+    draw_mirror_axis(look, axis)
     if ring is not None:
-        draw_ring(look, ring, is_pointed=on_ring and session.pointer is None)
-    actions += _explain(session, screen, spot, is_over=is_over)
+        draw_rotation_gizmo(look, ring, is_pointed=on_ring and session.pointer is None)
+    actions += _update_hint(session, screen, spot, is_over=is_over)
     if session.tint == "stiffness" and not is_in_front("Material"):
         actions.append(do(viewing.tint, None))
     if _shows_handles(session, project):
         draw_bones(look, screen)
     draw_joints(session, look, screen)
     if session.material is not None and (on_canvas or session.pointer is not None):
-        draw_brush(session, look, imgui.get_mouse_pos(), screen.scale)
+        draw_brush_ring(session, look, imgui.get_mouse_pos(), screen.scale)
     if session.cutting is None:
         return actions + draw_badges(session, look, project, corner, parts.room)
-    draw_coming_strokes(look, screen)
-    draw_slits(look, screen)
+    draw_pending_strokes(look, screen)
+    draw_cuts(look, screen)
     if on_canvas or session.pointer is not None:
-        draw_brush(session, look, imgui.get_mouse_pos(), screen.scale)
-    return actions + draw_mode(look, "Cutting out", corner, parts.room)
+        draw_brush_ring(session, look, imgui.get_mouse_pos(), screen.scale)
+    return actions + draw_mode_badge(look, "Cutting out", corner, parts.room)
 
 
 def _fit(session: Session, room: ImVec2) -> list[Action]:
     """Let the picture have as many pixels as it has room for."""
-    width, height = (max(1, round(side * density())) for side in room)
+    width, height = (max(1, round(side * pixel_density())) for side in room)
     return [] if (width, height) == session.screen else [do(viewing.resize, width, height)]
 
 
-def _explain(session: Session, screen: Screen, spot: Spot, *, is_over: bool) -> list[Action]:
+def _update_hint(
+    session: Session, screen: ScreenMapping, spot: Spot, *, is_over: bool
+) -> list[Action]:
     """Say what can be done where the pointer is; none of the rows of layers is below it then."""
     actions = [do(layering.tidy_rows)] if is_over and screen.project.lingering else []
-    hint = hint_at(session, screen, spot) if is_over else ""
+    hint = find_hint(session, screen, spot) if is_over else ""
     return actions if hint == session.hint else [*actions, do(pointing.explain, hint)]
 
 
@@ -132,7 +143,7 @@ def _is_canvas_pressed() -> bool:
     return is_pressed() and not imgui.is_key_down(imgui.Key.space)
 
 
-def _navigate(screen: Screen) -> list[Action]:
+def _navigate(screen: ScreenMapping) -> list[Action]:
     """Pan by the middle button or Space and the left one; zoom by the wheel at the pointer."""
     io, view = imgui.get_io(), screen.view
     if not (imgui.is_window_hovered() or imgui.is_item_active()):
@@ -166,23 +177,23 @@ def _shows_handles(session: Session, project: Project) -> bool:
     return session.overlays.handles and session.cutting is None and not is_away
 
 
-def _lay_handles(session: Session, look: Look, screen: Screen) -> _Handles:
+def _add_handle_buttons(session: Session, look: Look, screen: ScreenMapping) -> _Handles:
     """Lay a button over each handle, and over where it is wanted if it has not arrived there."""
     hovered, at_target, pressed, actions = None, False, False, list[Action]()
     if not _shows_handles(session, screen.project):
         return _Handles(hovered, at_target, pressed, actions)
     radius, shown = ImVec2(GRIP * look.em, GRIP * look.em), screen.shown
     identities = [handle.id for handle in shown.clip.layer.handles]
-    targets = unreached(screen.project, shown)
+    targets = find_off_target(screen.project, shown)
     grips = [("target", identity) for identity in targets]
     grips += [("handle", identity) for identity in identities]
-    places = np.array([*targets.values(), *shown.handle_places], np.complex128)
+    places = np.array([*targets.values(), *shown.handle_positions], np.complex128)
     points = screen.points(shown.placement.on(places))
     # The one that is drawn last lies on top.
     for (what, identity), point in reversed(list(zip(grips, points, strict=True))):
         imgui.set_cursor_screen_pos(point - radius)
         imgui.invisible_button(f"{what} {identity}", radius * 2, LEFT_OR_RIGHT)
-        if in_hand():
+        if is_hovered_or_held():
             hovered, at_target = identity, what == "target"
         pressed = pressed or is_pressed()
         if session.pointer is None and imgui.is_item_clicked(imgui.MouseButton_.right):
@@ -207,12 +218,12 @@ def _canvas_menu(session: Session, *, is_pointed: bool) -> list[Action]:
         if number:
             imgui.separator()
         for name in names:
-            actions += bound_item(session, name)
+            actions += draw_action_item(session, name)
     imgui.end_popup()
     return actions
 
 
-def _handle_menu(session: Session, screen: Screen, handle: Handle) -> list[Action]:
+def _handle_menu(session: Session, screen: ScreenMapping, handle: Handle) -> list[Action]:
     """Draw the menu of a handle, if it is open: what it does is done with all that are selected."""
     actions: list[Action] = []
     layer, identity = screen.project.layer, handle.id
@@ -221,14 +232,14 @@ def _handle_menu(session: Session, screen: Screen, handle: Handle) -> list[Actio
     chosen = screen.project.selected | {identity}
     target = screen.shown.pose.targets.get(identity) if screen.shown.pose else None
     item = imgui.internal.menu_item_ex  # as menu_item_simple, with icons in a column
-    if item("Delete", icons.ICON_FA_TRASH, with_key(ALT, "click")):
+    if item("Delete", icons.ICON_FA_TRASH, format_modified(ALT, "click")):
         actions.append(do(posing.remove_handles, chosen))
-    actions += bound_item(session, "pin here") + bound_item(session, "lock")
-    actions += bound_item(session, "key handle")
+    actions += draw_action_item(session, "pin here") + draw_action_item(session, "lock")
+    actions += draw_action_item(session, "key handle")
     actions += _hold(handle, chosen) + _depth(session, screen, handle)
     imgui.separator()
     label = "Automatic anchor" if handle.position == layer.anchor else "Make it the anchor"
-    if item(label, icons.ICON_FA_ANCHOR, with_key(CTRL, "click")):
+    if item(label, icons.ICON_FA_ANCHOR, format_modified(CTRL, "click")):
         actions.append(do(posing.anchor_at, identity))
     is_turned = target is not None and target.rotation is not None
     if item("Let it turn freely", icons.ICON_FA_ROTATE, enabled=is_turned):
@@ -241,17 +252,17 @@ def _hold(handle: Handle, chosen: frozenset[int]) -> list[Action]:
     """Draw how firmly it holds."""
     if not imgui.begin_menu("Hold"):
         return []
-    weigh = handle_commands.weigh_handles
+    weigh = handle_commands.set_handle_weight
     actions = [
         do(editing.edit_layer, weigh, chosen, weight)
-        for word, weight in HOLDS.items()
+        for word, weight in WEIGHT_PRESETS.items()
         if imgui.menu_item(word, "", handle.weight == weight)[0]
     ]
     imgui.end_menu()
     return actions
 
 
-def _depth(session: Session, screen: Screen, handle: Handle) -> list[Action]:
+def _depth(session: Session, screen: ScreenMapping, handle: Handle) -> list[Action]:
     """Draw whether it is painted in front where the drawing lies over itself."""
     if not imgui.begin_menu("Depth"):
         return []

@@ -13,7 +13,7 @@ BARS = (2.7, 4.4)  # em: what the bars around them take of the window
 MOST = (0.52, 0.45)  # parts of the window's width and height that they may take
 
 
-class _Wish(NamedTuple):
+class _SizeRequest(NamedTuple):
     """A size in pixels at a scale of 1, and the part of the window that it may take at most."""
 
     size: float
@@ -29,7 +29,7 @@ class Docking:
         self._tabs: tuple[object, ...] = ()
         # By node: the size in pixels that it was given, and what it is to have.
         self._given: dict[int, float] = {}
-        self._wished: dict[int, _Wish] = {}
+        self._requests: dict[int, _SizeRequest] = {}
         self._scale = 1.0
 
     def begin_frame(self, scale: float) -> None:
@@ -73,8 +73,8 @@ class Docking:
         if abs(size - self._given.get(node.id_, -1.0)) > 1.0:
             # A person moved its edge, as far as they like, or it is new.
             before = self._scale if node.id_ in self._given else scale
-            self._wished[node.id_] = _Wish(size / before, max(MOST[axis], size / room))
-        wish = self._wished[node.id_]
+            self._requests[node.id_] = _SizeRequest(size / before, max(MOST[axis], size / room))
+        wish = self._requests[node.id_]
         wanted = min(wish.size * scale, wish.most * room)
         if abs(wanted - size) > 1.0:
             sizes = [node.size_ref.x, node.size_ref.y]

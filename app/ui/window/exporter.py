@@ -4,7 +4,7 @@ from collections.abc import Generator
 
 from app.editor import ExportRun, Session
 from app.editor.actions import exporting
-from app.export import Painter, ShapeExport
+from app.export import FrameRenderer, MeshExport
 from app.export_formats import EXPORT_FORMATS
 from app.render import Renderer
 
@@ -17,10 +17,10 @@ class Exporter:
     def __init__(self, renderer: Renderer) -> None:
         self._context = renderer.programs.context
         self._plan: object = None
-        self._maker: Painter | ShapeExport | None = None
+        self._maker: FrameRenderer | MeshExport | None = None
         self._steps: Generator[int] | None = None
 
-    def go_on(self, session: Session) -> None:
+    def step(self, session: Session) -> None:
         """Draw some frames of the session's export; end one that was cancelled."""
         run = session.export
         if run is None or run.plan is not self._plan:
@@ -37,7 +37,7 @@ class Exporter:
         """End the export that is under way; whole frames stay, and what is prepared is left."""
         if self._steps is not None:
             self._steps.close()
-        if isinstance(self._maker, Painter):
+        if isinstance(self._maker, FrameRenderer):
             self._maker.release()
         self._steps = self._maker = self._plan = None
 
@@ -46,7 +46,7 @@ class Exporter:
             self._plan = run.plan
             given = run.document, run.pictures, run.poses, run.plan
             is_drawn = EXPORT_FORMATS[run.plan.format].is_drawn
-            self._maker = Painter(self._context, *given) if is_drawn else ShapeExport(*given)
+            self._maker = FrameRenderer(self._context, *given) if is_drawn else MeshExport(*given)
             self._steps = self._maker.run(waits=False, cancellation=session.cancellation)
         begun = session.clock()
         drawn = run.done

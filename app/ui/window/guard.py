@@ -7,7 +7,7 @@ from typing import Literal
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui, imgui_ctx, implot
 
 from app.editor import Action, Session, do, failures
-from app.ui.style import Look, small, tip
+from app.ui.style import Look, draw_tooltip, small_text
 
 OWN_CLIPS = 2  # clip rectangles of a window itself
 PAUSE = 1.0  # seconds after which a step that failed is tried again
@@ -31,7 +31,7 @@ def allow_recovery() -> None:
     io.config_error_recovery_enable_debug_log = True
 
 
-def cannot_be_shown(name: str) -> str:
+def format_failure(name: str) -> str:
     """Say that a part of the window failed."""
     return f"{name} cannot be shown; the rest works, and your work can be saved."
 
@@ -62,7 +62,7 @@ class WindowPart:
     dismissal: Action | None = None  # what closes the part, where it can be closed
     failure: _Failure | None = None
 
-    def ask(self, session: Session, look: Look) -> list[Action]:
+    def draw_guarded(self, session: Session, look: Look) -> list[Action]:
         """Draw the part, or else its notice; return what the person asked for."""
         failure = self.failure
         if failure is not None and (_is_moving(session) or failure.state == _state(session)):
@@ -86,7 +86,7 @@ class WindowPart:
     def _fail(self, session: Session, error: Exception) -> None:
         trace = failures.trace_of(session, error)
         if self.failure is None or self.failure.trace != trace:
-            failures.surprise(session, cannot_be_shown(self.name), error, topic="parts")
+            failures.surprise(session, format_failure(self.name), error, topic="parts")
         self.failure = _Failure(_state(session), session.clock(), trace)
 
     def _show_notice(self, failure: _Failure, look: Look) -> list[Action]:
@@ -103,7 +103,7 @@ class WindowPart:
             case "bar":
                 if imgui.small_button(f"{icons.ICON_FA_TRIANGLE_EXCLAMATION}##{popup}"):
                     imgui.open_popup(popup)
-                tip(cannot_be_shown(self.name))
+                draw_tooltip(format_failure(self.name))
                 if imgui.begin_popup(popup):
                     actions = self._notice(failure, look, width=width)
                     imgui.end_popup()
@@ -120,7 +120,7 @@ class WindowPart:
         actions: list[Action] = []
         imgui.push_id(self.name)
         imgui.push_text_wrap_pos(imgui.get_cursor_pos_x() + width if width else 0.0)
-        imgui.text_unformatted(cannot_be_shown(self.name))
+        imgui.text_unformatted(format_failure(self.name))
         if imgui.button(TRY_AGAIN):
             self.try_again()
         imgui.same_line()
@@ -135,7 +135,7 @@ class WindowPart:
                 actions.append(self.dismissal)
                 self.try_again()
         if imgui.tree_node_ex(DETAILS, imgui.TreeNodeFlags_.no_tree_push_on_open):
-            small(look, failure.trace.strip()[-MOST_SHOWN:])
+            small_text(look, failure.trace.strip()[-MOST_SHOWN:])
         imgui.pop_text_wrap_pos()
         imgui.pop_id()
         return actions
@@ -150,10 +150,10 @@ class FrameStep:
     """
 
     run: Callable[[], None]
-    tell: Callable[[Exception], None]
+    report_error: Callable[[Exception], None]
     failure: _Failure | None = None
 
-    def go_on(self, session: Session) -> None:
+    def run_guarded(self, session: Session) -> None:
         """Do it, unless it failed just now; tell of a failure."""
         failure = self.failure
         if failure is not None:
@@ -164,7 +164,7 @@ class FrameStep:
             self.run()
         except Exception as error:  # noqa: BLE001 - part of the frame guard
             self.failure = _Failure(_state(session), session.clock())
-            self.tell(error)
+            self.report_error(error)
         else:
             self.failure = None
 
@@ -205,7 +205,7 @@ def _state(session: Session) -> tuple[object, ...]:
         return own
     return (
         *own,
-        *(project.document, project.history.position, project.history.unkeyed, project.active),
+        *(project.document, project.history.position, project.history.preview_pose, project.active),
         *(project.selected, project.track_row, project.beside, project.toggled, project.solo),
         *(project.draft, project.camera, project.playhead, tuple(project.chosen_of.items())),
     )

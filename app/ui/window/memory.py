@@ -22,7 +22,7 @@ class FreeMemory:
         self._due: float | None = None  # none before there is work
         self._given = 0.0
 
-    def maintain(self, *, has_closed: bool) -> None:
+    def update(self, *, has_closed: bool) -> None:
         """Give it back when a project `has_closed` or nothing went on for a while; once a frame.
 
         It takes some 10 ms after an export or a drag, which nobody sees in a picture that rests;
@@ -45,10 +45,10 @@ class FreeMemory:
 
     def _give(self, now: float) -> None:
         self._given = now
-        give_back()
+        trim_heap()
 
 
-def share_heap() -> None:
+def limit_arenas() -> None:
     """Let all threads take memory from one heap; call it before there are others.
 
     Of a thread's own heap, the C library gives back only what is free between two pieces in use,
@@ -57,7 +57,7 @@ def share_heap() -> None:
     _call("mallopt", ARENA_MAX, 1)
 
 
-def give_back() -> None:
+def trim_heap() -> None:
     """Give all memory that is free back to the system."""
     _call("malloc_trim", 0)
 

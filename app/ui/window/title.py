@@ -1,7 +1,7 @@
 """What the window is called."""
 
 from app.editor import Session
-from app.errors import shown_name
+from app.errors import display_name
 
 NAME = "Lissom"
 
@@ -11,6 +11,6 @@ def window_title(session: Session) -> str:
     project = session.project
     if project is None:
         return NAME
-    name = shown_name(project.path.name) if project.path is not None else project.name
+    name = display_name(project.path.name) if project.path is not None else project.name
     mark = "" if project.history.is_saved else "*"
     return f"{name}{mark} – {NAME}"

@@ -20,24 +20,24 @@ import glfw  # isort: skip
 from app.document import Pose
 from app.editor import Action, FileDialog, Project, Session, do, failures, layering
 from app.editor.actions import exporting, saving
-from app.errors import EXPECTED_ERRORS, LissomError, shown_name
+from app.errors import EXPECTED_ERRORS, LissomError, display_name
 from app.render import LayerPictures, Renderer, Thumbnail, Thumbnails
-from app.render.gpu import graphics_in_words, is_software
+from app.render.gpu import describe_graphics, is_software
 from app.storage import app_icon, sample_images
 from app.ui.panel import Panel
-from app.ui.panels import deform, distortion, export, handle, layers, motion, poses
-from app.ui.panels.body import cut_out, domain, material
+from app.ui.panels import deform, distortion, export, handle, layers, motion_preset, poses
+from app.ui.panels.layer_setup import cut_out, domain, material
 from app.ui.style import Look
 from app.ui.timeline import timeline
 from app.ui.viewport import Canvas, SplitTextures, viewport
-from app.ui.window.dropped import accept_files
+from app.ui.window.drag_and_drop import accept_files
 from app.ui.window.exporter import Exporter
 from app.ui.window.guard import FrameStep
+from app.ui.window.input_queue import InputQueue
 from app.ui.window.memory import FreeMemory
 from app.ui.window.modifiers import release_stuck_modifiers
-from app.ui.window.shell import Shell
-from app.ui.window.taps import Taps
 from app.ui.window.title import NAME, window_title
+from app.ui.window.window_frame import WindowFrame
 from engine.arrays import Bytes
 
 SIZE = (1280, 800)
@@ -90,12 +90,12 @@ class Window:
         self.canvas: Canvas | None = None
         self._exporter: Exporter | None = None
         self._renderer: Renderer | None = None
-        self.shell = Shell(session, self._panels(), self._thumbnail, self._moments)
+        self.shell = WindowFrame(session, self._panels(), self._thumbnail, self._moments)
         # Whether the viewport's picture is drawn; a test that takes no picture does without.
         self.paints = True
         self._memory = FreeMemory(session)
-        self._drawing = FrameStep(self._paint, self._tell_of_drawing)
-        self._taps = Taps()
+        self._draw_step = FrameStep(self._paint, self._report_drawing_error)
+        self._input_queue = InputQueue()
         self._title = NAME
         self._is_open = False
         self._dropped: object = None
@@ -109,12 +109,12 @@ class Window:
             calls.before_imgui_render, self.draw_canvas
         )
         calls.pre_new_frame = hello_imgui.sequence_functions(
-            partial(self.shell.attempt, self._begin_frame), calls.pre_new_frame
+            partial(self.shell.run_guarded, self._begin_frame), calls.pre_new_frame
         )
         calls.pre_new_frame = hello_imgui.sequence_functions(
-            calls.pre_new_frame, self._taps.hold_back
+            calls.pre_new_frame, self._input_queue.hold_events
         )
-        calls.post_new_frame = self._taps.give_back
+        calls.post_new_frame = self._input_queue.release_events
         return params
 
     def run(
@@ -149,7 +149,7 @@ class Window:
         )
         params.ini_folder_type = hello_imgui.IniFolderType.absolute_path
         ini = str(self.session.folder / "window.ini")
-        params.ini_filename = shown_name(ini)
+        params.ini_filename = display_name(ini)
         params.ini_disable = params.ini_filename != ini  # a name that ImGui cannot write to
         params.app_window_params.window_geometry.size = SIZE
         params.app_window_params.restore_previous_geometry = True
@@ -183,19 +183,19 @@ class Window:
     @property
     def awaits_worker(self) -> bool:
         """Whether the next frame can wait, up to `PAUSE`, for the worker or for some input."""
-        return self.shell.awaits_worker and not self._taps.are_left
+        return self.shell.awaits_worker and not self._input_queue.has_pending
 
-    def ask(self, action: Action) -> None:
+    def queue_action(self, action: Action) -> None:
         """Do something in the next frame, as if a panel had asked for it."""
-        self.shell.ask(action)
+        self.shell.queue_action(action)
 
     def draw_canvas(self) -> None:
         """Draw the viewport's picture, and go on with an export; once a frame."""
         if self.canvas is None or self._renderer is None:
             return
-        self._drawing.go_on(self.session)
+        self._draw_step.run_guarded(self.session)
         if self._exporter is not None:
-            self._exporter.go_on(self.session)
+            self._exporter.step(self.session)
         # ImGui draws to whatever is bound, and that is to be the screen.
         screen = self._renderer.programs.context.screen
         if screen is not None:
@@ -203,10 +203,10 @@ class Window:
 
     def _paint(self) -> None:
         if self.canvas is not None:
-            self._memory.maintain(has_closed=self.canvas.release_others(self.session.project))
+            self._memory.update(has_closed=self.canvas.release_others(self.session.project))
             self.canvas.draw(self.session, paints=self.paints)
 
-    def _tell_of_drawing(self, error: Exception) -> None:
+    def _report_drawing_error(self, error: Exception) -> None:
         """Tell that OpenGL fails, as when its driver was reset, and keep the work at once."""
         session = self.session
         project = session.project
@@ -226,39 +226,41 @@ class Window:
         )
 
     def _panels(self) -> list[Panel]:
-        draw_layers = partial(layers.draw, pictures=self._layer_picture)
-        draw_poses = partial(poses.draw, pictures=self._pose_picture)
+        draw_layers = partial(layers.draw_layers_panel, pictures=self._layer_picture)
+        draw_poses = partial(poses.draw_poses_panel, pictures=self._pose_picture)
         return [
             Panel(
                 "Viewport",
                 icons.ICON_FA_IMAGE,
                 self._draw_viewport,
                 place="MainDockSpace",
-                draw_ground=self._draw_ground,
+                draw_background=self._draw_ground,
             ),
-            Panel("Timeline", icons.ICON_FA_FILM, timeline.draw, place="bottom"),
-            Panel("Handle", icons.ICON_FA_CIRCLE_DOT, handle.draw),
+            Panel("Timeline", icons.ICON_FA_FILM, timeline.draw_timeline_panel, place="bottom"),
+            Panel("Handle", icons.ICON_FA_CIRCLE_DOT, handle.draw_handle_panel),
             Panel("Layers", icons.ICON_FA_LAYER_GROUP, draw_layers),
             Panel("Poses", icons.ICON_FA_PERSON_RUNNING, draw_poses),
-            Panel("Motion", icons.ICON_FA_PERSON_WALKING, motion.draw),
-            Panel("Deform", icons.ICON_FA_SLIDERS, deform.draw),
-            Panel("Material", icons.ICON_FA_CUBE, material.draw),
-            Panel("Distortion", icons.ICON_FA_CHART_LINE, distortion.draw),
-            Panel("Mesh", icons.ICON_FA_SHAPES, domain.draw),
-            Panel("Cut-out", icons.ICON_FA_SCISSORS, cut_out.draw),
-            Panel("Export", icons.ICON_FA_FILE_EXPORT, export.draw),
+            Panel("Motion", icons.ICON_FA_PERSON_WALKING, motion_preset.draw_motion_panel),
+            Panel("Deform", icons.ICON_FA_SLIDERS, deform.draw_deform_panel),
+            Panel("Material", icons.ICON_FA_CUBE, material.draw_material_panel),
+            Panel("Distortion", icons.ICON_FA_CHART_LINE, distortion.draw_distortion_panel),
+            Panel("Mesh", icons.ICON_FA_SHAPES, domain.draw_domain_panel),
+            Panel("Cut-out", icons.ICON_FA_SCISSORS, cut_out.draw_cut_out_panel),
+            Panel("Export", icons.ICON_FA_FILE_EXPORT, export.draw_export_panel),
         ]
 
     def _draw_ground(self, session: Session, _: Look, project: Project) -> list[Action]:
-        return viewport.draw_ground(session, project, self._textures)
+        return viewport.draw_viewport_pictures(session, project, self._textures)
 
     def _draw_viewport(self, session: Session, look: Look, project: Project) -> list[Action]:
-        return viewport.draw(session, look, project, self._textures)
+        return viewport.draw_viewport_panel(session, look, project, self._textures)
 
     @property
     def _textures(self) -> SplitTextures:
         canvas = self.canvas
-        return SplitTextures(canvas.texture, canvas.twin_texture) if canvas else SplitTextures()
+        return (
+            SplitTextures(canvas.texture, canvas.comparison_texture) if canvas else SplitTextures()
+        )
 
     def _pose_picture(self, layer: int, pose: Pose, side: int) -> int | None:
         return self.canvas.pose_pictures.get(layer, pose, side) if self.canvas else None
@@ -269,7 +271,7 @@ class Window:
     def _start(self) -> None:
         renderer = self._renderer = self._connect()
         self.session.full_detail = not is_software(renderer.programs.context)
-        self.session.graphics = graphics_in_words(renderer.programs.context)
+        self.session.graphics = describe_graphics(renderer.programs.context)
         self.canvas = Canvas(renderer)
         self._exporter = Exporter(renderer)
         self.thumbnails = Thumbnails(renderer.programs.context)
@@ -282,7 +284,7 @@ class Window:
 
     def take_dropped(self, paths: list[Path]) -> None:
         """Open what was dropped on the window, or add it to what is open."""
-        self.ask(do(layering.drop, paths))
+        self.queue_action(do(layering.drop, paths))
 
     def _rename(self) -> None:
         """Name the window after what is open."""
@@ -316,4 +318,4 @@ class Window:
         return self.thumbnails.get(path) if self.thumbnails else None
 
     def _moments(self, path: Path) -> list[Thumbnail]:
-        return self.thumbnails.moments(path) if self.thumbnails else []
+        return self.thumbnails.animation_frames(path) if self.thumbnails else []

@@ -20,7 +20,7 @@ from app.cli import process
 from app.cli.hole_arrays import HOLE_SIZES
 from app.cli.main import TOO_LITTLE_MEMORY, main
 from app.cli.process import LEAST_MEMORY
-from app.errors import LONGEST_SHOWN
+from app.errors import MAX_TEXT_LENGTH
 from app.storage import NO_ARRAYS, sample_images, save_project
 from app.storage.files.reading import FOLDER_READ, NOT_ORDINARY
 from engine.geometry.polygon import CAGE_FAR, CAGE_REPEATS, FEW_DIGITS
@@ -283,4 +283,4 @@ def test_the_version_of_a_newer_project_is_shortened(tmp_path, capsys):
             archive.writestr(name, data)
     told = refusal(capsys, "certify", project)
     assert r"newer Lissom (9\n9\n" in told
-    assert told.count("9") < LONGEST_SHOWN
+    assert told.count("9") < MAX_TEXT_LENGTH

@@ -13,11 +13,11 @@ from still_poses import posed, with_layer
 from app.cli.main import main
 from app.document import (
     HOLD,
+    DistortionRange,
     Document,
-    Extremes,
     FrameRange,
     Meshing,
-    Passing,
+    TangentMode,
     Track,
     TrackKey,
     UnreadMotion,
@@ -25,8 +25,8 @@ from app.document import (
 )
 from app.reports import (
     CorrectedReport,
-    IntervalReport,
     Report,
+    SegmentReport,
     certification,
     corrected_frames,
 )
@@ -44,7 +44,7 @@ def giraffe(tmp_path_factory):
     document = load_project(SAMPLE)
     (layer,) = document.layers
     frames = FrameRange(0, layer.keys[2].frame)
-    layers = (replace(layer, keys=layer.keys[:3], stillness=False),)
+    layers = (replace(layer, keys=layer.keys[:3], has_auto_pins=False),)
     save_project(path, replace(document, layers=layers, frames=frames, preview=None, loop=False))
     return path
 
@@ -55,7 +55,7 @@ def still(tmp_path_factory):
     path = tmp_path_factory.mktemp("still") / "still.lissom"
     document = posed(2)
     # Which are stopped at, so that the motion has no more room than its keys take.
-    keys = tuple(replace(key, passing=Passing.STOP) for key in document.layers[0].keys)
+    keys = tuple(replace(key, tangent_mode=TangentMode.STOP) for key in document.layers[0].keys)
     save_project(path, with_layer(document, keys=keys))
     return path
 
@@ -143,13 +143,13 @@ def test_of_a_key_that_is_held_only_that_key_is_seen(giraffe, tmp_path, capsys):
 
 
 def interval(k=0.5, sigma_a=2.0, sigma_b=0.5, *, reached=(0.4, 1.8, 0.6), unsettled=(), loose=()):
-    return IntervalReport(
+    return SegmentReport(
         first=0,
         last=12,
-        reached=Extremes(*reached),
-        keys=Extremes(0.5, 2.0, 0.5),
+        reached=DistortionRange(*reached),
+        keys=DistortionRange(0.5, 2.0, 0.5),
         correction=0.0,
-        limits=Extremes(0.5, 2.0, 0.5),
+        limits=DistortionRange(0.5, 2.0, 0.5),
         proof=Proof(k=k, sigma_a=sigma_a, sigma_b=sigma_b, unsettled=(), loose=()),
         unsettled=unsettled,
         loose=loose,
@@ -165,19 +165,19 @@ def interval(k=0.5, sigma_a=2.0, sigma_b=0.5, *, reached=(0.4, 1.8, 0.6), unsett
     ],
 )
 def test_tracked_frames_are_judged_with_the_same_tolerance(reached, proven, verdict):
-    limits = Extremes(0.5, 2.0, 0.5)
+    limits = DistortionRange(0.5, 2.0, 0.5)
     tracked = CorrectedReport(
         frames=4,
         proven=proven,
         points=900,
-        reached=Extremes(*reached),
-        between=Extremes(0.4, 1.5, 0.7),
+        reached=DistortionRange(*reached),
+        between=DistortionRange(0.4, 1.5, 0.7),
         limits=limits,
         short=(),
         looked_at=4,
         left_out=0,
     )
-    assert Report(keys=(), intervals=(), corrected=tracked).corrected_verdict == verdict
+    assert Report(keys=(), segments=(), corrected=tracked).corrected_verdict == verdict
 
 
 @pytest.mark.parametrize(
@@ -199,9 +199,9 @@ def test_an_interval_has_one_verdict(made, verdict, monkeypatch, capsys):
     key = Certificate(k=0.5, sigma_a=2.0, sigma_b=0.5, winding=0, certified=True)
     other = replace(key, certified=False)
     assert made.verdict == verdict
-    assert Report(keys=((0, key),), intervals=(interval(), made)).verdict == verdict
-    assert Report(keys=((0, other),), intervals=(made,)).verdict == "over"
-    report = Report(keys=((0, key),), intervals=(made,))
+    assert Report(keys=((0, key),), segments=(interval(), made)).verdict == verdict
+    assert Report(keys=((0, other),), segments=(made,)).verdict == "over"
+    report = Report(keys=((0, key),), segments=(made,))
     monkeypatch.setattr("app.cli.commands.certify.certify_clip", lambda *_: report)
     status, said = certified(capsys, "--json")
     assert status == {"proven": 0, "measured": 3, "over": 1}[verdict]

@@ -13,10 +13,10 @@ from app.cli import commands, options, usage
 from app.cli.commands import window
 from app.cli.main import COMMANDS, EXIT_PIPE_CLOSED, main
 from app.cli.usage import pose
-from app.document import FRAMINGS, SPRINGS, VARIANTS, Meshing
+from app.document import FRAMINGS, SPRING_PRESETS, VARIANTS, Meshing
 from app.editor.actions import saving
 from app.editor.work.jobs import Job
-from app.storage import Origin
+from app.storage import SourceInfo
 from app.storage.assets import sample_images
 from engine.domain.outline import Detail
 from engine.domain.picture import CutOut, Holes
@@ -134,7 +134,10 @@ def test_the_words_to_choose_from_are_those_that_the_program_knows():
     assert defaults.triangles == options.DEFAULT_TRIANGLES
     assert CutOut().tolerance == options.DEFAULT_TOLERANCE
     told = pose.EPILOG.replace("\n", " ")
-    assert f"The presets are {', '.join(list(SPRINGS)[:-1])} and {list(SPRINGS)[-1]}." in told
+    assert (
+        f"The presets are {', '.join(list(SPRING_PRESETS)[:-1])} and {list(SPRING_PRESETS)[-1]}."
+        in told
+    )
 
 
 def test_every_command_says_what_it_understands_and_does_it():
@@ -213,7 +216,7 @@ def test_an_autosave_that_is_written_while_the_person_leaves_is_not_offered(tmp_
             def keep():
                 begun.set()
                 left.wait()
-                session.autosave.write(disc_document(), Origin("disc", None))
+                session.autosave.write(disc_document(), SourceInfo("disc", None))
 
             session.jobs.put(Job(kind=saving.AUTOSAVING, work=keep, done=print, failed=print))
             begun.wait()

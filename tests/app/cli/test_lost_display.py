@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from app.cli.commands.window import DISPLAY_GONE, WORK_KEPT
-from app.storage.autosave import find_leftovers, load_leftover
+from app.storage.autosave import find_recoverable_files, load_recoverable_file
 from tests.campaigns.windows import lost_displays, screen
 
 ROOT = Path(__file__).parents[3]
@@ -75,8 +75,8 @@ def test_unsaved_work_is_kept_when_the_display_goes(tmp_path):
     assert (told, looks.returncode) == ("", 1), said
     assert DISPLAY_GONE in said
     assert WORK_KEPT in said
-    (kept,) = find_leftovers(tmp_path / "lissom")
-    assert load_leftover(kept)[0].markers[0].name == "unsaved"
+    (kept,) = find_recoverable_files(tmp_path / "lissom")
+    assert load_recoverable_file(kept)[0].markers[0].name == "unsaved"
 
 
 @needs_server

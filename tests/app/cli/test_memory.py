@@ -22,8 +22,8 @@ from app.document import keyframe
 from app.errors import LissomError
 from app.reports import Verdict
 from app.storage import Preferences, load_project, save_preferences, save_project
-from app.storage.pictures import cores, decode_pictures, read_openraster
-from app.storage.pictures.cores import MEMORY_OF_PICTURES
+from app.storage.pictures import decode_pictures, parallel, read_openraster
+from app.storage.pictures.parallel import MEMORY_OF_PICTURES
 from engine.deform import MOST_HANDLES
 
 MEGABYTE = 1_000_000
@@ -48,7 +48,7 @@ raise SystemExit(status)
 def budget(tmp_path, monkeypatch):
     """Return a function that sets how many megabytes pictures may take."""
     folder = tmp_path / "settings"
-    monkeypatch.setattr(cores, "settings_folder", lambda: folder)
+    monkeypatch.setattr(parallel, "settings_folder", lambda: folder)
 
     def set_to(megabytes):
         save_preferences(folder, Preferences(memory=megabytes))
@@ -92,9 +92,9 @@ def test_the_layers_of_a_file_share_one_budget(tmp_path, budget):
 
 def test_a_quarter_of_the_machine_is_usual(budget, monkeypatch):
     monkeypatch.setattr("os.sysconf", {"SC_PAGE_SIZE": 4096, "SC_PHYS_PAGES": 10_000}.get)
-    assert cores.memory_budget() == 10_240_000
+    assert parallel.memory_budget() == 10_240_000
     budget(None)
-    assert cores.memory_budget() == 10_240_000
+    assert parallel.memory_budget() == 10_240_000
 
 
 @pytest.mark.parametrize(

@@ -21,7 +21,7 @@ from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.work.jobs import Jobs
 from app.errors import LissomError
-from app.storage.autosave import kept_report, load_leftover
+from app.storage.autosave import load_recoverable_file, load_report
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="Windows has no such signals")
 
@@ -175,7 +175,7 @@ def test_what_was_not_saved_is_kept_however_the_window_ends(
     monkeypatch.setattr(window, "Window", EndedWindow)
     monkeypatch.setattr(EndedWindow, "error", error)
     monkeypatch.setattr(window, "end_within", lambda *_: None)
-    monkeypatch.setattr("app.cli.process.end_within", lambda *_: None)
+    monkeypatch.setattr("app.cli.process.exit_within", lambda *_: None)
     monkeypatch.setattr(sys, "setswitchinterval", lambda _: None)
     monkeypatch.setattr(os, "_exit", ended.append)
     assert main(["window"]) == status
@@ -184,7 +184,7 @@ def test_what_was_not_saved_is_kept_however_the_window_ends(
     assert window.WORK_KEPT in said
     assert error is None or f"{error}" in said
     (kept,) = tmp_path.rglob("unsaved-*.lissom")
-    assert load_leftover(kept)[0].markers[0].name == "unsaved"
+    assert load_recoverable_file(kept)[0].markers[0].name == "unsaved"
     reports = list(tmp_path.rglob("report.txt"))
     assert len(reports) == (error is not None)
     for report in reports:
@@ -235,7 +235,7 @@ def test_unsaved_work_is_kept_when_the_display_is_lost(tmp_path, monkeypatch, ca
     assert "the display is gone" in said
     assert "your unsaved work was kept" in said
     (kept,) = tmp_path.rglob("unsaved-*.lissom")
-    assert load_leftover(kept)[0].markers[0].name == "unsaved"
+    assert load_recoverable_file(kept)[0].markers[0].name == "unsaved"
 
 
 def test_where_a_process_crashed_is_kept_for_the_next_start(tmp_path):
@@ -245,10 +245,10 @@ def test_where_a_process_crashed_is_kept_for_the_next_start(tmp_path):
     assert ended.returncode == -signal.SIGABRT
     session = Session(clock=float, jobs=Jobs(), folder=tmp_path)
     failures.keep_faults(session)
-    assert "Fatal Python error: Aborted" in kept_report(tmp_path)
+    assert "Fatal Python error: Aborted" in load_report(tmp_path)
     failures.discard_report(session, ProblemReport(text="", is_kept=True))
     failures.keep_faults(session)
-    assert kept_report(tmp_path) == "", "it is told once"
+    assert load_report(tmp_path) == "", "it is told once"
 
 
 def test_a_command_that_fails_itself_tells_it_without_names_of_files(monkeypatch, capfd, tmp_path):

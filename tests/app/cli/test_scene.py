@@ -12,9 +12,9 @@ from PIL import Image, ImageDraw
 
 from app.cli.main import main
 from app.document import Meshing, is_visible
-from app.document.model import HANGS_ON_ITSELF
+from app.document.model import PARENT_CIRCLE
 from app.errors import LissomError
-from app.motion import Joints
+from app.motion import ParentTransforms
 from app.solving import pose_document
 from app.solving.script import parse_pose_script
 from app.solving.script.fields import NOT_A_FRAME, OUT_OF_ORDER
@@ -109,13 +109,17 @@ def test_a_script_poses_the_layers_that_it_names(project):
     assert [layer.name for layer in document.layers] == ["wall", "body", "arm", "patch"]
     assert (wall.still, body.still) == (True, False)
     assert document.canvas == (WIDTH, HEIGHT)
-    assert (arm.joints[0].to, arm.joints[0].at, arm.anchor) == (body.id, 95 + 120j, 95 + 120j)
+    assert (arm.attachments[0].parent, arm.attachments[0].parent_point, arm.anchor) == (
+        body.id,
+        95 + 120j,
+        95 + 120j,
+    )
     assert [is_visible(document, patch, frame) for frame in (3, 4)] == [True, False]
     head = body.handles[1]
-    assert (head.front, head.extent, dict(body.keys[1].fronts)) == (0.5, 30.0, {head.id: -1.0})
+    assert (head.depth, head.extent, dict(body.keys[1].depths)) == (0.5, 30.0, {head.id: -1.0})
     # The joint of a joint is closed, and the patch keeps its own turn.
-    joints = Joints(document)
-    at = np.array([patch.joints[0].at])
+    joints = ParentTransforms(document)
+    at = np.array([patch.attachments[0].parent_point])
     arm_place = joints.placement(arm.id, 8).on(arm.map_of(arm.keys[1].pose)(at))
     own = joints.placement(patch.id, 8)
     assert own.factor == 1
@@ -186,7 +190,7 @@ def test_export_draws_the_scene_or_one_layer_of_it(project):
         ({"layer": "wall"}, "'wall' stands still"),
         ({"attach": {"to": "leg", "at": [1, 2]}}, "there is no layer 'leg'"),
         ({"attach": {"to": "body", "at": [1, 2]}}, "which is not on 'body'"),
-        ({"attach": {"to": "arm", "at": [180, 120]}}, says(HANGS_ON_ITSELF)),
+        ({"attach": {"to": "arm", "at": [180, 120]}}, says(PARENT_CIRCLE)),
         (
             {"attach": {"to": "body", "at": [70, 40]}},
             r"layer 'arm': it is attached at \(70, 40\), which is on 'body' but not on itself",
@@ -286,7 +290,7 @@ def test_layer_attached_by_another_anchor_comes_to_its_parent(drawing):
     script = {**SCRIPT, "layers": [body, {**elsewhere, "keys": keys}]}
     document, _ = pose_document(drawing, parse_pose_script(script), str)
     layers = {layer.name: layer for layer in document.layers}
-    arm, body, joints = layers["arm"], layers["body"], Joints(document)
+    arm, body, joints = layers["arm"], layers["body"], ParentTransforms(document)
     assert arm.keys[1].pose.targets[0].position == 104 + 132j
     for frame, index in ((0, 0), (8, 1)):
         f, g = (each.map_of(each.keys[index].pose) for each in (arm, body))
@@ -333,7 +337,7 @@ def test_what_changes_hands_does_not_jump(folder, capsys):
     patch, body = (next(f for f in document.layers if f.name == n) for n in ("patch", "body"))
     assert [joint.frame for joint in patch.joints] == [0, 3, 6, 30]
     assert patch.joints[1].to == body.id
-    joints = Joints(document)
+    joints = ParentTransforms(document)
     for frame in (3, 6):
         just, now = (joints.placement(patch.id, at) for at in (frame - 1e-6, frame))
         assert abs(just.shift - now.shift) < 1e-3
@@ -373,7 +377,7 @@ def test_layer_changes_its_parent_in_every_repeat_of_a_cycle(drawing):
         [each.name for each in document.carriers(identity, frame)[1:2]] for frame in (1, 4, 16, 22)
     ]
     assert names == [["arm"], ["body"], ["body"], ["arm"]]
-    placed = Joints(document).placement
+    placed = ParentTransforms(document).placement
     for frame in (2, 5, 10.5):
         one, other = placed(identity, frame), placed(identity, frame + 24)
         assert abs(one.shift - other.shift) < 1e-6

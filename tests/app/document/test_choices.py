@@ -14,9 +14,9 @@ from app.document.commands import (
     layer_commands,
     scene_commands,
 )
-from app.document.layering import Choice, Switch, Turn
+from app.document.layers import SwitchGroup, SwitchKey, VisibilityKey
 from app.document.model import NO_LAYER
-from app.document.queries import alternates, is_visible, whole_groups
+from app.document.queries import is_visible, subgroups_with_layers, suggest_switch_groups
 from app.document.settings import FrameRange
 from app.document.timing import Cycle
 from app.errors import LissomError
@@ -31,7 +31,7 @@ def mouths():
     for name in ("ah", "oh"):
         layer = replace(
             document.layers[0],
-            id=layer_commands.free_identity(document),
+            id=layer_commands.next_layer_id(document),
             name=name,
             domain=disc_domain(),
         )
@@ -48,7 +48,7 @@ def seen(document, frames=FRAMES):
 
 
 def test_exactly_one_is_seen_whatever_is_hidden(mouths):
-    document = choices.form_choice("mouth", (0, 1, 2))(mouths)
+    document = choices.create_switch_group("mouth", (0, 1, 2))(mouths)
     assert [layer.hidden for layer in document.layers] == [False] * 3
     # The one in front of those that were seen.
     assert seen(document) == [[2]] * 49
@@ -58,7 +58,7 @@ def test_exactly_one_is_seen_whatever_is_hidden(mouths):
     assert seen(document, (8, 12)) == [[1], [0]]
     hidden = layer_commands.set_hidden(0, hidden=True)(document)
     assert seen(hidden) == seen(document)
-    assert [layer.id for layer in hidden.exported] == [0, 1, 2]
+    assert [layer.id for layer in hidden.exported_layers] == [0, 1, 2]
     assert choices.choose_at(0, 20)(document) is document
     back = choices.unchoose_at("mouth", 8)(document)
     assert seen(back, (8, 11, 12)) == [[2], [2], [0]]
@@ -71,70 +71,75 @@ def test_exactly_one_is_seen_whatever_is_hidden(mouths):
 def test_what_took_turns_by_switches_still_does(mouths):
     document = layer_commands.set_hidden(1, hidden=False)(mouths)
     for identity, frames in ((0, (0, 10)), (1, (10, 20)), (2, (20, 48))):
-        switches = tuple(Switch(frame, frames[0] <= frame < frames[1]) for frame in (0, 10, 20))
-        document = document.with_layer(replace(document.layer(identity), switches=switches))
-    formed = choices.form_choice("mouth", (0, 1, 2))(document)
+        switches = tuple(
+            VisibilityKey(frame, frames[0] <= frame < frames[1]) for frame in (0, 10, 20)
+        )
+        document = document.with_layer(replace(document.layer(identity), visibility_keys=switches))
+    formed = choices.create_switch_group("mouth", (0, 1, 2))(document)
     assert seen(formed) == seen(document)
-    assert formed.choices[0].turns == (Turn(0, 0), Turn(10, 1), Turn(20, 2))
-    apart = choices.dissolve_choice("mouth")(formed)
-    assert apart.choices == ()
+    assert formed.switch_groups[0].keys == (SwitchKey(0, 0), SwitchKey(10, 1), SwitchKey(20, 2))
+    apart = choices.delete_switch_group("mouth")(formed)
+    assert apart.switch_groups == ()
     assert seen(apart) == seen(document)
 
 
 def test_a_layer_that_leaves_is_seen_when_it_was(mouths):
-    document = choices.form_choice("mouth", (0, 1, 2))(mouths)
+    document = choices.create_switch_group("mouth", (0, 1, 2))(mouths)
     document = choices.choose_at(1, 8)(document)
-    left = choices.leave_choice(1)(document)
-    assert left.choices[0].layers == (0, 2)
+    left = choices.remove_from_switch_group(1)(document)
+    assert left.switch_groups[0].layers == (0, 2)
     assert seen(left, (0, 8)) == [[2], [1, 2]]
     # A choice of one is none, and what remains is seen as before.
-    alone = choices.leave_choice(0)(left)
-    assert alone.choices == ()
+    alone = choices.remove_from_switch_group(0)(left)
+    assert alone.switch_groups == ()
     assert seen(alone) == seen(left)
     gone = layer_commands.remove_layer(2)(left)
-    assert gone.choices == ()
+    assert gone.switch_groups == ()
     assert seen(gone) == [[layer for layer in now if layer != 2] for now in seen(left)]
 
 
 def test_copies_take_turns_with_what_they_were_copied_from(mouths):
-    document = choices.form_choice("mouth", (0, 1))(mouths)
+    document = choices.create_switch_group("mouth", (0, 1))(mouths)
     document = layer_commands.duplicate_layer(1)(document)
-    assert document.choices[0].layers == (0, 1, 3)
+    assert document.switch_groups[0].layers == (0, 1, 3)
     assert all(len(now) == 2 for now in seen(document))  # with the layer that is in no choice
 
 
 def test_time_that_is_scaled_takes_turns_along(mouths):
-    document = choices.form_choice("mouth", (0, 1))(mouths)
+    document = choices.create_switch_group("mouth", (0, 1))(mouths)
     document = choices.choose_at(1, 10)(document)
     scaled = scene_commands.scale_time(2.0)(document)
-    assert scaled.choices[0].turns[-1] == Turn(20, 1)
+    assert scaled.switch_groups[0].keys[-1] == SwitchKey(20, 1)
 
 
 @pytest.mark.parametrize(
     ("make", "words"),
     [
-        (choices.form_choice("eyes", (1, 2)), "'ah' is in two choices, 'mouth' and 'eyes'"),
-        (choices.form_choice("mouth", (2, 3)), says(NO_LAYER, identity=3)),
-        (choices.form_choice("mouth", (2, 2)), "has the layer 2 twice"),
-        (choices.form_choice(" ", (2, 1)), "needs a name"),
-        (choices.form_choice("eyes", (2,)), "two layers or more"),
-        (layer_commands.switch_at(1, 5, visible=True), "shown and hidden at frames of its own"),
+        (choices.create_switch_group("eyes", (1, 2)), "'ah' is in two choices, 'mouth' and 'eyes'"),
+        (choices.create_switch_group("mouth", (2, 3)), says(NO_LAYER, identity=3)),
+        (choices.create_switch_group("mouth", (2, 2)), "has the layer 2 twice"),
+        (choices.create_switch_group(" ", (2, 1)), "needs a name"),
+        (choices.create_switch_group("eyes", (2,)), "two layers or more"),
+        (
+            layer_commands.key_visibility(1, 5, visible=True),
+            "shown and hidden at frames of its own",
+        ),
         (choices.choose_at(2, 5), "'oh' takes no turns"),
-        (choices.dissolve_choice("nose"), "no choice 'nose'"),
+        (choices.delete_switch_group("nose"), "no choice 'nose'"),
         (choices.move_turn("mouth", 7, 9), "changes nothing at frame 7"),
     ],
 )
 def test_what_cannot_be_chosen_is_refused(mouths, make, words):
-    document = choices.form_choice("mouth", (0, 1))(mouths)
+    document = choices.create_switch_group("mouth", (0, 1))(mouths)
     with pytest.raises(LissomError, match=words):
         make(document)
 
 
 def test_turns_are_in_order_and_of_the_choice():
     with pytest.raises(LissomError, match="at frame 4 after frame 8"):
-        Choice(name="mouth", layers=(0, 1), turns=(Turn(8, 0), Turn(4, 1)))
+        SwitchGroup(name="mouth", layers=(0, 1), keys=(SwitchKey(8, 0), SwitchKey(4, 1)))
     with pytest.raises(LissomError, match="a layer at frame 8 that it has not"):
-        Choice(name="mouth", layers=(0, 1), turns=(Turn(8, 2),))
+        SwitchGroup(name="mouth", layers=(0, 1), keys=(SwitchKey(8, 2),))
 
 
 def test_one_layer_of_a_switch_is_visible_after_any_commands():
@@ -145,26 +150,26 @@ def test_one_layer_of_a_switch_is_visible_after_any_commands():
             document = random_command(rng, document)(document)
         except LissomError:
             continue
-        formed += bool(document.choices)
-        for choice in document.choices:
+        formed += bool(document.switch_groups)
+        for choice in document.switch_groups:
             for frame in (0, 10, 25.5, 48):
                 now = [i for i in choice.layers if is_visible(document, document.layer(i), frame)]
-                assert now == [choice.at(frame)]
+                assert now == [choice.layer_at(frame)]
     assert formed > 50
 
 
 def test_what_was_hidden_is_shown_from_a_frame_on(mouths):
-    document = layer_commands.switch_at(1, 12, visible=True)(mouths)
+    document = layer_commands.key_visibility(1, 12, visible=True)(mouths)
     assert [1 in now for now in seen(document, (0, 11, 12, 30))] == [False, False, True, True]
 
 
 def test_what_a_group_hides_comes_to_be_seen_alone(mouths):
-    document = groups.put_in_group((0, 2), "face/mouth")(mouths)
+    document = groups.group_layers((0, 2), "face/mouth")(mouths)
     document = groups.set_group_hidden("face", hidden=True)(document)
     assert seen(document, (0, 40)) == [[], []]
-    shown = layer_commands.switch_at(2, 10, visible=True)(document)
+    shown = layer_commands.key_visibility(2, 10, visible=True)(document)
     assert seen(shown, (0, 9, 10, 40)) == [[], [], [2], [2]]
-    chosen = choices.form_choice("mouth", (1, 2))(document)
+    chosen = choices.create_switch_group("mouth", (1, 2))(document)
     assert seen(chosen, (0, 40)) == [[1], [1]]
     # A group that is hidden later hides what takes turns, too.
     chosen = choices.choose_at(2, 10)(chosen)
@@ -187,10 +192,10 @@ def test_groups_that_are_named_like_mouths_are_offered_as_choices(mouths, group,
     document = layer_commands.set_hidden(1, hidden=False)(mouths)
     for identity in hidden:
         document = layer_commands.set_hidden(identity, hidden=True)(document)
-    document = groups.put_in_group((1, 2), group)(document)
-    assert [layers for _, layers in alternates(document)] == [(1, 2)] * offered
-    chosen = choices.form_choice("mouth", (1, 2))(document)
-    assert alternates(chosen) == ()
+    document = groups.group_layers((1, 2), group)(document)
+    assert [layers for _, layers in suggest_switch_groups(document)] == [(1, 2)] * offered
+    chosen = choices.create_switch_group("mouth", (1, 2))(document)
+    assert suggest_switch_groups(chosen) == ()
 
 
 @pytest.mark.parametrize(
@@ -215,29 +220,29 @@ def test_layers_named_as_in_a_group_are_offered_as_a_choice(mouths, names, hidde
         document = layer_commands.rename_layer(identity, name)(document)
     for identity in hidden:
         document = layer_commands.set_hidden(identity, hidden=True)(document)
-    document = groups.put_in_group((1, 2), group)(document)
-    assert alternates(document) == tuple((path, (1, 2)) for path in offered)
+    document = groups.group_layers((1, 2), group)(document)
+    assert suggest_switch_groups(document) == tuple((path, (1, 2)) for path in offered)
     # What is painted onto one of them takes no turns with it.
     painted = layer_commands.set_clipped(2, clipped=True)(document)
-    assert alternates(painted) == ()
+    assert suggest_switch_groups(painted) == ()
 
 
 def test_a_group_of_several_layers_takes_no_turns_as_a_whole(mouths):
-    document = groups.put_in_group((0,), "face/mouth")(mouths)
-    document = groups.put_in_group((1, 2), "face/mouth/laugh")(document)
-    assert whole_groups(document, "face/mouth") == ("laugh",)
-    assert whole_groups(document, "face") == ("mouth",)
-    assert whole_groups(document, "face/mouth/laugh") == ()
-    single = groups.put_in_group((2,), "face/mouth")(document)
-    assert whole_groups(single, "face/mouth") == ()
+    document = groups.group_layers((0,), "face/mouth")(mouths)
+    document = groups.group_layers((1, 2), "face/mouth/laugh")(document)
+    assert subgroups_with_layers(document, "face/mouth") == ("laugh",)
+    assert subgroups_with_layers(document, "face") == ("mouth",)
+    assert subgroups_with_layers(document, "face/mouth/laugh") == ()
+    single = groups.group_layers((2,), "face/mouth")(document)
+    assert subgroups_with_layers(single, "face/mouth") == ()
 
 
 def turning(document, *, cycle, turns, of=(0, 1, 2)):
     """Three layers that take turns, of which some have a cycle."""
-    document = choices.form_choice("mouth", (0, 1, 2))(document)
+    document = choices.create_switch_group("mouth", (0, 1, 2))(document)
     for identity in of:
         document = document.with_layer(replace(document.layer(identity), cycles=(cycle,)))
-    choice = replace(document.choices[0], turns=tuple(Turn(*turn) for turn in turns))
+    choice = replace(document.choices[0], turns=tuple(SwitchKey(*turn) for turn in turns))
     return replace(document, choices=(choice,), frames=FrameRange(0, 100))
 
 
@@ -282,9 +287,9 @@ def test_turns_made_into_keys_are_seen_as_before(mouths, until):
     document = turning(mouths, cycle=Cycle(first=0, last=12, until=until), turns=TURNS)
     keyed = document
     for identity in (0, 1, 2):
-        keyed = cycle_commands.make_keys(identity, 0, 100)(keyed)
+        keyed = cycle_commands.bake_cycle(identity, 0, 100)(keyed)
         assert seen(keyed, range(101)) == seen(document, range(101))
     stopped = document
     for identity in (0, 1, 2):
-        stopped = cycle_commands.stop(identity, 0)(stopped)
+        stopped = cycle_commands.delete_cycle(identity, 0)(stopped)
         assert [one_of(stopped, frame) for frame in (0, 4, 9, 11, 12, 50)] == [0, 1, 2, 2, 0, 0]

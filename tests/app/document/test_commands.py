@@ -23,9 +23,9 @@ from app.document import (
     scene_commands as settings,
     shape_commands as layers,
 )
-from app.document.commands.keys_in_time import KEYS_MEET, TIME_SCALE, TWO_KEYS
+from app.document.commands.retime import BAD_TIME_FACTOR, KEYS_COLLIDE, KEYS_MEET
 from app.document.commands.scene_commands import KEY_OUTSIDE
-from app.document.keyframe import MOST_TURNS, Handle, Keyframe, Target
+from app.document.keyframe import MAX_REVOLUTIONS, Handle, Keyframe, Target
 from app.document.layer import NO_HANDLE, NO_KEY, POSE_COUNT, PictureFile
 from app.document.model import Document
 from app.document.settings import NATURAL, VARIANTS, ExportSettings, FrameRange, Marker, Meshing
@@ -57,7 +57,7 @@ def test_a_new_document_shows_the_picture_as_it_is():
     (key,) = document.layers[0].keys
     assert_allclose(document.layers[0].map_of(key.pose)(points), points, rtol=0, atol=1e-12)
     assert key.pose.certificate.certified
-    assert document.played == document.frames
+    assert document.played_frames == document.frames
 
 
 def test_adding_a_handle_changes_no_map_and_takes_the_place_where_it_is_now():
@@ -73,7 +73,7 @@ def test_adding_a_handle_changes_no_map_and_takes_the_place_where_it_is_now():
         assert_allclose(new.pose.targets[handle.id].position, expected, rtol=0, atol=1e-12)
         assert new.pose.targets[handle.id].rotation is None
         assert {i: new.pose.targets[i] for i in old.pose.targets} == dict(old.pose.targets)
-        assert_allclose(grown.layers[0].lags(new.pose)[handle.id], 0.0, rtol=0, atol=1e-10)
+        assert_allclose(grown.layers[0].target_errors(new.pose)[handle.id], 0.0, rtol=0, atol=1e-10)
 
 
 def test_handles_may_sit_on_the_outline_itself():
@@ -114,8 +114,8 @@ def test_lags_are_the_distances_from_the_targets():
     document = handles.add_handle(0, CENTRE)(disc_document())
     pose = document.layers[0].keys[0].pose
     pulled = replace(pose, targets={0: Target(position=CENTRE + 3 + 4j)})
-    assert_allclose(document.layers[0].lags(pulled)[0], 5.0, rtol=0, atol=1e-10)
-    assert disc_document().layers[0].lags(disc_document().layers[0].keys[0].pose) == {}
+    assert_allclose(document.layers[0].target_errors(pulled)[0], 5.0, rtol=0, atol=1e-10)
+    assert disc_document().layers[0].target_errors(disc_document().layers[0].keys[0].pose) == {}
 
 
 def test_names_and_ids_are_never_given_twice():
@@ -141,9 +141,9 @@ def test_moving_a_handle_moves_its_targets_along_the_maps():
     document = animated(0, 10)
     turned = Target(position=CENTRE, rotation=0.5)
     targets = {**document.layers[0].keys[1].pose.targets, 0: turned}
-    document = keys.pose_key(0, 10, replace(document.layers[0].keys[1].pose, targets=targets))(
-        document
-    )
+    document = keys.replace_key_pose(
+        0, 10, replace(document.layers[0].keys[1].pose, targets=targets)
+    )(document)
     moved = handles.move_handle(0, 0, CENTRE + 5)(document)
     assert moved.layers[0].handle(0).position == CENTRE + 5
     expected = document.layers[0].map_of(document.layers[0].keys[1].pose)(np.array([CENTRE + 5]))[0]
@@ -155,13 +155,13 @@ def test_moving_a_handle_moves_its_targets_along_the_maps():
 def test_naming_and_weighing_handles():
     document = animated(0)
     assert handles.rename_handle(0, 1, "Fuß")(document).layers[0].handle(1).name == "Fuß"
-    assert handles.weigh_handles(0, {1}, 3.0)(document).layers[0].handle(1).weight == 3.0
+    assert handles.set_handle_weight(0, {1}, 3.0)(document).layers[0].handle(1).weight == 3.0
 
 
 def test_posing_and_inserting_keys():
     document = animated(0, 10)
     pose = random_pose(np.random.default_rng(1), document)
-    assert keys.pose_key(0, 10, pose)(document).layers[0].key(10).pose is pose
+    assert keys.replace_key_pose(0, 10, pose)(document).layers[0].key(10).pose is pose
     document = keys.set_easing(0, {0}, HOLD)(document)
     grown = keys.insert_key(0, 5, pose)(document)
     assert frames_of(grown) == [0, 5, 10]
@@ -197,9 +197,9 @@ def test_reversing_keys_turns_the_motion_round():
     document = keys.set_easing(0, {0}, PRESETS["in"])(document)
     document = keys.set_easing(0, {10}, HOLD)(document)
     document = keys.set_easing(0, {30}, PRESETS["out"])(document)
-    document = keys.set_turns(0, {10, 30}, 1)(document)
+    document = keys.set_revolutions(0, {10, 30}, 1)(document)
     turned = keys.reverse_keys(0, {0, 10, 30})(document)
-    assert [key.turns for key in turned.layers[0].keys] == [-1, 0, 1]
+    assert [key.revolutions for key in turned.layers[0].keys] == [-1, 0, 1]
     assert frames_of(turned) == [0, 20, 30]
     assert [key.pose for key in turned.layers[0].keys] == [
         key.pose for key in reversed(document.layers[0].keys)
@@ -225,9 +225,9 @@ def test_scaling_time():
 
 def test_the_last_key_becomes_the_first():
     document = animated(0, 10, 20)
-    closed = keys.match_ends(0)(document)
+    closed = keys.match_loop_ends(0)(document)
     assert closed.layers[0].key(20).pose is document.layers[0].key(0).pose
-    assert keys.match_ends(0)(closed) is closed
+    assert keys.match_loop_ends(0)(closed) is closed
 
 
 def test_settings():
@@ -241,7 +241,7 @@ def test_settings():
     )
     export = ExportSettings(format="gif", size=(64, 32), background="#ffFF00")
     assert settings.set_export(export)(document).export == export
-    assert layers.set_bounds(0, Bounds(k=0.5))(document).layers[0].bounds.k == 0.5
+    assert layers.set_limits(0, Bounds(k=0.5))(document).layers[0].bounds.k == 0.5
 
 
 def set_exported(frames):
@@ -267,7 +267,7 @@ def test_bounds_and_a_new_domain_come_with_solved_poses():
     document = animated(0, 10)
     rng = np.random.default_rng(4)
     poses = [random_pose(rng, document) for _ in range(2)]
-    assert [k.pose for k in layers.set_bounds(0, Bounds(), poses)(document).layers[0].keys] == poses
+    assert [k.pose for k in layers.set_limits(0, Bounds(), poses)(document).layers[0].keys] == poses
     domain = disc_domain(15)
     again = [random_pose(rng, document, domain) for _ in range(2)]
     layer = replace(document.layers[0], unknown={"domain": {"brush": 1}, "kept": 2})
@@ -286,7 +286,7 @@ def test_bounds_and_a_new_domain_come_with_solved_poses():
         handles.move_handle(0, 0, animated(0).layers[0].handle(0).position),
         handles.remove_handles(0, ()),
         handles.rename_handle(0, 0, "handle 1"),
-        handles.weigh_handles(0, {0}, 1.0),
+        handles.set_handle_weight(0, {0}, 1.0),
         keys.move_keys(0, {0}, 0),
         keys.move_keys(0, (), 4),
         keys.copy_keys(0, (), 4),
@@ -296,7 +296,7 @@ def test_bounds_and_a_new_domain_come_with_solved_poses():
         keys.scale_keys(0, {10}, 2.0),
         settings.scale_time(1.0),
         keys.set_easing(0, {0, 10}, LINEAR),
-        keys.set_turns(0, {0, 10}, 0),
+        keys.set_revolutions(0, {0, 10}, 0),
         settings.set_fps(24.0),
         settings.set_frames(FrameRange(0, 48)),
         settings.set_preview(None),
@@ -304,7 +304,7 @@ def test_bounds_and_a_new_domain_come_with_solved_poses():
         layers.set_variant(0, "metric"),
         layers.set_anchor(0, None),
         settings.set_export(ExportSettings()),
-        layers.set_bounds(0, NATURAL.bounds),
+        layers.set_limits(0, NATURAL.bounds),
     ],
 )
 def test_what_changes_nothing_gives_the_same_document(command):
@@ -336,28 +336,28 @@ OTHER_CAGE = random_pose(np.random.default_rng(0), DOCUMENT, disc_domain(13))
         (handles.rename_handle(0, 7, "x"), says(NO_HANDLE, identity=7)),
         (handles.rename_handle(0, 0, "handle 2"), "name 'handle 2'"),
         (handles.rename_handle(0, 0, ""), "needs a name"),
-        (handles.weigh_handles(0, {0}, float("inf")), "weight"),
-        (handles.weigh_handles(0, {0}, float("nan")), "weight"),
-        (keys.pose_key(0, 5, POSE), says(NO_KEY, frame=5)),
-        (keys.pose_key(0, 0, replace(POSE, targets={})), "one target for each handle"),
-        (keys.pose_key(0, 0, OTHER_CAGE), "cage of 13 vertices, not of 12"),
-        (keys.insert_key(0, 10, POSE), TWO_KEYS.format(frame=10)),
+        (handles.set_handle_weight(0, {0}, float("inf")), "weight"),
+        (handles.set_handle_weight(0, {0}, float("nan")), "weight"),
+        (keys.replace_key_pose(0, 5, POSE), says(NO_KEY, frame=5)),
+        (keys.replace_key_pose(0, 0, replace(POSE, targets={})), "one target for each handle"),
+        (keys.replace_key_pose(0, 0, OTHER_CAGE), "cage of 13 vertices, not of 12"),
+        (keys.insert_key(0, 10, POSE), KEYS_COLLIDE.format(frame=10)),
         (keys.insert_key(0, -1, POSE), "key is at a frame from 0"),
         (keys.insert_key(0, 1_000_000, POSE), "key is at a frame from 0"),
-        (keys.move_keys(0, {0, 10}, 10), TWO_KEYS.format(frame=20)),
+        (keys.move_keys(0, {0, 10}, 10), KEYS_COLLIDE.format(frame=20)),
         (keys.move_keys(0, {0}, -1), "key is at a frame from 0"),
         (keys.move_keys(0, {3}, 1), says(NO_KEY, frame=3)),
-        (keys.copy_keys(0, {0}, 0), TWO_KEYS.format(frame=0)),
-        (keys.copy_keys(0, {0}, 20), TWO_KEYS.format(frame=20)),
+        (keys.copy_keys(0, {0}, 0), KEYS_COLLIDE.format(frame=0)),
+        (keys.copy_keys(0, {0}, 20), KEYS_COLLIDE.format(frame=20)),
         (keys.delete_keys(0, {0, 10, 20}), "at least one key"),
         (keys.delete_keys(0, {0, 11}), says(NO_KEY, frame=11)),
         (keys.reverse_keys(0, {0, 11}), says(NO_KEY, frame=11)),
-        (keys.scale_keys(0, {0, 10}, 2.0), TWO_KEYS.format(frame=20)),
-        (keys.scale_keys(0, {0, 10}, 0.0), says(TIME_SCALE)),
-        (keys.scale_keys(0, {0, 10}, float("nan")), says(TIME_SCALE)),
+        (keys.scale_keys(0, {0, 10}, 2.0), KEYS_COLLIDE.format(frame=20)),
+        (keys.scale_keys(0, {0, 10}, 0.0), says(BAD_TIME_FACTOR)),
+        (keys.scale_keys(0, {0, 10}, float("nan")), says(BAD_TIME_FACTOR)),
         (settings.scale_time(0.01), says(KEYS_MEET, one=0, other=10, frame=0)),
-        (settings.scale_time(-1.0), says(TIME_SCALE)),
-        (keys.match_ends(0), None),
+        (settings.scale_time(-1.0), says(BAD_TIME_FACTOR)),
+        (keys.match_loop_ends(0), None),
         (keys.set_easing(0, {5}, LINEAR), says(NO_KEY, frame=5)),
         (settings.set_fps(0.0), "frames per second"),
         (settings.set_fps(float("nan")), "frames per second"),
@@ -369,9 +369,9 @@ OTHER_CAGE = random_pose(np.random.default_rng(0), DOCUMENT, disc_domain(13))
         (settings.add_marker(-1), "marker is at a frame from 0"),
         (settings.delete_marker(3), "no marker at frame 3"),
         (poses.delete_pose(0, "bow"), "no pose 'bow'"),
-        (poses.keep_pose(0, POSE, "  "), "needs a name"),
-        (poses.keep_pose(0, OTHER_CAGE, "bow"), "cage of 13"),
-        (layers.set_bounds(0, Bounds(), [POSE]), says(POSE_COUNT, count=3, given=1)),
+        (poses.save_pose(0, POSE, "  "), "needs a name"),
+        (poses.save_pose(0, OTHER_CAGE, "bow"), "cage of 13"),
+        (layers.set_limits(0, Bounds(), [POSE]), says(POSE_COUNT, count=3, given=1)),
         (layers.replace_domain(0, disc_domain(13), Meshing(), [POSE] * 3), "cage of 12"),
         (
             layers.replace_domain(0, disc_domain(13), Meshing(), [OTHER_CAGE]),
@@ -380,7 +380,7 @@ OTHER_CAGE = random_pose(np.random.default_rng(0), DOCUMENT, disc_domain(13))
     ],
 )
 def test_what_is_not_possible_says_why(command, message):
-    document = keys.match_ends(0)(DOCUMENT) if message is None else DOCUMENT
+    document = keys.match_loop_ends(0)(DOCUMENT) if message is None else DOCUMENT
     if message is None:
         document, message = keys.delete_keys(0, {0, 10})(document), "needs two keys"
     with pytest.raises(LissomError, match=message):
@@ -421,8 +421,11 @@ def test_a_domain_that_loses_a_handle_is_refused_by_the_handle_s_name():
         (lambda: Target(position=complex(1e300, 0)), "within 10,000,000 pixels"),
         (lambda: Target(position=complex(float("nan"), 0)), "within 10,000,000 pixels"),
         (lambda: Target(position=complex(0, float("nan"))), "within 10,000,000 pixels"),
-        (lambda: replace(DOCUMENT.layers[0].keys[0], turns=MOST_TURNS + 1), "whole turns"),
-        (lambda: replace(DOCUMENT.layers[0].keys[0], turns=-(10**30)), "whole turns"),
+        (
+            lambda: replace(DOCUMENT.layers[0].keys[0], revolutions=MAX_REVOLUTIONS + 1),
+            "whole turns",
+        ),
+        (lambda: replace(DOCUMENT.layers[0].keys[0], revolutions=-(10**30)), "whole turns"),
         (lambda: Target(position=0j, rotation=float("nan")), "rotation"),
         (lambda: altered(DOCUMENT, keys=()), "at least one key"),
         (lambda: altered(DOCUMENT, keys=DOCUMENT.layers[0].keys[::-1]), "mixed up"),
@@ -489,7 +492,7 @@ def test_markers_stay_in_order_and_apart():
 def test_poses_of_the_library_follow_handles_as_keys_do():
     document = animated(0, 10)
     pose = document.layers[0].keys[1].pose
-    document = poses.keep_pose(0, pose, "bow")(poses.keep_pose(0, pose)(document))
+    document = poses.save_pose(0, pose, "bow")(poses.save_pose(0, pose)(document))
     assert [kept.name for kept in document.layers[0].library] == ["Pose 1", "bow"]
     place = CENTRE + 20 - 35j
     for command in (
@@ -499,7 +502,7 @@ def test_poses_of_the_library_follow_handles_as_keys_do():
     ):
         document = command(document)
         (layer,) = document.layers
-        assert layer.kept_pose("bow").pose.targets == layer.keys[1].pose.targets
+        assert layer.library_pose("bow").pose.targets == layer.keys[1].pose.targets
     renamed = poses.rename_pose(0, "bow", "low bow")(document)
     with pytest.raises(LissomError, match="Two poses have the name 'Pose 1'"):
         poses.rename_pose(0, "low bow", "Pose 1")(renamed)

@@ -19,11 +19,11 @@ from app.document.commands import (
 )
 from app.document.commands.cycle_commands import TWO_POSES_SHOWN
 from app.document.keyframe import Handle, Target
-from app.document.layering import Placing, Switch
+from app.document.layers import DrawOrderKey, VisibilityKey
 from app.document.queries.clips import clip_of
-from app.document.queries.stage.fronts import fronts_at
-from app.document.queries.stage.moves import placing_at
-from app.document.queries.stage.sight import is_visible
+from app.document.queries.layers.depth import depth_points_at
+from app.document.queries.layers.layer_state import draw_order_key_at
+from app.document.queries.layers.visibility import is_visible
 from app.document.queries.tracks import track_at
 from app.document.settings import FrameRange
 from app.document.timing import Cycle, Track, TrackKey
@@ -55,37 +55,37 @@ def frames_of(document):
 def test_a_stretch_repeats_and_its_last_key_is_its_first():
     document = with_keys(4, 20, 28, 36, 44, 110, last=120)
     layer = document.layers[0]
-    assert cycle_commands.end_of_repeats(layer, 20, 44) == 92
-    cycling = cycle_commands.repeat(0, 20, 44, 92)(document)
+    assert cycle_commands.end_of_cycle(layer, 20, 44) == 92
+    cycling = cycle_commands.set_cycle(0, 20, 44, 92)(document)
     assert cycling.layers[0].cycles == (Cycle(first=20, last=44, until=92),)
     assert frames_of(cycling) == [4, 20, 28, 36, 110]
-    again = cycle_commands.repeat(0, 20, 44, 68)(cycling)
+    again = cycle_commands.set_cycle(0, 20, 44, 68)(cycling)
     assert again.layers[0].cycles == (Cycle(first=20, last=44, until=68),)
     with pytest.raises(LissomError, match=says(TWO_POSES_SHOWN, first=4, last=28)):
-        cycle_commands.repeat(0, 4, 28)(document)
+        cycle_commands.set_cycle(0, 4, 28)(document)
     with pytest.raises(LissomError, match="no room for frames 4 to 15 to repeat before frame 20"):
-        cycle_commands.end_of_repeats(layer, 4, 15)
+        cycle_commands.end_of_cycle(layer, 4, 15)
     with pytest.raises(LissomError, match="key at frame 110 is where frames 20 to 44 repeat"):
-        cycle_commands.repeat(0, 20, 44)(document)
+        cycle_commands.set_cycle(0, 20, 44)(document)
 
 
 def test_what_stops_repeating_is_there_once_as_it_was():
     document = with_keys(4, 20, 28, 36, 44)
-    cycling = cycle_commands.repeat(0, 20, 44)(document)
-    stopped = cycle_commands.stop(0, 20)(cycling)
+    cycling = cycle_commands.set_cycle(0, 20, 44)(document)
+    stopped = cycle_commands.delete_cycle(0, 20)(cycling)
     assert not stopped.layers[0].cycles
     assert frames_of(stopped) == frames_of(document)
     layer = stopped.layers[0]
     assert layer.key(44).pose is layer.key(20).pose
     with pytest.raises(LissomError, match="Nothing of 'layer' repeats from frame 20 on"):
-        cycle_commands.stop(0, 20)(stopped)
+        cycle_commands.delete_cycle(0, 20)(stopped)
 
 
 @pytest.mark.parametrize("loop", [False, True])
 def test_repeats_made_into_keys_move_as_before(loop):
-    document = cycle_commands.repeat(0, 20, 44, 92)(with_keys(4, 20, 28, 36, 44, 110, last=120))
+    document = cycle_commands.set_cycle(0, 20, 44, 92)(with_keys(4, 20, 28, 36, 44, 110, last=120))
     document = altered(document, loop=loop)
-    keyed = cycle_commands.make_keys(0, 20, 120)(document)
+    keyed = cycle_commands.bake_cycle(0, 20, 120)(document)
     assert not keyed.layers[0].cycles
     assert frames_of(keyed) == [4, 20, 28, 36, 44, 52, 60, 68, 76, 84, 92, 110]
     # Only beside 20 and 92 the motion is another one.
@@ -95,8 +95,8 @@ def test_repeats_made_into_keys_move_as_before(loop):
 
 
 def test_less_than_a_whole_repeat_still_repeats():
-    document = cycle_commands.repeat(0, 20, 44)(with_keys(20, 28, 36, 44, last=100))
-    keyed = cycle_commands.make_keys(0, 20, 100)(document)
+    document = cycle_commands.set_cycle(0, 20, 44)(with_keys(20, 28, 36, 44, last=100))
+    keyed = cycle_commands.bake_cycle(0, 20, 100)(document)
     assert frames_of(keyed) == [20, 28, 36, 44, 52, 60, 68, 76, 84]
     assert keyed.layers[0].cycles == (Cycle(first=68, last=92),)
     inside = range(28, 101, 3)
@@ -108,14 +108,14 @@ def with_handle(document, front):
 
     def keyed(key):
         pose = replace(key.pose, targets={0: Target(position=60 + 45j)})
-        return replace(key, pose=pose, fronts={0: 1.0} if key.frame == front else {})
+        return replace(key, pose=pose, depths={0: 1.0} if key.frame == front else {})
 
     keys = tuple(map(keyed, document.layers[0].keys))
     return altered(document, handles=(handle,), next_handle=1, keys=keys)
 
 
 def test_tracks_what_is_in_front_and_visibility_are_made_into_keys():
-    document = with_handle(cycle_commands.repeat(0, 20, 44)(with_keys(20, 28, 36, last=92)), 28)
+    document = with_handle(cycle_commands.set_cycle(0, 20, 44)(with_keys(20, 28, 36, last=92)), 28)
     wag = Track(
         handles=(0,),
         keys=(
@@ -125,25 +125,27 @@ def test_tracks_what_is_in_front_and_visibility_are_made_into_keys():
         ),
     )
     document = altered(
-        document, tracks=(wag,), switches=(Switch(0, visible=True), Switch(30, visible=False))
+        document,
+        tracks=(wag,),
+        switches=(VisibilityKey(0, visible=True), VisibilityKey(30, visible=False)),
     )
-    keyed = cycle_commands.make_keys(0, 20, 92)(document)
+    keyed = cycle_commands.bake_cycle(0, 20, 92)(document)
     before, after = clip_of(document, 0), clip_of(keyed, 0)
     for frame in range(20, 93):
         places = [
             track_at(clip.layer.tracks[0], clip, frame) or (0j, 0.0) for clip in (before, after)
         ]
         assert abs(places[0][0] - places[1][0]) < 1e-12
-        assert fronts_at(before, frame) == fronts_at(after, frame)
+        assert depth_points_at(before, frame) == depth_points_at(after, frame)
         shown = [is_visible(each, each.layers[0], frame) for each in (document, keyed)]
         assert shown[0] == shown[1]
     key = track_commands.put_track_key(0, 0, 24, 1 + 0j)
     with pytest.raises(LissomError, match="track of 'tail' acts in a part of frames 20 to 44 only"):
-        cycle_commands.make_keys(0, 20, 92)(key(document))
+        cycle_commands.bake_cycle(0, 20, 92)(key(document))
     ends = dict(zip((24, 30, 38), (20, 30, 44), strict=True))
     whole = replace(wag, keys=tuple(replace(key, frame=ends[key.frame]) for key in wag.keys))
     document = altered(document, tracks=(whole,))
-    keyed = cycle_commands.make_keys(0, 20, 92)(document)
+    keyed = cycle_commands.bake_cycle(0, 20, 92)(document)
     before, after = clip_of(document, 0), clip_of(keyed, 0)
     for frame in range(30, 79):
         one, other = (track_at(clip.layer.tracks[0], clip, frame) for clip in (before, after))
@@ -151,7 +153,7 @@ def test_tracks_what_is_in_front_and_visibility_are_made_into_keys():
 
 
 def test_cycles_go_with_all_of_their_keys_in_time():
-    document = cycle_commands.repeat(0, 20, 44, 68)(with_keys(20, 28, 36, 44, 90))
+    document = cycle_commands.set_cycle(0, 20, 44, 68)(with_keys(20, 28, 36, 44, 90))
     later = key_commands.move_keys(0, {20, 28, 36}, 8)(document).layers[0]
     assert later.cycles == (Cycle(first=28, last=52, until=76),)
     # Moved alone, a key is another part of every repeat.
@@ -170,24 +172,24 @@ def test_cycles_go_with_all_of_their_keys_in_time():
 
 
 def test_what_a_frame_shows_is_keyed_where_it_repeats():
-    layer = cycle_commands.repeat(0, 20, 44, 68)(with_keys(20, 28, 36, 44, 68)).layers[0]
+    layer = cycle_commands.set_cycle(0, 20, 44, 68)(with_keys(20, 28, 36, 44, 68)).layers[0]
     assert [layer.source_of(frame) for frame in (4, 20, 43, 44, 50, 67, 68, 80)] == [
         *(4, 20, 43, 20, 26, 43, 68, 80)
     ]
 
 
 def switched(document, frame, *, to):
-    return layer_commands.switch_at(0, frame, visible=to)(document)
+    return layer_commands.key_visibility(0, frame, visible=to)(document)
 
 
 def placed(document, frame, *, to):
     if to is None:
         return filming_commands.unplace_at(0, frame)(document)
-    return filming_commands.place_at(0, Placing(frame, None, to))(document)
+    return filming_commands.place_at(0, DrawOrderKey(frame, None, to))(document)
 
 
 def is_in_front(document, layer, frame):
-    placing = placing_at(document, layer, frame)
+    placing = draw_order_key_at(document, layer, frame)
     return placing is None or placing.in_front
 
 
@@ -196,7 +198,7 @@ def is_in_front(document, layer, frame):
 )
 def test_changes_in_one_repeat_are_made_in_all(change, is_on):
     document = with_keys(0, 20, 28, 36, 44, 80, last=100)
-    document = cycle_commands.repeat(0, 20, 44, 68)(document)
+    document = cycle_commands.set_cycle(0, 20, 44, 68)(document)
 
     def states(document, frames):
         return [is_on(document, document.layers[0], frame) for frame in frames]
@@ -214,14 +216,14 @@ def test_changes_in_one_repeat_are_made_in_all(change, is_on):
 
 
 def test_a_repeat_keeps_a_change_of_its_own_until_it_is_edited():
-    switches = tuple(Switch(at, visible=at % 4 == 0) for at in (0, 30, 40, 50))
-    document = cycle_commands.repeat(0, 20, 44, 68)(with_keys(0, 20, 28, 36, 44, 80))
+    switches = tuple(VisibilityKey(at, visible=at % 4 == 0) for at in (0, 30, 40, 50))
+    document = cycle_commands.set_cycle(0, 20, 44, 68)(with_keys(0, 20, 28, 36, 44, 80))
     document = switched(altered(document, switches=switches), 50, to=None)
-    assert document.layers[0].switches == switches[:3]
+    assert document.layers[0].visibility_keys == switches[:3]
 
 
 def test_cycle_is_refused_in_words_over_another_cycle():
     document = with_keys(0, 10, 15, last=60)
-    layer = cycle_commands.repeat(0, 10, 20, 40)(document).layers[0]
+    layer = cycle_commands.set_cycle(0, 10, 20, 40)(document).layers[0]
     with pytest.raises(LissomError, match="frames 10 to 20 in them repeat already"):
-        cycle_commands.end_of_repeats(layer, 0, 15)
+        cycle_commands.end_of_cycle(layer, 0, 15)

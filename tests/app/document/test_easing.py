@@ -62,7 +62,7 @@ def test_names():
     assert [PRESETS[name].name for name in PRESETS] == list(PRESETS)
     assert Easing((0.1, 0.2, 0.3, 0.4)).name == "custom"
     assert Easing.parse([0, 0, 1, 1]) is not None
-    assert Easing.parse([0, 0, 1, 1]).written() == "linear"
+    assert Easing.parse([0, 0, 1, 1]).to_json() == "linear"
 
 
 @pytest.mark.parametrize(

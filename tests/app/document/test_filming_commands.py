@@ -10,14 +10,14 @@ from messages import says
 from app.document import (
     HOLD,
     CameraKey,
+    DrawOrderKey,
     FrameRange,
-    Placing,
     camera_at,
     filming_commands as filming,
-    in_order,
     layer_commands,
-    movement_at,
+    layers_in_draw_order,
     opacity_at,
+    transform_at,
 )
 from app.document.layer import NO_KEY
 from app.errors import LissomError
@@ -54,7 +54,7 @@ def test_opacity_is_keyed_and_the_last_key_leaves_what_it_said():
     assert filming.key_opacity(0, 10, 0.5)(faded) is faded
     left = filming.delete_opacity_key(0, 0)(faded)
     none = filming.delete_opacity_key(0, 10)(left)
-    assert (none.layers[0].opacities, none.layers[0].opacity) == ((), 0.5)
+    assert (none.layers[0].opacity_keys, none.layers[0].opacity) == ((), 0.5)
     with pytest.raises(LissomError, match=says(NO_KEY, frame=3)):
         filming.delete_opacity_key(0, 3)(altered(faded))
 
@@ -64,35 +64,35 @@ def test_a_layer_is_moved_from_key_to_key():
         filming.key_movement(0, 0, 0j, 0.0)(EMPTY)
     )
     layer = document.layer(0)
-    at = movement_at(document, layer, 24)
+    at = transform_at(document, layer, 24)
     assert abs(at.on(np.array([layer.pivot]))[0] - layer.pivot - 30 - 10j) < 1e-12
     assert abs(at.factor - np.exp(0.5j)) < 1e-12
     # Midway between two keys at rest.
-    half = movement_at(document, layer, 12).on(np.array([layer.pivot]))[0]
+    half = transform_at(document, layer, 12).on(np.array([layer.pivot]))[0]
     assert abs(half - layer.pivot - 15 - 5j) < 1e-9
     changed = filming.key_movement(0, 24, 8j, 0.5)(document)
-    assert [key.shift for key in changed.layer(0).movement] == [0, 8j]
+    assert [key.shift for key in changed.layer(0).transform_keys] == [0, 8j]
     assert filming.key_movement(0, 24, 8j, 0.5)(changed) is changed
     gone = filming.delete_movement_key(0, 24)(filming.delete_movement_key(0, 0)(changed))
-    assert gone.layer(0).movement == ()
+    assert gone.layer(0).transform_keys == ()
 
 
 def test_a_layer_is_painted_beside_another_one_from_a_frame_on():
     document = layer_commands.duplicate_layer(0)(layer_commands.duplicate_layer(0)(EMPTY))
-    assert [each.id for each in in_order(document, 0)] == [0, 2, 1]
-    placed = filming.place_at(0, Placing(12, 1, in_front=True))(document)
-    assert [each.id for each in in_order(placed, 11)] == [0, 2, 1]
-    assert [each.id for each in in_order(placed, 12)] == [2, 1, 0]
-    behind = filming.place_at(0, Placing(12, 1, in_front=False))(placed)
-    assert [each.id for each in in_order(behind, 12)] == [2, 0, 1]
-    assert filming.unplace_at(0, 12)(behind).layer(0).placings == ()
+    assert [each.id for each in layers_in_draw_order(document, 0)] == [0, 2, 1]
+    placed = filming.place_at(0, DrawOrderKey(12, 1, in_front=True))(document)
+    assert [each.id for each in layers_in_draw_order(placed, 11)] == [0, 2, 1]
+    assert [each.id for each in layers_in_draw_order(placed, 12)] == [2, 1, 0]
+    behind = filming.place_at(0, DrawOrderKey(12, 1, in_front=False))(placed)
+    assert [each.id for each in layers_in_draw_order(behind, 12)] == [2, 0, 1]
+    assert filming.unplace_at(0, 12)(behind).layer(0).draw_order_keys == ()
     with pytest.raises(LissomError):
-        filming.place_at(0, Placing(12, 0))(document)
+        filming.place_at(0, DrawOrderKey(12, 0))(document)
 
 
 def test_layer_placed_beside_what_it_clips_stays_there():
     document = layer_commands.duplicate_layer(0)(EMPTY)
     base, cut = (each.id for each in document.layers)
     clipped = layer_commands.set_clipped(cut, clipped=True)(document)
-    placed = filming.place_at(base, Placing(12, cut, in_front=True))(clipped)
-    assert in_order(placed, 12) == placed.layers
+    placed = filming.place_at(base, DrawOrderKey(12, cut, in_front=True))(clipped)
+    assert layers_in_draw_order(placed, 12) == placed.layers

@@ -5,16 +5,16 @@ from dataclasses import replace
 import pytest
 from documents import altered, disc_document
 
-from app.document.body import GivenMotion
 from app.document.commands import key_commands, scene_commands
 from app.document.keyframe import Keyframe
-from app.document.queries import digest_of_keys, is_as_given
+from app.document.queries import digest_keys, is_motion_unedited
+from app.document.rig import AppliedMotion
 from app.document.settings import FrameRange
 from app.document.timing import Cycle
 from engine.geometry.motions import Parameters
 
 POSE = disc_document().layers[0].keys[0].pose
-BREATHE = GivenMotion(
+BREATHE = AppliedMotion(
     motion="breathe",
     kind="anything",
     joints={},
@@ -31,7 +31,7 @@ def breathing(*frames, motions=(BREATHE,), cycles=()):
     keys = tuple(Keyframe(frame=frame, pose=POSE) for frame in frames)
     document = altered(disc_document(), keys=keys, cycles=cycles, frames=FrameRange(0, 100))
     layer = document.layers[0]
-    given = (replace(each, digest=digest_of_keys(layer, each.first, each.last)) for each in motions)
+    given = (replace(each, digest=digest_keys(layer, each.first, each.last)) for each in motions)
     return altered(document, motions=tuple(given))
 
 
@@ -46,7 +46,7 @@ def ranges(layer):
 def test_a_motion_goes_with_all_of_its_keys_as_it_was_given():
     layer = moved(breathing(0, 10, 20, 30, 80), {10, 20, 30}, 40)
     assert ranges(layer) == [(50, 50, 70)]
-    assert is_as_given(layer, layer.motions[0])
+    assert is_motion_unedited(layer, layer.motions[0])
 
 
 def test_a_motion_that_repeats_goes_with_its_cycle():
@@ -55,14 +55,14 @@ def test_a_motion_that_repeats_goes_with_its_cycle():
     layer = moved(document, {10, 14}, 5)
     assert layer.cycles == (Cycle(first=15, last=25, until=35),)
     assert ranges(layer) == [(15, 15, 35)]
-    assert is_as_given(layer, layer.motions[0])
+    assert is_motion_unedited(layer, layer.motions[0])
 
 
 def test_a_motion_that_was_edited_stays_edited_when_it_is_moved():
     document = key_commands.delete_keys(0, {20})(breathing(10, 20, 30))
     layer = moved(document, {10, 30}, 5)
     assert ranges(layer) == [(15, 15, 35)]
-    assert not is_as_given(layer, layer.motions[0])
+    assert not is_motion_unedited(layer, layer.motions[0])
 
 
 @pytest.mark.parametrize(
@@ -72,7 +72,7 @@ def test_a_motion_that_was_edited_stays_edited_when_it_is_moved():
 def test_the_ends_of_a_motion_go_with_the_keys_there(frames, by, expected):
     layer = moved(breathing(0, 10, 20, 30, 80), frames, by)
     assert ranges(layer) == [expected]
-    assert not is_as_given(layer, layer.motions[0])
+    assert not is_motion_unedited(layer, layer.motions[0])
 
 
 def test_a_motion_is_forgotten_when_it_takes_in_another_key():
@@ -89,7 +89,7 @@ def test_a_motion_is_scaled_with_its_keys():
     document = breathing(0, 10, 20, 30, 80)
     layer = key_commands.scale_keys(0, {10, 20, 30}, 2.0)(document).layers[0]
     assert ranges(layer) == [(10, 10, 50)]
-    assert not is_as_given(layer, layer.motions[0])
+    assert not is_motion_unedited(layer, layer.motions[0])
 
 
 def test_a_motion_is_scaled_with_the_scene():

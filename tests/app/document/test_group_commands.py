@@ -4,9 +4,9 @@ import pytest
 from documents import disc_document
 
 from app.document import group_commands as groups, layer_commands as layers
-from app.document.layering import Group
-from app.document.queries.stage.compositing import Composite, composed
-from app.document.queries.stage.sight import is_visible
+from app.document.layers import Group
+from app.document.queries.layers.compositing import CompositeGroup, composite_layers
+from app.document.queries.layers.visibility import is_visible
 from app.errors import LissomError
 
 
@@ -62,24 +62,24 @@ def test_every_group_around_a_layer_is_there_once_and_after_its_own():
 
 def test_layers_are_gathered_in_a_group_in_their_order():
     document = scene("sky", "leg", "body", "arm", "hat")
-    limbs = groups.put_in_group([3, 1], "limbs")(document)
+    limbs = groups.group_layers([3, 1], "limbs")(document)
     assert paths(limbs) == ["sky", "body", "limbs/leg", "limbs/arm", "hat"]
-    more = groups.put_in_group({0}, "limbs/far")(limbs)
+    more = groups.group_layers({0}, "limbs/far")(limbs)
     assert paths(more) == ["body", "limbs/leg", "limbs/arm", "limbs/far/sky", "hat"]
     assert names_of(more) == ["limbs", "limbs/far"]
-    assert groups.put_in_group({0}, "limbs/far")(more) is more
+    assert groups.group_layers({0}, "limbs/far")(more) is more
     # The last one of a group takes it along.
-    assert names_of(groups.put_in_group({0}, "")(more)) == ["limbs"]
+    assert names_of(groups.group_layers({0}, "")(more)) == ["limbs"]
     assert document.canvas == more.canvas
 
 
 def test_what_leaves_a_group_does_not_part_it():
     document = grouped("a/one a/two a/three sky", "a")
-    out = groups.put_in_group({1}, "")(document)
+    out = groups.group_layers({1}, "")(document)
     assert paths(out) == ["a/one", "a/three", "two", "sky"]
-    inner = groups.put_in_group({1}, "a/b")(document)
+    inner = groups.group_layers({1}, "a/b")(document)
     assert paths(inner) == ["a/one", "a/three", "a/b/two", "sky"]
-    beside = groups.put_in_group({1}, "c")(document)
+    beside = groups.group_layers({1}, "c")(document)
     assert paths(beside) == ["a/one", "a/three", "c/two", "sky"]
 
 
@@ -108,25 +108,25 @@ def test_a_layer_that_is_moved_joins_and_leaves_groups_so_that_they_stay_whole(
 def test_a_group_is_moved_as_a_whole():
     document = grouped("sky a/one a/b/two a/b/three c/four c/five", "a", "a/b", "c")
     document = groups.set_group_opacity("a/b", 0.5)(document)
-    inside = groups.put_group_in("a/b", "c")(document)
+    inside = groups.move_group_into("a/b", "c")(document)
     assert paths(inside) == ["sky", "a/one", "c/four", "c/five", "c/b/two", "c/b/three"]
     assert inside.group("c/b").opacity == 0.5
-    free = groups.put_group_in("a/b", "")(document)
+    free = groups.move_group_into("a/b", "")(document)
     assert paths(free) == ["sky", "a/one", "b/two", "b/three", "c/four", "c/five"]
     # Before a group that is told of first, and with all of its own around it left empty.
-    late = groups.put_group_in("a", "c")(document)
+    late = groups.move_group_into("a", "c")(document)
     assert paths(late) == ["sky", "c/four", "c/five", "c/a/one", "c/a/b/two", "c/a/b/three"]
-    beside = groups.put_group_beside("a/b", 0, in_front=False)(document)
+    beside = groups.reorder_group("a/b", 0, in_front=False)(document)
     assert paths(beside) == ["b/two", "b/three", "sky", "a/one", "c/four", "c/five"]
-    amid = groups.put_group_beside("a/b", 4, in_front=True)(document)
+    amid = groups.reorder_group("a/b", 4, in_front=True)(document)
     assert paths(amid) == ["sky", "a/one", "c/four", "c/b/two", "c/b/three", "c/five"]
-    stays = groups.put_group_beside("a/b", 1, in_front=False)(document)
+    stays = groups.reorder_group("a/b", 1, in_front=False)(document)
     assert paths(stays) == ["sky", "a/b/two", "a/b/three", "a/one", "c/four", "c/five"]
-    assert groups.put_group_beside("a/b", 1, in_front=True)(document) is document
+    assert groups.reorder_group("a/b", 1, in_front=True)(document) is document
     with pytest.raises(LissomError, match="'a' cannot be put in itself"):
-        groups.put_group_in("a", "a/b")(document)
+        groups.move_group_into("a", "a/b")(document)
     # Where its name is taken, it has a number.
-    twice = groups.put_group_in("b", "a")(grouped("a/b/one b/two", "a", "a/b", "b"))
+    twice = groups.move_group_into("b", "a")(grouped("a/b/one b/two", "a", "a/b", "b"))
     assert paths(twice) == ["a/b/one", "a/b 2/two"]
 
 
@@ -160,13 +160,13 @@ def test_ungrouping_hands_on_what_the_group_did():
     document = grouped("a/one a/a/two a/b/three b/four", "a", "a/a", "a/b", "b")
     document = groups.set_group_opacity("a", 0.5)(document)
     document = groups.set_group_hidden("a", hidden=True)(document)
-    free = groups.ungroup("a")(document)
+    free = groups.ungroup_layers("a")(document)
     assert paths(free) == ["one", "a/two", "b 2/three", "b/four"]
     assert [group.opacity for group in free.groups] == [0.5, 0.5, 1.0]
     for layer in free.layers[:3]:
         assert not is_visible(free, layer, 0)
     assert (free.layers[0].opacity, free.layers[1].opacity) == (0.5, 1.0)
-    nested = groups.ungroup("a/b")(document)
+    nested = groups.ungroup_layers("a/b")(document)
     assert paths(nested)[2] == "a/three"
 
 
@@ -174,7 +174,7 @@ def test_a_hidden_group_hides_all_that_is_in_it():
     document = grouped("sky a/one a/b/two", "a", "a/b")
     hidden = groups.set_group_hidden("a", hidden=True)(document)
     assert [is_visible(hidden, layer, 3) for layer in hidden.layers] == [True, False, False]
-    assert [layer.name for layer in hidden.exported] == ["sky"]
+    assert [layer.name for layer in hidden.exported_layers] == ["sky"]
     assert groups.set_group_hidden("a", hidden=True)(hidden) is hidden
     inner = groups.set_group_hidden("a/b", hidden=True)(document)
     assert [is_visible(inner, layer, 3) for layer in inner.layers] == [True, True, False]
@@ -184,25 +184,27 @@ def test_each_run_of_a_group_is_composited_by_itself():
     document = grouped("a/one sky a/two a/b/three", "a", "a/b")
 
     def drawn(changed):
-        return composed(changed, {layer.id: layer.name for layer in changed.layers}, 0)
+        return composite_layers(changed, {layer.id: layer.name for layer in changed.layers}, 0)
 
     assert drawn(document) == ("one", "sky", "two", "three")
     faded = groups.set_group_opacity("a", 0.5)(document)
     assert drawn(faded) == (
-        Composite(("one",), 0.5),
+        CompositeGroup(("one",), 0.5),
         "sky",
-        Composite(("two", "three"), 0.5),
+        CompositeGroup(("two", "three"), 0.5),
     )
     inner = groups.set_group_blend("a/b", "multiply")(faded)
     # Faded as one, it still lets through what blends in it.
-    shade = Composite(("three",), 1.0, "multiply")
-    assert drawn(inner)[2] == Composite(("two", shade), 0.5, passes=True)
-    assert drawn(groups.set_group_blend("a", "normal")(inner))[2] == Composite(("two", shade), 0.5)
+    shade = CompositeGroup(("three",), 1.0, "multiply")
+    assert drawn(inner)[2] == CompositeGroup(("two", shade), 0.5, is_pass_through=True)
+    assert drawn(groups.set_group_blend("a", "normal")(inner))[2] == CompositeGroup(
+        ("two", shade), 0.5
+    )
     # A group keeps what blends in it from what is behind only if it does not let it through.
     alone = groups.set_group_blend("a/b", "multiply")(document)
-    assert drawn(alone)[3] == Composite(("three",), 1.0, "multiply")
+    assert drawn(alone)[3] == CompositeGroup(("three",), 1.0, "multiply")
     apart = groups.set_group_blend("a", "normal")(alone)
-    assert drawn(apart)[2] == Composite(("two", Composite(("three",), 1.0, "multiply")))
+    assert drawn(apart)[2] == CompositeGroup(("two", CompositeGroup(("three",), 1.0, "multiply")))
     assert drawn(groups.set_group_blend("a", "normal")(document)) == drawn(document)
 
 
@@ -217,17 +219,19 @@ def clipped(document, *names):
 def test_what_is_clipped_is_painted_on_what_lies_below_it_in_its_group():
     document = clipped(grouped("sky arm shade light a/two a/three", "a"), "shade", "light", "two")
     names = {layer.id: layer.name for layer in document.layers}
-    cut = [Composite((name,), clipped=True) for name in ("shade", "light")]
+    cut = [CompositeGroup((name,), clipped=True) for name in ("shade", "light")]
     # At the bottom of its group there is nothing that cuts.
-    whole = ("sky", Composite(("arm", *cut), 0.5), "two", "three")
-    assert composed(document, names, 0) == whole
+    whole = ("sky", CompositeGroup(("arm", *cut), 0.5), "two", "three")
+    assert composite_layers(document, names, 0) == whole
     # What cuts is not seen, and nothing of what it cuts.
-    assert composed(document, {i: name for i, name in names.items() if name != "arm"}, 0) == (
+    assert composite_layers(
+        document, {i: name for i, name in names.items() if name != "arm"}, 0
+    ) == (
         "sky",
         "two",
         "three",
     )
-    assert composed(document, {1: "arm"}, 0) == (Composite(("arm",), 0.5),)
+    assert composite_layers(document, {1: "arm"}, 0) == (CompositeGroup(("arm",), 0.5),)
     assert layers.set_clipped(2, clipped=True)(document) is document
 
 
@@ -235,10 +239,10 @@ def test_a_group_is_clipped_and_cuts():
     document = clipped(grouped("arm a/one a/two hat", "a"), "hat")
     document = replace(document, groups=(Group(name="a", clipped=True),))
     names = {layer.id: layer.name for layer in document.layers}
-    parts = composed(document, names, 0)
-    cut = Composite(("one", "two"), clipped=True), Composite(("hat",), clipped=True)
-    assert parts == (Composite(("arm", *cut), 0.5),)
+    parts = composite_layers(document, names, 0)
+    cut = CompositeGroup(("one", "two"), clipped=True), CompositeGroup(("hat",), clipped=True)
+    assert parts == (CompositeGroup(("arm", *cut), 0.5),)
     free = replace(document, groups=(Group(name="a"),))
-    assert composed(free, names, 0)[1] == Composite(
-        ("one", "two", Composite(("hat",), clipped=True))
+    assert composite_layers(free, names, 0)[1] == CompositeGroup(
+        ("one", "two", CompositeGroup(("hat",), clipped=True))
     )

@@ -5,13 +5,13 @@ import pytest
 from messages import says
 
 from app.document import Handle
-from app.document.body.pairs import (
+from app.document.rig.mirror_names import (
     NO_PAIR,
+    format_pairs,
+    mirrored_handles,
+    mirrored_handles_by_name,
     mirrored_name,
-    pairs_by_name,
-    partners_of,
-    read_pairs,
-    written_pairs,
+    parse_pairs,
 )
 from app.errors import LissomError
 
@@ -50,7 +50,7 @@ def test_other_words_tell_of_no_side(name):
 def test_only_handles_that_are_both_there_are_a_pair():
     names = ("ear.L", "nose", "ear.R", "paw_l", "left eye", "right eye")
     handles = [Handle(id=10 + i, name=name, position=complex(i)) for i, name in enumerate(names)]
-    assert pairs_by_name(handles) == {10: 12, 12: 10, 14: 15, 15: 14}
+    assert mirrored_handles_by_name(handles) == {10: 12, 12: 10, 14: 15, 15: 14}
 
 
 def test_handles_that_names_do_not_pair_are_paired_by_their_places():
@@ -66,9 +66,9 @@ def test_handles_that_names_do_not_pair_are_paired_by_their_places():
     numbered = enumerate(places.items(), 1)
     handles = [Handle(id=i, name=name, position=place) for i, (name, place) in numbered]
     outline = np.array([0, 100, 100 + 100j, 100j])
-    assert partners_of(handles, 50.0, outline) == {1: 2, 2: 1, 3: 4, 4: 3, 6: 6}
-    assert partners_of(handles[2:4], 20.0, outline) == {3: 3}
-    assert partners_of([], 50.0, outline) == {}
+    assert mirrored_handles(handles, 50.0, outline) == {1: 2, 2: 1, 3: 4, 4: 3, 6: 6}
+    assert mirrored_handles(handles[2:4], 20.0, outline) == {3: 3}
+    assert mirrored_handles([], 50.0, outline) == {}
 
 
 @pytest.mark.parametrize(
@@ -113,8 +113,8 @@ def test_a_whole_name_comes_before_its_words():
 
 @pytest.mark.parametrize("text", ["L/R, left/right, near/far", "a/b", " near / far ,, L/R ", ""])
 def test_pairs_are_read_as_they_are_written(text):
-    pairs = read_pairs(text)
-    assert read_pairs(written_pairs(pairs)) == pairs
+    pairs = parse_pairs(text)
+    assert parse_pairs(format_pairs(pairs)) == pairs
     assert len(pairs) == text.count("/")
 
 
@@ -130,4 +130,4 @@ def test_pairs_are_read_as_they_are_written(text):
 )
 def test_what_is_no_pair_is_told(text, words):
     with pytest.raises(LissomError, match=words):
-        read_pairs(text)
+        parse_pairs(text)

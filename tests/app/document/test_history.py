@@ -14,9 +14,9 @@ from app.document.commands import (
     scene_commands,
     shape_commands,
 )
-from app.document.history import History, UnkeyedPose, _bytes_only_in
+from app.document.history import History, PreviewPose, _bytes_only_in
 from app.errors import LissomError
-from app.storage.layers import still_layer
+from app.storage.layers import make_still_layer
 
 seeds = st.lists(st.integers(0, 2**32 - 1), max_size=25)
 
@@ -137,12 +137,12 @@ def test_a_gesture_that_is_taken_back_leaves_no_trace():
     for fps in (20, 21):
         history.do(set_fps(fps), gesture=drag)
     assert history.redo_label is None
-    history.take_back(object())
-    history.take_back(None)
+    history.revert(object())
+    history.revert(None)
     assert history.document.fps == 21
-    history.take_back(drag)
+    history.revert(drag)
     assert history.document is before
-    history.take_back(drag)
+    history.revert(drag)
     assert history.document is before
     seen = []
     while history.redo_label:
@@ -152,7 +152,7 @@ def test_a_gesture_that_is_taken_back_leaves_no_trace():
     # Over by another step: it is that step's to undo.
     history.do(set_fps(30), gesture=drag)
     history.do(set_fps(31))
-    history.take_back(drag)
+    history.revert(drag)
     assert history.document.fps == 31
 
 
@@ -160,26 +160,26 @@ def test_a_pose_that_no_key_holds_is_undone_and_redone_like_all_else():
     first = disc_document()
     pose = first.layers[0].keys[0].pose
     history = History(first, saved=True)
-    poses = [UnkeyedPose(layer=0, frame=5, pose=pose) for _ in range(3)]
-    history.pose(poses[0])
+    poses = [PreviewPose(layer=0, frame=5, pose=pose) for _ in range(3)]
+    history.set_preview_pose(poses[0])
     history.do(set_fps(10))
     drag = object()
     for unkeyed in poses[1:]:
-        history.pose(unkeyed, gesture=drag)
-    assert (history.undo_label, history.unkeyed) == ("Pose", poses[2])
+        history.set_preview_pose(unkeyed, gesture=drag)
+    assert (history.undo_label, history.preview_pose) == ("Pose", poses[2])
     assert history.document.fps == 10
     history.undo()
-    assert history.unkeyed is poses[0]
+    assert history.preview_pose is poses[0]
     history.undo()
-    assert (history.document, history.unkeyed) == (first, poses[0])
+    assert (history.document, history.preview_pose) == (first, poses[0])
     assert history.is_saved
     history.undo()
-    assert history.unkeyed is None
+    assert history.preview_pose is None
     for unkeyed in (poses[0], poses[0], poses[2]):
         history.redo()
-        assert history.unkeyed is unkeyed
+        assert history.preview_pose is unkeyed
     history.pose(None, gesture=drag)
-    assert history.unkeyed is None
+    assert history.preview_pose is None
 
 
 def test_anything_between_ends_a_gesture():
@@ -294,7 +294,7 @@ def test_thousands_of_steps_can_be_undone():
 def test_what_completes_a_step_is_undone_with_it():
     history = History(disc_document(), saved=True)
     first = history.document
-    pose = UnkeyedPose(layer=0, frame=3, pose=first.layers[0].keys[0].pose)
+    pose = PreviewPose(layer=0, frame=3, pose=first.layers[0].keys[0].pose)
     history.do(set_fps(10))
     history.do(set_fps(20))
     later = history.document
@@ -310,9 +310,9 @@ def test_what_completes_a_step_is_undone_with_it():
     history.undo()
     assert history.document is first
     # A pose that no key holds is over the domain of before.
-    history.pose(pose)
+    history.set_preview_pose(pose)
     history.extend_step(scene_commands.set_loop(loop=True))
-    assert history.unkeyed is None
+    assert history.preview_pose is None
     # What changes nothing completes nothing.
     same = history.document
     history.extend_step(scene_commands.set_loop(loop=True))
@@ -336,8 +336,8 @@ def test_what_a_gesture_led_to_goes_on_in_its_step_and_in_all_later_ones():
     layer = first.layers[0]
     frame = layer.keys[0].frame
     pose = moved(layer.keys[0].pose, 1)
-    history.do(key_commands.pose_key(layer.id, frame, pose), gesture=gesture)
-    history.do(pose_commands.keep_pose(layer.id, pose, "copy"))
+    history.do(key_commands.replace_key_pose(layer.id, frame, pose), gesture=gesture)
+    history.do(pose_commands.save_pose(layer.id, pose, "copy"))
     history.do(set_fps(31))
     history.undo()
     rest = moved(pose, 2)
@@ -363,7 +363,7 @@ def test_steps_still_share_a_layer_when_its_pose_goes_on():
     layer = first.layers[0]
     frame = layer.keys[0].frame
     pose, made = moved(layer.keys[0].pose, 1), []
-    history.do(key_commands.pose_key(layer.id, frame, pose), gesture=gesture)
+    history.do(key_commands.replace_key_pose(layer.id, frame, pose), gesture=gesture)
     history.do(set_fps(31))
     history.do(set_fps(32))
     assert history.amend(gesture, pose, lambda *_: made.append(moved(pose, 2)) or made[-1])
@@ -378,10 +378,10 @@ def test_an_unkeyed_pose_goes_on_too_and_other_poses_stay():
     history, gesture = History(first, saved=True), object()
     layer = first.layers[0]
     pose = moved(layer.keys[0].pose, 1)
-    history.pose(UnkeyedPose(layer=layer.id, frame=5, pose=pose), gesture=gesture)
+    history.set_preview_pose(PreviewPose(layer=layer.id, frame=5, pose=pose), gesture=gesture)
     rest = moved(pose, 2)
     assert history.amend(gesture, pose, lambda *_: rest)
-    assert history.unkeyed.pose is rest
+    assert history.preview_pose.pose is rest
     assert history.document is first
     # Also where the layer that it is of is gone later on.
     history.do(layer_commands.add_layer(replace(layer, id=layer.id + 100)))
@@ -390,7 +390,7 @@ def test_an_unkeyed_pose_goes_on_too_and_other_poses_stay():
     history.undo()
     history.undo()
     history.undo()
-    assert history.unkeyed is None
+    assert history.preview_pose is None
 
 
 @pytest.mark.parametrize("change", ["another domain", "no layer"])
@@ -398,30 +398,30 @@ def test_pose_outside_keys_is_let_go_with_its_domain(change):
     history = History(full_document(), saved=True)
     history.do(layer_commands.duplicate_layer(0))
     layer = history.document.layers[0]
-    history.pose(UnkeyedPose(layer=layer.id, frame=1, pose=layer.keys[0].pose))
+    history.set_preview_pose(PreviewPose(layer=layer.id, frame=1, pose=layer.keys[0].pose))
     if change == "another domain":
-        other = replace(still_layer(layer), id=layer.id)
+        other = replace(make_still_layer(layer), id=layer.id)
         history.do(layer_commands.replace_layer(layer.id, other))
     else:
         history.do(layer_commands.remove_layer(layer.id))
-    assert history.unkeyed is None
+    assert history.preview_pose is None
     history.undo()
-    assert history.unkeyed is not None
+    assert history.preview_pose is not None
 
 
 def test_pose_outside_keys_has_a_target_for_each_handle():
     first = full_document()
     history, layer = History(first, saved=True), first.layers[0]
     pose = moved(layer.keys[0].pose, 1)
-    history.pose(UnkeyedPose(layer=layer.id, frame=5, pose=pose))
+    history.set_preview_pose(PreviewPose(layer=layer.id, frame=5, pose=pose))
     kept, gone = layer.handles[:2]
     history.do(handle_commands.remove_handles(layer.id, {gone.id}))
-    assert history.unkeyed.pose.targets.keys() == pose.targets.keys() - {gone.id}
-    assert history.unkeyed.pose.targets[kept.id] == pose.targets[kept.id]
+    assert history.preview_pose.pose.targets.keys() == pose.targets.keys() - {gone.id}
+    assert history.preview_pose.pose.targets[kept.id] == pose.targets[kept.id]
     place = complex(layer.domain.mesh.vertices[0])
     history.do(handle_commands.move_handle(layer.id, kept.id, place))
     (here,) = layer.map_of(pose)(np.array([place]))
-    assert history.unkeyed.pose.targets[kept.id].position == here
+    assert history.preview_pose.pose.targets[kept.id].position == here
     history.undo()
     history.undo()
-    assert history.unkeyed.pose is pose
+    assert history.preview_pose.pose is pose

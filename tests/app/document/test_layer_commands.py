@@ -11,12 +11,12 @@ from app.document import (
     layer_commands as layers,
     scene_commands as scenes,
 )
-from app.document.commands.staging.layer_commands import LAST_LAYER
-from app.document.layering import Attachment, Switch
-from app.document.model import HANGS_ON_ITSELF, NO_LAYER
+from app.document.commands.layers.layer_commands import LAST_LAYER
+from app.document.layers import Attachment, VisibilityKey
+from app.document.model import NO_LAYER, PARENT_CIRCLE
 from app.document.queries.clips import clip_of
-from app.document.queries.stage.fronts import fronts_at
-from app.document.queries.stage.sight import is_visible
+from app.document.queries.layers.depth import depth_points_at
+from app.document.queries.layers.visibility import is_visible
 from app.errors import LissomError
 
 
@@ -25,7 +25,9 @@ def scene(*names):
     document = disc_document()
     document = layers.rename_layer(0, names[0])(document)
     for name in names[1:]:
-        layer = replace(document.layers[0], id=layers.free_identity(document), name=name, joints=())
+        layer = replace(
+            document.layers[0], id=layers.next_layer_id(document), name=name, attachments=()
+        )
         document = layers.add_layer(layer)(document)
     return document
 
@@ -67,68 +69,73 @@ def test_two_layers_have_two_names():
 
 def test_nothing_hangs_on_itself_and_what_it_hung_on_may_go():
     document = scene("body", "arm", "hand")
-    joint = Attachment(to=0, at=CENTRE)
-    document = layers.attach(1, CENTRE, joint)(document)
-    document = layers.attach(2, CENTRE, Attachment(to=1, at=CENTRE))(document)
-    assert [layer.name for layer in document.carriers(2, 0)] == ["hand", "arm", "body"]
+    joint = Attachment(parent=0, parent_point=CENTRE)
+    document = layers.attach_layer(1, CENTRE, joint)(document)
+    document = layers.attach_layer(2, CENTRE, Attachment(parent=1, parent_point=CENTRE))(document)
+    assert [layer.name for layer in document.parent_chain(2, 0)] == ["hand", "arm", "body"]
     for child, parent in ((0, 2), (0, 1), (1, 1)):
-        with pytest.raises(LissomError, match=says(HANGS_ON_ITSELF)):
-            layers.attach(child, CENTRE, Attachment(to=parent, at=CENTRE))(document)
+        with pytest.raises(LissomError, match=says(PARENT_CIRCLE)):
+            layers.attach_layer(child, CENTRE, Attachment(parent=parent, parent_point=CENTRE))(
+                document
+            )
     loose = layers.remove_layer(1)(document)
-    assert loose.layer(2).joints == ()
+    assert loose.layer(2).attachments == ()
     with pytest.raises(LissomError, match=says(NO_LAYER, identity=9)):
-        layers.attach(1, CENTRE, Attachment(to=9, at=CENTRE))(document)
+        layers.attach_layer(1, CENTRE, Attachment(parent=9, parent_point=CENTRE))(document)
 
 
 def test_detached_poses_are_turned_and_moved_and_as_distorted_as_before():
     document = handles.add_handle(0, CENTRE)(scene("body", "arm"))
     document = handles.add_handle(1, CENTRE + 20)(document)
-    document = layers.attach(1, CENTRE, Attachment(to=0, at=CENTRE))(document)
+    document = layers.attach_layer(1, CENTRE, Attachment(parent=0, parent_point=CENTRE))(document)
     factor, shift = np.exp(0.4j), 3 - 2j
-    loose = layers.detach(1, factor, shift)(document).layer(1)
+    loose = layers.detach_layer(1, factor, shift)(document).layer(1)
     before = document.layer(1)
-    assert loose.joints == ()
+    assert loose.attachments == ()
     points = np.array([CENTRE, CENTRE + 30j])
     old, new = (layer.map_of(layer.keys[0].pose) for layer in (before, loose))
     assert_allclose(new(points), factor * old(points) + shift, rtol=0, atol=1e-11)
     assert_allclose(np.abs(new.derivatives(points)), np.abs(old.derivatives(points)), atol=1e-12)
     (target,) = loose.keys[0].pose.targets.values()
     assert_allclose(target.position, factor * (CENTRE + 20) + shift)
-    assert layers.detach(0, factor, shift)(document) is document
+    assert layers.detach_layer(0, factor, shift)(document) is document
 
 
 def test_a_layer_is_seen_as_its_switches_say():
-    document = layers.switch_at(0, 12, visible=False)(disc_document())
-    assert document.layers[0].switches == (Switch(0, visible=True), Switch(12, visible=False))
-    document = layers.switch_at(0, 20, visible=True)(document)
+    document = layers.key_visibility(0, 12, visible=False)(disc_document())
+    assert document.layers[0].visibility_keys == (
+        VisibilityKey(0, visible=True),
+        VisibilityKey(12, visible=False),
+    )
+    document = layers.key_visibility(0, 20, visible=True)(document)
     seen = [is_visible(document, document.layers[0], frame) for frame in (0, 11.9, 12, 19, 20, 50)]
     assert seen == [True, True, False, False, True, True]
     hidden = layers.set_hidden(0, hidden=True)(document)
     assert not is_visible(hidden, hidden.layers[0], 0)
-    assert layers.switch_at(0, 12, visible=None)(document).layers[0].switches == (
-        Switch(0, visible=True),
-        Switch(20, visible=True),
+    assert layers.key_visibility(0, 12, visible=None)(document).layers[0].visibility_keys == (
+        VisibilityKey(0, visible=True),
+        VisibilityKey(20, visible=True),
     )
     fresh = disc_document()
     assert is_visible(fresh, fresh.layers[0], 5)
 
 
 def test_what_is_seen_when_moves_and_is_stretched_with_all_time():
-    document = layers.switch_at(0, 12, visible=False)(disc_document())
-    document = layers.switch_at(0, 20, visible=True)(document)
+    document = layers.key_visibility(0, 12, visible=False)(disc_document())
+    document = layers.key_visibility(0, 20, visible=True)(document)
 
     def frames(document):
-        return [switch.frame for switch in document.layers[0].switches]
+        return [switch.frame for switch in document.layers[0].visibility_keys]
 
-    assert frames(layers.move_switch(0, 12, 15)(document)) == [0, 15, 20]
-    passed = layers.move_switch(0, 12, 30)(document)
+    assert frames(layers.move_visibility_key(0, 12, 15)(document)) == [0, 15, 20]
+    passed = layers.move_visibility_key(0, 12, 30)(document)
     assert frames(passed) == [0, 20, 30]
-    assert [switch.visible for switch in passed.layers[0].switches] == [True, True, False]
-    assert layers.move_switch(0, 12, 12)(document) is document
+    assert [switch.visible for switch in passed.layers[0].visibility_keys] == [True, True, False]
+    assert layers.move_visibility_key(0, 12, 12)(document) is document
     with pytest.raises(LissomError, match="neither shown nor hidden at frame 13"):
-        layers.move_switch(0, 13, 14)(document)
+        layers.move_visibility_key(0, 13, 14)(document)
     with pytest.raises(LissomError, match="at frame 20 after frame 20"):
-        layers.move_switch(0, 12, 20)(document)
+        layers.move_visibility_key(0, 12, 20)(document)
     assert frames(scenes.scale_time(2.0)(document)) == [0, 24, 40]
 
 
@@ -140,24 +147,24 @@ def test_depth_holds_from_a_key_on():
     pose = layer.keys[0].pose
     keys = tuple(replace(layer.keys[0], frame=frame, pose=pose) for frame in (0, 10, 20))
     document = document.with_layer(replace(layer, keys=keys))
-    document = layers.set_front(0, 0, -0.5, 30.0)(document)
-    document = layers.key_front(0, 10, 0, 1.0)(document)
-    document = layers.key_front(0, 20, 1, 0.25)(document)
+    document = layers.set_depth(0, 0, -0.5, 30.0)(document)
+    document = layers.key_depth(0, 10, 0, 1.0)(document)
+    document = layers.key_depth(0, 20, 1, 0.25)(document)
 
     def depths(frame, *, loop=False):
         clip = replace(clip_of(document, 0), loop=loop)
-        return [(front.place, front.depth) for front in fronts_at(clip, frame)]
+        return [(front.place, front.depth) for front in depth_points_at(clip, frame)]
 
     nose, tail = (handle.position for handle in document.layers[0].handles)
     assert depths(0) == depths(9.5) == [(nose, -0.5)]
     assert depths(10) == [(nose, 1.0)]
     assert depths(30) == [(nose, 1.0), (tail, 0.25)]
-    fronts = fronts_at(clip_of(document, 0), 30)
+    fronts = depth_points_at(clip_of(document, 0), 30)
     assert fronts[0].extent == 30.0
     assert fronts[1].extent == pytest.approx(0.15 * 180)
     assert depths(48 + 9, loop=True) == depths(9)
     gone = handles.remove_handles(0, {0})(document)
-    assert [dict(key.fronts) for key in gone.layers[0].keys] == [{}, {}, {1: 0.25}]
-    assert layers.key_front(0, 10, 0, None)(document).layers[0].keys[1].fronts == {}
+    assert [dict(key.depths) for key in gone.layers[0].keys] == [{}, {}, {1: 0.25}]
+    assert layers.key_depth(0, 10, 0, None)(document).layers[0].keys[1].depths == {}
     with pytest.raises(LissomError, match="between −1, behind, and 1"):
-        layers.set_front(0, 0, 1.5, None)(document)
+        layers.set_depth(0, 0, 1.5, None)(document)

@@ -17,7 +17,7 @@ from app.document import (
     material_commands,
     shape_commands,
     stiff_outline,
-    stiffened,
+    with_stiffness,
 )
 from app.document.layer import NO_HANDLE
 from app.errors import LissomError
@@ -39,7 +39,7 @@ def boned():
 
 def boundary_of(layer):
     domain = layer.domain
-    return stiffened(layer, Boundary.sample(domain))
+    return with_stiffness(layer, Boundary.sample(domain))
 
 
 def test_a_stroke_is_painted_on_the_outline_it_reaches_and_cleared():
@@ -47,8 +47,10 @@ def test_a_stroke_is_painted_on_the_outline_it_reaches_and_cleared():
     (layer,) = document.layers
     painted, reached = brushed_stiffness(layer, [CENTRE], radius=40, amount=9.0)
     assert (painted, reached) == (None, False)
-    assert material_commands.paint(0, [CENTRE], radius=40, amount=9.0)(document) is document
-    stiff = material_commands.paint(0, [RIGHT], radius=50, amount=9.0)(document)
+    assert (
+        material_commands.paint_stiffness(0, [CENTRE], radius=40, amount=9.0)(document) is document
+    )
+    stiff = material_commands.paint_stiffness(0, [RIGHT], radius=50, amount=9.0)(document)
     (layer,) = stiff.layers
     assert layer.keys is document.layers[0].keys
     assert not layer.stiffness.flags.writeable
@@ -57,25 +59,25 @@ def test_a_stroke_is_painted_on_the_outline_it_reaches_and_cleared():
     boundary = boundary_of(layer)
     assert boundary.stiffness[0] == pytest.approx(layer.stiffness[0])
     # Painted over as much with the usual one, nothing is left.
-    soft = material_commands.paint(0, [RIGHT], radius=50, amount=1.0, softness=0.0)(stiff)
-    again = material_commands.paint(0, [RIGHT], radius=90, amount=1.0, softness=0.0)(soft)
+    soft = material_commands.paint_stiffness(0, [RIGHT], radius=50, amount=1.0, softness=0.0)(stiff)
+    again = material_commands.paint_stiffness(0, [RIGHT], radius=90, amount=1.0, softness=0.0)(soft)
     assert again.layers[0].stiffness is None
-    assert material_commands.clear(0)(stiff).layers[0].stiffness is None
-    assert material_commands.clear(0)(document) is document
+    assert material_commands.clear_stiffness(0)(stiff).layers[0].stiffness is None
+    assert material_commands.clear_stiffness(0)(document) is document
 
 
 def test_bones_come_and_go_with_their_handles_and_their_names_do_not_matter():
     document = boned()
-    assert document.layers[0].bones == (Bone(ends=(0, 1), amount=20.0),)
-    changed = material_commands.set_bone_amount(0, (1, 0), 50.0)(document)
-    assert changed.layers[0].bones[0].amount == 50
-    assert material_commands.set_bone_amount(0, (1, 0), 50.0)(changed) is changed
-    hidden = material_commands.show_bones(0, shown=False)(document)
+    assert document.layers[0].bones == (Bone(ends=(0, 1), stiffness=20.0),)
+    changed = material_commands.set_bone_stiffness(0, (1, 0), 50.0)(document)
+    assert changed.layers[0].bones[0].stiffness == 50
+    assert material_commands.set_bone_stiffness(0, (1, 0), 50.0)(changed) is changed
+    hidden = material_commands.set_bones_visible(0, shown=False)(document)
     assert not hidden.layers[0].bones[0].is_shown
     assert_array_equal(
         boundary_of(hidden.layers[0]).stiffness, boundary_of(document.layers[0]).stiffness
     )
-    assert material_commands.show_bones(0, shown=True)(document) is document
+    assert material_commands.set_bones_visible(0, shown=True)(document) is document
     renamed = handle_commands.rename_handle(0, 0, "paw")(document)
     assert renamed.layers[0].bones == document.layers[0].bones
     assert handle_commands.remove_handles(0, {1})(document).layers[0].bones == ()
@@ -97,10 +99,13 @@ def test_bones_come_and_go_with_their_handles_and_their_names_do_not_matter():
         (material_commands.add_bone(0, (0, 2), 101.0), "from 1/30 to 100, not 101"),
         (material_commands.add_bone(0, (0, 2), float("nan")), "from 1/30 to 100, not nan"),
         (material_commands.remove_bone(0, (0, 2)), "There is no bone from 'hand.L' to 'top'"),
-        (material_commands.set_bone_amount(0, (1, 2), 3.0), "There is no bone"),
-        (material_commands.set_bone_amount(0, (0, 1), 0.0), "from 1/30 to 100, not 0"),
-        (material_commands.paint(0, [CENTRE], radius=-1, amount=2.0), "radius of a brush is above"),
-        (material_commands.paint(0, [CENTRE], radius=9, amount=0.01), "from 1/30 to 100"),
+        (material_commands.set_bone_stiffness(0, (1, 2), 3.0), "There is no bone"),
+        (material_commands.set_bone_stiffness(0, (0, 1), 0.0), "from 1/30 to 100, not 0"),
+        (
+            material_commands.paint_stiffness(0, [CENTRE], radius=-1, amount=2.0),
+            "radius of a brush is above",
+        ),
+        (material_commands.paint_stiffness(0, [CENTRE], radius=9, amount=0.01), "from 1/30 to 100"),
     ],
 )
 def test_what_is_not_possible_says_why(command, message):
@@ -148,7 +153,7 @@ def test_the_larger_of_what_is_painted_and_of_bones_counts():
 
 
 def test_material_stays_in_its_place_on_another_domain():
-    document = material_commands.paint(0, [RIGHT], radius=60, amount=30.0)(boned())
+    document = material_commands.paint_stiffness(0, [RIGHT], radius=60, amount=30.0)(boned())
     (before,) = document.layers
     domain = disc_domain(40)
     rest = before.keys[0].pose.with_map(_identity(domain))
@@ -158,21 +163,21 @@ def test_material_stays_in_its_place_on_another_domain():
     assert after.bones == before.bones
     assert new.stiffness[0] == pytest.approx(old.stiffness[0], rel=0.05)
     assert new.stiffness[np.argmin(new.points.real)] == pytest.approx(1, abs=0.2)
-    assert_array_equal(material_commands.clear(0)(document).layers[0].bones, before.bones)
+    assert_array_equal(material_commands.clear_stiffness(0)(document).layers[0].bones, before.bones)
 
 
 def test_material_is_mirrored_as_handles_are():
-    document = material_commands.paint(0, [RIGHT], radius=60, amount=30.0)(boned())
+    document = material_commands.paint_stiffness(0, [RIGHT], radius=60, amount=30.0)(boned())
     document = material_commands.add_bone(0, (0, 2), 40.0)(document)
-    mirrored = material_commands.mirror(0)(document)
+    mirrored = material_commands.mirror_stiffness(0)(document)
     (layer,) = mirrored.layers
     assert [bone.ends for bone in layer.bones] == [(0, 1), (0, 2), (1, 2)]
-    assert layer.bones[2].amount == 40
+    assert layer.bones[2].stiffness == 40
     outline, stiffness = layer.domain.outline, layer.stiffness
     opposite = np.abs(outline[:, None] - (2 * layer.axis - outline.conj())).argmin(axis=0)
     assert_allclose(stiffness, stiffness[opposite], rtol=1e-9)
     assert stiffness.max() == document.layers[0].stiffness.max()
-    assert material_commands.mirror(0)(mirrored) is mirrored
+    assert material_commands.mirror_stiffness(0)(mirrored) is mirrored
 
 
 def test_a_layer_refuses_material_that_does_not_fit():

@@ -7,20 +7,20 @@ from documents import altered, disc_document
 from messages import says
 
 from app.document.commands import handle_commands
-from app.document.commands.keys_in_time import KEYS_MEET
+from app.document.commands.retime import KEYS_MEET
 from app.document.commands.scene_commands import scale_time
 from app.document.keyframe import Keyframe
-from app.document.layering import (
+from app.document.layers import (
     Attachment,
     CameraKey,
-    Choice,
-    MoveKey,
+    DrawOrderKey,
     OpacityKey,
-    Placing,
-    Switch,
-    Turn,
+    SwitchGroup,
+    SwitchKey,
+    TransformKey,
+    VisibilityKey,
 )
-from app.document.queries.timeline import changed_stretches
+from app.document.queries.timeline import changed_ranges
 from app.document.settings import FrameRange, Marker
 from app.document.timing import Track, TrackKey
 from app.errors import LissomError
@@ -34,19 +34,21 @@ CHANNELS = {
             Track(handles=(0,), keys=tuple(TrackKey(frame=frame, place=0j) for frame in at)),
         )
     },
-    "movement": lambda at: {"movement": tuple(MoveKey(frame=frame) for frame in at)},
+    "movement": lambda at: {"movement": tuple(TransformKey(frame=frame) for frame in at)},
     "opacities": lambda at: {"opacities": tuple(OpacityKey(frame=f, opacity=1.0) for f in at)},
-    "placings": lambda at: {"placings": tuple(Placing(frame, None) for frame in at)},
-    "switches": lambda at: {"switches": tuple(Switch(frame, visible=True) for frame in at)},
+    "placings": lambda at: {"placings": tuple(DrawOrderKey(frame, None) for frame in at)},
+    "switches": lambda at: {"switches": tuple(VisibilityKey(frame, visible=True) for frame in at)},
     "joints": lambda at: {
-        "joints": tuple(Attachment(to=None, frame=frame) for frame in at),
+        "joints": tuple(Attachment(parent=None, frame=frame) for frame in at),
         "anchor": 100 + 100j,
     },
     "markers": lambda at: {"markers": tuple(Marker(frame=frame, name=f"m{frame}") for frame in at)},
     "camera": lambda at: {"camera": tuple(CameraKey(frame=frame, centre=0j) for frame in at)},
     "choices": lambda at: {
         "choices": (
-            Choice(name="mouth", layers=(0, 1), turns=tuple(Turn(f, f % 4 // 2) for f in at)),
+            SwitchGroup(
+                name="mouth", layers=(0, 1), keys=tuple(SwitchKey(f, f % 4 // 2) for f in at)
+            ),
         )
     },
 }
@@ -57,7 +59,7 @@ def keyed(channel, at, first=0):
     key = Keyframe(frame=first, pose=POSE)
     document = altered(ALONE, keys=(key,), frames=FrameRange(first, 48))
     document = altered(document, **CHANNELS[channel](at)) if channel != "choices" else document
-    other = replace(document.layers[0], id=1, name="other", joints=(), placings=())
+    other = replace(document.layers[0], id=1, name="other", attachments=(), draw_order_keys=())
     document = replace(document, layers=(*document.layers, other))
     return replace(document, **CHANNELS[channel](at)) if channel == "choices" else document
 
@@ -94,5 +96,5 @@ def test_scaled_time_keeps_what_holds_as_it_begins(channel):
 @pytest.mark.parametrize("channel", CHANNELS)
 def test_undo_tells_where_keys_of_each_kind_have_changed(channel):
     before, after = keyed(channel, (0, 4, 9)), keyed(channel, (0, 6, 9))
-    assert {4, 6} <= {each.first for each in changed_stretches(before, after)}
-    assert changed_stretches(before, replace(before, fps=12.0)) == []
+    assert {4, 6} <= {each.first for each in changed_ranges(before, after)}
+    assert changed_ranges(before, replace(before, fps=12.0)) == []

@@ -16,14 +16,14 @@ from app.document import (
     shape_commands,
     track_commands as tracks,
 )
-from app.document.commands.keys_in_time import KEYS_MEET, TWO_KEYS
+from app.document.commands.retime import KEYS_COLLIDE, KEYS_MEET
 from app.document.commands.scene_commands import KEY_OUTSIDE
 from app.document.history import History
 from app.document.keyframe import Keyframe
 from app.document.layer import NO_HANDLE, NO_KEY
-from app.document.queries.timeline import changed_stretches, exported_frames
+from app.document.queries.timeline import changed_ranges, export_frame_range
 from app.document.settings import FrameRange
-from app.document.timing import HOLD, LINEAR, PRESETS, Easing, Passing, Spring, Track, TrackKey
+from app.document.timing import HOLD, LINEAR, PRESETS, Easing, Spring, TangentMode, Track, TrackKey
 from app.errors import LissomError
 
 NAMES = {"arm.L": -40 + 10j, "arm.R": 35 + 12j, "tail": 5 - 50j}
@@ -67,13 +67,13 @@ def test_a_handle_is_keyed_by_itself():
     between = tracks.put_track_key(0, 1, 15, 1j)(later)
     # What divides an interval takes its easing; a new last key has none.
     assert [key.easing for key in only(between).keys] == [PRESETS["in"], PRESETS["in"], LINEAR]
-    held = tracks.set_track_passing(0, 1, {15}, Passing.STOP)(between)
+    held = tracks.set_track_passing(0, 1, {15}, TangentMode.STOP)(between)
     again = tracks.put_track_key(0, 1, 15, 7)(held)
     assert only(again).keys[1] == replace(only(held).keys[1], place=7)
     assert tracks.put_track_key(0, 1, 10, 9)(again).layers[0].tracks[0].keys[0].turn == 0.5
     assert tracks.put_track_key(0, 1, 15, 7)(again) is again
     planted = tracks.put_track_key(0, 2, 4, 80j, planted=True)(again)
-    assert planted.layers[0].track_of(2).planted
+    assert planted.layers[0].track_of(2).is_scene_space
 
 
 def test_keys_of_a_track_are_moved_about_in_time_as_those_of_poses_are():
@@ -90,7 +90,7 @@ def test_keys_of_a_track_are_moved_about_in_time_as_those_of_poses_are():
         tracks.copy_track_keys(0, 0, {4}, 6),
         tracks.scale_track_keys(0, 0, {4, 10, 16}, 0.01),
     ):
-        with pytest.raises(LissomError, match=TWO_KEYS.format(frame=r"\d+")):
+        with pytest.raises(LissomError, match=KEYS_COLLIDE.format(frame=r"\d+")):
             command(document)
     with pytest.raises(LissomError, match=says(NO_KEY, frame=5)):
         tracks.move_track_keys(0, 0, {4, 5}, 1)(document)
@@ -123,10 +123,10 @@ def test_a_track_runs_backwards():
 
 def test_how_time_runs_between_keys_of_a_track_and_how_they_are_passed():
     document = tracked(row(4, 10, 20))
-    held = tracks.set_track_passing(0, 0, {10}, Passing.HOLD)(document)
-    assert [key.shown_passing for key in only(held).keys] == ["through", "hold", "through"]
-    stopped = tracks.set_track_passing(0, 0, {4, 10}, Passing.STOP)(held)
-    assert [key.shown_passing for key in only(stopped).keys] == ["stop", "stop", "through"]
+    held = tracks.set_track_passing(0, 0, {10}, TangentMode.HOLD)(document)
+    assert [key.shown_tangent_mode for key in only(held).keys] == ["through", "hold", "through"]
+    stopped = tracks.set_track_passing(0, 0, {4, 10}, TangentMode.STOP)(held)
+    assert [key.shown_tangent_mode for key in only(stopped).keys] == ["stop", "stop", "through"]
     assert only(stopped).keys[1].easing == LINEAR
 
 
@@ -182,13 +182,13 @@ def test_velocities_follow_the_time_that_is_scaled_and_run_backwards():
 def test_who_sets_a_passing_or_an_easing_sets_the_velocity_free():
     document = led()
     for command in (
-        tracks.set_track_passing(0, 0, {10}, Passing.THROUGH),
-        tracks.set_track_passing(0, 0, {10}, Passing.STOP),
+        tracks.set_track_passing(0, 0, {10}, TangentMode.SMOOTH),
+        tracks.set_track_passing(0, 0, {10}, TangentMode.STOP),
         tracks.set_track_easing(0, 0, {10, 20}, LINEAR),
         tracks.set_track_easing(0, 0, {10}, PRESETS["in-out"]),
     ):
         assert velocities(command(document)) == [1 + 4j, None, None]
-    assert tracks.set_track_passing(0, 0, {20}, Passing.THROUGH)(document) is document
+    assert tracks.set_track_passing(0, 0, {20}, TangentMode.SMOOTH)(document) is document
 
 
 @pytest.mark.parametrize("velocity", [complex(np.nan, 0), complex(0, np.inf), 1e8])
@@ -281,7 +281,7 @@ def test_a_mirrored_track_is_that_of_the_other_side(planted):
     layer = tracks.mirror_track(0, 0)(document).layers[0]
     other = layer.track_of(1)
     assert len(layer.tracks) == 2
-    assert (other.planted, other.turns) == (planted, True)
+    assert (other.is_scene_space, other.keys_rotation) == (planted, True)
     assert [key.turn for key in other.keys] == [-key.turn for key in keys]
     places = np.array([key.place for key in keys])
     if planted:
@@ -333,12 +333,12 @@ def test_springs_are_set_and_removed():
 
 def test_stillness_is_switched_for_a_layer_and_for_handles():
     document = tracked()
-    assert document.layers[0].stillness
-    loose = shape_commands.set_stillness(0, stillness=False)(document)
-    assert not loose.layers[0].stillness
-    assert shape_commands.set_stillness(0, stillness=False)(loose) is loose
-    freed = handle_commands.free_handles(0, {0, 2}, free=True)(document)
-    assert [handle.free for handle in freed.layers[0].handles] == [True, False, True]
+    assert document.layers[0].has_auto_pins
+    loose = shape_commands.set_auto_pins(0, stillness=False)(document)
+    assert not loose.layers[0].has_auto_pins
+    assert shape_commands.set_auto_pins(0, stillness=False)(loose) is loose
+    freed = handle_commands.unpin_handles(0, {0, 2}, free=True)(document)
+    assert [handle.is_unpinned for handle in freed.layers[0].handles] == [True, False, True]
 
 
 def test_a_deleted_handle_takes_its_track_and_spring_along_in_one_step():
@@ -406,7 +406,7 @@ def test_undo_tells_where_tracks_have_changed():
     document = tracked(row(4, 10, 20, delay=3))
 
     def changed(command):
-        return [span.first for span in changed_stretches(document, command(document))]
+        return [span.first for span in changed_ranges(document, command(document))]
 
     assert changed(tracks.put_track_key(0, 0, 10, 7)) == [13]
     assert changed(tracks.move_track_keys(0, 0, {10}, 2)) == [13, 15]
@@ -418,9 +418,9 @@ def test_undo_tells_where_tracks_have_changed():
 
 
 def test_the_last_frame_of_a_loop_is_exported_where_a_track_has_another_end():
-    document = key_commands.match_ends(0)(tracked(row(0, 20, 48), loop=True))
-    assert exported_frames(document) == FrameRange(0, 48)
+    document = key_commands.match_loop_ends(0)(tracked(row(0, 20, 48), loop=True))
+    assert export_frame_range(document) == FrameRange(0, 48)
     for same in (row(0, 20), row(20, 48, delay=4), row(0, 20, 48, enabled=False)):
-        assert exported_frames(altered(document, tracks=(same,))) == FrameRange(0, 47)
+        assert export_frame_range(altered(document, tracks=(same,))) == FrameRange(0, 47)
     closed = tracks.put_track_key(0, 0, 48, 0)(document)
-    assert exported_frames(closed) == FrameRange(0, 47)
+    assert export_frame_range(closed) == FrameRange(0, 47)

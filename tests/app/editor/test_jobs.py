@@ -9,7 +9,7 @@ import pytest
 
 import app.editor
 from app.editor.work.jobs import Job, Jobs, Kind
-from app.errors import CANCELLED, tell
+from app.errors import CANCELLED, report_progress
 
 
 def job(kind, work, results, *, lane="display"):
@@ -406,10 +406,10 @@ def test_a_job_that_tells_how_far_it_is_ends_when_it_is_given_up():
 
     def work():
         try:
-            tell(0.25)
+            report_progress(0.25)
             told.set()
             left.wait(HANGS)
-            tell(0.5)
+            report_progress(0.5)
             over.append("went on")
         finally:
             over.append("ended")
@@ -435,7 +435,7 @@ def test_what_tells_how_far_it_is_does_not_hold_up_the_end_of_the_program():
 
     def work():
         while True:
-            tell(0.5)
+            report_progress(0.5)
             told.set()
 
     jobs.put(job("endless", work, []))

@@ -32,7 +32,7 @@ def test_refused_pose_is_told_once_and_hides_nothing(session):
     with session.jobs.held():
         posing.wish(session, {handle.id: Target(position=handle.position + 9)})
         maintain(session)
-        project.history.do(cycle_commands.repeat(0, 0, last + 2))
+        project.history.do(cycle_commands.set_cycle(0, 0, last + 2))
     settle(session)
     settle(session)
     (toast,) = session.toasts

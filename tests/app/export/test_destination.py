@@ -10,9 +10,9 @@ from app.export.destination import (
     FrameNames,
     check_destination,
     check_room,
-    folder_within,
-    replaced,
-    suited,
+    choose_frame_folder,
+    find_overwritten_files,
+    with_suffix_for,
 )
 
 NAMES = FrameNames(pattern="frame_####", project="walk")
@@ -36,36 +36,38 @@ NAMES = FrameNames(pattern="frame_####", project="walk")
     ],
 )
 def test_only_the_endings_of_formats_give_way_to_each_other(tmp_path, name, format_, wanted):
-    assert suited(tmp_path / name, format_) == tmp_path / wanted
+    assert with_suffix_for(tmp_path / name, format_) == tmp_path / wanted
 
 
 def test_a_folder_that_is_there_keeps_its_name(tmp_path):
     (tmp_path / "walk.gif").mkdir()
-    assert suited(tmp_path / "walk.gif", "png") == tmp_path / "walk.gif"
+    assert with_suffix_for(tmp_path / "walk.gif", "png") == tmp_path / "walk.gif"
 
 
 def test_frames_do_not_lie_among_other_files(tmp_path):
-    assert folder_within(tmp_path, "walk frames", NAMES.fits) == tmp_path  # it is empty
+    assert choose_frame_folder(tmp_path, "walk frames", NAMES.fits) == tmp_path  # it is empty
     (tmp_path / "frame_0001.png").write_bytes(b"")
     (tmp_path / ".DS_Store").write_bytes(b"")
-    assert folder_within(tmp_path, "walk frames", NAMES.fits) == tmp_path  # it holds frames alone
+    assert (
+        choose_frame_folder(tmp_path, "walk frames", NAMES.fits) == tmp_path
+    )  # it holds frames alone
     (tmp_path / "letter.txt").write_bytes(b"")
     inner = tmp_path / "walk frames"
-    assert folder_within(tmp_path, "walk frames", NAMES.fits) == inner
+    assert choose_frame_folder(tmp_path, "walk frames", NAMES.fits) == inner
     inner.mkdir()
     (inner / "notes.txt").write_bytes(b"")
-    assert folder_within(inner, "walk frames", NAMES.fits) == inner  # it has the name
+    assert choose_frame_folder(inner, "walk frames", NAMES.fits) == inner  # it has the name
 
 
 def test_what_an_export_takes_the_place_of_is_known_before(tmp_path):
     frames = ["frame_0000.png", "frame_0001.png"]
-    assert replaced(tmp_path / "none", "png", frames) == []
+    assert find_overwritten_files(tmp_path / "none", "png", frames) == []
     (tmp_path / "frame_0001.png").write_bytes(b"")
     (tmp_path / "frame_0002.png").write_bytes(b"")
-    assert replaced(tmp_path, "png", frames) == ["frame_0001.png"]
-    assert replaced(tmp_path / "walk.gif", "gif", frames) == []
+    assert find_overwritten_files(tmp_path, "png", frames) == ["frame_0001.png"]
+    assert find_overwritten_files(tmp_path / "walk.gif", "gif", frames) == []
     (tmp_path / "walk.gif").write_bytes(b"")
-    assert replaced(tmp_path / "walk.gif", "gif", frames) == ["walk.gif"]
+    assert find_overwritten_files(tmp_path / "walk.gif", "gif", frames) == ["walk.gif"]
 
 
 def test_names_of_frames_are_found_again():
@@ -105,8 +107,8 @@ def test_a_folder_that_may_not_be_written_to_is_refused(tmp_path, monkeypatch):
 
 def test_the_data_of_a_sheet_are_asked_about_too(tmp_path):
     (tmp_path / "walk.json").write_bytes(b"precious")
-    assert replaced(tmp_path / "walk.png", "spritesheet", []) == ["walk.json"]
-    assert replaced(tmp_path / "walk.png", "apng", []) == []
+    assert find_overwritten_files(tmp_path / "walk.png", "spritesheet", []) == ["walk.json"]
+    assert find_overwritten_files(tmp_path / "walk.png", "apng", []) == []
     (tmp_path / "run.json").mkdir()
     with pytest.raises(LissomError, match="is a folder"):
         check_destination(tmp_path / "run.png", "spritesheet")

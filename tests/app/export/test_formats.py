@@ -15,11 +15,11 @@ from numpy.testing import assert_allclose, assert_array_equal
 from PIL import Image, ImageSequence
 
 from app.errors import LissomError
-from app.export.run import MOST_QUEUED, export
+from app.export.run import MOST_QUEUED, export_frames
 from app.export.writers import DATA_WRITERS, FILE_WRITERS, FOLDER_WRITERS, SHAPE_WRITERS, png, table
 from app.export.writers.png import PngSequence
 from app.export.writers.spritesheet import SpritesheetWriter, sheet_grid
-from app.export_formats import EXPORT_FORMATS, FormatSettings, ShapeDetail, SheetLayout
+from app.export_formats import EXPORT_FORMATS, FormatSettings, MeshOptions, SpriteSheetOptions
 from app.render.view import canvas_view
 from engine.arrays import Bytes
 from engine.domain import MOST_TRIANGLES
@@ -42,17 +42,19 @@ def test_every_format_of_the_table_has_a_writer():
 def test_what_formats_ask_is_told_once_and_has_room_for_what_is_usual():
     groups = FormatSettings().options()
     assert {format_.options for format_ in EXPORT_FORMATS.values()} == {"", *groups}
-    options = [(name, each) for group in groups.values() for name, each in group.asked().items()]
+    options = [
+        (name, each) for group in groups.values() for name, each in group.option_fields().items()
+    ]
     assert len(dict(options)) == len({each.flag for _, each in options}) == len(options)
     # It stands there once more, so that nothing heavy is loaded for it.
-    assert ShapeDetail.asked()["triangles"].most == MOST_TRIANGLES
+    assert MeshOptions.option_fields()["triangles"].maximum == MOST_TRIANGLES
     for wrong in ({"padding": -1}, {"padding": 257}):
         with pytest.raises(LissomError, match="Padding must be 0 to 256, not"):
-            SheetLayout(**wrong)
+            SpriteSheetOptions(**wrong)
     with pytest.raises(LissomError, match="Triangles must be 100 to 2,000,000, not 99"):
-        ShapeDetail(triangles=99)
+        MeshOptions(triangles=99)
     with pytest.raises(LissomError, match="to 100, not nan"):
-        ShapeDetail(tolerance=float("nan"))
+        MeshOptions(tolerance=float("nan"))
 
 
 def test_video_is_loaded_only_when_it_is_asked_for():
@@ -98,7 +100,7 @@ def test_the_thread_that_draws_never_waits_for_others_unless_it_may(tmp_path, mo
 
     monkeypatch.setattr(table, "DATA_WRITERS", {"spritesheet": Held})
     plan = plan_for(tmp_path / "out", "spritesheet")
-    steps = export(plan, held, draw, waits=False)
+    steps = export_frames(plan, held, draw, waits=False)
     stops = []
     for done in steps:
         # Where nothing more can be drawn, the others are let go on until something is.
@@ -280,7 +282,7 @@ def test_an_export_that_ends_early_leaves_whole_frames_only(tmp_path, format_, e
         return draw(time)
 
     plan = plan_for(tmp_path / "out", format_, background=(1, 2, 3))
-    steps = export(plan, at_once, failing)
+    steps = export_frames(plan, at_once, failing)
     if ending == "closed":
         next(itertools.islice(steps, 4, None))
         steps.close()
@@ -306,7 +308,9 @@ def test_a_sheet_that_is_being_written_stops_at_once(tmp_path, monkeypatch):
             pieces.append(file.write(b"piece"))
 
     monkeypatch.setattr("app.export.writers.spritesheet.save_png", endless)
-    steps = export(plan_for(tmp_path / "sheet.png", "spritesheet"), at_once, draw, waits=False)
+    steps = export_frames(
+        plan_for(tmp_path / "sheet.png", "spritesheet"), at_once, draw, waits=False
+    )
     for _ in steps:
         if begun.is_set():
             break
@@ -323,7 +327,7 @@ def test_a_file_of_before_survives_an_export_that_fails(tmp_path):
         raise LissomError(f"frame {time} cannot be drawn")
 
     with pytest.raises(LissomError):
-        list(export(plan, at_once, failing))
+        list(export_frames(plan, at_once, failing))
     assert plan.out.read_bytes() == b"before"
 
 

@@ -9,10 +9,10 @@ from numpy.testing import assert_allclose
 from PIL import Image
 
 from app.document import ExportSettings, Meshing, clip_of
-from app.export import ExportRequest, KeptPoses, Painter, plan_export
+from app.export import CachedVertices, ExportRequest, FrameRenderer, plan_export
 from app.motion import Animation
 from app.render.gpu import create_context
-from app.storage import cut_picture, flattened, open_layered
+from app.storage import cut_picture, flatten_layers, open_layered
 
 SIZE = (160, 120)
 # From the front: pictures, their places, and what is said of them.
@@ -41,7 +41,7 @@ def opened(tmp_path_factory):
     path = tmp_path_factory.mktemp("layered") / "walk.ora"
     path.write_bytes(openraster(SIZE, stack, [picture for picture, _, _ in LAYERS.values()]))
     scene = open_layered(path, Meshing(triangles=1_000, detail="coarse"))
-    assert not scene.document.told.losses
+    assert not scene.document.import_log.warnings
     return scene
 
 
@@ -80,10 +80,12 @@ def test_a_frame_looks_as_the_file_says(opened, tmp_path):
     document = opened.document
     settings = ExportSettings(format="picture", framing="canvas")
     request = ExportRequest(out=tmp_path / "a.png", settings=settings, project="walk")
-    poses = {f.id: KeptPoses(Animation(clip_of(document, f.id))) for f in document.layers}
+    poses = {f.id: CachedVertices(Animation(clip_of(document, f.id))) for f in document.layers}
     pictures = {identity: picture.rgba for identity, picture in opened.pictures.items()}
     context = create_context()
-    painter = Painter(context, document, pictures, poses, plan_export(document, request, poses))
+    painter = FrameRenderer(
+        context, document, pictures, poses, plan_export(document, request, poses)
+    )
     frame = painter.draw(painter.pose(0))
     painter.release()
     context.release()
@@ -95,7 +97,7 @@ def small(opened, document):
         layer.id: cut_picture(opened.pictures[layer.id], layer.cut_out).texture
         for layer in document.layers
     }
-    return flattened(document, textures)
+    return flatten_layers(document, textures)
 
 
 def test_the_small_picture_of_a_project_does_too(opened):

@@ -18,17 +18,25 @@ from PIL import Image
 from pygltflib import GLTF2
 from still_poses import posed
 
-from app.document import HOLD, ExportSettings, FrameRange, Group, Switch, clip_of, pinned_handles
+from app.document import (
+    HOLD,
+    ExportSettings,
+    FrameRange,
+    Group,
+    VisibilityKey,
+    clip_of,
+    pinned_handles,
+)
 from app.errors import LissomError
 from app.export import (
+    CachedVertices,
     ExportRequest,
-    KeptPoses,
-    ShapeExport,
+    MeshExport,
     check_request,
     plan_export,
-    with_light_meshes,
+    with_reduced_meshes,
 )
-from app.export_formats import ShapeDetail
+from app.export_formats import MeshOptions
 from app.motion import Animation
 from app.storage import decode_picture, load_project, sample_images
 from engine.arrays import Complexes, Floats
@@ -41,7 +49,7 @@ WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}
 
 
 def settings(format_="glb", **shapes) -> ExportSettings:
-    return ExportSettings(format=format_, shapes=ShapeDetail(**shapes))
+    return ExportSettings(format=format_, shapes=MeshOptions(**shapes))
 
 
 @functools.cache
@@ -53,10 +61,10 @@ def exported(document, out, chosen=None):
     """Export a document; return it with the meshes that were exported, and the export."""
     request = ExportRequest(out=out, settings=chosen or settings(), project="walk")
     check_request(document, request)
-    light = with_light_meshes(document, request.settings.shapes.triangles)
-    poses = {f.id: KeptPoses(animation_of(clip_of(light, f.id))) for f in light.layers}
+    light = with_reduced_meshes(document, request.settings.shapes.triangles)
+    poses = {f.id: CachedVertices(animation_of(clip_of(light, f.id))) for f in light.layers}
     pictures = {f.id: decode_picture(f.picture.data, "").rgba for f in light.layers}
-    maker = ShapeExport(light, pictures, poses, plan_export(light, request, poses))
+    maker = MeshExport(light, pictures, poses, plan_export(light, request, poses))
     steps = list(maker.run())
     assert steps == sorted(steps)
     assert steps[-1] == len(maker._plan.times)
@@ -338,9 +346,11 @@ def test_what_a_model_does_not_composite_is_told(tmp_path):
 def test_layers_are_seen_when_and_as_much_as_they_should(tmp_path, monkeypatch):
     document, out = two_layers(), tmp_path / "two.glb"
     first, second = document.layers
-    switched = replace(second, switches=(Switch(0, visible=False), Switch(4, visible=True)))
+    switched = replace(
+        second, visibility_keys=(VisibilityKey(0, visible=False), VisibilityKey(4, visible=True))
+    )
     monkeypatch.setattr(
-        "app.export.moving_shape.PaintOrder.triangles",
+        "app.export.morph_mesh.TriangleOrder.triangles",
         lambda _, clip, n: clip.layer.domain.mesh.triangles[:: 1 if n < 3 else -1],
     )
     faint = replace(first, opacity=0.5)
@@ -356,8 +366,8 @@ def test_layers_are_seen_when_and_as_much_as_they_should(tmp_path, monkeypatch):
     assert factors == [[1, 1, 1, 0.5], [1, 1, 1, 1]]
     assert maker.shapes[0].texture[..., 3].max() == 255
     assert ["glTF model keeps" in notice for notice in maker.notices] == [True, True]
-    off = (Switch(0, visible=False),)
-    unseen = tuple(replace(layer, switches=off) for layer in document.layers)
+    off = (VisibilityKey(0, visible=False),)
+    unseen = tuple(replace(layer, visibility_keys=off) for layer in document.layers)
     exported(replace(document, layers=(first, unseen[1])), out)
     assert [node.name for node in read(out).nodes] == ["layer"]
     with pytest.raises(LissomError, match="no layer is seen"):
@@ -394,7 +404,7 @@ def test_a_loop_comes_round(tmp_path):
 
 
 def test_a_tolerance_of_ones_own_takes_as_many_shapes_as_it_needs(tmp_path, monkeypatch):
-    monkeypatch.setattr("app.export.run_shapes.MOST_TARGETS", 2)
+    monkeypatch.setattr("app.export.mesh_export.MOST_TARGETS", 2)
     out = tmp_path / "walk.glb"
     light, maker = exported(moving_document(), out, settings(tolerance=0.002))
     gltf = read(out)
@@ -409,7 +419,7 @@ def test_a_tolerance_of_ones_own_takes_as_many_shapes_as_it_needs(tmp_path, monk
 
 
 def test_where_eight_shapes_do_not_suffice_it_is_told(tmp_path, monkeypatch):
-    monkeypatch.setattr("app.export.moving_shape.MOST_TARGETS", 1)
+    monkeypatch.setattr("app.export.morph_mesh.MOST_TARGETS", 1)
     _, maker = exported(moving_document(), tmp_path / "a.glb")
     (notice,) = maker.notices
     assert "1 shapes come within" in notice
@@ -434,9 +444,9 @@ def test_a_model_that_ends_early_is_not_there(tmp_path, ending):
 
     request = ExportRequest(out=tmp_path / "a.glb", settings=settings(), project="a")
     canvas = replace(request, settings=replace(request.settings, framing="canvas"))
-    poses = {0: KeptPoses(Broken(clip_of(document, 0)))}
+    poses = {0: CachedVertices(Broken(clip_of(document, 0)))}
     pictures = {0: decode_picture(document.layers[0].picture.data, "").rgba}
-    steps = ShapeExport(document, pictures, poses, plan_export(document, canvas, poses)).run(
+    steps = MeshExport(document, pictures, poses, plan_export(document, canvas, poses)).run(
         waits=False
     )
     if ending == "closed":

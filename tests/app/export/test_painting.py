@@ -15,9 +15,9 @@ from numpy.testing import assert_array_equal
 from app.document import CameraKey, FrameRange, OpacityKey
 from app.document.model import Document
 from app.errors import LissomError
-from app.export.painting import Painter
+from app.export.frame_renderer import FrameRenderer
+from app.export.frame_vertices import CachedVertices, FrameVertices
 from app.export.plan import ExportPlan, ExportRequest, plan_export
-from app.export.poses import KeptPoses, Poses
 from engine.arrays import Bytes, Complexes
 
 SEEN = BLOB[..., 3] >= 8
@@ -28,29 +28,29 @@ def document() -> Document:
     return still_document()
 
 
-def plan_of(document: Document, poses: Poses, **settings: object) -> ExportPlan:
+def plan_of(document: Document, poses: FrameVertices, **settings: object) -> ExportPlan:
     settings_ = replace(document.export, **({"framing": "canvas"} | settings))
     return plan_export(
         document,
         ExportRequest(out=Path("out"), settings=settings_, project="walk"),
-        {0: KeptPoses(poses)},
+        {0: CachedVertices(poses)},
     )
 
 
 @contextmanager
 def drawing(
-    gl: moderngl.Context, document: Document, poses: Poses, **settings: object
+    gl: moderngl.Context, document: Document, poses: FrameVertices, **settings: object
 ) -> Iterator[Callable[[float], Bytes]]:
-    painter = Painter(
-        gl, document, {0: BLOB}, {0: KeptPoses(poses)}, plan_of(document, poses, **settings)
+    painter = FrameRenderer(
+        gl, document, {0: BLOB}, {0: CachedVertices(poses)}, plan_of(document, poses, **settings)
     )
     yield lambda frame: painter.draw(painter.pose(frame))
     painter.release()
 
 
-def notices(gl: moderngl.Context, document: Document, poses: Poses, **settings: object):
-    painter = Painter(
-        gl, document, {0: BLOB}, {0: KeptPoses(poses)}, plan_of(document, poses, **settings)
+def notices(gl: moderngl.Context, document: Document, poses: FrameVertices, **settings: object):
+    painter = FrameRenderer(
+        gl, document, {0: BLOB}, {0: CachedVertices(poses)}, plan_of(document, poses, **settings)
     )
     for frame in range(11):
         painter.pose(frame)
@@ -168,9 +168,11 @@ def test_fewer_triangles_draw_the_same(gl, monkeypatch):
     poses = Folding(document)
     painters = []
     for many in (24, 1_000_000):
-        monkeypatch.setattr("app.export.painting._MANY", many)
+        monkeypatch.setattr("app.export.frame_renderer._MANY", many)
         painters.append(
-            Painter(gl, document, {0: BLOB}, {0: KeptPoses(poses)}, plan_of(document, poses))
+            FrameRenderer(
+                gl, document, {0: BLOB}, {0: CachedVertices(poses)}, plan_of(document, poses)
+            )
         )
     for frame in (0.0, 13.0, 48.0):
         posed = [painter.pose(frame) for painter in painters]
@@ -215,10 +217,10 @@ def test_frames_too_large_for_the_machine_are_refused(gl, document):
 
 def test_a_frame_is_drawn_in_parts_that_the_machine_holds(gl, document, monkeypatch):
     whole = still(gl, document, size=(150, 111))
-    monkeypatch.setattr("app.export.painting._TILE", 64)
+    monkeypatch.setattr("app.export.frame_renderer._TILE", 64)
     parts = still(gl, document, size=(150, 111))
     assert np.abs(parts.astype(int) - whole).max() <= 2
-    monkeypatch.setattr("app.export.painting.largest_size", lambda _: 32)
+    monkeypatch.setattr("app.export.frame_renderer.largest_size", lambda _: 32)
     assert np.abs(still(gl, document, size=(150, 111)).astype(int) - whole).max() <= 2
 
 
@@ -253,7 +255,9 @@ def test_a_view_that_is_turned_shows_what_a_turned_camera_does(gl, document):
     poses = Sliding(document, 0)
     plan = plan_of(document, poses)
     view = replace(plan.view, turn=complex(np.exp(0.3j)))
-    painter = Painter(gl, document, {0: BLOB}, {0: KeptPoses(poses)}, replace(plan, view=view))
+    painter = FrameRenderer(
+        gl, document, {0: BLOB}, {0: CachedVertices(poses)}, replace(plan, view=view)
+    )
     frame = painter.draw(painter.pose(0.0)).astype(int)
     painter.release()
     assert np.abs(frame - still(gl, filmed(document, key))).max() <= 2

@@ -11,8 +11,8 @@ from app.document.model import Document
 from app.document.settings import ExportSettings, FrameRange, Marker
 from app.errors import LissomError
 from app.export.destination import FRAMES_TO_FILE, NAMED_LIKE_FILE
+from app.export.frame_vertices import CachedVertices, FrameVertices
 from app.export.plan import ExportPlan, ExportRequest, check_request, plan_export
-from app.export.poses import KeptPoses, Poses
 from app.storage import NO_FOLDER
 
 SIZE = (BLOB.shape[1], BLOB.shape[0])
@@ -26,7 +26,7 @@ def document() -> Document:
 def plan_of(
     document: Document,
     out: Path,
-    poses: Poses | None = None,
+    poses: FrameVertices | None = None,
     *,
     fps: float | None = None,
     **settings: object,
@@ -35,7 +35,7 @@ def plan_of(
         out=out, settings=replace(document.export, **settings), project="walk", fps=fps
     )
     check_request(document, request)
-    return plan_export(document, request, {0: KeptPoses(poses or Sliding(document, 0))})
+    return plan_export(document, request, {0: CachedVertices(poses or Sliding(document, 0))})
 
 
 def test_by_default_the_frames_show_all_of_the_motion(document, tmp_path):

@@ -11,8 +11,8 @@ from chromium import PROGRAM, Page, chromium
 from documents import altered
 from PIL import Image
 
-from app.document import Document, ExportSettings, FrameRange, Group, Switch, clip_of
-from app.export import ExportRequest, KeptPoses, Painter, ShapeExport, plan_export
+from app.document import Document, ExportSettings, FrameRange, Group, VisibilityKey, clip_of
+from app.export import CachedVertices, ExportRequest, FrameRenderer, MeshExport, plan_export
 from app.motion import Animation
 from app.render.gpu import create_context
 from app.storage import decode_picture
@@ -40,9 +40,9 @@ def two_blobs() -> Document:
     """Two layers of which one lies faintly over the other until it is hidden, in a loop."""
     document = moving_document()
     (layer,) = document.layers
-    switches = (Switch(0, visible=True), Switch(3, visible=False))
+    switches = (VisibilityKey(0, visible=True), VisibilityKey(3, visible=False))
     above = replace(layer, id=1, name="above", opacity=0.6, keys=layer.keys[:1])
-    above = replace(above, switches=switches)
+    above = replace(above, visibility_keys=switches)
     return replace(document, layers=(layer, above), frames=FrameRange(0, 8), loop=True)
 
 
@@ -50,13 +50,13 @@ def exported(document, out, **settings):
     """Export a page; return how the renderer draws a frame of it."""
     chosen = ExportSettings(format="html", size=SIZE, **settings)
     request = ExportRequest(out=out, settings=chosen, project="walk")
-    poses = {f.id: KeptPoses(Animation(clip_of(document, f.id))) for f in document.layers}
+    poses = {f.id: CachedVertices(Animation(clip_of(document, f.id))) for f in document.layers}
     pictures = {f.id: decode_picture(f.picture.data, "").rgba for f in document.layers}
     plan = plan_export(document, request, poses)
-    list(ShapeExport(document, pictures, poses, plan).run())
+    list(MeshExport(document, pictures, poses, plan).run())
 
     def draw(gl, frame) -> Bytes:
-        painter = Painter(gl, document, pictures, poses, plan)
+        painter = FrameRenderer(gl, document, pictures, poses, plan)
         picture = painter.draw(painter.pose(frame))
         painter.release()
         return picture
@@ -227,7 +227,7 @@ def test_what_lies_in_front_changes_when_it_should(browser, tmp_path, monkeypatc
     first = document.layers[0].domain.mesh.triangles
     then = first[::-1].copy()
     monkeypatch.setattr(
-        "app.export.moving_shape.PaintOrder.triangles", lambda _, __, n: first if n < 3 else then
+        "app.export.morph_mesh.TriangleOrder.triangles", lambda _, __, n: first if n < 3 else then
     )
     exported(document, out)
     page = opened(browser, out)

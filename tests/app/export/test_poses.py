@@ -7,10 +7,10 @@ from numpy.testing import assert_array_equal
 from app.document.queries.clips import clip_of
 from app.document.settings import FrameRange
 from app.errors import CANCELLED, LissomError
-from app.export.painting import Painter
+from app.export.frame_renderer import FrameRenderer
+from app.export.frame_vertices import CachedVertices
 from app.export.plan import ExportRequest, plan_export
-from app.export.poses import KeptPoses
-from app.motion.extents.extent import box_around
+from app.motion.extents.extent import bounding_box
 from app.motion.inbetweens import Animation
 from app.storage import Cancellation
 
@@ -29,16 +29,16 @@ class Counted:
 
 @pytest.mark.parametrize("is_thinned", [False, True])
 def test_a_fitted_export_works_every_frame_out_once(gl, tmp_path, monkeypatch, is_thinned):
-    monkeypatch.setattr("app.export.painting._pays", lambda *_: is_thinned)
+    monkeypatch.setattr("app.export.frame_renderer._pays", lambda *_: is_thinned)
     document = moving_document()
     (layer,) = document.layers
     animation = Animation(clip_of(document, layer.id))
     counted = Counted(animation)
-    poses = {layer.id: KeptPoses(counted)}
+    poses = {layer.id: CachedVertices(counted)}
     request = ExportRequest(out=tmp_path, settings=document.export, project="walk")
     assert request.settings.framing == "fit"
     plan = plan_export(document, request, poses)
-    painter = Painter(gl, document, {layer.id: BLOB}, poses, plan)
+    painter = FrameRenderer(gl, document, {layer.id: BLOB}, poses, plan)
     posed = [painter.pose(time) for time in plan.times]
     assert counted.asked == list(plan.times)
     # What is kept is as fine as what is uploaded.
@@ -52,9 +52,9 @@ def test_an_extent_that_is_known_is_not_measured_again(tmp_path):
     document = altered(still_document(), frames=FrameRange(0, 10))
     (layer,) = document.layers
     counted = Counted(Animation(clip_of(document, layer.id)))
-    poses = {layer.id: KeptPoses(counted)}
+    poses = {layer.id: CachedVertices(counted)}
     request = ExportRequest(out=tmp_path, settings=document.export, project="walk")
-    box = box_around(layer.domain.mesh.vertices)
+    box = bounding_box(layer.domain.mesh.vertices)
     known = plan_export(document, request, poses, box)
     assert counted.asked == []
     assert plan_export(document, request, poses).view == known.view
@@ -65,10 +65,10 @@ def test_what_is_kept_has_its_budget():
     (layer,) = document.layers
     size = 8 * len(layer.domain.mesh.vertices)
     counted = Counted(Animation(clip_of(document, layer.id)))
-    poses = KeptPoses(counted, budget=2 * size)
+    poses = CachedVertices(counted, budget=2 * size)
     for _ in range(2):
         for frame in range(4):
-            poses.keep(frame)
+            poses.cache_positions(frame)
     assert counted.asked == [0, 1, 2, 3, 2, 3]
     counted.asked.clear()
     for frame in range(4):
@@ -93,5 +93,5 @@ def test_once_it_was_cancelled_an_export_works_out_no_more_poses(tmp_path):
     counted = Cancelled(animation)
     request = ExportRequest(out=tmp_path, settings=document.export, project="walk")
     with pytest.raises(LissomError, match=CANCELLED):
-        plan_export(document, request, {layer.id: KeptPoses(counted, cancellation)})
+        plan_export(document, request, {layer.id: CachedVertices(counted, cancellation)})
     assert counted.asked == [0, 1, 2]

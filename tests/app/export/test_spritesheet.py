@@ -13,15 +13,15 @@ from PIL import Image
 
 from app.errors import LissomError
 from app.export import data_file
-from app.export.plan import Tag
+from app.export.plan import FrameTag
 from app.export.writers import spritesheet
-from app.export_formats import SheetLayout
+from app.export_formats import SpriteSheetOptions
 from engine.arrays import Bytes
 
 
 def exported(folder, drawing=draw, *, tags=None, **layout):
     """Export a sheet; return its pixels and its data."""
-    changes = {"sheet": SheetLayout(**layout), "fps": 23.976}
+    changes = {"sheet": SpriteSheetOptions(**layout), "fps": 23.976}
     changes |= {} if tags is None else {"tags": tags}
     plan = plan_for(folder / "walk.png", "spritesheet", **changes)
     run(plan, drawing)
@@ -86,7 +86,7 @@ def test_frames_of_which_nothing_is_seen_have_a_pixel(tmp_path):
 
 
 def test_durations_add_up_and_tags_are_those_of_the_timeline(tmp_path):
-    tags = (Tag("rise", 0, 2), Tag("fall", 3, 6))
+    tags = (FrameTag("rise", 0, 2), FrameTag("fall", 3, 6))
     _, data = exported(tmp_path, tags=tags)
     durations = [entry["duration"] for entry in data["frames"].values()]
     assert sum(durations) == round(1000 * FRAMES / 23.976)

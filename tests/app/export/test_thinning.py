@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from app.export.thinning import TOLERANCE, Thinning
+from app.export.decimation import TOLERANCE, MeshDecimator
 from app.render.gpu import border_edges
 from engine.arrays import Complexes, Floats, Integers
 from engine.domain import MeshedDomain
@@ -63,7 +63,7 @@ HOLE = Hole(
 def test_what_does_not_bend_takes_few_triangles_that_cover_the_same(holes, scale):
     domain = domain_of(BRACKET, holes=holes)
     mesh = domain.mesh
-    thinning = Thinning(domain, scale)
+    thinning = MeshDecimator(domain, scale)
     affine = (1.2 - 0.3j) * mesh.vertices + 0.2 * mesh.vertices.conj() + 7
     thinning.prepare([mesh.vertices, affine])
     fewer = thinning.triangles(affine, mesh.triangles)
@@ -77,7 +77,7 @@ def test_what_does_not_bend_takes_few_triangles_that_cover_the_same(holes, scale
 @pytest.mark.parametrize("scale", [1.0, 1.7])
 def test_every_vertex_is_drawn_within_the_tolerance_of_where_it_is(scale):
     mesh = domain_of(BRACKET).mesh
-    thinning = Thinning(domain_of(BRACKET), scale)
+    thinning = MeshDecimator(domain_of(BRACKET), scale)
     poses = [bent(mesh.vertices, amount) for amount in (0.0, 0.06)]
     thinning.prepare(poses)
     for positions in (poses[1], bent(mesh.vertices, -0.09)):
@@ -91,7 +91,7 @@ def test_every_vertex_is_drawn_within_the_tolerance_of_where_it_is(scale):
 def test_a_pose_that_bends_more_takes_more_triangles_where_it_bends():
     domain = domain_of(BRACKET)
     mesh = domain.mesh
-    thinning = Thinning(domain, scale=1.0)
+    thinning = MeshDecimator(domain, scale=1.0)
     thinning.prepare([mesh.vertices])
     straight = thinning.triangles(mesh.vertices, mesh.triangles)
     curved = thinning.triangles(bent(mesh.vertices, 0.1), mesh.triangles)
@@ -106,7 +106,7 @@ def test_a_pose_that_bends_more_takes_more_triangles_where_it_bends():
 def test_triangles_keep_the_order_of_the_meshs_and_follow_another_one():
     domain = domain_of(BRACKET)
     mesh = domain.mesh
-    thinning = Thinning(domain, scale=1.0)
+    thinning = MeshDecimator(domain, scale=1.0)
     thinning.prepare([mesh.vertices])
     for direction in (1, 1j, -1):
         across = (mesh.vertices[mesh.triangles].mean(axis=1) / direction).real
@@ -120,7 +120,7 @@ def test_triangles_keep_the_order_of_the_meshs_and_follow_another_one():
 def test_where_everything_bends_all_triangles_are_drawn():
     domain = domain_of(BRACKET)
     mesh = domain.mesh
-    thinning = Thinning(domain, scale=1.0)
+    thinning = MeshDecimator(domain, scale=1.0)
     rng = np.random.default_rng(8)
     thinning.prepare([mesh.vertices])
     crumpled = mesh.vertices + rng.normal(size=(2, len(mesh.vertices))).T.copy().view(complex)[:, 0]
@@ -138,6 +138,6 @@ def test_where_the_border_is_lost_across_a_gap_all_triangles_are_drawn():
     closed = Mesh(vertices=vertices, triangles=mesh.triangles)
     assert closed.areas().min() > 0
     outline = vertices[: len(BRACKET)]
-    thinning = Thinning(replace(domain, outline=outline, mesh=closed), scale=1.0)
+    thinning = MeshDecimator(replace(domain, outline=outline, mesh=closed), scale=1.0)
     thinning.prepare([vertices])
     assert thinning.triangles(vertices, closed.triangles) is closed.triangles

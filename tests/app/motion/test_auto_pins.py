@@ -10,13 +10,13 @@ from still_poses import DRAWN, MOVES, animate, animated, posed, with_layer
 from app.document import (
     HOLD,
     Attachment,
-    Passing,
     Spring,
+    TangentMode,
     Target,
     clip_of,
     pinned_handles,
 )
-from app.motion import Animation, Joints
+from app.motion import Animation, ParentTransforms
 from app.motion.inbetweens import pose_sampler
 from app.motion.inbetweens.content_cache import ContentCache
 from engine.interpolation import BLENDS
@@ -191,10 +191,10 @@ def test_a_hold_and_a_whole_turn_are_left_as_they_are(change):
     assert np.isfinite(animation.positions(5.0)).all()
 
 
-@pytest.mark.parametrize("passing", [Passing.STOP, Passing.CORNER])
+@pytest.mark.parametrize("passing", [TangentMode.STOP, TangentMode.CORNER])
 def test_keys_that_are_not_passed_through_keep_their_handles_too(passing):
     document = posed()
-    keys = tuple(replace(key, passing=passing) for key in document.layers[0].keys)
+    keys = tuple(replace(key, tangent_mode=passing) for key in document.layers[0].keys)
     assert drift(with_layer(document, keys=keys)) < 0.05
 
 
@@ -206,11 +206,11 @@ def test_attached_layer_is_corrected_about_its_joint_alone():
         id=1,
         name="child",
         anchor=30 + 40j,
-        joints=(Attachment(to=0, at=90 + 45j),),
+        joints=(Attachment(parent=0, parent_point=90 + 45j),),
     )
     scene = replace(document, layers=(layer, child))
-    unpinned = replace(document, layers=(layer, replace(child, stillness=False)))
-    joints = Joints(scene)
+    unpinned = replace(document, layers=(layer, replace(child, has_auto_pins=False)))
+    joints = ParentTransforms(scene)
     handles = np.array([handle.position for handle in child.handles])
     points = np.append(handles, child.anchor)
     animation = Animation(clip_of(scene, 1), points=points)

@@ -10,14 +10,14 @@ from key_rows import jump, prepared, row
 from numpy.testing import assert_allclose
 
 from app.document.commands import cycle_commands, filming_commands, key_commands
-from app.document.keyframe import Handle, Passing, Target
-from app.document.layering import MoveKey, OpacityKey, Placing, Switch
+from app.document.keyframe import Handle, TangentMode, Target
+from app.document.layers import DrawOrderKey, OpacityKey, TransformKey, VisibilityKey
 from app.document.queries.clips import clip_of
-from app.document.queries.spans import intervals
-from app.document.queries.stage.fronts import fronts_at
-from app.document.queries.stage.moves import in_order, movement_at, opacity_at
-from app.document.queries.stage.sight import is_visible
-from app.document.queries.timeline import exported_frames, time_of
+from app.document.queries.key_segments import segment_keys
+from app.document.queries.layers.depth import depth_points_at
+from app.document.queries.layers.layer_state import layers_in_draw_order, opacity_at, transform_at
+from app.document.queries.layers.visibility import is_visible
+from app.document.queries.timeline import export_frame_range, segment_time_at
 from app.document.settings import FrameRange
 from app.document.timing import Cycle, Track, TrackKey
 from app.errors import LissomError
@@ -64,13 +64,13 @@ def test_every_repeat_is_the_same_motion(variant, after):
     assert unlike(moving(document), WALK, range(20, 44, 3)) < 1e-9
 
 
-@pytest.mark.parametrize("passing", Passing)
+@pytest.mark.parametrize("passing", TangentMode)
 def test_it_is_so_however_keys_are_passed(passing):
     document = cycling(*KEYS, 110, cycle=WALK, last=120)
-    document = key_commands.set_passing(0, {20, 34}, passing)(document)
+    document = key_commands.set_tangent_mode(0, {20, 34}, passing)(document)
     animation = moving(document)
     assert unlike(animation, WALK, [20, 21, 30, 33, 34, 35, 43]) < 1e-9
-    if passing is Passing.HOLD:
+    if passing is TangentMode.HOLD:
         assert_allclose(animation.positions(91), animation.positions(43), rtol=0, atol=1e-9)
         assert_allclose(animation.positions(70), animation.positions(68), rtol=0, atol=1e-9)
 
@@ -149,7 +149,7 @@ def test_two_keys_swing_to_and_fro():
 def test_repeats_are_prepared_once():
     document = cycling(*KEYS, 110, cycle=replace(WALK, until=92), last=120)
     store, count = prepared(document)
-    assert count == len(intervals(clip_of(document, 0))) == 6
+    assert count == len(segment_keys(clip_of(document, 0))) == 6
     assert all(store.is_exact(clip_of(document, 0), frame) for frame in range(121))
     longer = altered(document, cycles=(replace(WALK, until=44),))
     # What goes on from it does so in other time.
@@ -159,11 +159,11 @@ def test_repeats_are_prepared_once():
 def test_a_loop_of_whole_repeats_has_no_seam():
     cycle = Cycle(first=0, last=24)
     document = cycling(0, 8, 16, cycle=cycle, last=72, loop=True)
-    assert exported_frames(document) == FrameRange(0, 71)
+    assert export_frame_range(document) == FrameRange(0, 71)
     change, speed = jump(moving(document), 72.0)
     assert change < 1e-5 * speed
     document = cycling(0, 8, 16, 60, cycle=replace(cycle, until=48), last=72, loop=True)
-    assert exported_frames(document) == FrameRange(0, 71)
+    assert export_frame_range(document) == FrameRange(0, 71)
     animation = moving(document)
     assert unlike(animation, cycle, range(24), until=48) < 1e-9
     speeds = [jump(animation, frame) for frame in (0.0, 24.0, 48.0, 60.0, 72.0)]
@@ -184,16 +184,16 @@ def test_two_cycles_follow_each_other():
 def test_a_single_key_stands_until_the_repeats_end():
     document = cycling(0, 20, 60, cycle=Cycle(first=20, last=30, until=50))
     clip = clip_of(document, 0)
-    assert [time_of(clip, frame)[1] for frame in (20, 33, 50)] == [1.0, 1.0, 1.0]
-    assert 0.0 < time_of(clip, 55).weight < 1.0
-    assert 0.0 < time_of(clip, 10).weight < 1.0
+    assert [segment_time_at(clip, frame)[1] for frame in (20, 33, 50)] == [1.0, 1.0, 1.0]
+    assert 0.0 < segment_time_at(clip, 55).weight < 1.0
+    assert 0.0 < segment_time_at(clip, 10).weight < 1.0
 
 
 def with_handles(document, *, free=False):
     """Return it with two handles, which the second and third of its keys have at one place."""
     layer = document.layers[0]
     handles = tuple(
-        Handle(id=number, name=str(number), position=place, free=free)
+        Handle(id=number, name=str(number), position=place, is_unpinned=free)
         for number, place in enumerate((30 + 45j, 90 + 45j))
     )
 
@@ -230,12 +230,12 @@ def test_handles_that_stay_and_tracks_repeat_with_it():
 def test_what_is_in_front_and_seen_repeats_with_it():
     document = with_handles(cycling(*KEYS, 110, cycle=WALK, last=120))
     keys = list(document.layers[0].keys)
-    keys[3] = replace(keys[3], fronts={1: 1.0})
+    keys[3] = replace(keys[3], depths={1: 1.0})
     document = altered(document, keys=tuple(keys))
     clip = clip_of(document, 0)
-    ahead = [bool(fronts_at(clip, frame)) for frame in (33, 34, 43, 44, 57, 58, 91, 92, 110)]
+    ahead = [bool(depth_points_at(clip, frame)) for frame in (33, 34, 43, 44, 57, 58, 91, 92, 110)]
     assert ahead == [False, True, True, False, False, True, True, False, False]
-    switches = (Switch(0, visible=True), Switch(30, visible=False))
+    switches = (VisibilityKey(0, visible=True), VisibilityKey(30, visible=False))
     document = altered(document, switches=switches)
     layer = document.layers[0]
     shown = [is_visible(document, layer, frame) for frame in (29, 30, 43, 44, 53, 54, 91, 92, 120)]
@@ -244,17 +244,17 @@ def test_what_is_in_front_and_seen_repeats_with_it():
 
 def test_what_moves_fades_and_is_ordered_repeats_with_it():
     wait, end = 2.5, WALK.until
-    bob = tuple(MoveKey(frame=f, shift=s) for f, s in ((20, 0j), (30, 9j), (44, 0j)))
+    bob = tuple(TransformKey(frame=f, shift=s) for f, s in ((20, 0j), (30, 9j), (44, 0j)))
     blink = tuple(OpacityKey(frame=f, opacity=o) for f, o in ((22, 1.0), (28, 0.2), (40, 1.0)))
     document = cycling(*KEYS, cycle=WALK, last=120, movement=bob, opacities=blink)
-    behind = replace(document.layers[0], id=1, name="behind", placings=())
-    weave = replace(document.layers[0], placings=(Placing(30, 1),))
+    behind = replace(document.layers[0], id=1, name="behind", draw_order_keys=())
+    weave = replace(document.layers[0], draw_order_keys=(DrawOrderKey(30, 1),))
     document = replace(document, layers=(weave, behind))
 
     def shown(document, frame):
         layer = document.layer(0)
-        moved = movement_at(document, layer, frame).shift
-        order = [each.id for each in in_order(document, frame)]
+        moved = transform_at(document, layer, frame).shift
+        order = [each.id for each in layers_in_draw_order(document, frame)]
         return moved, opacity_at(document, layer, frame), order
 
     for frame in (20, 23, 30 + wait, 39, 43):
@@ -271,11 +271,11 @@ def test_what_moves_fades_and_is_ordered_repeats_with_it():
     # Posed in one, all change; made into keys, nothing is seen to.
     changed = filming_commands.key_movement(0, 44, 5 + 0j, 0.0)(document)
     assert [shown(changed, frame)[0] for frame in (20, 44, 92)] == [5, 5, 5]
-    keyed = cycle_commands.make_keys(0, 20, 120)(document)
+    keyed = cycle_commands.bake_cycle(0, 20, 120)(document)
     for frame in (30, 46, 54, 67, 78, 91):
         assert abs(shown(keyed, frame)[0] - shown(document, frame)[0]) < 1.5
         assert shown(keyed, frame)[2] == shown(document, frame)[2]
     # Who goes on beyond the stretch, or comes elsewhere, has a time of their own.
-    for last in (MoveKey(frame=60, shift=9), MoveKey(frame=44, shift=9)):
-        walk = replace(document.layer(0), movement=(MoveKey(frame=20), last))
+    for last in (TransformKey(frame=60, shift=9), TransformKey(frame=44, shift=9)):
+        walk = replace(document.layer(0), movement=(TransformKey(frame=20), last))
         assert shown(document.with_layer(walk), 92)[0] == 9

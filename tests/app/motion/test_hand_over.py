@@ -13,17 +13,17 @@ from app.document import (
     Cycle,
     FrameRange,
     Spring,
-    carried_by,
     clip_of,
     cycle_commands,
     layer_commands as layers,
+    parent_label,
     scene_commands,
 )
 from app.document.keyframe import Handle, Target
-from app.document.layering import Attachment
-from app.document.model import HANGS_ON_ITSELF
+from app.document.layers import Attachment
+from app.document.model import PARENT_CIRCLE
 from app.errors import LissomError
-from app.motion import Animation, Joints, hand_over, hung_animations
+from app.motion import Animation, ParentTransforms, hung_animations, reparent_in_place
 from engine.geometry import HERE
 
 TOL = 1e-9 * 200
@@ -32,10 +32,10 @@ TOL = 1e-9 * 200
 @pytest.fixture(scope="module")
 def hands():
     """Two hands that move by themselves, and a thing that hangs on the first of them."""
-    document = layers.detach(1, 1, 0)(chain())
-    assert document.layer(2).joints[0].to == 1
-    joint = Attachment(to=0, at=CENTRE + 20j)
-    return layers.attach(2, CENTRE - 30, joint)(document)
+    document = layers.detach_layer(1, 1, 0)(chain())
+    assert document.layer(2).attachments[0].parent == 1
+    joint = Attachment(parent=0, parent_point=CENTRE + 20j)
+    return layers.attach_layer(2, CENTRE - 30, joint)(document)
 
 
 def around(joints, layer, frame, by=1e-7):
@@ -44,10 +44,10 @@ def around(joints, layer, frame, by=1e-7):
 
 
 def test_reparented_layer_goes_on_without_a_jump(hands):
-    as_before = Joints(hands)
-    joint = hand_over(as_before, 2, 1, 20, turns=True)
-    document = layers.attach(2, hands.layer(2).anchor, joint)(hands)
-    joints = Joints(document)
+    as_before = ParentTransforms(hands)
+    joint = reparent_in_place(as_before, 2, 1, 20, turns=True)
+    document = layers.attach_layer(2, hands.layer(2).anchor, joint)(hands)
+    joints = ParentTransforms(document)
     before, after = around(joints, 2, 20)
     assert abs(before.factor - after.factor) < 1e-6
     assert abs(before.shift - after.shift) < 1e-4
@@ -56,7 +56,7 @@ def test_reparented_layer_goes_on_without_a_jump(hands):
     # From then on at rest in the frame of the other one's point.
     held = set()
     for frame in (20, 27.5, 40, 48):
-        at, fz = exactly(document, 1, joint.at, frame)
+        at, fz = exactly(document, 1, joint.parent_point, frame)
         own, _ = exactly(document, 2, document.layer(2).anchor, frame)
         there = joints.placement(2, frame)
         turn = fz / abs(fz)
@@ -67,23 +67,25 @@ def test_reparented_layer_goes_on_without_a_jump(hands):
 
 
 def test_it_does_not_jump_whatever_is_posed_later(hands):
-    joint = hand_over(Joints(hands), 2, 1, 20, turns=True)
-    document = layers.attach(2, hands.layer(2).anchor, joint)(hands)
+    joint = reparent_in_place(ParentTransforms(hands), 2, 1, 20, turns=True)
+    document = layers.attach_layer(2, hands.layer(2).anchor, joint)(hands)
     for identity in (0, 1):
         layer = document.layer(identity)
         keys = [replace(k, pose=bent(layer, 0.1 * k.frame, 0, k.frame)) for k in layer.keys]
         document = document.with_layer(replace(layer, keys=tuple(keys)))
-    before, after = around(Joints(document), 2, 20)
+    before, after = around(ParentTransforms(document), 2, 20)
     assert abs(before.factor - after.factor) < 1e-5
     assert abs(before.shift - after.shift) < 1e-3
 
 
 def test_detached_layer_stays_or_goes_back_as_asked(hands):
-    anchor, before = hands.layer(2).anchor, Joints(hands)
+    anchor, before = hands.layer(2).anchor, ParentTransforms(hands)
     there = before.placement(2, 20)
     for keeps in (True, False):
-        document = layers.attach(2, anchor, Attachment(to=None, frame=20, keeps=keeps))(hands)
-        joints = Joints(document)
+        document = layers.attach_layer(
+            2, anchor, Attachment(parent=None, frame=20, keep_world_transform=keeps)
+        )(hands)
+        joints = ParentTransforms(document)
         for frame in (20, 31.5, 48):
             assert joints.placement(2, frame) == (there if keeps else HERE)
         assert joints.placement(2, 19.5) == before.placement(2, 19.5)
@@ -92,7 +94,7 @@ def test_detached_layer_stays_or_goes_back_as_asked(hands):
 def test_before_its_first_joint_a_layer_is_where_it_is_by_itself(hands):
     late = replace(hands.layer(2).joints[0], frame=10, keeps=True)
     document = hands.with_layer(replace(hands.layer(2), joints=(late,)))
-    joints = Joints(document)
+    joints = ParentTransforms(document)
     assert joints.placement(2, 9.9) == HERE
     assert abs(joints.placement(2, 10).shift) < TOL
     assert joints.placement(2, 30) != HERE
@@ -100,15 +102,19 @@ def test_before_its_first_joint_a_layer_is_where_it_is_by_itself(hands):
 
 def test_hands_may_take_turns_in_carrying_each_other(hands):
     """No circle at any frame, though each carries the other at some."""
-    document = layers.attach(0, CENTRE, Attachment(to=2, at=CENTRE, frame=20, keeps=True))(
-        layers.attach(2, CENTRE - 30, Attachment(to=None, frame=20, keeps=True))(hands)
+    document = layers.attach_layer(
+        0, CENTRE, Attachment(parent=2, parent_point=CENTRE, frame=20, keep_world_transform=True)
+    )(
+        layers.attach_layer(
+            2, CENTRE - 30, Attachment(parent=None, frame=20, keep_world_transform=True)
+        )(hands)
     )
-    joints = Joints(document)
+    joints = ParentTransforms(document)
     for layer in (0, 2):
         before, after = around(joints, layer, 20)
         assert abs(before.shift - after.shift) < 1e-4
-    assert [each.id for each in document.carriers(0, 30)] == [0, 2]
-    assert [each.id for each in document.carriers(2, 10)] == [2, 0]
+    assert [each.id for each in document.parent_chain(0, 30)] == [0, 2]
+    assert [each.id for each in document.parent_chain(2, 10)] == [2, 0]
     # With springs, too, which follow from where they are carried.
     for identity in (0, 2):
         layer = document.layer(identity)
@@ -136,45 +142,55 @@ def test_hands_may_take_turns_in_carrying_each_other(hands):
 
 
 def test_circles_at_any_frame_are_refused_by_name(hands):
-    document = layers.attach(2, CENTRE, Attachment(to=1, at=CENTRE, frame=20))(hands)
+    document = layers.attach_layer(2, CENTRE, Attachment(parent=1, parent_point=CENTRE, frame=20))(
+        hands
+    )
     with pytest.raises(LissomError, match=r"at frame 30: '1' on '2', '2' on '1'; detach"):
-        layers.attach(1, CENTRE, Attachment(to=2, at=CENTRE, frame=30))(document)
+        layers.attach_layer(1, CENTRE, Attachment(parent=2, parent_point=CENTRE, frame=30))(
+            document
+        )
     # The other way round it is none before the first lets go.
-    layers.attach(1, CENTRE, Attachment(to=0, at=CENTRE, frame=30))(document)
+    layers.attach_layer(1, CENTRE, Attachment(parent=0, parent_point=CENTRE, frame=30))(document)
 
 
 def test_it_is_listed_below_what_carries_it_then(hands):
-    document = layers.attach(2, CENTRE, Attachment(to=None, frame=20))(hands)
-    assert [carried_by(document, document.layer(2), frame) for frame in (19, 20)] == [
+    document = layers.attach_layer(2, CENTRE, Attachment(parent=None, frame=20))(hands)
+    assert [parent_label(document, document.layer(2), frame) for frame in (19, 20)] == [
         (1, "on 0"),
         (0, "on nothing…"),
     ]
-    document = layers.attach(2, CENTRE, Attachment(to=1, at=CENTRE, frame=20))(chain())
-    assert carried_by(document, document.layer(2), 20) == (2, "on 1")
+    document = layers.attach_layer(2, CENTRE, Attachment(parent=1, parent_point=CENTRE, frame=20))(
+        chain()
+    )
+    assert parent_label(document, document.layer(2), 20) == (2, "on 1")
 
 
 def test_joints_are_taken_back_moved_and_stretched_in_time(hands):
     anchor = hands.layer(2).anchor
-    document = layers.attach(2, anchor, Attachment(to=1, at=CENTRE, frame=20))(hands)
-    moved = layers.move_joint(2, 20, 26)(document)
-    assert [joint.frame for joint in moved.layer(2).joints] == [0, 26]
-    back = layers.unjoin(2, 26)(moved)
-    assert back.layer(2).joints == hands.layer(2).joints
+    document = layers.attach_layer(2, anchor, Attachment(parent=1, parent_point=CENTRE, frame=20))(
+        hands
+    )
+    moved = layers.move_attachment_key(2, 20, 26)(document)
+    assert [joint.frame for joint in moved.layer(2).attachments] == [0, 26]
+    back = layers.delete_attachment_key(2, 26)(moved)
+    assert back.layer(2).attachments == hands.layer(2).joints
     with pytest.raises(LissomError, match="not attached anew at frame 21"):
-        layers.move_joint(2, 21, 5)(document)
+        layers.move_attachment_key(2, 21, 5)(document)
     longer = scene_commands.scale_time(2.0)(document)
-    assert [joint.frame for joint in longer.layer(2).joints] == [0, 40]
+    assert [joint.frame for joint in longer.layer(2).attachments] == [0, 40]
     gone = layers.remove_layer(1)(document)
-    assert gone.layer(2).joints == hands.layer(2).joints
+    assert gone.layer(2).attachments == hands.layer(2).joints
 
 
 def test_joints_come_round_in_a_loop(hands):
     document = scene_commands.set_loop(loop=True)(
-        layers.attach(2, CENTRE - 30, Attachment(to=1, at=CENTRE, frame=20))(hands)
+        layers.attach_layer(2, CENTRE - 30, Attachment(parent=1, parent_point=CENTRE, frame=20))(
+            hands
+        )
     )
-    joints = Joints(document)
-    assert [each.id for each in document.carriers(2, 48 + 30)] == [2, 1]
-    assert [each.id for each in document.carriers(2, 48 + 3)] == [2, 0]
+    joints = ParentTransforms(document)
+    assert [each.id for each in document.parent_chain(2, 48 + 30)] == [2, 1]
+    assert [each.id for each in document.parent_chain(2, 48 + 3)] == [2, 0]
     assert abs(joints.placement(2, 53).shift - joints.placement(2, 5).shift) < TOL
     assert_allclose(seen(document, 2, 53, joints), seen(document, 2, 5, joints), atol=1e-6)
 
@@ -185,7 +201,7 @@ def cycling(document, *, until=None, last=200):
     for layer in document.layers:
         keys = tuple(key for key in layer.keys if key.frame < 48)
         cycles = (Cycle(first=0, last=48, until=until),)
-        changed = replace(layer, keys=keys, cycles=cycles, stillness=False)
+        changed = replace(layer, keys=keys, cycles=cycles, has_auto_pins=False)
         document = document.with_layer(changed)
     return document
 
@@ -195,13 +211,13 @@ def juggled(hands):
     """A thing that goes from hand to hand and back, and comes round with them."""
     document = cycling(hands)
     for frame, parent in ((14, 1), (32, 0)):
-        joint = hand_over(Joints(document), 2, parent, frame, turns=True)
-        document = layers.attach(2, hands.layer(2).anchor, joint)(document)
+        joint = reparent_in_place(ParentTransforms(document), 2, parent, frame, turns=True)
+        document = layers.attach_layer(2, hands.layer(2).anchor, joint)(document)
     return document
 
 
 def test_reparented_layer_is_reparented_in_every_repeat(juggled):
-    joints = Joints(juggled)
+    joints = ParentTransforms(juggled)
     for frame in (0, 14, 20, 31.9, 32, 47.9):
         placed = [seen(juggled, 2, frame + repeat * 48, joints) for repeat in range(3)]
         for other in placed[1:]:
@@ -219,22 +235,25 @@ def test_reparented_layer_is_reparented_in_every_repeat(juggled):
 
 def test_a_joint_at_the_end_of_a_cycle_is_the_one_at_its_beginning(juggled):
     anchor = juggled.layer(2).anchor
-    again = Attachment(to=0, at=CENTRE, frame=48, keeps=True)
-    both = Joints(juggled), Joints(layers.attach(2, anchor, again)(juggled))
+    again = Attachment(parent=0, parent_point=CENTRE, frame=48, keep_world_transform=True)
+    both = (
+        ParentTransforms(juggled),
+        ParentTransforms(layers.attach_layer(2, anchor, again)(juggled)),
+    )
     for frame in (40, 48, 60, 70, 100):
         one, other = (each.placement(2, frame) for each in both)
         assert abs(one.shift - other.shift) < TOL
     # With another end, or what is said in the repeats, it has its own time.
-    for joint in (replace(again, to=1), replace(again, frame=70)):
-        document = layers.attach(2, anchor, joint)(juggled)
-        assert document.joints_of(document.layer(2)) == document.layer(2).joints
+    for joint in (replace(again, parent=1), replace(again, frame=70)):
+        document = layers.attach_layer(2, anchor, joint)(juggled)
+        assert document.attachments_of(document.layer(2)) == document.layer(2).attachments
 
 
 def test_what_is_free_at_first_is_free_in_every_repeat(juggled):
     caught = replace(juggled.layer(2), joints=juggled.layer(2).joints[1:])
     document = juggled.with_layer(caught)
     assert [len(document.carriers(2, frame)) for frame in (5, 20, 50, 68)] == [1, 2, 1, 2]
-    free = Joints(document)
+    free = ParentTransforms(document)
     for frame in (5, 50, 97):
         assert free.placement(2, frame) == HERE
     # Led back from where it was caught last, so that nothing jumps.
@@ -255,10 +274,10 @@ def test_repeats_of_joints_made_into_keys_move_as_before(juggled):
                 keys=document.layer(2).keys[:1],
             )
         )
-        keyed = cycle_commands.make_keys(2, 5, 200)(document)
+        keyed = cycle_commands.bake_cycle(2, 5, 200)(document)
         assert not keyed.layer(2).cycles or keyed.layer(2).cycles[0].first > 5
-        stopped = cycle_commands.stop(2, 5)(document)
-        joints, of_keys, of_stopped = map(Joints, (document, keyed, stopped))
+        stopped = cycle_commands.delete_cycle(2, 5)(document)
+        joints, of_keys, of_stopped = map(ParentTransforms, (document, keyed, stopped))
         for frame in (8, 20, 35, 52.5, 53, 60, 70, 90, 130, 199):
             one, other = (each.placement(2, frame) for each in (joints, of_keys))
             assert abs(one.factor - other.factor) < 1e-9
@@ -270,7 +289,7 @@ def test_repeats_of_joints_made_into_keys_move_as_before(juggled):
 
 def test_repeats_end_at_their_frame_and_what_comes_later_follows(juggled):
     layer = juggled.layer(2)
-    later = Attachment(to=None, frame=150, keeps=True)
+    later = Attachment(parent=None, frame=150, keep_world_transform=True)
     joints = (*layer.joints, later)
     document = juggled.with_layer(
         replace(layer, joints=joints, cycles=(Cycle(first=0, last=48, until=96),))
@@ -281,10 +300,14 @@ def test_repeats_end_at_their_frame_and_what_comes_later_follows(juggled):
 
 def test_circles_in_repeats_are_refused(hands):
     anchor = hands.layer(2).anchor
-    document = cycling(layers.attach(2, anchor, Attachment(to=None, frame=20, keeps=True))(hands))
-    joint = Attachment(to=2, at=CENTRE, frame=30)
-    with pytest.raises(LissomError, match=says(HANGS_ON_ITSELF, name="0", when=" at frame 48")):
-        layers.attach(0, CENTRE, joint)(
+    document = cycling(
+        layers.attach_layer(
+            2, anchor, Attachment(parent=None, frame=20, keep_world_transform=True)
+        )(hands)
+    )
+    joint = Attachment(parent=2, parent_point=CENTRE, frame=30)
+    with pytest.raises(LissomError, match=says(PARENT_CIRCLE, name="0", when=" at frame 48")):
+        layers.attach_layer(0, CENTRE, joint)(
             document.with_layer(replace(document.layer(0), cycles=(), keys=hands.layer(0).keys))
         )
-    layers.attach(0, CENTRE, joint)(document)
+    layers.attach_layer(0, CENTRE, joint)(document)

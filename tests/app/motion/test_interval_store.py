@@ -12,7 +12,7 @@ from sessions import session_of, settle
 
 from app.document.commands import key_commands
 from app.document.history import History
-from app.document.keyframe import Passing
+from app.document.keyframe import TangentMode
 from app.document.queries.clips import clip_of
 from app.document.settings import FrameRange
 from app.editor.actions import editing, keys, viewing
@@ -21,16 +21,16 @@ from app.editor.session import Session
 from app.editor.work.jobs import Jobs
 from app.editor.work.pull import Pull
 from app.motion import (
-    FoundIntervals,
-    IntervalStore,
-    KnownInterval,
-    Placed,
-    PosableMesh,
-    Streamed,
+    CachedSegment,
+    CacheUpdate,
+    DeformMesh,
+    InbetweenCache,
+    StreamedVertices,
+    VertexArray,
     show,
 )
-from app.motion.interval_store import SPARE
-from app.motion.intervals import Build, pair_of
+from app.motion.inbetween_cache import SPARE
+from app.motion.inbetween_jobs import SeriesBuild, segment_key
 from engine import streaming
 from engine.variant import Variant
 
@@ -50,15 +50,15 @@ def clip(document):
 @pytest.fixture(scope="module")
 def found(clip):
     """All in-betweens of the clip."""
-    store = IntervalStore(mesh=PosableMesh.fine(clip.layer.domain))
-    return store.mesh, store.preparing(clip, [0, 1, 2])()
+    store = InbetweenCache(mesh=DeformMesh.fine(clip.layer.domain))
+    return store.mesh, store.segments_job(clip, [0, 1, 2])()
 
 
 @pytest.fixture
 def prepared(found):
     mesh, intervals = found
-    store = IntervalStore(mesh=mesh)
-    store.take(intervals)
+    store = InbetweenCache(mesh=mesh)
+    store.add(intervals)
     return store
 
 
@@ -83,7 +83,7 @@ def posed(clip, frame):
     return replace(clip, layer=replace(clip.layer, keys=keys))
 
 
-def finished(build: Build) -> Build:
+def finished(build: SeriesBuild) -> SeriesBuild:
     while build.series is None:
         assert build.advance() is build
     return build
@@ -91,12 +91,12 @@ def finished(build: Build) -> Build:
 
 def stream(store, clip, frame, *, heat=False):
     """Build all that is wanted, and return the order of the intervals."""
-    numbers = {pair_of(clip, interval): interval for interval in range(3)}
+    numbers = {segment_key(clip, interval): interval for interval in range(3)}
     order = []
     store.pin([clip], [], frame)
     while build := store.next_build(clip, frame, heat=heat):
         order.append((numbers[build.pair], build.distortions))
-        store.take_build(finished(build))
+        store.add_build(finished(build))
         assert store.nbytes <= store.budget
         assert len(order) < 20
     return order
@@ -124,14 +124,14 @@ def test_what_was_made_once_is_found_wherever_it_comes_again(clip, prepared):
 
 def test_a_copied_key_costs_nothing(document):
     every = document.layers[0].key_frames
-    corners = key_commands.set_passing(0, every, Passing.CORNER)(document)
+    corners = key_commands.set_tangent_mode(0, every, TangentMode.CORNER)(document)
     clip = clip_of(corners, 0)
-    store = IntervalStore(mesh=PosableMesh.fine(clip.layer.domain))
+    store = InbetweenCache(mesh=DeformMesh.fine(clip.layer.domain))
     assert prepare(store, clip) == 3
     longer = replace(corners, frames=FrameRange(0, 60))
     copied = clip_of(key_commands.copy_keys(0, {0, 10}, 40)(longer), 0)
     # From the last key to the first of the copies is new; between the two it is not.
-    assert store.missing(copied, 0) == [3]
+    assert store.missing_segments(copied, 0) == [3]
 
 
 def test_another_method_of_the_split_view_finds_the_layers_own(document, tmp_path):
@@ -167,31 +167,31 @@ def test_undo_and_redo_find_what_was_made(document, tmp_path):
 
 
 def test_a_result_that_nobody_waits_for_any_more_is_used_when_its_keys_come_again(clip, prepared):
-    store = IntervalStore(mesh=prepared.mesh)
-    store.pin([clip], [], 0)
-    late = store.preparing(clip, [0])
-    store.pin([variant_of(clip, "eta")], [clip], 0)
-    store.take(late())
+    store = InbetweenCache(mesh=prepared.mesh)
+    store.set_needed_clips([clip], [], 0)
+    late = store.segments_job(clip, [0])
+    store.set_needed_clips([variant_of(clip, "eta")], [clip], 0)
+    store.add(late())
     assert not store.has(clip)
-    store.pin([clip], [], 0)
-    assert store.missing(clip, 0) == [1, 2]
+    store.set_needed_clips([clip], [], 0)
+    assert store.missing_segments(clip, 0) == [1, 2]
     # So are series.
     build = finished(prepared.next_build(clip, 0, heat=False))
     prepared.pin([variant_of(clip, "eta")], [clip], 0)
-    prepared.take_build(build)
+    prepared.add_build(build)
     assert streamed(prepared, clip) == [True, False, False]
 
 
 def test_a_series_in_the_making_is_not_gone_on_with_for_other_keys(clip, prepared):
     build = prepared.next_build(clip, 0, heat=False)
-    prepared.take_build(build)
+    prepared.add_build(build)
     assert prepared.next_build(clip, 0, heat=False) is build
-    prepared.take_build(build)
+    prepared.add_build(build)
     # Nothing is built for a clip whose in-betweens are not there yet.
     other = variant_of(clip, "eta")
     assert prepared.next_build(other, 0, heat=False) is None
     prepare(prepared, other)
-    assert prepared.next_build(other, 0, heat=False).pair == pair_of(other, 0)
+    assert prepared.next_build(other, 0, heat=False).pair == segment_key(other, 0)
 
 
 def test_a_failure_is_known_of_the_same_keys_as_long_as_they_are_there(clip, prepared):
@@ -212,7 +212,7 @@ def test_a_failure_is_known_of_the_same_keys_as_long_as_they_are_there(clip, pre
 @pytest.mark.parametrize("variant", ["metric", "nu"])
 def test_only_exact_in_betweens_are_shown_as_current(variant):
     clip = clip_of(row(4, variant=variant), 0)
-    store = IntervalStore(mesh=PosableMesh.fine(clip.layer.domain))
+    store = InbetweenCache(mesh=DeformMesh.fine(clip.layer.domain))
     frames = (0, 4, 10, 13, 17, 25, 30)
 
     def exact():
@@ -225,13 +225,13 @@ def test_only_exact_in_betweens_are_shown_as_current(variant):
     keys = [0, 10, 30]
     assert exact() == keys
     # Before the first in-betweens, a frame alone would not come sooner.
-    assert store.making_frame(clip, FRAME) is None
+    assert store.frame_job(clip, FRAME) is None
     prepare(store, clip, 0)
     assert exact() == [0, 4, 10, 30]
-    store.take(store.making_frame(clip, FRAME)())
+    store.add(store.frame_job(clip, FRAME)())
     alone = [0, 4, 10, 13, 30] if variant == "metric" else [0, 4, 10, 13, 17, 30]
     assert exact() == alone
-    assert store.making_frame(clip, FRAME) is None
+    assert store.frame_job(clip, FRAME) is None
     one = store.positions(clip, FRAME)
     prepare(store, clip)
     assert exact() == list(frames)
@@ -275,13 +275,13 @@ def test_what_nothing_present_needs_makes_room_and_the_oldest_first(clip, prepar
 
 
 def test_memory_is_bounded_and_the_farthest_series_makes_room(clip, prepared, monkeypatch):
-    monkeypatch.setattr("app.motion.interval_store.EXPECTED", 1)
+    monkeypatch.setattr("app.motion.inbetween_cache.EXPECTED", 1)
     prepared.pin([clip], [], 0)
     base = prepared.nbytes
     stream(prepared, clip, 0)
     sizes = [prepared.interval(clip, i).series.nbytes for i in range(3)]
     prepared.budget = base + sizes[1] + max(sizes[0], sizes[2])
-    prepared.take(FoundIntervals(sampler=None, intervals={}))
+    prepared.take(CacheUpdate(sampler=None, segments={}))
     assert streamed(prepared, clip) == [True, True, False]
     assert stream(prepared, clip, 0) == []
     assert prepared.nbytes <= prepared.budget
@@ -295,15 +295,15 @@ def test_memory_is_bounded_and_the_farthest_series_makes_room(clip, prepared, mo
 def test_at_rest_series_alone_show_all_of_what_nobody_edits(clip, prepared):
     prepared.pin([clip], [], 0)
     extension = prepared.sampler.extension.nbytes
-    assert prepared.passing_bytes(clip) > extension > 0
+    assert prepared.releasable_bytes(clip) > extension > 0
     stream(prepared, clip, 0)
     assert all(prepared.interval(clip, number).is_streamed for number in range(3))
     frames = (0.5, 4, 9.9, 13, 21.7, 30)
     before = [prepared.positions(clip, frame) for frame in frames]
     size = prepared.nbytes
-    assert prepared.passing_bytes(clip) > extension
+    assert prepared.releasable_bytes(clip) > extension
     prepared.rest()
-    assert prepared.passing_bytes(clip) == 0
+    assert prepared.releasable_bytes(clip) == 0
     assert prepared.nbytes < size / 2
     for frame, places in zip(frames, before, strict=True):
         assert np.array_equal(prepared.positions(clip, frame), places)
@@ -323,10 +323,10 @@ def test_at_rest_series_alone_show_all_of_what_nobody_edits(clip, prepared):
 def test_what_no_series_has_all_of_stays_prepared_at_rest(clip, prepared):
     prepared.pin([clip], [], 0)
     stream(prepared, clip, 0)
-    pair = pair_of(clip, 1)
+    pair = segment_key(clip, 1)
     known = prepared.interval(clip, 1)
     holed = replace(known.series, pieces=known.series.pieces[1:])
-    prepared.take(FoundIntervals(None, {pair: KnownInterval(known.poses, series=holed)}))
+    prepared.take(CacheUpdate(None, {pair: CachedSegment(known.poses, series=holed)}))
     prepared.rest()
     assert prepared.interval(clip, 1).inbetweens is not None
     assert prepared.interval(clip, 0).inbetweens is None
@@ -336,17 +336,17 @@ def test_what_no_series_has_all_of_stays_prepared_at_rest(clip, prepared):
 
 @pytest.mark.parametrize("frame", [0, 25])
 def test_what_did_not_fit_is_not_built_over_and_over(clip, found, monkeypatch, frame):
-    monkeypatch.setattr("app.motion.interval_store.EXPECTED", 1)
+    monkeypatch.setattr("app.motion.inbetween_cache.EXPECTED", 1)
     mesh, intervals = found
-    everything = IntervalStore(mesh=mesh)
-    everything.take(intervals)
+    everything = InbetweenCache(mesh=mesh)
+    everything.add(intervals)
     base = everything.nbytes
     stream(everything, clip, 0)
-    sizes = [everything.interval(clip, i).series.nbytes for i in range(3)]
+    sizes = [everything.segment(clip, i).series.nbytes for i in range(3)]
     # There is room for the nearest one, and not quite for the next.
-    store = IntervalStore(mesh=mesh, budget=base + sizes[1] + sizes[2 if frame else 0] - 1)
-    store.pin([clip], [], frame)
-    store.take(intervals)
+    store = InbetweenCache(mesh=mesh, budget=base + sizes[1] + sizes[2 if frame else 0] - 1)
+    store.set_needed_clips([clip], [], frame)
+    store.add(intervals)
     order = stream(store, clip, frame)
     assert len(order) == len(set(order))
     assert streamed(store, clip)[2 if frame else 0]
@@ -354,15 +354,15 @@ def test_what_did_not_fit_is_not_built_over_and_over(clip, found, monkeypatch, f
 
 def test_full_detail_is_prepared_as_far_as_there_is_room(clip, found):
     mesh, _ = found
-    store = IntervalStore(mesh=mesh)
-    store.pin([clip], [], 0)
+    store = InbetweenCache(mesh=mesh)
+    store.set_needed_clips([clip], [], 0)
     prepare(store, clip, 0)
     one = store.nbytes
     store.budget = 2 * one
     assert store.has_room()
     store.budget = 2 * one - 1
     assert not store.has_room()
-    assert IntervalStore(mesh=mesh, budget=1).has_room(), "nothing is known of their size"
+    assert InbetweenCache(mesh=mesh, budget=1).has_room(), "nothing is known of their size"
 
 
 # Series.
@@ -371,11 +371,11 @@ def test_full_detail_is_prepared_as_far_as_there_is_room(clip, found):
 def test_what_a_series_leaves_out_is_shown_by_the_direct_path(clip, prepared):
     stream(prepared, clip, FRAME, heat=True)
     known = prepared.interval(clip, 1)
-    partly = IntervalStore(mesh=prepared.mesh)
+    partly = InbetweenCache(mesh=prepared.mesh)
 
     def take(**series):
-        partly.take(
-            FoundIntervals(sampler=None, intervals={pair_of(clip, 1): known._replace(**series)})
+        partly.add(
+            CacheUpdate(sampler=None, segments={segment_key(clip, 1): known._replace(**series)})
         )
 
     none = replace(known.distortions, pieces=())
@@ -383,13 +383,13 @@ def test_what_a_series_leaves_out_is_shown_by_the_direct_path(clip, prepared):
     assert partly.vertices(clip, FRAME).derivatives is None
     take(series=replace(known.series, pieces=()), distortions=none)
     shown = partly.vertices(clip, FRAME)
-    assert isinstance(shown, Placed)
+    assert isinstance(shown, VertexArray)
     exact = known.inbetweens.frame(0.3).positions
     assert_allclose(shown.positions, exact, rtol=0, atol=1e-12)
 
 
 def test_the_nearest_interval_is_built_first(clip, prepared):
-    assert isinstance(prepared.vertices(clip, FRAME), Placed)
+    assert isinstance(prepared.vertices(clip, FRAME), VertexArray)
     frames = (3, 13, 13.5, 29)
     direct = [prepared.positions(clip, frame) for frame in frames]
     order = stream(prepared, clip, FRAME)
@@ -397,10 +397,10 @@ def test_the_nearest_interval_is_built_first(clip, prepared):
     size = np.ptp(clip.layer.domain.mesh.vertices.real)
     for frame, expected in zip(frames, direct, strict=True):
         vertices = prepared.vertices(clip, frame)
-        assert isinstance(vertices, Streamed)
+        assert isinstance(vertices, StreamedVertices)
         assert_allclose(vertices.positions, expected, rtol=0, atol=2e-6 * size)
         assert vertices.derivatives is None
-    assert isinstance(prepared.vertices(clip, 20), Placed)  # a key itself
+    assert isinstance(prepared.vertices(clip, 20), VertexArray)  # a key itself
 
 
 def test_distortions_are_built_while_they_are_shown(clip, prepared):
@@ -418,7 +418,7 @@ def test_a_session_streams_what_it_plays_and_stops_while_a_hand_pulls(document, 
     assert streamed(store, clip) == [True] * 3
     project.playhead = project.playhead.seek(13, 0.0)
     settle(session)
-    assert isinstance(project.puppet.shown.vertices, Streamed)
+    assert isinstance(project.puppet.shown.vertices, StreamedVertices)
     assert store.build is None
     # Another key's pose: its two intervals are built anew, but not while it is being pulled.
     key = clip.layer.keys[1]
@@ -427,7 +427,7 @@ def test_a_session_streams_what_it_plays_and_stops_while_a_hand_pulls(document, 
     project.history = History(edited, saved=True)
     settle(session)
     assert streamed(store, clip_of(edited, 0)) == [True] * 3
-    project.puppet.store = IntervalStore(mesh=store.mesh)
+    project.puppet.store = InbetweenCache(mesh=store.mesh)
     prepare(project.puppet.store, clip)
     project.history = History(document, saved=True)
     pull = Pull(clip=clip, frame=13, gesture=object(), start=None, before=None, is_keyed=True)
@@ -476,7 +476,7 @@ def test_a_series_that_failed_once_is_built_anew_when_the_document_changes(
         raise ZeroDivisionError("a bug")
 
     with monkeypatch.context() as patch:
-        patch.setattr("app.motion.intervals.build_series", broken)
+        patch.setattr("app.motion.inbetween_jobs.build_series", broken)
         settle()
         settle()
     store = project.puppet.store
@@ -494,14 +494,14 @@ def test_a_series_that_failed_once_is_built_anew_when_the_document_changes(
 
 
 def test_the_worker_takes_few_steps_at_once(clip, prepared, monkeypatch):
-    monkeypatch.setattr("app.motion.intervals.BATCH", 3 * len(clip.layer.domain.mesh.vertices))
+    monkeypatch.setattr("app.motion.inbetween_jobs.BATCH", 3 * len(clip.layer.domain.mesh.vertices))
     build = prepared.next_build(clip, 0, heat=False)
     batches = 0
     while build.series is None:
         build.advance()
         batches += 1
     assert batches > 3
-    known: KnownInterval = prepared.interval(clip, 0)
+    known: CachedSegment = prepared.interval(clip, 0)
     whole = streaming.finish(
         streaming.build_series(streaming.Positions.of(known.inbetweens, known.sites))
     )

@@ -7,10 +7,17 @@ from documents import CENTRE, inside
 from numpy.testing import assert_allclose
 
 from app.document import History, clip_of, key_commands, layer_commands as layers, scene_commands
-from app.document.keyframe import Passing
+from app.document.keyframe import TangentMode
 from app.errors import LissomError
-from app.motion import Animation, IntervalStore, Joints, PosableMesh, Streamed, hang
-from app.motion.joints.joints import BATCH
+from app.motion import (
+    Animation,
+    DeformMesh,
+    InbetweenCache,
+    ParentTransforms,
+    StreamedVertices,
+    attach_in_place,
+)
+from app.motion.parenting.parent_transforms import BATCH
 from app.storage import load_project, save_project
 from engine.domain.meshing import triangulate
 from engine.geometry import HERE
@@ -19,9 +26,9 @@ from engine.maps import distortion
 
 def check_closed(document, frames, earlier=None):
     """Hold each joint of a document against the points that it joins; return its joints."""
-    joints = Joints(document, earlier=earlier)
+    joints = ParentTransforms(document, earlier=earlier)
     for layer in document.layers:
-        joint = document.joint_at(layer, 0)
+        joint = document.attachment_at(layer, 0)
         if joint is None:
             continue
         for frame in frames:
@@ -47,7 +54,7 @@ def test_joint_stays_closed_and_turns_with_its_parent(variant):
 
 
 def test_what_hangs_on_nothing_is_where_it_is():
-    joints = Joints(chain())
+    joints = ParentTransforms(chain())
     assert joints.placement(0, 17.5) == HERE
     places = np.array([1 + 2j])
     assert HERE.on(places) is places
@@ -57,8 +64,8 @@ def test_what_does_not_turn_only_moves():
     document = chain()
     layer = document.layer(1)
     still = replace(layer.joints[0], turns=False)
-    document = layers.attach(1, layer.anchor, still)(document)
-    assert Joints(document).placement(1, 30.0).factor == 1
+    document = layers.attach_layer(1, layer.anchor, still)(document)
+    assert ParentTransforms(document).placement(1, 30.0).factor == 1
 
 
 def test_a_pose_that_is_shown_takes_the_place_of_the_key_s():
@@ -68,8 +75,8 @@ def test_a_pose_that_is_shown_takes_the_place_of_the_key_s():
     posed = document.with_layer(
         replace(layer, keys=(replace(layer.keys[0], pose=pose), *layer.keys[1:]))
     )
-    shown = Joints(document).placement(1, 0, {0: pose})
-    keyed = Joints(posed).placement(1, 0)
+    shown = ParentTransforms(document).placement(1, 0, {0: pose})
+    keyed = ParentTransforms(posed).placement(1, 0)
     assert_allclose([*shown], [*keyed], rtol=0, atol=1e-9)
     f = layer.map_of(pose)
     own, _ = exactly(document, 1, document.layer(1).anchor, 0)
@@ -79,42 +86,42 @@ def test_a_pose_that_is_shown_takes_the_place_of_the_key_s():
 @pytest.mark.parametrize(("frame", "turns"), [(0, False), (11.5, True)])
 def test_attaching_moves_nothing_at_the_present_frame(frame, turns):
     document = chain()
-    loose = layers.detach(2, 1, 0)(document)
-    before = Joints(loose)
+    loose = layers.detach_layer(2, 1, 0)(document)
+    before = ParentTransforms(loose)
     held, _ = exactly(loose, 2, CENTRE, frame)
     place = complex(before.placement(2, frame).on(np.array([held]))[0])
-    anchor, joint = hang(before, 2, 0, frame, place=place, turns=turns)
+    anchor, joint = attach_in_place(before, 2, 0, frame, place=place, turns=turns)
     assert abs(anchor - CENTRE) < 1e-8
-    hung = layers.attach(2, anchor, joint)(loose)
+    hung = layers.attach_layer(2, anchor, joint)(loose)
     assert_allclose(seen(hung, 2, frame), seen(loose, 2, frame, before), rtol=0, atol=1e-8)
-    by_anchor = hang(before, 2, 0, frame, turns=turns)
+    by_anchor = attach_in_place(before, 2, 0, frame, turns=turns)
     assert abs(by_anchor[0] - document.layer(2).anchor) < 1e-12
 
 
 def test_detaching_moves_nothing_at_the_present_frame():
     document, frame = chain(), 20
-    joints = Joints(document)
+    joints = ParentTransforms(document)
     before = joints.placement(2, frame)
-    loose = layers.detach(2, before.factor, before.shift)(document)
+    loose = layers.detach_layer(2, before.factor, before.shift)(document)
     assert_allclose(seen(loose, 2, frame), seen(document, 2, frame, joints), rtol=0, atol=1e-9)
 
 
 def test_layers_are_joined_where_they_overlap_without_an_anchor():
-    document = layers.detach(2, 1, 0)(chain())
+    document = layers.detach_layer(2, 1, 0)(chain())
     layer = document.layer(2)
     apart = replace(layer, anchor=CENTRE - 80)
     keys = tuple(replace(k, pose=bent(layer, 0, 0, 130)) for k in layer.keys)
     document = document.with_layer(replace(apart, keys=keys))
-    before = Joints(document)
-    anchor, joint = hang(before, 2, 0, 0, turns=True)
+    before = ParentTransforms(document)
+    anchor, joint = attach_in_place(before, 2, 0, 0, turns=True)
     assert anchor.real < CENTRE.real
-    hung = layers.attach(2, anchor, joint)(document)
+    hung = layers.attach_layer(2, anchor, joint)(document)
     assert_allclose(seen(hung, 2, 0), seen(document, 2, 0, before), rtol=0, atol=1e-8)
 
 
 def test_attached_layer_keeps_its_distance_beside_its_parent():
     """Nothing moves now, and later it goes with the nearest point, as it was beside it."""
-    document = layers.detach(2, 1, 0)(chain())
+    document = layers.detach_layer(2, 1, 0)(chain())
     far = document.with_layer(
         replace(
             document.layer(2),
@@ -124,35 +131,35 @@ def test_attached_layer_keeps_its_distance_beside_its_parent():
             ),
         )
     )
-    before = Joints(far)
-    anchor, joint = hang(before, 2, 0, 11.5, turns=True)
-    hung = layers.attach(2, anchor, joint)(far)
-    joints = Joints(hung)
+    before = ParentTransforms(far)
+    anchor, joint = attach_in_place(before, 2, 0, 11.5, turns=True)
+    hung = layers.attach_layer(2, anchor, joint)(far)
+    joints = ParentTransforms(hung)
     assert_allclose(seen(hung, 2, 11.5, joints), seen(far, 2, 11.5, before), rtol=0, atol=1e-8)
     assert abs(joint.offset) > 200
     lengths = []
     for frame in (0, 11.5, 30.2, 48):
         own, _ = exactly(hung, 2, anchor, frame)
-        parent, _ = exactly(hung, 0, joint.at, frame)
+        parent, _ = exactly(hung, 0, joint.parent_point, frame)
         lengths.append(abs(joints.placement(2, frame).on(own) - parent))
     assert_allclose(lengths, abs(joint.offset), rtol=1e-9)
 
 
 def test_a_joint_must_be_on_what_hangs():
-    document = layers.detach(2, 1, 0)(chain())
+    document = layers.detach_layer(2, 1, 0)(chain())
     with pytest.raises(LissomError, match=r"nothing of '2' at \(5000, 0\)"):
-        hang(Joints(document), 2, 0, 0, place=5000 + 0j, turns=True)
+        attach_in_place(ParentTransforms(document), 2, 0, 0, place=5000 + 0j, turns=True)
 
 
 def test_joints_stay_closed_when_documents_change_and_are_saved(tmp_path):
     document, frames = chain(), np.random.default_rng(6).uniform(0, 48, 1)
-    history, joints = History(document, saved=True), Joints(document)
+    history, joints = History(document, saved=True), ParentTransforms(document)
     earlier = []
     changes = (
         (layers.duplicate_layer(1), layers.duplicate_layer(2), layers.move_layer(2, 0)),
         (layers.rename_layer(3, "copy"), key_commands.copy_keys(1, {20}, 7)),
         (key_commands.move_keys(0, {20}, 5), layers.set_hidden(1, hidden=True)),
-        (layers.detach(3, *joints.placement(1, 11.5)),),
+        (layers.detach_layer(3, *joints.placement(1, 11.5)),),
         (scene_commands.set_loop(loop=True), layers.remove_layer(0)),
     )
     for some in changes:
@@ -167,8 +174,8 @@ def test_joints_stay_closed_when_documents_change_and_are_saved(tmp_path):
     history.redo()
     save_project(tmp_path / "chain.lissom", history.document)
     again = load_project(tmp_path / "chain.lissom")
-    assert [layer.joints for layer in again.layers] == [
-        layer.joints for layer in history.document.layers
+    assert [layer.attachments for layer in again.layers] == [
+        layer.attachments for layer in history.document.layers
     ]
     check_closed(again, frames)
 
@@ -202,19 +209,19 @@ def test_streamed_joint_stays_closed_on_the_screen():
             joint = replace(layer.joints[0], at=complex(middle[1]))
             finer = replace(finer, anchor=complex(middle[0]), joints=(joint,))
         document = document.with_layer(finer)
-    joints = Joints(document)
+    joints = ParentTransforms(document)
     stores = []
     for layer in document.layers:
         clip = clip_of(document, layer.id)
-        store = IntervalStore(mesh=PosableMesh.fine(layer.domain))
-        store.take(store.preparing(clip, store.missing(clip, 0))())
+        store = InbetweenCache(mesh=DeformMesh.fine(layer.domain))
+        store.add(store.segments_job(clip, store.missing_segments(clip, 0))())
         while build := store.next_build(clip, 0, heat=False):
-            store.take_build(build.advance())
+            store.add_build(build.advance())
         stores.append((clip, store))
     anchor, at = (int(np.argmin(np.abs(mesh.vertices - place))) for place in middle)
     for frame in np.random.default_rng(3).uniform(0, 48, 40):
         shown = [store.vertices(clip, frame) for clip, store in stores]
-        assert all(isinstance(each, Streamed) for each in shown)
+        assert all(isinstance(each, StreamedVertices) for each in shown)
         places = [
             joints.placement(number, frame).on(each.positions) for number, each in enumerate(shown)
         ]
@@ -226,38 +233,41 @@ def worked_out(joints):
     """Go through all frames in batches; return how many had to be worked out, and in how many."""
     batches = 0
     while not joints.is_whole:
-        before = joints.worked_out
+        before = joints.computed_count
         assert joints.advance() is joints
-        assert joints.worked_out - before <= BATCH
+        assert joints.computed_count - before <= BATCH
         batches += 1
-    return joints.worked_out, batches
+    return joints.computed_count, batches
 
 
 def test_an_edit_costs_the_frames_of_its_intervals_and_undo_none():
     document = chain()
     frames = len(range(document.frames.first, document.frames.last + 1))
-    first = Joints(document)
+    first = ParentTransforms(document)
     count, batches = worked_out(first)
     assert count == 3 * frames
     assert batches > 1
     # The last key of one of them: the way to it from the middle one passes through that.
     layer = document.layer(1)
     last = layer.keys[-1]
-    cornered = key_commands.set_passing(1, layer.key_frames, Passing.CORNER)(document)
-    edited = key_commands.pose_key(1, last.frame, bent(layer, 0.3, 1e-4, 2))(cornered)
-    before = Joints(cornered, earlier=first)
+    cornered = key_commands.set_tangent_mode(1, layer.key_frames, TangentMode.CORNER)(document)
+    edited = key_commands.replace_key_pose(1, last.frame, bent(layer, 0.3, 1e-4, 2))(cornered)
+    before = ParentTransforms(cornered, earlier=first)
     worked_out(before)
-    after = Joints(edited, earlier=before)
+    after = ParentTransforms(edited, earlier=before)
     assert worked_out(after)[0] == last.frame - 20
-    check = Joints(edited)
+    check = ParentTransforms(edited)
     for frame in (7, 33, 48):
         for each in (1, 2):
             expected = check.placement(each, frame)
             assert_allclose([*after.placement(each, frame)], [*expected], rtol=0, atol=1e-9)
     # So far only the frames of one layer; and nothing of what was is lost.
-    assert worked_out(Joints(cornered, earlier=after))[0] == 0
-    assert worked_out(Joints(document, earlier=after))[0] == 0
+    assert worked_out(ParentTransforms(cornered, earlier=after))[0] == 0
+    assert worked_out(ParentTransforms(document, earlier=after))[0] == 0
     # What began and was left is gone on with.
-    begun = Joints(document).advance()
+    begun = ParentTransforms(document).advance()
     assert not begun.is_whole
-    assert worked_out(Joints(document, earlier=begun))[0] == 3 * frames - begun.worked_out
+    assert (
+        worked_out(ParentTransforms(document, earlier=begun))[0]
+        == 3 * frames - begun.computed_count
+    )

@@ -5,7 +5,16 @@ import pytest
 from documents import altered, disc_document
 from numpy.testing import assert_allclose
 
-from app.document import LINEAR, Attachment, FrameRange, Handle, Keyframe, MoveKey, Spring, Target
+from app.document import (
+    LINEAR,
+    Attachment,
+    FrameRange,
+    Handle,
+    Keyframe,
+    Spring,
+    Target,
+    TransformKey,
+)
 from app.document.timing import Cycle
 from app.motion.extents import long_extent
 from app.motion.extents.long_extent import MOST_MEASURED, farthest_reach
@@ -104,7 +113,7 @@ def test_a_spring_that_swings_with_what_carries_it_is_within():
     pose = replace(layer.keys[0].pose, targets={0: Target(position=anchor)})
     keys = (replace(layer.keys[0], pose=pose),)
     spring = Spring(handle=0, frequency=2.0, damping=0.1)
-    moves = tuple(MoveKey(frame=at) for at in (0, kicked, LAST))
+    moves = tuple(TransformKey(frame=at) for at in (0, kicked, LAST))
     carrier = replace(layer, id=1, name="carrier", movement=moves)
     child = replace(
         layer,
@@ -112,7 +121,7 @@ def test_a_spring_that_swings_with_what_carries_it_is_within():
         next_handle=1,
         keys=keys,
         anchor=anchor,
-        joints=(Attachment(to=1, at=anchor),),
+        joints=(Attachment(parent=1, parent_point=anchor),),
         springs=(spring,),
     )
     (found, *_) = reach(

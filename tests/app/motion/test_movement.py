@@ -7,11 +7,15 @@ import pytest
 from chains import chain, seen
 from numpy.testing import assert_allclose
 
-from app.document import Attachment, MoveKey, clip_of, layer_commands as layers, movement_at
-from app.motion import Animation, Joints, hung_animations
-from app.motion.joints import carried_in
+from app.document import Attachment, TransformKey, clip_of, layer_commands as layers, transform_at
+from app.motion import Animation, ParentTransforms, hung_animations
+from app.motion.parenting import find_parent_motion
 
-MOVES = (MoveKey(frame=0), MoveKey(frame=20, shift=40 - 10j, turn=1.2), MoveKey(frame=48))
+MOVES = (
+    TransformKey(frame=0),
+    TransformKey(frame=20, shift=40 - 10j, turn=1.2),
+    TransformKey(frame=48),
+)
 
 
 def moving(document, identity, keys=MOVES):
@@ -20,9 +24,9 @@ def moving(document, identity, keys=MOVES):
 
 def test_attached_layers_go_along_when_their_parent_moves():
     still, moved = chain(), moving(chain(), 0)
-    without, along = Joints(still), Joints(moved)
+    without, along = ParentTransforms(still), ParentTransforms(moved)
     for frame in (0.0, 7.5, 20.0, 33.0):
-        motion = movement_at(moved, moved.layer(0), frame)
+        motion = transform_at(moved, moved.layer(0), frame)
         for layer in (0, 1, 2):
             before = without.placement(layer, frame)
             after = along.placement(layer, frame)
@@ -37,12 +41,12 @@ def test_a_layer_is_as_distorted_and_certified_as_without():
     assert np.array_equal(one.fzbar, other.fzbar)
     assert [key.pose for key in still.layer(0).keys] == [key.pose for key in moved.layer(0).keys]
     hung = hung_animations([Animation(clip_of(moved, 0), points=points)], moved)[0]
-    motion = movement_at(moved, moved.layer(0), 13.0)
+    motion = transform_at(moved, moved.layer(0), 13.0)
     assert_allclose(hung.positions(13.0), motion.on(one.positions), rtol=0, atol=1e-9)
 
 
 def test_layer_is_not_moved_by_itself_while_attached():
-    moved, still = Joints(moving(chain(), 1)), Joints(chain())
+    moved, still = ParentTransforms(moving(chain(), 1)), ParentTransforms(chain())
     for frame in (0, 9.5):
         assert moved.placement(1, frame) == still.placement(1, frame)
 
@@ -50,13 +54,13 @@ def test_layer_is_not_moved_by_itself_while_attached():
 def test_what_is_let_go_goes_on_from_where_it_is():
     document = moving(chain(), 1)
     layer = document.layer(1)
-    released = Attachment(to=None, frame=20, keeps=True)
-    document = layers.attach(1, layer.anchor, released)(document)
-    joints = Joints(document)
+    released = Attachment(parent=None, frame=20, keep_world_transform=True)
+    document = layers.attach_layer(1, layer.anchor, released)(document)
+    joints = ParentTransforms(document)
     at, before = joints.placement(1, 20), joints.placement(1, 20, before=True)
     assert_allclose(at, before, rtol=0, atol=1e-9)
     own = document.layer(1)
-    gone = movement_at(document, own, 30).after(movement_at(document, own, 20).inverse)
+    gone = transform_at(document, own, 30).after(transform_at(document, own, 20).inverse)
     assert_allclose(joints.placement(1, 30), gone.after(at), rtol=0, atol=1e-9)
     assert np.abs(seen(document, 1, 30) - seen(document, 1, 20)).min() > 1
 
@@ -64,18 +68,20 @@ def test_what_is_let_go_goes_on_from_where_it_is():
 def test_what_takes_hold_of_a_moving_layer_does_not_let_it_jump():
     document = moving(chain(), 1)
     layer = document.layer(1)
-    later = (Attachment(to=0, at=layer.joints[0].at, frame=12, keeps=True),)
+    later = (
+        Attachment(parent=0, parent_point=layer.joints[0].at, frame=12, keep_world_transform=True),
+    )
     document = document.with_layer(replace(layer, joints=later))
-    joints = Joints(document)
+    joints = ParentTransforms(document)
     assert_allclose(
         joints.placement(1, 12), joints.placement(1, 12, before=True), rtol=0, atol=1e-9
     )
-    assert joints.placement(1, 12, before=True) == movement_at(document, layer, 12)
+    assert joints.placement(1, 12, before=True) == transform_at(document, layer, 12)
 
 
 def test_springs_feel_the_movement():
-    assert carried_in(chain(), 0) is None
+    assert find_parent_motion(chain(), 0) is None
     moved = moving(chain(), 0)
-    carried = carried_in(moved, 0)
-    assert carried(20.0) == movement_at(moved, moved.layer(0), 20.0)
+    carried = find_parent_motion(moved, 0)
+    assert carried(20.0) == transform_at(moved, moved.layer(0), 20.0)
     assert carried(20.0).shift != pytest.approx(0)

@@ -8,7 +8,7 @@ from documents import disc_document
 
 from app.document import clip_of
 from app.document.commands import handle_commands, layer_commands
-from app.motion import PaintOrder
+from app.motion import TriangleOrder
 
 COUNT = 20  # layers, each with its mesh
 
@@ -16,9 +16,9 @@ COUNT = 20  # layers, each with its mesh
 def test_each_mesh_keeps_its_order_and_takes_it_along():
     document = handle_commands.add_handle(0, 60 + 45j)(disc_document())
     handle = document.layers[0].handles[-1].id
-    clip = clip_of(layer_commands.set_front(0, handle, 1.0, 20.0)(document), 0)
+    clip = clip_of(layer_commands.set_depth(0, handle, 1.0, 20.0)(document), 0)
     mesh = clip.layer.domain.mesh
-    orders = [PaintOrder(replace(mesh, triangles=mesh.triangles.copy())) for _ in range(COUNT)]
+    orders = [TriangleOrder(replace(mesh, triangles=mesh.triangles.copy())) for _ in range(COUNT)]
     painted = [order.triangles(clip, 0) for order in orders]
     assert painted[0] is not mesh.triangles
     assert all(

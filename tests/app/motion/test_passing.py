@@ -8,10 +8,10 @@ from key_rows import jump, prepared, row
 from numpy.testing import assert_allclose
 
 from app.document.commands import key_commands
-from app.document.keyframe import Passing
+from app.document.keyframe import TangentMode
 from app.document.queries.clips import clip_of
 from app.document.timing import LINEAR, PRESETS, Easing
-from app.errors import LissomError, told_to
+from app.errors import LissomError, listen_to_progress
 from app.motion.inbetweens import Animation, PoseSampler
 from engine.maps import Bounds
 
@@ -24,7 +24,7 @@ def test_keys_are_passed_at_one_velocity_whatever_the_easings(easing):
     speeds = [jump(animation, frame) for frame in (0.0, 10.0, 20.0, 30.0)]
     largest = max(speed for _, speed in speeds)
     assert max(change for change, _ in speeds) < 1e-5 * largest
-    cornered = key_commands.set_passing(0, {20}, Passing.CORNER)(document)
+    cornered = key_commands.set_tangent_mode(0, {20}, TangentMode.CORNER)(document)
     animation = Animation(clip_of(cornered, 0), points=document.layers[0].domain.outline)
     assert jump(animation, 20.0)[0] > 0.1 * largest
 
@@ -33,7 +33,7 @@ def test_what_is_shown_is_what_the_clip_moves_like():
     document = row(4)
     clip, (store, _) = clip_of(document, 0), prepared(document)
     while build := store.next_build(clip, 13, heat=False):
-        store.take_build(build.advance())
+        store.add_build(build.advance())
     animation = Animation(clip, sampler=store.sampler)
     for frame in (10, 12.5, 17, 20):
         assert_allclose(
@@ -46,7 +46,7 @@ def test_a_key_that_changes_has_four_intervals_prepared_again():
     store, _ = prepared(document)
     before = store.prepared(clip_of(document, 0))
     pose = document.layers[0].key(20).pose
-    posed = key_commands.pose_key(0, 30, replace(pose, phi=1.01 * pose.phi))(document)
+    posed = key_commands.replace_key_pose(0, 30, replace(pose, phi=1.01 * pose.phi))(document)
     assert prepared(posed, store)[1] == 4
     after = store.prepared(clip_of(posed, 0))
     kept = [new is old for new, old in zip(after, before, strict=True)]
@@ -54,8 +54,8 @@ def test_a_key_that_changes_has_four_intervals_prepared_again():
     # Corners and stops blend two keys alike, at another pace.
     every = document.layers[0].key_frames
     cornered, stopped = (
-        key_commands.set_passing(0, every, passing)(document)
-        for passing in (Passing.CORNER, Passing.STOP)
+        key_commands.set_tangent_mode(0, every, passing)(document)
+        for passing in (TangentMode.CORNER, TangentMode.STOP)
     )
     store, _ = prepared(cornered)
     assert prepared(stopped, store)[1] == 0
@@ -79,9 +79,9 @@ def test_transform_is_made_anew_when_it_was_cancelled():
     def end(share):
         raise LissomError(f"it was cancelled at {share:.0%}")
 
-    with told_to(end), pytest.raises(LissomError, match="cancelled"):
+    with listen_to_progress(end), pytest.raises(LissomError, match="cancelled"):
         _ = sibling.known.transform
     shares = []
-    with told_to(shares.append):
+    with listen_to_progress(shares.append):
         assert sibling.known.transform is sampler.known.transform
     assert shares[-1] == 1

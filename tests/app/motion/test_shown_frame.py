@@ -7,7 +7,7 @@ from shapes import regular_polygon
 
 from app.document import clip_of
 from app.document.commands import handle_commands, key_commands, layer_commands
-from app.motion import IntervalStore, PosableMesh, show
+from app.motion import DeformMesh, InbetweenCache, show
 from engine.domain import MeshedDomain
 from engine.domain.meshing import triangulate
 
@@ -19,13 +19,13 @@ def test_the_nearer_key_stands_in_until_the_in_between_is_prepared():
     first = layer.keys[0].pose
     turned = replace(first, phi=CENTRE + (first.phi - CENTRE) * np.exp(0.8j))
     clip = clip_of(key_commands.insert_key(layer.id, 24, turned)(document), layer.id)
-    store = IntervalStore(mesh=PosableMesh.coarse(layer.domain))
+    store = InbetweenCache(mesh=DeformMesh.coarse(layer.domain))
     for frame, pose in ((6, first), (18, turned)):
         shown = show(clip, frame, None, [store], None)
-        assert shown.stand_in is pose
+        assert shown.placeholder is pose
         assert not shown.is_current
         assert shown.pose is None
-        np.testing.assert_array_equal(shown.positions, store.mesh.posed(pose))
+        np.testing.assert_array_equal(shown.positions, store.mesh.pose_vertices(pose))
         assert show(clip, frame, None, [store], shown) is shown
 
 
@@ -34,25 +34,25 @@ def test_one_exact_in_between_stands_in_for_others_nearby():
     layer = document.layers[0]
     first = layer.keys[0].pose
     pair = clip_of(key_commands.insert_key(layer.id, 24, first)(document), layer.id)
-    store = IntervalStore(mesh=PosableMesh.coarse(layer.domain))
-    store.take(store.preparing(pair, [0])())
+    store = InbetweenCache(mesh=DeformMesh.coarse(layer.domain))
+    store.add(store.segments_job(pair, [0])())
     bent = replace(first, phi=CENTRE + (first.phi - CENTRE) * np.exp(0.8j))
     clip = clip_of(key_commands.insert_key(layer.id, 24, bent)(document), layer.id)
-    assert store.making_frame(pair, 12) is None
-    assert store.making_frame(clip, 24) is None
-    store.take(store.making_frame(clip, 12)())
-    seen = store.interval(clip, 0).one
-    exact = IntervalStore(mesh=store.mesh)
-    exact.take(exact.preparing(clip, [0])())
+    assert store.frame_job(pair, 12) is None
+    assert store.frame_job(clip, 24) is None
+    store.add(store.frame_job(clip, 12)())
+    seen = store.segment(clip, 0).single_frame
+    exact = InbetweenCache(mesh=store.mesh)
+    exact.add(exact.segments_job(clip, [0])())
     for frame, stand_in in ((12, None), (13, seen), (8, seen), (4, first), (22, bent)):
         shown = show(clip, frame, None, [store], None)
-        assert shown.stand_in is stand_in
+        assert shown.placeholder is stand_in
         if shown.is_current:
             expected = exact.positions(clip, frame)
             np.testing.assert_allclose(shown.positions, expected, atol=1e-5)
     # Of other keys it shows nothing.
     other = clip_of(key_commands.insert_key(layer.id, 24, turned_back(bent))(document), layer.id)
-    assert show(other, 12, None, [store], None).stand_in is first
+    assert show(other, 12, None, [store], None).placeholder is first
 
 
 def turned_back(pose):
@@ -62,7 +62,7 @@ def turned_back(pose):
 def test_twenty_layers_with_something_in_front_are_drawn_again_as_they_are():
     """Each in the order that it was painted in before, without finding or uploading it anew."""
     document = handle_commands.add_handle(0, CENTRE)(disc_document())
-    document = layer_commands.set_front(0, 0, 1.0, None)(document)
+    document = layer_commands.set_depth(0, 0, 1.0, None)(document)
     clip = clip_of(document, 0)
     layer = clip.layer
     stores = []
@@ -70,7 +70,7 @@ def test_twenty_layers_with_something_in_front_are_drawn_again_as_they_are():
         mesh = triangulate(layer.domain.outline, triangles)
         own = replace(layer, domain=replace(layer.domain, mesh=mesh))
         clip = replace(clip, layer=own)
-        stores.append((clip, IntervalStore(mesh=PosableMesh.fine(own.domain))))
+        stores.append((clip, InbetweenCache(mesh=DeformMesh.fine(own.domain))))
     shows = [show(clip, 0, None, [store], None) for clip, store in stores]
     for (clip, store), shown in zip(stores, shows, strict=True):
         order = shown.vertices.triangles
@@ -81,9 +81,9 @@ def test_twenty_layers_with_something_in_front_are_drawn_again_as_they_are():
 
 def test_a_mesh_with_something_in_front_goes_with_what_showed_it():
     document = handle_commands.add_handle(0, CENTRE)(disc_document())
-    clip = clip_of(layer_commands.set_front(0, 0, 1.0, None)(document), 0)
+    clip = clip_of(layer_commands.set_depth(0, 0, 1.0, None)(document), 0)
     mesh = triangulate(clip.layer.domain.outline, 300)
-    posable = PosableMesh.fine(replace(clip.layer.domain, mesh=mesh))
+    posable = DeformMesh.fine(replace(clip.layer.domain, mesh=mesh))
     order, depths = posable.order.triangles(clip, 0), posable.order.depths(clip, 0)
     assert not np.array_equal(order, mesh.triangles)
     np.testing.assert_allclose(depths.max(), 1, rtol=0, atol=1e-6)
@@ -97,7 +97,7 @@ def test_layers_that_are_drawn_together_share_the_coarse_triangles():
     mesh = triangulate(outline, 30_000)
     domain = MeshedDomain(outline=outline, cage=1.2 * outline, mesh=mesh)
     alone, one_of_two, one_of_ten = (
-        len(PosableMesh.coarse(domain, among=among).domain.mesh.triangles) for among in (1, 2, 10)
+        len(DeformMesh.coarse(domain, among=among).domain.mesh.triangles) for among in (1, 2, 10)
     )
     assert abs(alone - 12_000) < 600
     assert abs(one_of_two - 6_000) < 300

@@ -15,31 +15,31 @@ from app.document import (
     RUBBERY,
     Attachment,
     Cycle,
-    Extremes,
+    DistortionRange,
     FrameRange,
     Spring,
     Track,
     TrackKey,
     clip_of,
     handle_commands,
-    root_of,
-    time_of,
+    segment_time_at,
+    spring_root,
     track_at,
 )
 from app.motion import (
     Animation,
-    IntervalStore,
-    Joints,
-    PosableMesh,
-    box_around,
-    carried_in,
-    corrected_clip,
+    DeformMesh,
+    InbetweenCache,
+    ParentTransforms,
+    bounding_box,
+    find_parent_motion,
     hung_animations,
     measure_extent,
+    reuse_corrections,
     trace_paths,
 )
 from app.motion.corrected_frames import CorrectedFrames
-from app.motion.inbetweens.swings import FARTHEST_SWING, PIECE, Swings
+from app.motion.inbetweens.spring_offsets import MAX_SPRING_OFFSET, PIECE, SpringOffsets
 from app.reports import Verdict, certify_clip, corrected_frames
 from app.reports.acting_frames import acting_frames
 from engine.geometry import HERE, diameter
@@ -113,7 +113,7 @@ def planted_child():
         id=1,
         name="child",
         anchor=60 + 45j,
-        joints=(Attachment(to=0, at=60 + 45j),),
+        joints=(Attachment(parent=0, parent_point=60 + 45j),),
         bounds=RUBBERY.bounds,
         tracks=(track("top", ((0, place), (8, place)), planted=True),),
     )
@@ -124,10 +124,10 @@ def planted_child():
 def test_planted_handle_stays_in_the_scene_when_attached():
     scene, place = planted_child()
     child = scene.layers[1]
-    joints = Joints(scene)
+    joints = ParentTransforms(scene)
     handles = np.array([handle.position for handle in child.handles])
     hung = Animation(clip_of(scene, 1), points=np.append(handles, child.anchor))
-    hung.carried = lambda frame: joints.carried(1, frame)
+    hung.carried = lambda frame: joints.parent_transform(1, frame)
     below = Animation(clip_of(scene, 0), points=np.array([60 + 45j]))
     for frame in (0.0, 2.4, 5.8):
         placed = joints.placement(1, frame).on(hung.positions(frame))
@@ -186,8 +186,8 @@ def test_corrected_frames_are_proven_in_closed_variants(variant, wish):
     between = outline + np.linspace(0, 1, 40)[:, None] * (np.roll(outline, -1) - outline)
     animation = Animation(clip, variant, points=between.ravel())
     shown = animation.frame(3)
-    found = Extremes.measured(shown.fz, shown.fzbar)
-    assert found.beyond(corrected.reached) == Extremes(0, 0, 0)
+    found = DistortionRange.measured(shown.fz, shown.fzbar)
+    assert found.beyond(corrected.reached) == DistortionRange(0, 0, 0)
 
 
 def test_repeats_of_a_track_are_proven_once_however_many():
@@ -211,7 +211,7 @@ def test_acting_frames_are_those_of_the_tracks(loop):
         clip = clip_of(document, 0)
         shown = {
             frame: (
-                time_of(clip, frame),
+                segment_time_at(clip, frame),
                 *(track_at(each, clip, frame) for each in clip.layer.tracks),
             )
             for frame in range(clip.frames.first, clip.frames.last + 1)
@@ -291,7 +291,7 @@ def arms(frames, **settings):
     document = springy(**settings)
     animation, root = (
         animate(document),
-        root_of(document.layers[0], document.layers[0].springs[0]),
+        spring_root(document.layers[0], document.layers[0].springs[0]),
     )
     both = [(animation.base.frame(frame).positions, animation.positions(frame)) for frame in frames]
     tip, foot = np.array([[each[[IDS["top"], root]] for each in pair] for pair in both]).T
@@ -338,7 +338,7 @@ def test_what_swings_goes_along_where_a_track_moves_its_root(turn):
         TrackKey(frame=frame, place=place, turn=share * turn)
         for frame, place, share in ((0, 0j, 0), (6, 5 - 4j, 1), (12, 0j, 0))
     )
-    moves = Track(handles=(IDS["middle"],), keys=keys, turns=True)
+    moves = Track(handles=(IDS["middle"],), keys=keys, keys_rotation=True)
     document = springy(root=IDS["middle"])
     frames, seen = (3, 6, 8), []
     for tracks in ((), (moves,)):
@@ -358,11 +358,11 @@ def test_pieces_of_a_swing_are_those_of_the_whole(loop, stretch):
     places = np.cumsum(np.random.default_rng(0).normal(0, 20, (301, 4, 2)) @ [1, 1j], axis=0)
     places[40:100] = places[40]  # where the swing fades
     places[-1] = places[0]
-    swings = Swings(clip, lambda _: HERE)
+    swings = SpringOffsets(clip, lambda _: HERE)
     assert PIECE < swings.run_up < 300 - 2 * PIECE
     settings = {"frequency": spring.frequency, "damping": spring.damping, "lag": spring.lag}
-    limit = FARTHEST_SWING * diameter(clip.layer.domain.outline)
-    root = places[:, root_of(clip.layer, spring)]
+    limit = MAX_SPRING_OFFSET * diameter(clip.layer.domain.outline)
+    root = places[:, spring_root(clip.layer, spring)]
     roots = None if stretch else root
     whole = swing(places[:, IDS["top"]], clip.fps, limit=limit, loop=loop, roots=roots, **settings)
     for frame in (299.5, 150, 63.9, 64, 0.5, 98, 299, *range(0, 301, 7)):
@@ -383,7 +383,7 @@ def test_spring_is_worked_out_around_the_frame_it_is_asked_for(damping):
         asked.append(frame)
         return np.full(4, np.exp(1j * frame))
 
-    swings = Swings(clip, lambda _: HERE)
+    swings = SpringOffsets(clip, lambda _: HERE)
     for frame in (3, *[500_000] * (damping > 0)):
         swings.offset(spring, frame, at(frame), at)
     assert len(asked) < 1_000
@@ -395,7 +395,7 @@ def test_spring_acts_until_it_has_settled():
     frames, _ = acting_frames(clip)
     assert frames[0] == 0
     assert 3 * SHORT < frames[-1] < 50
-    swings = Swings(clip, None)
+    swings = SpringOffsets(clip, None)
     (spring,) = clip.layer.springs
     animation = animate(document)
 
@@ -417,36 +417,36 @@ def test_attached_spring_swings_with_its_parent():
         name="child",
         keys=document.layers[0].keys[:1],
         anchor=30 + 40j,
-        joints=(Attachment(to=0, at=90 + 45j),),
+        joints=(Attachment(parent=0, parent_point=90 + 45j),),
         springs=(spring,),
     )
     scene = replace(document, layers=(document.layers[0], child))
     points = np.array([handle.position for handle in child.handles])
     alone = Animation(clip_of(scene, 1), points=points)
     assert_array_equal(alone.positions(5.0), alone.base.frame(5.0).positions)
-    joints = Joints(scene)
+    joints = ParentTransforms(scene)
     joints.tracked[1].at(5.0)
     hung = Animation(
-        clip_of(scene, 1), points=points, carried=lambda frame: joints.carried(1, frame)
+        clip_of(scene, 1), points=points, carried=lambda frame: joints.parent_transform(1, frame)
     )
     swung = hung.positions(5.0) - hung.base.frame(5.0).positions
     assert abs(swung[IDS["top"]]) > 0.1
     # What was found for another motion of what it hangs on does not stay.
     moved = with_layer(scene, keys=tuple(reversed_in_time(scene.layers[0].keys)))
-    window = corrected_clip(scene, 1, None)
-    assert corrected_clip(scene, 1, window) is window
-    assert corrected_clip(moved, 1, window) is not window
-    later = Joints(moved, earlier=joints)
+    window = reuse_corrections(scene, 1, None)
+    assert reuse_corrections(scene, 1, window) is window
+    assert reuse_corrections(moved, 1, window) is not window
+    later = ParentTransforms(moved, earlier=joints)
     assert_allclose(
         later.tracked[1].at(5.0).positions,
-        Joints(moved).tracked[1].at(5.0).positions,
+        ParentTransforms(moved).tracked[1].at(5.0).positions,
         atol=1e-9,
     )
     # Paths and reports are of what is shown.
-    paths = trace_paths(clip_of(scene, 1), carried=carried_in(scene, 1))
-    assert_allclose(paths.places[5], hung.positions(5.0), atol=1e-9)
+    paths = trace_paths(clip_of(scene, 1), carried=find_parent_motion(scene, 1))
+    assert_allclose(paths.positions[5], hung.positions(5.0), atol=1e-9)
     assert certify_clip(clip_of(scene, 1)).corrected.frames == 0
-    assert certify_clip(clip_of(scene, 1), None, carried_in(scene, 1)).corrected.frames > 4
+    assert certify_clip(clip_of(scene, 1), None, find_parent_motion(scene, 1)).corrected.frames > 4
 
 
 def test_the_frames_of_a_window_are_those_of_an_export():
@@ -493,9 +493,9 @@ def test_no_places_are_asked_for_without_handles():
 def test_extent_and_exports_are_of_the_shown_frames():
     document = pulled(14 - 6j)
     clip, layer = clip_of(document, 0), document.layers[0]
-    store = IntervalStore(mesh=PosableMesh.coarse(layer.domain))
-    store.take(store.preparing(clip, store.missing(clip, 0))())
-    frames = corrected_clip(document, 0, None)
+    store = InbetweenCache(mesh=DeformMesh.coarse(layer.domain))
+    store.add(store.segments_job(clip, store.missing_segments(clip, 0))())
+    frames = reuse_corrections(document, 0, None)
     while (work := frames.missing(document, 0, {0: store.sampler})) is not None:
         frames.take(work())
     animation = Animation(clip)
@@ -504,7 +504,7 @@ def test_extent_and_exports_are_of_the_shown_frames():
     assert_allclose(hung.positions(3.0), places[3], rtol=0, atol=1e-9)
     found = measure_extent(document, {0: store}, corrected={0: frames})
     # On the screen positions have single precision.
-    assert_allclose(found, box_around(np.concatenate(places)), rtol=0, atol=1e-2)
+    assert_allclose(found, bounding_box(np.concatenate(places)), rtol=0, atol=1e-2)
     bare = measure_extent(document, {0: store})
     assert found.upper.real - bare.upper.real > 5
     shown = store.vertices(clip, 3, correction=frames.at(clip, 3)).positions
@@ -515,24 +515,24 @@ def test_planted_track_is_solved_anew_when_the_parent_changes():
     scene, place = planted_child()
     parent, child = scene.layers
     points = np.array([handle.position for handle in child.handles])
-    before = trace_paths(clip_of(scene, 1), carried=carried_in(scene, 1))
-    joints = Joints(scene)
+    before = trace_paths(clip_of(scene, 1), carried=find_parent_motion(scene, 1))
+    joints = ParentTransforms(scene)
     assert joints.tracked[1].at(6.0) is joints.tracked[1].at(6.0)
     # The child is the same, but what it hangs on is not.
     moved = replace(parent, keys=(parent.keys[0], replace(parent.keys[1], frame=5)))
     changed = replace(scene, layers=(moved, child))
-    later = Joints(changed, earlier=joints)
-    paths = trace_paths(clip_of(changed, 1), before, carried=carried_in(changed, 1))
-    fresh = Animation(clip_of(changed, 1), points=points, carried=carried_in(changed, 1))
+    later = ParentTransforms(changed, earlier=joints)
+    paths = trace_paths(clip_of(changed, 1), before, carried=find_parent_motion(changed, 1))
+    fresh = Animation(clip_of(changed, 1), points=points, carried=find_parent_motion(changed, 1))
     for frame in (2, 6):
         expected = fresh.positions(float(frame))
-        assert_allclose(paths.places[frame], expected, rtol=0, atol=1e-6)
+        assert_allclose(paths.positions[frame], expected, rtol=0, atol=1e-6)
         assert abs(later.placement(1, frame).on(expected)[IDS["top"]] - place) < 0.1
-    assert np.abs(paths.places[6] - before.places[6]).max() > 0.5
+    assert np.abs(paths.positions[6] - before.positions[6]).max() > 0.5
 
 
 def test_what_one_outline_knows_is_changed_by_one_thread_at_a_time(monkeypatch):
-    monkeypatch.setattr("app.motion.inbetweens.corrections.KEPT", 1)
+    monkeypatch.setattr("app.motion.inbetweens.frame_corrector.KEPT", 1)
     animation = animate(tracked(track(), stillness=False))
     outline = animation.sampler.known
 

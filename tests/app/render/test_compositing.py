@@ -8,7 +8,7 @@ import pytest
 from drawings import Easel
 from numpy.testing import assert_allclose
 
-from app.document.queries.stage.compositing import Composite
+from app.document.queries.layers.compositing import CompositeGroup
 from app.render.gpu.mesh import PosedMesh
 from app.render.scene import Backdrop, Scene
 from app.render.view import canvas_view
@@ -64,10 +64,10 @@ def mixed(below: Floats, above: Floats, share: float) -> Floats:
 def composited(parts: tuple, pictures: dict, below: Floats | None = None) -> Floats:
     flat = np.zeros((SIDE, SIDE, 4)) if below is None else below
     for part in parts:
-        if isinstance(part, Composite) and part.passes:
+        if isinstance(part, CompositeGroup) and part.is_pass_through:
             whole = composited(part.parts, pictures, flat)
             flat = mixed(flat, whole, part.opacity)
-        elif isinstance(part, Composite):
+        elif isinstance(part, CompositeGroup):
             layer = composited(part.parts, pictures)
             flat = over(flat, layer, part.opacity, part.blend, clipped=part.clipped)
         else:
@@ -97,14 +97,14 @@ PAPER = (0.8, 0.5, 0.1, 1.0)
 def test_layers_meet_what_is_behind_them_as_they_are_blended(easel, blend, opacity, colour):
     pictures = {laid(easel, pixels): pixels for pixels in (colours(1), colours(2))}
     below, above = pictures
-    check(easel, (below, Composite((above,), opacity, blend)), pictures, colour)
+    check(easel, (below, CompositeGroup((above,), opacity, blend)), pictures, colour)
 
 
 def test_groups_are_composited_as_one_and_then_faded(easel):
     pictures = {laid(easel, pixels): pixels for pixels in map(colours, range(5))}
     sky, one, two, three, four = pictures
-    inner = Composite((two, Composite((three,), 0.7, "multiply")), 0.5, "screen")
-    parts = (sky, Composite((one, inner), 0.6), Composite((four,), 1.0, "multiply"))
+    inner = CompositeGroup((two, CompositeGroup((three,), 0.7, "multiply")), 0.5, "screen")
+    parts = (sky, CompositeGroup((one, inner), 0.6), CompositeGroup((four,), 1.0, "multiply"))
     check(easel, parts, pictures)
 
 
@@ -112,9 +112,13 @@ def test_groups_are_composited_as_one_and_then_faded(easel):
 def test_what_blends_in_a_faded_group_that_passes_through_meets_all_behind(easel, colour):
     pictures = {laid(easel, pixels): pixels for pixels in map(colours, range(5))}
     sky, one, two, three, four = pictures
-    inner = Composite((two, Composite((three,), 0.7, "screen")), 0.5, passes=True)
-    faded = Composite((Composite((one,), 1.0, "multiply"), inner), 0.6, passes=True)
-    check(easel, (sky, faded, Composite((four,), 1.0, "multiply")), pictures, colour)
+    inner = CompositeGroup(
+        (two, CompositeGroup((three,), 0.7, "screen")), 0.5, is_pass_through=True
+    )
+    faded = CompositeGroup(
+        (CompositeGroup((one,), 1.0, "multiply"), inner), 0.6, is_pass_through=True
+    )
+    check(easel, (sky, faded, CompositeGroup((four,), 1.0, "multiply")), pictures, colour)
 
 
 def test_what_overlaps_in_a_faded_group_does_not_shine_through(easel):
@@ -123,7 +127,9 @@ def test_what_overlaps_in_a_faded_group_does_not_shine_through(easel):
         for colour in ((255, 0, 0, 255), (0, 0, 255, 255))
     ]
     red, blue = (laid(easel, pixels) for pixels in opaque)
-    frame = easel.frame(canvas_view((SIDE, SIDE)), Scene(meshes=(Composite((red, blue), 0.5),)))
+    frame = easel.frame(
+        canvas_view((SIDE, SIDE)), Scene(meshes=(CompositeGroup((red, blue), 0.5),))
+    )
     assert (frame == (0, 0, 255, 128)).all()
 
 
@@ -131,5 +137,5 @@ def test_what_overlaps_in_a_faded_group_does_not_shine_through(easel):
 def test_what_is_clipped_is_seen_within_what_is_below_it_alone(easel, blend):
     pictures = {laid(easel, pixels): pixels for pixels in map(colours, range(3))}
     sky, base, above = pictures
-    cut = Composite((above,), 0.6, blend, clipped=True)
-    check(easel, (sky, Composite((base, cut), 0.8)), pictures)
+    cut = CompositeGroup((above,), 0.6, blend, clipped=True)
+    check(easel, (sky, CompositeGroup((base, cut), 0.8)), pictures)

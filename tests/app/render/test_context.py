@@ -5,14 +5,14 @@ from numpy.testing import assert_array_equal
 
 from app.errors import LissomError
 from app.render.gpu import context as context_module
-from app.render.gpu.context import create_context, largest_size, probe
+from app.render.gpu.context import create_context, largest_size, probe_backend
 from app.render.scene import Scene
 from app.render.view import canvas_view
 
 
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_a_probe_tells_what_a_backend_offers(backend):
-    report = probe(backend)
+    report = probe_backend(backend)
     assert report.problem == ""
     assert report.renderer
     assert report.version[0] in "34"
@@ -38,7 +38,7 @@ def test_a_forced_backend_has_no_fallback(monkeypatch):
     monkeypatch.setattr(context_module._OSMesa, "_NAMES", ("libNotThere.so.1",))
     with pytest.raises(LissomError, match=r"osmesa: .*libNotThere\.so\.1.*apt install libosmesa6"):
         create_context("osmesa")
-    assert "apt install libosmesa6" in probe("osmesa").problem
+    assert "apt install libosmesa6" in probe_backend("osmesa").problem
 
 
 @NEEDS_OSMESA

@@ -13,7 +13,7 @@ from app.document import clip_of
 from app.document.commands import handle_commands, layer_commands
 from app.document.keyframe import Keyframe
 from app.document.model import Document
-from app.motion import PaintOrder, PosableMesh
+from app.motion import DeformMesh, TriangleOrder
 from app.render import Backdrop, Scene, View
 from engine.arrays import Booleans, Bytes, Complexes
 
@@ -127,7 +127,7 @@ class Star:
         document = still_document(self.picture(), triangles=FULL)
         for number, (place, depth, extent) in enumerate(fronts):
             document = handle_commands.add_handle(0, place)(document)
-            document = layer_commands.set_front(0, number, depth, extent)(document)
+            document = layer_commands.set_depth(0, number, depth, extent)(document)
         return document
 
 
@@ -138,13 +138,13 @@ def star_and_clip(seed):
     document = star.document((star.tip, -1.0, star.extent))
     layer = document.layers[0]
     first = layer.keys[0]
-    keys = (first, Keyframe(frame=CHANGE, pose=first.pose, fronts={0: 1.0}))
+    keys = (first, Keyframe(frame=CHANGE, pose=first.pose, depths={0: 1.0}))
     return star, clip_of(document.with_layer(replace(layer, keys=keys)), 0)
 
 
 @pytest.fixture(autouse=True)
 def _always_coarse(monkeypatch):
-    monkeypatch.setattr("app.motion.posable_mesh.FINER", 1)
+    monkeypatch.setattr("app.motion.deform_mesh.FINER", 1)
 
 
 @pytest.mark.parametrize(
@@ -158,7 +158,7 @@ def _always_coarse(monkeypatch):
 )
 def test_no_pixel_of_what_is_behind_shows_through(easel, seed, is_coarse):
     star, clip = star_and_clip(seed)
-    posable = PosableMesh.coarse if is_coarse else PosableMesh.fine
+    posable = DeformMesh.coarse if is_coarse else DeformMesh.fine
     mesh = posable(clip.layer.domain).domain.mesh
     assert (len(mesh.triangles) < len(clip.layer.domain.mesh.triangles)) == is_coarse
     corners = mesh.vertices[mesh.triangles]
@@ -173,7 +173,7 @@ def test_no_pixel_of_what_is_behind_shows_through(easel, seed, is_coarse):
             easel_mesh = easel.mesh(picture, mesh.vertices, triangles)
             return easel.frame(VIEW, Scene(meshes=(easel.pose(easel_mesh, positions),))).astype(int)
 
-        order = PaintOrder(mesh).triangles(clip, frame)
+        order = TriangleOrder(mesh).triangles(clip, frame)
         whole = drawn(order)
         alone = [drawn(mesh.triangles[part])[..., 3] for part in (red, blue, ~(red | blue))]
         is_red, is_blue = (alpha == 255 for alpha in alone[:2])
@@ -214,9 +214,9 @@ def test_arms_that_cross(easel, check_golden, name):
     picture, clip = crossed(name)
     paper = Backdrop(colour=(0.97, 0.97, 0.95, 1.0))
     frames = []
-    for posable in (PosableMesh.fine, PosableMesh.coarse):
+    for posable in (DeformMesh.fine, DeformMesh.coarse):
         mesh = posable(clip.layer.domain).domain.mesh
-        drawn = easel.mesh(picture, mesh.vertices, PaintOrder(mesh).triangles(clip, 0))
+        drawn = easel.mesh(picture, mesh.vertices, TriangleOrder(mesh).triangles(clip, 0))
         pose = easel.pose(drawn, CROSSED.bent(mesh.vertices, 1.0))
         frames.append(easel.frame(VIEW, Scene(background=paper, meshes=(pose,))))
     check_golden(name, frames[0])

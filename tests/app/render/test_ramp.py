@@ -1,7 +1,7 @@
 import numpy as np
 from numpy.testing import assert_allclose
 
-from app.render.ramp import heat_ramp, oklab_to_srgb
+from app.render.colormap import heat_colormap, oklab_to_srgb
 
 
 def luminance(colours):
@@ -15,7 +15,7 @@ def test_oklab_has_white_black_and_red_where_they_belong():
 
 
 def test_lightness_rises_evenly_so_that_the_order_needs_no_colour_vision():
-    ramp = heat_ramp() / 255
+    ramp = heat_colormap() / 255
     lightness = 116 * np.cbrt(luminance(ramp)) - 16
     steps = np.diff(lightness[::16])
     assert (np.diff(lightness) > -0.3).all()
@@ -26,7 +26,7 @@ def test_lightness_rises_evenly_so_that_the_order_needs_no_colour_vision():
 
 def test_the_ends_are_far_apart_for_dichromats_too():
     # Viénot, Brettel and Mollon (1999), on linear colours: protanopia and deuteranopia.
-    ramp = heat_ramp() / 255
+    ramp = heat_colormap() / 255
     for matrix in (
         [[0.11238, 0.88762, 0], [0.11238, 0.88762, 0], [0.00401, -0.00401, 1]],
         [[0.29275, 0.70725, 0], [0.29275, 0.70725, 0], [-0.02234, 0.02234, 1]],

@@ -8,7 +8,7 @@ from drawings import Easel, grid_mesh, soft_blob
 from numpy.testing import assert_allclose, assert_array_equal
 
 from app.errors import LissomError
-from app.render.gpu.mesh import GpuMesh, PosedMesh, PositionBuffer, border_edges, singles
+from app.render.gpu.mesh import GpuMesh, PosedMesh, PositionBuffer, border_edges, to_float32_points
 from app.render.gpu.picture import GpuPicture
 from app.render.gpu.target import RenderTarget
 from app.render.handles import HandleMark, mark_handles
@@ -79,7 +79,7 @@ def test_outline_cage_and_handles(easel, check_golden):
             HandleMark(place=45 + 60j, hovered=True),
             HandleMark(place=60 + 30j, selected=True),
             HandleMark(place=85 + 70j, anchor=True),
-            HandleMark(place=90 + 25j, wish=118 + 12j, selected=True),
+            HandleMark(place=90 + 25j, target=118 + 12j, selected=True),
         ]
     )
     scene = Scene(
@@ -108,7 +108,7 @@ def test_an_edge_of_the_wireframe_has_its_width_within_and_on_the_border(easel):
     lengths = 4 * 80 + np.sqrt(2) * 80
     assert_allclose(alpha.sum() / 128, 3 * lengths, rtol=0.04)  # lines meet without their corners
     # Along the lower border, from just past one corner to the next.
-    ends = singles(turned[[0, 1]] * 2).astype(float)
+    ends = to_float32_points(turned[[0, 1]] * 2).astype(float)
     places = ends[0] + np.linspace(0.1, 0.9, 200)[:, None] * (ends[1] - ends[0])
     outside = places + 0.7 * np.array([np.sin(0.3), -np.cos(0.3)])
     columns, rows = (80 + outside[:, 0]).astype(int), (80 - outside[:, 1]).astype(int)
@@ -116,7 +116,7 @@ def test_an_edge_of_the_wireframe_has_its_width_within_and_on_the_border(easel):
 
 
 def test_an_overlay_at_twice_the_scale_has_twice_the_pixels(easel):
-    marks = [HandleMark(place=0j, wish=20 + 5j, anchor=True, selected=True)]
+    marks = [HandleMark(place=0j, target=20 + 5j, anchor=True, selected=True)]
     frames = []
     for scale in (1, 2):
         view = View(centre=5j, scale=2.0 * scale, size=(160 * scale, 80 * scale))

@@ -7,11 +7,11 @@ from messages import says
 from numpy.testing import assert_allclose, assert_array_equal
 
 from app.errors import LissomError
-from app.motion.vertices import Placed, Streamed
+from app.motion.vertices import StreamedVertices, VertexArray
 from app.render.drawn_mesh import DrawnMesh, shader_is_faster
 from app.render.gpu.mesh import GpuMesh, PosedMesh
 from app.render.gpu.programs import set_uniforms
-from app.render.gpu.series_buffer import SERIES_PIECE, SeriesBuffer, most_rows
+from app.render.gpu.series_buffer import SERIES_PIECE, SeriesBuffer, max_series_rows
 from app.render.gpu.target import RenderTarget
 from app.render.scene import Backdrop, Ghost, Heat, Scene, Wireframe
 from app.render.view import View
@@ -143,7 +143,7 @@ def test_what_does_not_fit_is_refused(easel):
     _, rest = blob_mesh(easel)
     with pytest.raises(LissomError, match="rows of a series, not 99"):
         SeriesBuffer(easel.gl, len(rest), 99)
-    assert most_rows(easel.gl) >= MOST_ROWS
+    assert max_series_rows(easel.gl) >= MOST_ROWS
     source = SeriesBuffer(easel.gl, len(rest), 4)
     with pytest.raises(LissomError, match=says(SERIES_PIECE, rows=7)):
         source.place(bending(rest), 0.1)
@@ -160,14 +160,14 @@ def test_a_mesh_shows_what_it_was_given_last(easel, by_shader):
     order, back = mesh.triangles, mesh.triangles[::-1].copy()
     folded = 2 * np.abs(rest.real - WIDTH / 2) + 1j * rest.imag
     for vertices in (
-        Placed(positions=folded, triangles=order),
-        Placed(positions=folded, triangles=back),
-        Placed(positions=rest, triangles=order),
-        Streamed(series, None, 0.3, order),
-        Streamed(series, None, 0.9, order),
-        Placed(positions=0.5 * rest, triangles=order),
-        Streamed(long, None, 0.2, order),
-        Streamed(series, None, 0.1, order),
+        VertexArray(positions=folded, triangles=order),
+        VertexArray(positions=folded, triangles=back),
+        VertexArray(positions=rest, triangles=order),
+        StreamedVertices(series, None, 0.3, order),
+        StreamedVertices(series, None, 0.9, order),
+        VertexArray(positions=0.5 * rest, triangles=order),
+        StreamedVertices(long, None, 0.2, order),
+        StreamedVertices(series, None, 0.1, order),
     ):
         pose = drawn.pose(vertices)
         assert drawn.pose(vertices) is pose

@@ -9,9 +9,9 @@ from invariants import check_pose
 from walkers import AXIS, FAR, HANDLES, SIZE, leg
 
 from app.document import Attachment, Document, Target, handle_commands
-from app.solving import Carriage, Likeness, Rig
-from app.solving.carrying import begin_like
-from app.solving.drag import Drag
+from app.solving import PoseTransfer, Rig, SimilarityTransform
+from app.solving.drag_solver import DragSolver
+from app.solving.pose_transfer import find_initial_map
 
 PLACES = np.array([3 + 1j, 40 - 7j, 12 + 90j, -55 + 20j])
 FACTORS = st.builds(lambda r, t: r * np.exp(1j * t), st.floats(0.1, 10), st.floats(-3.1, 3.1))
@@ -20,37 +20,41 @@ SHIFTS = st.complex_numbers(max_magnitude=1e3)
 
 @given(factor=FACTORS, shift=SHIFTS, mirrors=st.booleans())
 def test_a_likeness_is_found_by_its_images_and_mirrors_where_they_do(factor, shift, mirrors):
-    likeness = Likeness(factor, shift, mirrors)
-    found = Likeness.of(PLACES, likeness.on(PLACES))
+    likeness = SimilarityTransform(factor, shift, mirrors)
+    found = SimilarityTransform.fit(PLACES, likeness.apply(PLACES))
     assert found.mirrors == mirrors
     size = abs(factor) * 100 + abs(shift)
-    np.testing.assert_allclose(found.on(PLACES), likeness.on(PLACES), rtol=0, atol=1e-9 * size)
-    back = Likeness.of(likeness.on(PLACES), PLACES)
-    np.testing.assert_allclose(back.on(found.on(PLACES)), PLACES, rtol=0, atol=1e-9 * (size + 100))
-    np.testing.assert_allclose(found.back(found.on(PLACES)), PLACES, rtol=0, atol=1e-6)
+    np.testing.assert_allclose(
+        found.apply(PLACES), likeness.apply(PLACES), rtol=0, atol=1e-9 * size
+    )
+    back = SimilarityTransform.fit(likeness.apply(PLACES), PLACES)
+    np.testing.assert_allclose(
+        back.apply(found.apply(PLACES)), PLACES, rtol=0, atol=1e-9 * (size + 100)
+    )
+    np.testing.assert_allclose(found.apply_inverse(found.apply(PLACES)), PLACES, rtol=0, atol=1e-6)
 
 
 def test_places_that_are_no_images_are_scaled_by_their_spread_both_ways():
     images = np.array([0j, 9 + 2j, 4 - 30j, 7 + 7j])
-    there, back = Likeness.of(PLACES, images), Likeness.of(images, PLACES)
+    there, back = SimilarityTransform.fit(PLACES, images), SimilarityTransform.fit(images, PLACES)
     if there.mirrors == back.mirrors:
-        np.testing.assert_allclose(back.on(there.on(PLACES)), PLACES, rtol=0, atol=1e-9)
+        np.testing.assert_allclose(back.apply(there.apply(PLACES)), PLACES, rtol=0, atol=1e-9)
     spread = np.linalg.norm(images - images.mean()) / np.linalg.norm(PLACES - PLACES.mean())
     assert abs(there.factor) == pytest.approx(spread)
 
 
 @pytest.mark.parametrize(("mirrors", "factor"), [(None, 1), (False, 1), (True, -1)])
 def test_one_place_is_only_moved_or_mirrored_upright(mirrors, factor):
-    likeness = Likeness.of(np.array([3 + 4j]), np.array([10 + 1j]), mirrors=mirrors)
+    likeness = SimilarityTransform.fit(np.array([3 + 4j]), np.array([10 + 1j]), mirrors=mirrors)
     assert likeness.factor == factor
-    assert likeness.to(3 + 4j) == 10 + 1j
+    assert likeness.apply_to_point(3 + 4j) == 10 + 1j
 
 
 def test_a_straight_limb_is_mirrored_only_where_that_is_asked():
     straight = np.array([10 + 90j, 10 + 50j, 10 + 5j])
     for mirrors in (None, True):
-        likeness = Likeness.of(straight, straight + 30, mirrors=mirrors)
-        assert likeness.to(15 + 50j) == pytest.approx(35 + 50j if mirrors else 45 + 50j)
+        likeness = SimilarityTransform.fit(straight, straight + 30, mirrors=mirrors)
+        assert likeness.apply_to_point(15 + 50j) == pytest.approx(35 + 50j if mirrors else 45 + 50j)
 
 
 def by_names(layer, source):
@@ -62,8 +66,8 @@ def carriage(source, layer, mirrors=None):
     pairs = by_names(layer, source)
     places = np.array([source.handle(other).position for other in pairs.values()])
     images = np.array([layer.handle(one).position for one in pairs])
-    likeness = Likeness.of(places, images, mirrors=mirrors)
-    return Carriage(source=source, pairs=pairs, likeness=likeness)
+    likeness = SimilarityTransform.fit(places, images, mirrors=mirrors)
+    return PoseTransfer(source=source, pairs=pairs, similarity=likeness)
 
 
 def raised(layer):
@@ -74,7 +78,7 @@ def raised(layer):
     for name, way in (("knee", 18 + 8j), ("foot", -20 + 30j)):
         old = targets[names[name]]
         targets[names[name]] = Target(position=old.position + way)
-    return Drag.begin(rig, pose).towards(targets, 600).pose(targets)
+    return DragSolver.begin(rig, pose).step_towards(targets, 600).make_pose(targets)
 
 
 @pytest.fixture(scope="module")
@@ -90,7 +94,7 @@ def test_carried_pose_is_the_same_on_a_leg_drawn_elsewhere(near, drawn):
     by = FAR.shift if drawn == "elsewhere" else 0j
     layer = leg("far leg", 1, by, mirrored=mirrored, turned=turned)
     way = carriage(source, layer)
-    assert way.likeness.mirrors == mirrored
+    assert way.similarity.mirrors == mirrored
     carried = way.carry(Rig.of(layer), pose)
     check_pose(layer, carried)
     assert carried.certificate.certified
@@ -101,9 +105,9 @@ def test_carried_pose_is_the_same_on_a_leg_drawn_elsewhere(near, drawn):
         assert carried.targets[handle.id].position == pytest.approx(image, abs=1e-9)
     # Not its handles alone: all of it is the image, as near as two cages have it.
     points = source.domain.mesh.vertices
-    images = way.likeness.on(points)
+    images = way.similarity.on(points)
     inside = layer.covers(images)
-    apart = layer.map_of(carried)(images) - way.likeness.on(source.map_of(pose)(points))
+    apart = layer.map_of(carried)(images) - way.similarity.on(source.map_of(pose)(points))
     assert np.abs(apart[inside]).max() < 0.05 * np.abs(source.map_of(pose)(points) - points).max()
 
 
@@ -201,8 +205,8 @@ def with_one_handle(layer):
 def test_the_solver_begins_with_the_image_of_the_whole_map(near, mirrored):
     source, pose = near
     layer = leg("far leg", 1, mirrored=mirrored, turned=True)
-    likeness = carriage(source, layer).likeness
-    begin, _ = begin_like(Rig.of(layer), source, pose, likeness, {})
+    likeness = carriage(source, layer).similarity
+    begin, _ = find_initial_map(Rig.of(layer), source, pose, likeness, {})
     points = source.domain.mesh.vertices
     images, shape = likeness.on(points), source.map_of(pose)
     inside = layer.covers(images)
@@ -214,11 +218,11 @@ def test_the_solver_begins_with_the_image_of_the_whole_map(near, mirrored):
 @pytest.mark.parametrize("by", [FAR.shift, FAR.shift - 9j])
 def test_what_hangs_is_held_at_its_joint_as_the_source_is_at_its_own(near, by):
     """The joint is beside the source's: it goes along as a rigid body would."""
-    hung = Attachment(to=9, at=0j)
+    hung = Attachment(parent=9, parent_point=0j)
     source = replace(near[0], anchor=62 + 162j, joints=(hung,))
     pose = raised(source)
     assert abs(source.map_of(pose)(np.array([source.anchor]))[0] - source.anchor) < 3
-    layer = replace(leg("far leg", 1, FAR.shift), anchor=62 + 162j + by, joints=(hung,))
+    layer = replace(leg("far leg", 1, FAR.shift), anchor=62 + 162j + by, attachments=(hung,))
     rig = Rig.of(layer)
     assert len(rig.pins) == 1
     carried = carriage(source, layer).carry(rig, pose)

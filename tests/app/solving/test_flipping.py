@@ -7,8 +7,8 @@ from invariants import check_pose
 from PIL import Image, ImageDraw
 
 from app.document import handle_commands
-from app.solving import Rig, flip_poses, flipped_targets
-from app.solving.drag import Drag
+from app.solving import Rig, flip_poses, flip_targets
+from app.solving.drag_solver import DragSolver
 
 MIDDLE = 80.0
 NAMES = {"arm.L": 22 + 60j, "arm.R": 138 + 60j, "hip": 80 + 20j}
@@ -36,7 +36,7 @@ def posed(layer, **moves):
         identity = names[name.replace("_", ".")]
         old = targets[identity]
         targets[identity] = type(old)(position=old.position + way)
-    return rig, Drag.begin(rig, pose).towards(targets, 600).pose(targets)
+    return rig, DragSolver.begin(rig, pose).step_towards(targets, 600).make_pose(targets)
 
 
 @pytest.fixture(scope="module")
@@ -62,12 +62,12 @@ def test_a_symmetric_drawing_is_posed_as_its_mirror_image(raised):
 def test_pairs_exchange_their_wishes_and_twice_is_nothing(raised):
     layer, rig, pose = raised
     left, right, hip = (handle.id for handle in layer.handles)
-    targets = flipped_targets(layer, pose, layer.axis)
+    targets = flip_targets(layer, pose, layer.axis)
     assert targets[right].position == pytest.approx(NAMES["arm.R"] - 10 + 30j, abs=1e-9)
     assert targets[left].position == pytest.approx(NAMES["arm.L"], abs=1e-9)
     assert targets[hip].position == pytest.approx(NAMES["hip"], abs=1e-9)
     (flipped,) = flip_poses(rig, [pose], layer.axis)
-    again = flipped_targets(layer, flipped, layer.axis)
+    again = flip_targets(layer, flipped, layer.axis)
     for identity, target in pose.targets.items():
         assert again[identity].position == pytest.approx(target.position, abs=1e-6)
 
@@ -76,7 +76,7 @@ def test_pairs_exchange_their_wishes_and_twice_is_nothing(raised):
 @pytest.mark.parametrize("symmetric", [True, False])
 def test_a_drawing_at_rest_stays_at_rest(symmetric, axis):
     layer = layer_of({"hip": 80 + 20j, "arm.R": 138 + 60j}, symmetric=symmetric)
-    targets = flipped_targets(layer, layer.keys[0].pose, axis)
+    targets = flip_targets(layer, layer.keys[0].pose, axis)
     for handle in layer.handles:
         assert targets[handle.id].position == pytest.approx(handle.position, abs=1e-9)
 
@@ -97,7 +97,7 @@ def test_what_is_turned_as_a_whole_is_turned_the_other_way():
         psi=np.zeros_like(cage),
         certificate=pose.certificate,
     )
-    targets = flipped_targets(layer, turned, MIDDLE)
+    targets = flip_targets(layer, turned, MIDDLE)
     for handle in layer.handles:
         expected = centre + turn.conjugate() * (handle.position - centre)
         assert targets[handle.id].position == pytest.approx(expected, abs=1e-9)
@@ -109,12 +109,12 @@ def test_handles_are_pairs_by_their_places_and_alone_on_a_symmetric_drawing_foll
     layer = layer_of(by_place)
     one, two, _ = (handle.id for handle in layer.handles)
     _, pose = posed(layer, **{"handle 1": 10 + 30j})
-    targets = flipped_targets(layer, pose, MIDDLE)
+    targets = flip_targets(layer, pose, MIDDLE)
     moved = targets[two].position - layer.handle(two).position
     assert abs(moved - (-10 + 30j)) < 2
     layer = layer_of({"handle 1": 22 + 60j, "handle 3": 80 + 20j})
     _, pose = posed(layer, **{"handle 1": 10 + 30j})
-    targets = flipped_targets(layer, pose, MIDDLE)
+    targets = flip_targets(layer, pose, MIDDLE)
     # It does what the other arm does, though no handle is there.
     (there,) = layer.map_of(pose)(np.array([138 + 60j]))
     assert targets[one].position == pytest.approx(2 * MIDDLE - there.conjugate(), abs=1e-9)

@@ -13,8 +13,8 @@ from app.document import Attachment, FrameRange, Spring, Target, Track, TrackKey
 from app.document.commands import handle_commands, layer_commands, track_commands
 from app.editor.actions import posing
 from app.solving import flip_poses, pose_document
-from app.solving.drag import Drag, Rig
-from app.solving.renewal import Renewal, go_on
+from app.solving.drag_solver import DragSolver, Rig
+from app.solving.resolve_keys import KeyResolver, step_resolver
 from app.solving.script import parse_pose_script
 from engine.deform import Hand
 from engine.maps import Bounds
@@ -40,9 +40,9 @@ def dragged(layer, targets=MappingProxyType({}), pulled=()):
     pose = layer.keys[0].pose
     wanted = {i: Target(position=ASIDE.get(i, h.position)) for i, h in enumerate(layer.handles)}
     wanted |= targets
-    drag = Drag.begin(Rig.of(layer), pose).towards(wanted, 600, (), pulled)
+    drag = DragSolver.begin(Rig.of(layer), pose).step_towards(wanted, 600, (), pulled)
     assert drag.is_over
-    return drag.pose(wanted)
+    return drag.make_pose(wanted)
 
 
 def places(layer, pose):
@@ -64,7 +64,11 @@ def test_what_follows_goes_where_the_body_carries_it(bar):
     # It is the very pose that there is without the handle.
     free = without_middle(bar)
     targets = {i: Target(position=place) for i, place in ASIDE.items()}
-    alone = Drag.begin(Rig.of(free), free.keys[0].pose).towards(targets, 600).pose(targets)
+    alone = (
+        DragSolver.begin(Rig.of(free), free.keys[0].pose)
+        .step_towards(targets, 600)
+        .make_pose(targets)
+    )
     assert np.array_equal(pose.phi, alone.phi)
     assert pose.targets[END] == targets[END]
 
@@ -76,12 +80,12 @@ def test_what_has_a_track_of_its_own_or_a_spring_that_is_off_is_held(bar):
     off = track_commands.put_spring(0, replace(SPRING, enabled=False))(bar)
     for document in (tracked, off):
         layer = document.layers[0]
-        assert layer.followers == frozenset()
+        assert layer.sprung_handles == frozenset()
         pose = dragged(layer)
         assert abs(places(layer, pose)[MIDDLE] - layer.handle(MIDDLE).position) < 2
         assert pose.targets[MIDDLE].position == layer.handle(MIDDLE).position
     switched_off = track_commands.enable_track(0, MIDDLE, enabled=False)(tracked)
-    assert switched_off.layers[0].followers == {MIDDLE}
+    assert switched_off.layers[0].sprung_handles == {MIDDLE}
 
 
 def test_a_person_who_pulls_at_it_does_pull(bar):
@@ -92,10 +96,10 @@ def test_a_person_who_pulls_at_it_does_pull(bar):
     assert pose.targets[MIDDLE].position == to
     # It stays as the hand left it, and is let go by the next pull elsewhere.
     hand = Hand(frozenset(pulled))
-    drag = Drag.begin(Rig.of(layer), pose).towards(pose.targets, 600, (), pulled)
+    drag = DragSolver.begin(Rig.of(layer), pose).step_towards(pose.targets, 600, (), pulled)
     assert drag.release(pose.targets, (hand,))[1].keys() == pulled
-    after = drag.towards(pose.targets, 600)
-    assert abs(places(layer, after.pose(pose.targets))[MIDDLE] - to) > 5
+    after = drag.step_towards(pose.targets, 600)
+    assert abs(places(layer, after.make_pose(pose.targets))[MIDDLE] - to) > 5
     assert drag.rig.deformer.handles is not after.rig.deformer.handles
 
 
@@ -103,11 +107,15 @@ def test_what_sits_on_a_joint_is_held_by_it(bar):
     document = layer_commands.duplicate_layer(0)(bar)
     (body, _) = document.layers
     at = body.handle(MIDDLE).position
-    hung = layer_commands.attach(0, at, Attachment(to=1, at=at))(document).layers[0]
-    assert (body.followers, hung.followers) == ({MIDDLE}, frozenset())
+    hung = layer_commands.attach_layer(0, at, Attachment(parent=1, parent_point=at))(
+        document
+    ).layers[0]
+    assert (body.sprung_handles, hung.sprung_handles) == ({MIDDLE}, frozenset())
     assert Rig.of(hung).pins == ()
-    elsewhere = layer_commands.attach(0, at + 20, Attachment(to=1, at=at))(document).layers[0]
-    assert elsewhere.followers == {MIDDLE}
+    elsewhere = layer_commands.attach_layer(0, at + 20, Attachment(parent=1, parent_point=at))(
+        document
+    ).layers[0]
+    assert elsewhere.sprung_handles == {MIDDLE}
 
 
 def test_all_handles_may_follow(bar):
@@ -123,9 +131,9 @@ def test_poses_that_are_solved_again_are_not_held_by_it_either(bar):
     # Where it was wanted when it did not follow yet does not count.
     stale = replace(pose, targets={**pose.targets, MIDDLE: Target(position=120 + 40j)})
     posed = layer.with_poses([stale])
-    renewal = Renewal(before=posed, bounds=Bounds(k=0.45, sigma_a=1.9, sigma_b=0.55))
+    renewal = KeyResolver(before=posed, bounds=Bounds(k=0.45, sigma_a=1.9, sigma_b=0.55))
     while not renewal.is_over:
-        renewal = go_on(renewal, np.zeros((1, 1, 4), np.uint8))
+        renewal = step_resolver(renewal, np.zeros((1, 1, 4), np.uint8))
     (again,) = renewal.poses
     (flipped,) = flip_poses(Rig.of(posed), [stale], 120.0)
     for solved in (again, flipped):
@@ -170,7 +178,7 @@ def test_springs_are_carried_by_drags_and_pose_when_dragged(bar, tmp_path):
     project = session.project
 
     def drag(identity, way):
-        place = complex(project.puppet.shown.handle_places[identity])
+        place = complex(project.puppet.shown.handle_positions[identity])
         hand = Hand(frozenset({identity}))
         posing.pull(session, {identity: Target(position=place + way)}, hand=hand)
         posing.let_go(session)

@@ -9,15 +9,15 @@ from bodies import JOINTS, drawing
 from numpy.testing import assert_allclose
 from shapes import regular_polygon
 
-from app.document import Document, FrameRange, Meshing, clip_of, is_as_given, key_commands
+from app.document import Document, FrameRange, Meshing, clip_of, is_motion_unedited, key_commands
 from app.errors import LissomError
 from app.motion import trace_paths
-from app.solving import MotionOrder, begin_giving, give_on
+from app.solving import MotionRequest, start_motion_solve, step_motion_solve
 from app.storage import load_project, open_picture, save_project
 from engine.errors import EngineError
 from engine.geometry.motions import Parameters
 
-CHAIN = MotionOrder(motion="wag", kind="chain", joints=JOINTS["chain"])
+CHAIN = MotionRequest(motion="wag", kind="chain", joints=JOINTS["chain"])
 FEW = Meshing(triangles=1000, detail="coarse")
 # Outlines of some of the drawings.
 ROUND = regular_polygon(8)
@@ -27,12 +27,12 @@ COARSE = {
 }
 
 
-def given(document: Document, order: MotionOrder) -> Document:
-    giving = begin_giving(document, document.layers[0].id, order)
+def given(document: Document, order: MotionRequest) -> Document:
+    giving = start_motion_solve(document, document.layers[0].id, order)
     while not giving.is_over:
         assert giving.progress < 1
-        assert giving.now
-        giving = give_on(giving)
+        assert giving.status_text
+        giving = step_motion_solve(giving)
     return giving.command(document)
 
 
@@ -60,25 +60,25 @@ def test_given_motion_loops_exactly_on_a_new_drawing(wagging):
     assert (wagging.frames, wagging.loop) == (FrameRange(0, 12), True)
     assert layer.keys[0].pose is layer.keys[-1].pose
     (motion,) = layer.motions
-    assert is_as_given(layer, motion)
+    assert is_motion_unedited(layer, motion)
     assert [layer.handle(each).name for each in motion.joints.values()] == list(motion.joints)
     assert all(layer.is_proven(key.pose) for key in layer.keys)
 
 
 def test_planted_feet_keep_one_speed_and_shins_their_length(scenes):
-    order = MotionOrder(
+    order = MotionRequest(
         motion="walk",
         kind="biped-side",
         joints=JOINTS["biped-side"],
         parameters=Parameters(speed=2.0, size=0.8),
     )
     scene = scenes["biped-side"]
-    giving = begin_giving(scene, scene.layers[0].id, order)
-    assert giving.given.facing == 1
+    giving = start_motion_solve(scene, scene.layers[0].id, order)
+    assert giving.applied.facing == 1
     # One foot stands from the first frame on, for more than half of the cycle.
-    assert [moment.frame for moment in giving.wanted] == [*range(12)]
+    assert [moment.frame for moment in giving.key_poses] == [*range(12)]
     while len(giving.poses) < 7:
-        giving = give_on(giving)
+        giving = step_motion_solve(giving)
     layer = giving.rig.layer
     handles = np.array([handle.position for handle in layer.handles])
     places = np.array([layer.map_of(pose)(handles) for pose in giving.poses])
@@ -101,12 +101,12 @@ def test_it_is_given_again_in_another_way_until_it_is_edited(wagging):
     assert [key.frame for key in twice.layers[0].keys] == [key.frame for key in layer.keys]
     for one, other in zip(twice.layers[0].keys, layer.keys, strict=True):
         assert one.pose.targets == other.pose.targets
-    moved = key_commands.pose_key(layer.id, 4, layer.keys[0].pose)(wagging)
-    assert not is_as_given(moved.layers[0], layer.motions[0])
+    moved = key_commands.replace_key_pose(layer.id, 4, layer.keys[0].pose)(wagging)
+    assert not is_motion_unedited(moved.layers[0], layer.motions[0])
 
 
 def test_second_motion_blends_in_when_it_begins_in_the_first(wagging):
-    second = replace(CHAIN, motion="slither", first=9, rounds=2, stiff=False, limits=None)
+    second = replace(CHAIN, motion="slither", first=9, repeat_count=2, stiff=False, limits=None)
     scene = given(wagging, second)
     moved = scene.layers[0]
     first, slither = moved.motions[0], moved.motions[-1]
@@ -116,47 +116,49 @@ def test_second_motion_blends_in_when_it_begins_in_the_first(wagging):
     assert moved.keys[-1].frame < slither.start + 18
     assert [(each.first, each.last, each.until) for each in moved.cycles] == [(12, 30, 48)]
     paths = trace_paths(clip_of(scene, moved.id))
-    speeds = np.abs(np.diff(paths.places, axis=0)).max(axis=1)
+    speeds = np.abs(np.diff(paths.positions, axis=0)).max(axis=1)
     assert speeds[9:12].max() < 2 * max(speeds[:9].max(), speeds[12:].max())
-    assert_allclose(paths.places[12], paths.places[30], atol=1e-6 * 320)
+    assert_allclose(paths.positions[12], paths.positions[30], atol=1e-6 * 320)
 
 
 def test_it_survives_saving(wagging, tmp_path):
     save_project(tmp_path / "wag.lissom", wagging, thumbnail=None)
     read = load_project(tmp_path / "wag.lissom").layers[0]
     assert read.motions == wagging.layers[0].motions
-    assert is_as_given(read, read.motions[0])
+    assert is_motion_unedited(read, read.motions[0])
 
 
 def test_motion_out_of_reach_is_told_with_a_size_in_reach(scenes):
-    order = MotionOrder(
+    order = MotionRequest(
         motion="breathe", kind="anything", joints={}, parameters=Parameters(size=2.0), limits=None
     )
     tight = scenes["anything"].layers[0]
     bounds = replace(tight.bounds, k=0.05, sigma_a=1.05, sigma_b=0.95)
     scene = scenes["anything"].with_layer(replace(tight, bounds=bounds))
-    giving = begin_giving(scene, tight.id, order)
+    giving = start_motion_solve(scene, tight.id, order)
     while not giving.is_over:
-        giving = give_on(giving)
+        giving = step_motion_solve(giving)
     (notice,) = giving.notices
     assert "fall short" in notice
-    assert giving.fitting is not None
-    assert 0 < giving.fitting < 2
-    fits = replace(order, parameters=Parameters(size=giving.fitting))
-    smaller = begin_giving(scene, tight.id, fits)
-    worst = max(frame for _, frame in giving.short.values())
+    assert giving.reachable_size is not None
+    assert 0 < giving.reachable_size < 2
+    fits = replace(order, parameters=Parameters(size=giving.reachable_size))
+    smaller = start_motion_solve(scene, tight.id, fits)
+    worst = max(frame for _, frame in giving.target_errors.values())
     assert worst > 0
-    while smaller.wanted[len(smaller.poses)].frame <= worst:
-        smaller = give_on(smaller)
-    assert not smaller.short
+    while smaller.key_poses[len(smaller.poses)].frame <= worst:
+        smaller = step_motion_solve(smaller)
+    assert not smaller.target_errors
 
 
 def test_what_cannot_be_given_is_refused(scenes):
     chain, identity = scenes["chain"], scenes["chain"].layers[0].id
     with pytest.raises(EngineError, match="there is no motion 'dance'"):
-        MotionOrder(motion="dance", kind="chain", joints={})
+        MotionRequest(motion="dance", kind="chain", joints={})
     with pytest.raises(LissomError, match=r"the joint 'joint.2' at \(5, 5\) is not on the drawing"):
-        begin_giving(chain, identity, replace(CHAIN, joints={**JOINTS["chain"], "joint.2": 5 + 5j}))
+        start_motion_solve(
+            chain, identity, replace(CHAIN, joints={**JOINTS["chain"], "joint.2": 5 + 5j})
+        )
     few = {name: JOINTS["chain"][name] for name in ("joint.1", "joint.2")}
     with pytest.raises(EngineError, match=r"'wag' needs joint\.3"):
-        begin_giving(chain, identity, replace(CHAIN, joints=few))
+        start_motion_solve(chain, identity, replace(CHAIN, joints=few))

@@ -1,7 +1,7 @@
 from layered import blob, openraster
 
 from app.document.settings import Meshing
-from app.solving.renewal import Renewal, go_on
+from app.solving.resolve_keys import KeyResolver, step_resolver
 from app.storage.layers import open_layered
 
 
@@ -11,9 +11,9 @@ def test_a_layer_that_is_built_anew_stays_where_it_is(tmp_path):
     path.write_bytes(openraster((200, 220), stack, [blob(70, 50)]))
     opened = open_layered(path, Meshing(triangles=4_000))
     (head,) = opened.document.layers
-    renewal = Renewal(before=head, bounds=head.bounds, meshing=Meshing(triangles=5_000))
+    renewal = KeyResolver(before=head, bounds=head.bounds, meshing=Meshing(triangles=5_000))
     while not renewal.is_over:
-        renewal = go_on(renewal, opened.pictures[head.id].rgba)
-    assert abs(renewal.into.domain.outline.mean() - head.domain.outline.mean()) < 1
+        renewal = step_resolver(renewal, opened.pictures[head.id].rgba)
+    assert abs(renewal.new_layer.domain.outline.mean() - head.domain.outline.mean()) < 1
     (again,) = renewal.command(opened.document).layers
     assert again.corner == head.corner == 60 + 160j

@@ -12,11 +12,11 @@ from app.document.keyframe import Target
 from app.document.model import Document
 from app.document.settings import Meshing
 from app.document.timing import Spring, Track, TrackKey
-from app.solving.drag import Drag, Rig
-from app.solving.renewal import go_on
-from app.solving.replacing import begin_replacing
+from app.solving.drag_solver import DragSolver, Rig
+from app.solving.replace_picture import start_picture_replacement
+from app.solving.resolve_keys import step_resolver
 from app.storage.assets import sample_images
-from app.storage.layers import posable_layer, still_picture
+from app.storage.layers import make_posable_layer, make_still_picture
 from app.storage.pictures import ImportedLayer, decode_picture
 from app.storage.project_file import load_project
 
@@ -28,7 +28,7 @@ def layer_of(image, corner=0j):
     imported = ImportedLayer(
         name="arm", data=data, picture=decode_picture(data, "arm.png"), corner=corner
     )
-    layer, _ = posable_layer(imported, 0, MESHING, is_cut_out=True)
+    layer, _ = make_posable_layer(imported, 0, MESHING, is_cut_out=True)
     return layer
 
 
@@ -42,15 +42,15 @@ def raised():
         document = handle_commands.add_handle(0, place)(document)
     (layer,) = document.layers
     wishes = {0: Target(position=50 + 50j), 1: Target(position=130 + 75j)}
-    drag = Drag.begin(Rig.of(layer), layer.keys[0].pose).towards(wishes, 300)
-    return key_commands.insert_key(0, 10, drag.pose(wishes))(document)
+    drag = DragSolver.begin(Rig.of(layer), layer.keys[0].pose).step_towards(wishes, 300)
+    return key_commands.insert_key(0, 10, drag.make_pose(wishes))(document)
 
 
 def replaced(document, made):
     (before,) = document.layers
-    renewal = begin_replacing(before, made, document.canvas)
+    renewal = start_picture_replacement(before, made, document.canvas)
     while not renewal.is_over:
-        renewal = go_on(renewal, np.zeros((1, 1, 4), np.uint8))
+        renewal = step_resolver(renewal, np.zeros((1, 1, 4), np.uint8))
     assert renewal.progress == 1
     after = renewal.command(document)
     assert after.canvas == document.canvas
@@ -59,7 +59,7 @@ def replaced(document, made):
 
 def test_tracks_and_springs_stay_and_planted_places_go_with_their_handles(raised):
     at = (TrackKey(frame=1, place=52 + 49j), TrackKey(frame=9, place=140 + 70j, turn=0.5))
-    planted = Track(handles=(1,), planted=True, keys=at, delay=2)
+    planted = Track(handles=(1,), is_scene_space=True, keys=at, delay=2)
     beside = Track(handles=(0,), keys=at)
     springs = (Spring(handle=1, frequency=3.0, damping=0.2),)
     before = replace(raised.layers[0], tracks=(planted, beside), springs=springs)
@@ -125,13 +125,15 @@ def test_what_is_not_on_the_new_shape_comes_onto_it_and_its_wishes_follow(raised
 
 
 def test_a_still_picture_stays_where_it_was_put():
-    still = replace(still_picture(png(blob(40, 20)), decode_picture(png(blob(40, 20)), "a")), id=0)
+    still = replace(
+        make_still_picture(png(blob(40, 20)), decode_picture(png(blob(40, 20)), "a")), id=0
+    )
     document = Document(layers=(still,))
     pose = still.keys[0].pose
     turned = pose.with_map(still.map_of(pose).moved(1j, 50 + 5j))
-    document = key_commands.pose_key(0, 0, turned)(document)
+    document = key_commands.replace_key_pose(0, 0, turned)(document)
     data = png(blob(40, 20, (0, 0, 250)))
-    layer = replaced(document, still_picture(data, decode_picture(data, "b")))
+    layer = replaced(document, make_still_picture(data, decode_picture(data, "b")))
     assert layer.still
     assert layer.picture.data == data
     points = np.array([5 + 5j, 30 + 12j])
@@ -145,8 +147,8 @@ def test_a_pose_that_cannot_be_carried_over_is_reached_from_rest():
     head = next(layer for layer in document.layers if layer.name == "head")
     image = Image.new("RGBA", (460, 460))
     ImageDraw.Draw(image).ellipse((10, 10, 450, 450), fill=(250, 210, 170, 255))
-    renewal = begin_replacing(head, layer_of(image), document.canvas)
+    renewal = start_picture_replacement(head, layer_of(image), document.canvas)
     while not renewal.is_over:
-        renewal = go_on(renewal, np.zeros((1, 1, 4), np.uint8))
-    assert not renewal.outside
+        renewal = step_resolver(renewal, np.zeros((1, 1, 4), np.uint8))
+    assert not renewal.unsolved
     assert all(pose.certificate.certified for pose in renewal.poses)

@@ -7,14 +7,14 @@ import pytest
 from animations import bar_document, bar_picture, still_document
 from messages import says
 
-from app.document.timing import HOLD, LINEAR, PRESETS, Cycle, Passing, Spring, Track, TrackKey
+from app.document.timing import HOLD, LINEAR, PRESETS, Cycle, Spring, TangentMode, Track, TrackKey
 from app.errors import LissomError
 from app.solving import pose_document
-from app.solving.script import ScriptHandle, ScriptJoint, load_pose_script, parse_pose_script
-from app.solving.script.clocks import HANDLE_OR_HANDLES, NEEDLESS_VELOCITY, NO_BASIS, NO_PRESET
+from app.solving.script import ScriptAttachment, ScriptHandle, load_pose_script, parse_pose_script
 from app.solving.script.fields import NOT_A_FRAME, OUT_OF_ORDER
 from app.solving.script.layers import NO_KEYS, ZOOM_NOT_POSITIVE
 from app.solving.script.pose_script import NO_VARIANT, WRONG_SCHEMA
+from app.solving.script.tracks import HANDLE_OR_HANDLES, NEEDLESS_VELOCITY, NO_BASIS, NO_PRESET
 from app.storage.json_values import (
     LACKS_FIELD,
     NOT_FINITE,
@@ -185,17 +185,17 @@ def test_tracks_and_springs_are_read():
                 place=7 - 8.5j,
                 turn=np.pi / 2,
                 easing=PRESETS["in"],
-                passing=Passing.CORNER,
+                tangent_mode=TangentMode.CORNER,
             ),
             TrackKey(frame=11, place=1 + 1j, velocity=-2 + 0.5j),
             TrackKey(frame=12, place=1 + 1j, easing=HOLD),
-            TrackKey(frame=30, place=0, easing=LINEAR, passing=Passing.STOP),
+            TrackKey(frame=30, place=0, easing=LINEAR, tangent_mode=TangentMode.STOP),
         ),
         delay=4,
         reach=0.3,
-        turns=True,
+        keys_rotation=True,
     )
-    assert hoof == Track(handles=(1, 0), planted=True, keys=(TrackKey(frame=3, place=9),))
+    assert hoof == Track(handles=(1, 0), is_scene_space=True, keys=(TrackKey(frame=3, place=9),))
     assert layer.springs == (
         Spring(handle=0, frequency=3.0, damping=0.25),
         Spring(handle=2, frequency=1.6, damping=0.5, lag=1.5),
@@ -333,7 +333,7 @@ def test_a_script_of_several_layers():
     assert body.bounds == arm.bounds == Bounds(k=0.7, sigma_a=2.0, sigma_b=0.5)
     assert arm.handles["hand"] == ScriptHandle(at=7 + 8j, front=0.5, extent=60.0)
     assert arm.keys[1].fronts == {"hand": -1.0}
-    assert arm.attach == (ScriptJoint(to="body", at=3 + 4j, turns=False),)
+    assert arm.attach == (ScriptAttachment(to="body", at=3 + 4j, turns=False),)
     assert arm.visible == ((0, True), (12, False))
 
 
@@ -401,13 +401,13 @@ def test_a_key_on_request_pulls_with_bounded_force():
     (held, _), (pulled, notices) = posed[False], posed[True]
     for layer, far in ((held, True), (pulled, False)):
         for key in layer.keys[1:]:
-            assert (abs(layer.lags(key.pose)[1]) > 5) == far
+            assert (abs(layer.target_errors(key.pose)[1]) > 5) == far
     # It is told how far short it is, and it is wanted where it came to.
     assert len(notices) == 1
     assert re.fullmatch(r"frame 8: 'end' is \d+\.\d px short .* by the limits", notices[0])
     wanted = pulled.keys[1].pose.targets[0].position
     assert wanted.real < 450
-    assert pulled.lags(pulled.keys[1].pose)[0] < 1
+    assert pulled.target_errors(pulled.keys[1].pose)[0] < 1
     assert pulled.keys[2].pose.targets[0].position == wanted
 
 
@@ -424,14 +424,14 @@ def test_a_script_gives_its_layer_tracks_springs_and_stillness():
     layer = document.layers[0]
     end, start = layer.handles
     assert (document.frames.last, document.loop) == (40, True)
-    assert layer.stillness
-    assert (end.free, start.free) == (False, True)
+    assert layer.has_auto_pins
+    assert (end.is_unpinned, start.is_unpinned) == (False, True)
     assert layer.track_of(start.id).keys == (TrackKey(frame=40, place=3 + 4j),)
     assert layer.spring_of(end.id).frequency == 1.6
     assert layer.spring_of(end.id).root == start.id
     loose = parse_pose_script({**script, "still": False})
     document, _ = pose_document(opened, loose, lambda _: None)
-    assert not document.layers[0].stillness
+    assert not document.layers[0].has_auto_pins
 
 
 CAMERA = {"keys": [{"frame": 0, "centre": [100, 60]}, {"frame": 12, "centre": [1, 2], "turn": 90}]}
@@ -443,7 +443,10 @@ def test_the_camera_and_movements_are_read():
     assert two.turn == np.pi / 2
     eased = changed(("keys", 1, "ease"), "in", CAMERA)
     camera = parse_pose_script({**WHOLE, "camera": eased}).camera
-    assert (camera[0].passing, camera[1].passing) == (Passing.THROUGH, Passing.CORNER)
+    assert (camera[0].tangent_mode, camera[1].tangent_mode) == (
+        TangentMode.SMOOTH,
+        TangentMode.CORNER,
+    )
     moved = {"keys": [{"frame": 0}, {"frame": 40, "shift": [3, -4], "turn": -180}]}
     script = parse_pose_script({**WHOLE, "movement": moved, "opacity": [[0, 1], [50, 0.5]]})
     (layer,) = script.layers

@@ -11,16 +11,16 @@ from messages import says
 from app.document import (
     Meshing,
     Target,
-    find_shortfall,
     handle_commands,
     material_commands,
+    measure_target_errors,
     stiff_outline,
 )
 from app.errors import LissomError
 from app.solving import pose_document
-from app.solving.drag import Drag, Rig
-from app.solving.renewal import Renewal, go_on
-from app.solving.replacing import begin_replacing
+from app.solving.drag_solver import DragSolver, Rig
+from app.solving.replace_picture import start_picture_replacement
+from app.solving.resolve_keys import KeyResolver, step_resolver
 from app.solving.script import parse_pose_script
 from app.storage.json_values import LACKS_FIELD, NOT_LIST, NOT_NUMBER, NOT_OBJECT, NOT_POINT
 from engine.deform import Hand
@@ -52,9 +52,9 @@ def targets_of(*places):
 
 
 def pulled(layer, start, targets, steps=300):
-    drag = Drag.begin(Rig.of(layer), start).towards(targets, steps)
+    drag = DragSolver.begin(Rig.of(layer), start).step_towards(targets, steps)
     assert drag.state.certificate.certified
-    return drag.pose(targets)
+    return drag.make_pose(targets)
 
 
 def bent_in(layer, pose, left, right):
@@ -110,10 +110,10 @@ def test_a_pose_of_before_stays_and_begins_a_drag_though_it_is_beyond_new_limits
     layer = boned.with_poses([before])
     assert layer.keys[0].pose.phi is before.phi
     assert layer.is_proven(before)
-    drag = Drag.begin(Rig.of(layer), before)
+    drag = DragSolver.begin(Rig.of(layer), before)
     assert np.array_equal(drag.state.map.phi, before.phi)
     assert drag.state.certificate.certified
-    assert drag.towards(UP, 200).state.certificate.certified
+    assert drag.step_towards(UP, 200).state.certificate.certified
 
 
 def test_limb_held_back_by_its_bone_is_told_to_be_at_the_limits():
@@ -121,8 +121,8 @@ def test_limb_held_back_by_its_bone_is_told_to_be_at_the_limits():
     far = targets_of(30 + 40j, 330 + 40j, 540 + 40j)
     # In some steps it is at the limits, long before all of it is at rest.
     pose = pulled(boned, boned.keys[0].pose, far, steps=30)
-    shortfall = find_shortfall(boned, pose)
-    assert 1 in shortfall.lags
+    shortfall = measure_target_errors(boned, pose)
+    assert 1 in shortfall.errors
     assert shortfall.at_limits
 
 
@@ -142,7 +142,7 @@ def test_script_stiffens_what_it_says():
     (layer,) = document.layers
     assert notices == ()
     assert layer.bones[0].ends == (0, 1)
-    assert layer.bones[0].amount == 30
+    assert layer.bones[0].stiffness == 30
     assert layer.stiffness[np.argmax(layer.domain.outline.real)] > 5
     plain = {name: value for name, value in SCRIPT.items() if name != "stiff"}
     usual, _ = pose_document(drawn(), parse_pose_script(plain), lambda _: None)
@@ -208,9 +208,9 @@ def test_a_hand_that_is_pulled_too_far_draws_the_elbow_straight_and_stops():
     bent = pulled(layer, rest, targets_of(30 + 40j, 230 + 90j, 430 + 40j))
     targets = targets_of(30 + 40j, 230 + 90j, 900 + 40j)
     hands = (Hand((2,)),)
-    drag = Drag.begin(Rig.of(layer), bent)
+    drag = DragSolver.begin(Rig.of(layer), bent)
     for _ in range(40):
-        drag = drag.towards(targets, 10, hands)
+        drag = drag.step_towards(targets, 10, hands)
     assert drag.is_over
     shoulder, elbow, hand = drag.rig.deformer.positions(drag.state).tolist()
     longest = float(layer.bounds.stiffened(np.array(30.0)).sigma_a) * 210
@@ -225,7 +225,7 @@ def test_a_hand_that_is_pulled_too_far_draws_the_elbow_straight_and_stops():
     assert left[0] == targets[0]
     # The bone pulls at the shoulder, whose target is not changed.
     assert not released.is_over
-    after = released.towards(left, 200)
+    after = released.step_towards(left, 200)
     assert after.is_over
     assert np.abs(after.rig.deformer.positions(after.state)[1:] - [elbow, hand]).max() < 1
 
@@ -233,15 +233,15 @@ def test_a_hand_that_is_pulled_too_far_draws_the_elbow_straight_and_stops():
 def test_joints_hold_still_for_hands_within_reach_and_where_they_are_locked():
     layer = arm()
     rig, hands = Rig.of(layer), (Hand((2,)),)
-    assert [hand.handles for hand in rig.yielding(hands)] == [[1]]
-    assert rig.yielding((Hand((1,)),)) == []
+    assert [hand.handles for hand in rig.find_yielding_joints(hands)] == [[1]]
+    assert rig.find_yielding_joints((Hand((1,)),)) == []
     locked = tuple(replace(handle, locked=handle.id == 1) for handle in layer.handles)
-    assert Rig.of(replace(layer, handles=locked)).yielding(hands) == []
-    assert rig.wish(targets_of(*PLACES), ()).links is None
+    assert Rig.of(replace(layer, handles=locked)).find_yielding_joints(hands) == []
+    assert rig.build_targets(targets_of(*PLACES), ()).links is None
     near = targets_of(30 + 40j, 240 + 40j, 440 + 70j)
-    drag = Drag.begin(rig, layer.keys[0].pose)
+    drag = DragSolver.begin(rig, layer.keys[0].pose)
     for _ in range(40):
-        drag = drag.towards(near, 10, hands)
+        drag = drag.step_towards(near, 10, hands)
     _, elbow, hand = drag.rig.deformer.positions(drag.state).tolist()
     assert abs(hand - 440 - 70j) < 6
     assert abs(elbow - 240 - 40j) < 12
@@ -254,15 +254,17 @@ def stiffness_near(layer, *places):
 
 @pytest.mark.parametrize("detail", ["coarse", "fine"])
 def test_what_is_stiff_stays_in_its_place_on_another_domain_and_beside_a_cut(detail):
-    document = material_commands.paint(0, [450 + 40j], radius=70, amount=20.0)(still_with(bar()))
+    document = material_commands.paint_stiffness(0, [450 + 40j], radius=70, amount=20.0)(
+        still_with(bar())
+    )
     layer = document.layers[0]
     slit = Slit(points=np.array([330 + 0j, 331 + 45j]))
     for cut_out in (layer.cut_out, CutOut(slits=(slit,))):
         before = replace(layer, cut_out=cut_out)
         meshing = Meshing(detail=detail, triangles=1_000)
-        renewal = Renewal(before=before, bounds=before.bounds, meshing=meshing)
+        renewal = KeyResolver(before=before, bounds=before.bounds, meshing=meshing)
         while not renewal.is_over:
-            renewal = go_on(renewal, BAR)
+            renewal = step_resolver(renewal, BAR)
         after = renewal.command(document.with_layer(before)).layers[0]
         assert after.domain is not before.domain
         assert after.bones == before.bones
@@ -273,13 +275,15 @@ def test_what_is_stiff_stays_in_its_place_on_another_domain_and_beside_a_cut(det
 
 
 def test_another_picture_takes_over_what_is_stiff():
-    document = material_commands.paint(0, [450 + 40j], radius=70, amount=20.0)(still_with(bar()))
+    document = material_commands.paint_stiffness(0, [450 + 40j], radius=70, amount=20.0)(
+        still_with(bar())
+    )
     larger = np.zeros((80, 500, 4), np.uint8)
     larger[16:64, 20:480] = 255
     made = still_document(larger).layers[0]
-    renewal = begin_replacing(document.layers[0], made, (480, 80))
+    renewal = start_picture_replacement(document.layers[0], made, (480, 80))
     while not renewal.is_over:
-        renewal = go_on(renewal, larger)
+        renewal = step_resolver(renewal, larger)
     after = renewal.command(document).layers[0]
     assert after.stiffness.max() > 5
     assert stiffness_near(after, 240 + 15j)[0] < 1.1

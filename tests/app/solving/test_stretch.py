@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from PIL import Image, ImageDraw
 
-from app.document import NATURAL, RUBBERY, STIFF, STRETCHES, loosened, stretch_of
+from app.document import LIMIT_PRESETS, NATURAL, RUBBERY, STIFF, find_limit_preset, relax_limits
 from engine.deform import Deformer, Handles
 from engine.domain import build_domain
 from engine.maps import Boundary, Bounds
@@ -50,7 +50,7 @@ def test_a_head_stays_a_head(head):
     places = [130 + 250j, 370 + 250j, 250 + 120j, 250 + 250j]
     targets = [*places[:3], 390 + 250j]
     sizes, lags = {}, {}
-    for stretch in STRETCHES:
+    for stretch in LIMIT_PRESETS:
         harmonic, lag = pulled(head, places, targets, stretch.bounds)
         moved = np.abs(harmonic(head.mesh.vertices) - head.mesh.vertices)
         sizes[stretch.name], lags[stretch.name] = float(moved.mean()), float(lag[3])
@@ -73,18 +73,18 @@ def test_limbs_bend_by_a_right_angle(width, stretch):
 
 
 def test_words_for_bounds():
-    assert [stretch_of(stretch.bounds).name for stretch in STRETCHES] == [
+    assert [find_limit_preset(stretch.bounds).name for stretch in LIMIT_PRESETS] == [
         "Stiff",
         "Natural",
         "Rubbery",
     ]
-    assert stretch_of(Bounds(k=0.5, sigma_a=2.0, sigma_b=0.4)) is None
+    assert find_limit_preset(Bounds(k=0.5, sigma_a=2.0, sigma_b=0.4)) is None
     for tighter, looser in ((STIFF, NATURAL), (NATURAL, RUBBERY)):
         b = tighter.bounds
         assert looser.bounds.allow(k=b.k, sigma_a=b.sigma_a, sigma_b=b.sigma_b)
-        assert loosened(b) == looser.bounds
-    assert loosened(RUBBERY.bounds) is None
+        assert relax_limits(b) == looser.bounds
+    assert relax_limits(RUBBERY.bounds) is None
     # What was allowed stays so.
-    assert loosened(Bounds(k=0.7, sigma_a=1.5, sigma_b=0.6)) == Bounds(
+    assert relax_limits(Bounds(k=0.7, sigma_a=1.5, sigma_b=0.6)) == Bounds(
         k=0.7, sigma_a=2.0, sigma_b=0.5
     )

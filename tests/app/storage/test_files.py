@@ -20,19 +20,19 @@ from app.errors import CANCELLED, LissomError
 from app.storage import NO_ARRAYS, NO_FOLDER
 from app.storage.files import (
     Cancellation,
-    Hold,
-    HoldError,
+    FileLock,
+    FileLockedError,
     atomic_file,
-    clear_abandoned,
     lock,
-    passing_picture,
     read_arrays,
     read_file,
+    remove_abandoned_files,
+    temporary_picture,
     write_arrays,
     write_atomically,
 )
-from app.storage.files.hold import MOST_TOLD
-from app.storage.files.locks import beyond_content
+from app.storage.files.file_lock import LARGEST_LOCK_TEXT
+from app.storage.files.locks import at_lock_byte
 from app.storage.files.reading import LARGEST_FILE, NOT_ORDINARY
 from app.storage.project_file import load_project, save_project
 from app.storage.thumbnail import read_thumbnail
@@ -194,7 +194,7 @@ def test_what_a_killed_process_left_half_written_is_removed_where_the_next_one_w
 def test_what_another_process_still_writes_is_not_removed(tmp_path):
     with atomic_file(tmp_path / "a") as file:
         file.write(b"slow")
-        clear_abandoned(tmp_path)
+        remove_abandoned_files(tmp_path)
     assert (tmp_path / "a").read_bytes() == b"slow"
 
 
@@ -230,13 +230,13 @@ def test_where_the_disk_knows_no_locks_files_are_written_and_nothing_is_removed(
 
 
 def test_a_picture_that_was_to_be_given_away_is_cleared_like_what_is_half_written(tmp_path):
-    path = passing_picture(tmp_path)
+    path = temporary_picture(tmp_path)
     write_atomically(path, lambda file: file.write(b"whole"))
     with path.open("rb") as file:
         assert lock(file.fileno())
-        clear_abandoned(tmp_path)
+        remove_abandoned_files(tmp_path)
         assert path.exists()
-    clear_abandoned(tmp_path)
+    remove_abandoned_files(tmp_path)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -332,12 +332,12 @@ def test_packed_arrays_are_unpacked_within_limits(tmp_path, monkeypatch):
 
 def test_one_holds_a_file_and_others_are_told_who(tmp_path):
     path = tmp_path / "a.lissom"
-    hold = Hold(path)
-    with pytest.raises(HoldError, match=r"by .* on .*, since 20"):
-        Hold(path)
+    hold = FileLock(path)
+    with pytest.raises(FileLockedError, match=r"by .* on .*, since 20"):
+        FileLock(path)
     hold.release()
     assert list(tmp_path.iterdir()) == []
-    Hold(path).release()
+    FileLock(path).release()
 
 
 LOCK_CONTENT = """
@@ -353,7 +353,7 @@ def test_on_windows_no_byte_is_locked_that_others_read(tmp_path):
     path = tmp_path / "lock"
 
     def lets_others_read():
-        words = [sys.executable, "-c", LOCK_CONTENT, path, str(MOST_TOLD)]
+        words = [sys.executable, "-c", LOCK_CONTENT, path, str(LARGEST_LOCK_TEXT)]
         return subprocess.run(words, stderr=subprocess.DEVNULL, check=False).returncode == 0
 
     def lock_byte(file):
@@ -363,7 +363,7 @@ def test_on_windows_no_byte_is_locked_that_others_read(tmp_path):
     with path.open("w+b") as file:
         file.write(b"who")
         file.flush()
-        with beyond_content(file.fileno()):
+        with at_lock_byte(file.fileno()):
             lock_byte(file.fileno())
         assert file.tell() == os.lseek(file.fileno(), 0, os.SEEK_CUR) == 3
         assert lets_others_read()
@@ -375,21 +375,21 @@ def test_on_windows_no_byte_is_locked_that_others_read(tmp_path):
 
 def test_a_lock_file_that_a_dead_process_left_holds_nothing(tmp_path):
     path = tmp_path / "a.lissom"
-    hold = Hold(path)
+    hold = FileLock(path)
     # What the system does when a process ends.
     os.close(hold._descriptor)
     assert len(list(tmp_path.iterdir())) == 1
-    Hold(path).release()
+    FileLock(path).release()
     assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize("told", [b"", b"[" * 999, b"{}", b'{"who": "a\\u0007", "since": 1e308}'])
 def test_nonsense_in_a_lock_file_is_told_as_what_is_known(tmp_path, told):
-    hold = Hold(tmp_path / "a.lissom")
+    hold = FileLock(tmp_path / "a.lissom")
     (beside,) = tmp_path.iterdir()
     beside.write_bytes(told)
-    with pytest.raises(HoldError, match="in another window"):
-        Hold(tmp_path / "a.lissom")
+    with pytest.raises(FileLockedError, match="in another window"):
+        FileLock(tmp_path / "a.lissom")
     hold.release()
 
 

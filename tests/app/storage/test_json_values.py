@@ -5,7 +5,7 @@ import json
 import pytest
 
 from app.errors import LissomError
-from app.storage.json_values import as_text, without_repeats
+from app.storage.json_values import as_text, check_repeated_fields
 
 
 def test_a_repeated_field_among_many_is_found_at_little_cost():
@@ -23,7 +23,7 @@ def test_a_repeated_field_among_many_is_found_at_little_cost():
     count = 400
     names = [Name(number) for number in range(count)] + [Name(count - 1)]
     with pytest.raises(LissomError, match=f"'{count - 1}' is given twice"):
-        without_repeats([(name, None) for name in names])
+        check_repeated_fields([(name, None) for name in names])
     assert compared < 5 * count
 
 

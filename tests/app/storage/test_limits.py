@@ -24,15 +24,15 @@ from app.document import (
     FASTEST,
     LAST_FRAME,
     SLOWEST,
+    AppliedMotion,
     Attachment,
     CameraKey,
     Cycle,
     Document,
+    DrawOrderKey,
     FrameRange,
-    GivenMotion,
     Meshing,
     PictureFile,
-    Placing,
     Spring,
     Track,
     TrackKey,
@@ -44,20 +44,20 @@ from app.document import (
     layer_commands,
     motion_notices,
     new_layer,
-    pose_as_drawn,
     pose_commands,
+    rest_pose,
     scene_commands,
     shape_commands,
     track_commands,
 )
-from app.document.body.pairs import MOST_PAIRS
-from app.document.checks import FARTHEST, LARGEST_ID, WIDEST
+from app.document.checks import MAX_COORDINATE, MAX_ID, MAX_PICTURE_SIDE
 from app.document.keyframe import LARGEST_COEFFICIENT
-from app.document.model import MOST_CHANGES
-from app.document.timing.cycles import MOST_CYCLES
+from app.document.model import MAX_CHANGES
+from app.document.rig.mirror_names import MAX_PAIRS
+from app.document.timing.cycles import MAX_CYCLES
 from app.errors import LissomError
 from app.storage import project_file
-from app.storage.autosave import Autosave, Origin, load_leftover
+from app.storage.autosave import Autosave, SourceInfo, load_recoverable_file
 from app.storage.project import archive
 from app.storage.project_file import load_project, save_project
 from engine.domain import MeshedDomain
@@ -67,9 +67,14 @@ from tests.bench.opening import FILLINGS
 
 NAMES = ("x", "é\u0301 \U0001f600" * 2000, "{0} %s {", "\x00\x1b[31m\n", "\u202e right to left")
 FRAMES = (0, 1, LAST_FRAME - 1, LAST_FRAME)
-FAR = (FARTHEST, -FARTHEST, complex(FARTHEST, -FARTHEST), 1j * FARTHEST)
-SIZES = (1, 2, WIDEST)
-BREATHE = GivenMotion(
+FAR = (
+    MAX_COORDINATE,
+    -MAX_COORDINATE,
+    complex(MAX_COORDINATE, -MAX_COORDINATE),
+    1j * MAX_COORDINATE,
+)
+SIZES = (1, 2, MAX_PICTURE_SIDE)
+BREATHE = AppliedMotion(
     motion="breathe",
     kind="anything",
     joints={},
@@ -83,7 +88,7 @@ BREATHE = GivenMotion(
 
 def far_pose(layer, place):
     """The pose of a layer as it was drawn, moved as a whole, with its handles' targets there."""
-    drawn = pose_as_drawn(layer.domain, layer.handles)
+    drawn = rest_pose(layer.domain, layer.handles)
     targets = {
         identity: replace(target, position=place) for identity, target in drawn.targets.items()
     }
@@ -101,51 +106,63 @@ def extreme_command(rng, document):
         scene_commands.set_fps(float(rng.choice([SLOWEST, FASTEST]))),
         scene_commands.set_frames(FrameRange(0, LAST_FRAME)),
         scene_commands.add_marker(frame, name),
-        scene_commands.set_pairs(tuple((f"l{i}", f"r{i}") for i in range(MOST_PAIRS))),
+        scene_commands.set_mirror_names(tuple((f"l{i}", f"r{i}") for i in range(MAX_PAIRS))),
         filming_commands.key_camera(CameraKey(frame=frame, centre=place, zoom=1e3, turn=turn)),
         filming_commands.key_movement(identity, frame, place, turn),
         filming_commands.key_opacity(identity, frame, float(rng.integers(2))),
-        filming_commands.place_at(identity, Placing(frame, None)),
-        key_commands.put_pose(identity, frame, pose, layer.keys[0].easing),
+        filming_commands.place_at(identity, DrawOrderKey(frame, None)),
+        key_commands.insert_pose(identity, frame, pose, layer.keys[0].easing),
         key_commands.insert_key(identity, to, pose),
-        pose_commands.keep_pose(identity, pose, name),
-        pose_commands.set_mirror(identity, FARTHEST),
+        pose_commands.save_pose(identity, pose, name),
+        pose_commands.set_mirror(identity, MAX_COORDINATE),
         handle_commands.add_handle(identity, inside(rng), name=name),
         layer_commands.rename_layer(identity, name),
         layer_commands.duplicate_layer(identity),
-        layer_commands.switch_at(identity, frame, visible=bool(rng.integers(2))),
-        layer_commands.attach(
+        layer_commands.key_visibility(identity, frame, visible=bool(rng.integers(2))),
+        layer_commands.attach_layer(
             identity,
             CENTRE,
-            Attachment(to=document.layers[0].id, at=place, rest=turn, frame=frame, offset=place),
+            Attachment(
+                parent=document.layers[0].id,
+                parent_point=place,
+                rest_rotation=turn,
+                frame=frame,
+                offset=place,
+            ),
         ),
-        choice_commands.form_choice(name, [each.id for each in document.layers][:2]),
+        choice_commands.create_switch_group(name, [each.id for each in document.layers][:2]),
         choice_commands.choose_at(identity, frame),
-        shape_commands.set_bounds(identity, Bounds(k=1 - 1e-9, sigma_a=1e9, sigma_b=1e-9)),
-        group_commands.put_in_group([identity], name.strip()),
+        shape_commands.set_limits(identity, Bounds(k=1 - 1e-9, sigma_a=1e9, sigma_b=1e-9)),
+        group_commands.group_layers([identity], name.strip()),
     ]
     if layer.handles:
         handle = layer.handles[0].id
         key = TrackKey(frame=frame, place=place, turn=turn, velocity=place)
-        track = Track(handles=(handle,), keys=(key,), delay=LAST_FRAME, planted=True, turns=True)
+        track = Track(
+            handles=(handle,),
+            keys=(key,),
+            delay=LAST_FRAME,
+            is_scene_space=True,
+            keys_rotation=True,
+        )
         spring = Spring(handle=handle, frequency=1e3, damping=100.0, lag=10_000.0, strength=10.0)
         commands += [
             track_commands.put_track(identity, track),
             track_commands.put_spring(identity, spring),
-            handle_commands.weigh_handles(identity, {handle}, 1e6),
+            handle_commands.set_handle_weight(identity, {handle}, 1e6),
         ]
     return commands[rng.integers(len(commands))]
 
 
 def far_document():
     """A layer of one pixel, as far from the lower left corner of the canvas as one may lie."""
-    disc, corner = disc_domain(), complex(FARTHEST, FARTHEST)
+    disc, corner = disc_domain(), complex(MAX_COORDINATE, MAX_COORDINATE)
     outline, cage = disc.outline / 200 + corner, disc.cage / 200 + corner
     mesh = replace(disc.mesh, vertices=outline)
     domain = MeshedDomain(outline=outline, cage=cage, mesh=mesh)
     picture = PictureFile(data=blank_png(1, 1), suffix=".png", size=(1, 1))
     layer = replace(new_layer(picture, domain, Meshing()), corner=corner)
-    return Document(layers=(layer,), size=(WIDEST, WIDEST))
+    return Document(layers=(layer,), size=(MAX_PICTURE_SIDE, MAX_PICTURE_SIDE))
 
 
 BEGINNINGS = (disc_document, clocked_document, far_document)
@@ -227,16 +244,16 @@ def test_save_is_refused_when_the_file_would_not_open(monkeypatch, saved, module
 
 def test_autosave_keeps_earlier_work_when_newer_is_refused(monkeypatch, tmp_path):
     own = Autosave(tmp_path)
-    own.write(disc_document(), Origin("a", None))
+    own.write(disc_document(), SourceInfo("a", None))
     with monkeypatch.context() as patched:
         patched.setattr(project_file, "MOST_VALUES", 10)
         with pytest.raises(LissomError, match="could not open it again"):
-            own.write(clocked_document(), Origin("b", None))
+            own.write(clocked_document(), SourceInfo("b", None))
     (kept,) = tmp_path.glob("unsaved-*.lissom")
-    document, origin = load_leftover(kept)
+    document, origin = load_recoverable_file(kept)
     assert origin.name == "a"
     assert not differences(document, disc_document())
-    own.forget()
+    own.remove()
 
 
 def test_arrays_are_not_packed_when_they_would_be_refused(monkeypatch, saved):
@@ -322,7 +339,7 @@ REFUSED = (
     (lambda c: c.update(fps=1000.1), "speed is from 1/60 to 1,000 frames"),
     (lambda c: c["layers"][0].update(switches=[[-1, True]]), "frame from 0 to 999,999, not at -1"),
     (lambda c: c["layers"][0].update(switches=[[10**6, True]]), "frame from 0 to 999,999"),
-    (lambda c: c["layers"][0].update(id=LARGEST_ID + 1), "lacks layers/2147483648"),
+    (lambda c: c["layers"][0].update(id=MAX_ID + 1), "lacks layers/2147483648"),
     (lambda c: c["layers"][0].update(next_handle=2**31), "id of the next handle is 0 to"),
     (lambda c: c["layers"][0]["handles"][0].update(id=10**30), "id of a handle is 0 to"),
     (
@@ -338,14 +355,14 @@ REFUSED = (
         "frame from 0 to 999,999, not at -2",
     ),
     (
-        lambda c: c.update(pairs=[[f"a{i}", f"b{i}"] for i in range(MOST_PAIRS + 1)]),
+        lambda c: c.update(pairs=[[f"a{i}", f"b{i}"] for i in range(MAX_PAIRS + 1)]),
         "at most 1,000 pairs, not 1,001",
     ),
     (
         lambda c: c["layers"][0].update(
             cycles=[
                 {"first": 2 * i, "last": 2 * i + 1, "until": 2 * i + 1}
-                for i in range(MOST_CYCLES + 1)
+                for i in range(MAX_CYCLES + 1)
             ]
         ),
         "at most 1,000 stretches that repeat, not 1,001",
@@ -363,11 +380,11 @@ def test_changes_are_refused_when_they_repeat_too_often():
     document = two_layers()
     layer = document.layer(0)
     cycles = (Cycle(first=0, last=2),)
-    layer = layer_commands.switch_at(0, 1, visible=False)(document).layer(0)
+    layer = layer_commands.key_visibility(0, 1, visible=False)(document).layer(0)
     repeating = document.with_layer(replace(layer, cycles=cycles))
-    count = MOST_CHANGES - 3
+    count = MAX_CHANGES - 3
     assert scene_commands.set_frames(FrameRange(0, 2 * count // 3))(repeating)
-    with pytest.raises(LissomError, match=f"more than {MOST_CHANGES:,}; let the repeats end"):
+    with pytest.raises(LissomError, match=f"more than {MAX_CHANGES:,}; let the repeats end"):
         scene_commands.set_frames(FrameRange(0, LAST_FRAME))(repeating)
 
 

@@ -22,9 +22,9 @@ from hypothesis import given, settings, strategies as st
 from messages import says
 
 from app.document.commands import handle_commands, key_commands, layer_commands, track_commands
-from app.document.keyframe import Passing
-from app.document.layer import BONES_IN_ONE_PLACE
-from app.document.model import HANGS_ON_ITSELF, NO_LAYER
+from app.document.keyframe import TangentMode
+from app.document.layer import DUPLICATE_BONES
+from app.document.model import NO_LAYER, PARENT_CIRCLE
 from app.document.timing import Cycle
 from app.errors import LissomError
 from app.storage import NO_FOLDER
@@ -123,9 +123,9 @@ def test_only_clocks_that_there_are_are_written(tmp_path):
         assert {name for name in CLOCKS if f'"{name}"'.encode() in text} == written
     # What is new keeps still what is still; what older versions made does as it did.
     save_project(tmp_path / "a", disc_document())
-    assert load_project(tmp_path / "a").layers[0].stillness
-    assert not load_project(STORED).layers[0].stillness
-    assert not load_project(STORED_2).layers[1].stillness
+    assert load_project(tmp_path / "a").layers[0].has_auto_pins
+    assert not load_project(STORED).layers[0].has_auto_pins
+    assert not load_project(STORED_2).layers[1].has_auto_pins
 
 
 @settings(max_examples=20)
@@ -160,16 +160,16 @@ def test_a_stored_file_of_schema_1_opens():
     own = [name for name in LAYER if hasattr(usual, name)]
     as_layer = {name: getattr(usual, name) for name in own}
     first = altered(
-        replace(full, layers=(replace(layer, joints=()),), size=None),
+        replace(full, layers=(replace(layer, attachments=()),), size=None),
         markers=(),
         library=(),
         mirror=None,
         # Holes were filled, and what was enclosed was kept.
         cut_out=CutOut(tolerance=layer.cut_out.tolerance, enclosed="keep", holes="fill"),
         is_stale=False,
-        handles=tuple(replace(handle, front=0.0, extent=None) for handle in layer.handles),
+        handles=tuple(replace(handle, depth=0.0, extent=None) for handle in layer.handles),
         # Keys of that time have corners.
-        keys=tuple(replace(key, fronts={}, passing=Passing.CORNER) for key in layer.keys),
+        keys=tuple(replace(key, depths={}, tangent_mode=TangentMode.CORNER) for key in layer.keys),
         **as_layer,
     )
     assert not differences(load_project(STORED), first)
@@ -177,7 +177,33 @@ def test_a_stored_file_of_schema_1_opens():
 
 
 # What fields of schema 2 are called now.
-RENAMED = {"figures": "layers"}
+RENAMED = {
+    "figures": "layers",
+    "choices": "switch_groups",
+    "told": "import_log",
+    "losses": "warnings",
+    "matters": "notes",
+    "front": "depth",
+    "fronts": "depths",
+    "free": "is_unpinned",
+    "passing": "tangent_mode",
+    "planted": "is_scene_space",
+    "amount": "stiffness",
+    "rounds": "repeat_count",
+    "to": "parent",
+    "at": "parent_point",
+    "rest": "rest_rotation",
+    "keeps": "keep_world_transform",
+    "since": "kept_since",
+    "leads": "blends_to_next",
+    "stillness": "has_auto_pins",
+    "switches": "visibility_keys",
+    "opacities": "opacity_keys",
+    "movement": "transform_keys",
+    "placings": "draw_order_keys",
+}
+# Turns were of keys, of tracks, of attachments and of switches.
+TURNS = {"targets": "revolutions", "delay": "keys_rotation", "rest": "inherits_rotation"}
 
 
 def renamed(content):
@@ -185,7 +211,11 @@ def renamed(content):
     if isinstance(content, list):
         return [renamed(each) for each in content]
     if isinstance(content, dict):
-        return {RENAMED.get(name, name): renamed(each) for name, each in content.items()}
+        turns = next((new for name, new in TURNS.items() if name in content), "keys")
+        return {
+            {**RENAMED, "turns": turns}.get(name, name): renamed(each)
+            for name, each in content.items()
+        }
     return content
 
 
@@ -384,7 +414,7 @@ def test_two_bones_in_one_place_and_wild_stiffnesses_are_refused(tmp_path):
     members = read_members(tmp_path / "a")
     bone = json.loads(members["project.json"])["layers"][0]["bones"][0]
     twice = with_json(members, "layers", 0, "bones", value=[bone, bone | {"ends": [1, 4]}])
-    with pytest.raises(LissomError, match=says(BONES_IN_ONE_PLACE)):
+    with pytest.raises(LissomError, match=says(DUPLICATE_BONES)):
         load_project(pack(tmp_path / "b", twice))
     (name,) = (name for name in members if name.endswith("stiffness.npy"))
     count = len(clocked_document().layers[0].stiffness)
@@ -436,8 +466,8 @@ def test_an_unknown_field_of_a_joint_goes_with_the_joint(tmp_path, members):
     save_project(tmp_path / "b", document)
     layers = json.loads(read_members(tmp_path / "b")["project.json"])["layers"]
     assert layers[0]["attachment"]["spring"] == 0.5
-    save_project(tmp_path / "b", layer_commands.detach(0, 1.0, 0j)(document))
-    assert load_project(tmp_path / "b").layers[0].joints == ()
+    save_project(tmp_path / "b", layer_commands.detach_layer(0, 1.0, 0j)(document))
+    assert load_project(tmp_path / "b").layers[0].attachments == ()
 
 
 def test_unknown_members_are_handed_on_and_never_unpacked(tmp_path, members):
@@ -445,12 +475,12 @@ def test_unknown_members_are_handed_on_and_never_unpacked(tmp_path, members):
     inner.mkdir()
     strange = {"../escaped.txt": b"x", "/etc/lissom": b"", "C:\\x": b"x", "sound/ü.ogg": b"\0" * 99}
     document = load_project(pack(inner / "a", members | strange | {"folder/": b""}))
-    assert document.attachments == strange
-    assert not differences(replace(document, attachments={}), full_document())
+    assert document.unknown_members == strange
+    assert not differences(replace(document, unknown_members={}), full_document())
     assert sorted(tmp_path.rglob("*")) == [inner, inner / "a"]
     changed = handle_commands.rename_handle(0, 4, "other")(document)
     save_project(inner / "a", changed)
-    assert load_project(inner / "a").attachments == strange
+    assert load_project(inner / "a").unknown_members == strange
     assert strange.items() <= read_members(inner / "a").items()
 
 
@@ -460,7 +490,7 @@ def test_unknown_members_never_take_a_known_one_s_place(tmp_path, members):
     pose = document.layers[0].keys[0].pose
     save_project(tmp_path / "b", key_commands.insert_key(0, 50, pose)(document))
     loaded = load_project(tmp_path / "b")
-    assert loaded.attachments == {}
+    assert loaded.unknown_members == {}
     assert loaded.layers[0].keys[3].pose.phi.tobytes() == pose.phi.tobytes()
 
 
@@ -572,7 +602,7 @@ def test_a_newer_schema_need_have_nothing_else_in_common(tmp_path):
         (["layers", 0, "switches"], [[12, True], [12, False]], "shown or hidden at frame 12"),
         (["layers", 0, "switches"], [[12]], "a frame and true or false"),
         (["layers", 0, "attachment", "to"], 7, says(NO_LAYER, identity=7)),
-        (["layers", 0, "attachment", "to"], 0, says(HANGS_ON_ITSELF)),
+        (["layers", 0, "attachment", "to"], 0, says(PARENT_CIRCLE)),
         (["layers", 0, "attachment", "at"], [1e9, 0], "A joint must be within"),
         (["layers", 0, "anchor"], None, "attached, but has no anchor"),
         (["size"], [0, 5], "size of the canvas"),

@@ -9,7 +9,7 @@ from documents import disc_document
 from PIL import Image
 
 from app.storage import decode_picture, draw_thumbnail, read_thumbnail, save_project
-from app.storage.thumbnail import SIDE, shrink
+from app.storage.thumbnail import SIDE, shrink_picture
 
 RGBA = np.zeros((900, 600, 4), np.uint8)
 RGBA[:450] = (200, 30, 90, 255)
@@ -87,8 +87,8 @@ def test_pictures_that_take_long_are_left_out(tmp_path, side):
 def test_what_is_drawn_is_made_small_without_what_is_around_it():
     picture = np.zeros((400, 600, 4), np.uint8)
     picture[100:150, 200:400] = (250, 10, 20, 255)
-    small = shrink(picture, 50)
+    small = shrink_picture(picture, 50)
     assert small.shape == (13, 50, 4)
     assert (small == (250, 10, 20, 255)).all()
-    assert shrink(np.zeros((30, 60, 4), np.uint8), 20).shape == (10, 20, 4)
-    assert shrink(picture[:120, :220], 96).shape == (20, 20, 4)
+    assert shrink_picture(np.zeros((30, 60, 4), np.uint8), 20).shape == (10, 20, 4)
+    assert shrink_picture(picture[:120, :220], 96).shape == (20, 20, 4)

@@ -33,10 +33,10 @@ def come(monkeypatch, window, bent):
     monkeypatch.setattr(window.session.jobs, "deliver", lambda: None)
     pose = bent.layer.key(LAST).pose
     turned = replace(pose, phi=TURN * pose.phi, psi=pose.psi / TURN)
-    editing.edit(window.session, key_commands.pose_key(bent.active, LAST, turned))
+    editing.edit(window.session, key_commands.replace_key_pose(bent.active, LAST, turned))
     playback.scrub(window.session, FRAME)
     window.frames(2)
-    assert bent.puppet.shown.stand_in in [key.pose for key in bent.layer.keys]
+    assert bent.puppet.shown.placeholder in [key.pose for key in bent.layer.keys]
 
     def let_come(*, settles=True):
         monkeypatch.setattr(window.session.jobs, "deliver", deliver)
@@ -58,7 +58,7 @@ def pixel(window, project):
 
 
 def drag(robot, window, project):
-    place = complex(project.puppet.shown.handle_places[1])
+    place = complex(project.puppet.shown.handle_positions[1])
     robot.mouse_move_to_pos(window.point(place))
     robot.mouse_down(0)
     robot.mouse_move_to_pos(window.point(place + WAY / 2))
@@ -120,7 +120,7 @@ def test_a_turn_goes_on_from_the_in_between(window, bent, come):
     window.frames(2)
 
     def turn(robot):
-        centre = complex(bent.puppet.shown.handle_places[1])
+        centre = complex(bent.puppet.shown.handle_positions[1])
         arm = window.ring(bent)
         robot.mouse_move_to_pos(window.point(centre + arm))
         robot.mouse_down(0)
@@ -133,7 +133,7 @@ def test_a_turn_goes_on_from_the_in_between(window, bent, come):
     target = bent.layer.key(FRAME).pose.targets[1]
     editing.undo(window.session)
     window.settle()
-    turned = bent.puppet.shown.handle_turns[1]
+    turned = bent.puppet.shown.handle_rotations[1]
     assert abs(target.position - in_between(bent)[1]) < 1.0
     assert target.rotation - turned == pytest.approx(0.4, abs=0.05)
 
@@ -189,7 +189,7 @@ def test_undo_and_redo_need_not_wait(window, bent):
     for turn in (TURN, TURN**2):
         pose = bent.layer.key(LAST).pose
         turned = replace(pose, phi=turn * pose.phi, psi=pose.psi / turn)
-        editing.edit(window.session, key_commands.pose_key(bent.active, LAST, turned))
+        editing.edit(window.session, key_commands.replace_key_pose(bent.active, LAST, turned))
         window.settle()
     documents = bent.history.nearby
     for step in (editing.undo, editing.redo, editing.undo):

@@ -24,7 +24,7 @@ from app.editor.actions import (
 )
 from app.editor.timeline_view import Strip
 from app.editor.work.promise import Promise
-from app.solving import Renewal
+from app.solving import KeyResolver
 from app.storage.assets import sample_images
 from app.ui.style import PALETTES
 
@@ -124,7 +124,7 @@ def test_all_tabs_of_a_pose_that_falls_short(window, loose, check):
         window.show_tab(tab)
         check(tab)
     solved = loose.layer.poses[:-1]
-    renewal = Renewal(before=loose.layer, bounds=loose.layer.bounds, poses=solved)
+    renewal = KeyResolver(before=loose.layer, bounds=loose.layer.bounds, poses=solved)
     loose.pending.append(Promise(label="Solving the keys", renewal=renewal))
     window.show_tab("Deform")
     check("progress")
@@ -155,7 +155,7 @@ def test_a_pose_that_no_key_holds_and_a_cut_out(window, loose, check):
     loose.selected = frozenset({1})
     posing.nudge(session, 30j)
     window.settle()
-    assert loose.unkeyed is not None
+    assert loose.preview_pose is not None
     check("unkeyed")
     cutting.take_up(session, "remove")
     window.show_tab("Cut-out")

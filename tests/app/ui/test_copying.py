@@ -79,7 +79,7 @@ def test_over_the_drawing_the_pose_at_the_playhead_is_copied(window, loose, play
     (key,) = copied.keys
     f = loose.layer.map_of(key.pose)
     places = np.array([handle.position for handle in loose.layer.handles])
-    np.testing.assert_allclose(f(places), loose.puppet.shown.handle_places, rtol=0, atol=0.5)
+    np.testing.assert_allclose(f(places), loose.puppet.shown.handle_positions, rtol=0, atol=0.5)
     if frame == 0:
         assert key.pose is loose.layer.key(0).pose
 
@@ -155,7 +155,7 @@ def test_the_menu_says_what_would_be_copied_and_selected(window, play):
         for name in ("Copy", "Select all"):
             assert hand.robot.item_exists(f"//$FOCUSED/###{name}")
             binding = next(each for each in BINDINGS.values() if each.label == name)
-            entries.append(binding.title(window.session).split("###")[0])
+            entries.append(binding.menu_title(window.session).split("###")[0])
         hand.robot.popup_close_all()
 
     # On the way to the menu the pointer crosses the drawing; the focus is the timeline's.
@@ -257,7 +257,7 @@ def test_escape_deselects_after_it_has_ended_what_is_under_way(window, loose, pl
     before = loose.document
 
     def drag(hand):
-        place = window.point(complex(loose.puppet.shown.handle_places[1]))
+        place = window.point(complex(loose.puppet.shown.handle_positions[1]))
         hand.robot.mouse_move_to_pos(place)
         hand.robot.mouse_down(0)
         hand.robot.mouse_move_to_pos(place + ImVec2(30, 30))

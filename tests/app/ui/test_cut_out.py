@@ -436,7 +436,7 @@ def test_a_knife_parts_what_touches_and_nothing_is_seen_of_it_at_rest(window, bo
     wishes = {0: Target(position=15 + 30j), 1: Target(position=105 + 30j), 2: targets[2]}
     posing.wish(window.session, wishes)
     window.settle()
-    reached = boots.puppet.shown.handle_places
+    reached = boots.puppet.shown.handle_positions
     assert abs(reached[1] - reached[0]) == pytest.approx(90, abs=0.5)
     assert boots.layer.keys[0].pose.certificate.certified
     sides = boots.puppet.shown.mesh.posed(boots.puppet.shown.pose)[: len(layer.domain.outline)]

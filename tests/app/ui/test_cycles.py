@@ -77,7 +77,7 @@ class Row:
 
 def drag_end_of_bar(window, project, by):
     """Drag the right handle, where it is shown now."""
-    start = complex(project.puppet.shown.handle_places[RIGHT])
+    start = complex(project.puppet.shown.handle_positions[RIGHT])
 
     def drag(robot):
         robot.mouse_move_to_pos(window.point(start))
@@ -130,13 +130,13 @@ def test_a_drag_in_a_repeat_poses_the_key_that_is_shown_there(window, cycling):
     before = cycling.layer.key(24).pose
     playback.seek(window.session, 72)
     window.settle()
-    shown = complex(cycling.puppet.shown.handle_places[RIGHT])
+    shown = complex(cycling.puppet.shown.handle_positions[RIGHT])
     drag_end_of_bar(window, cycling, 10 - 40j)
     assert playback.current_frame(window.session, cycling) == 72
     assert frames_of(cycling) == [0, 24]
     after = cycling.layer.key(24).pose
     assert after is not before
-    there = complex(cycling.puppet.shown.handle_places[RIGHT])
+    there = complex(cycling.puppet.shown.handle_positions[RIGHT])
     assert abs(there - shown - (10 - 40j)) < 3
     playback.seek(window.session, 24)
     window.settle()
@@ -148,17 +148,17 @@ def test_a_drag_in_a_repeat_poses_the_key_that_is_shown_there(window, cycling):
 def test_a_drag_between_keys_of_a_repeat_makes_one_where_it_repeats(window, cycling):
     playback.seek(window.session, 60)
     window.settle()
-    goal = complex(cycling.puppet.shown.handle_places[RIGHT]) + 5 - 30j
+    goal = complex(cycling.puppet.shown.handle_positions[RIGHT]) + 5 - 30j
     drag_end_of_bar(window, cycling, 5 - 30j)
     assert frames_of(cycling) == [0, 12, 24]
-    assert abs(complex(cycling.puppet.shown.handle_places[RIGHT]) - goal) < 3
+    assert abs(complex(cycling.puppet.shown.handle_positions[RIGHT]) - goal) < 3
     window.act(editing.undo)
     window.settle()
     assert frames_of(cycling) == [0, 24]
     window.act(keys.insert)
     window.settle()
     assert frames_of(cycling) == [0, 12, 24]
-    assert abs(complex(cycling.puppet.shown.handle_places[RIGHT]) - goal + 5 - 30j) < 3
+    assert abs(complex(cycling.puppet.shown.handle_positions[RIGHT]) - goal + 5 - 30j) < 3
 
 
 def test_repeats_are_made_into_keys_or_stop(window, cycling):
@@ -191,10 +191,10 @@ def test_keys_wait_before_what_repeats(window, cycling):
 def test_chosen_layers_repeat_together_in_one_step(window, cycling):
     arm, body = cycling.active, cycling.active + 1
     editing.edit(window.session, layer_commands.duplicate_layer(arm))
-    editing.edit(window.session, cycle_commands.stop(arm, 0))
+    editing.edit(window.session, cycle_commands.delete_cycle(arm, 0))
     for layer in cycling.document.layers:
         editing.edit(window.session, key_commands.move_keys(layer.id, {24}, layer.id))
-    editing.edit(window.session, cycle_commands.stop(body, 0))
+    editing.edit(window.session, cycle_commands.delete_cycle(body, 0))
     window.settle()
     layering.choose_all(window.session, arm, body)
     editing.choose_keys_of(window.session, {})
@@ -205,7 +205,7 @@ def test_chosen_layers_repeat_together_in_one_step(window, cycling):
     editing.undo(window.session)
     assert cycling.document is before
     # What one of them refuses, none does.
-    other = key_commands.put_pose(body, 48, cycling.document.layer(body).key(25).pose, LINEAR)
+    other = key_commands.insert_pose(body, 48, cycling.document.layer(body).key(25).pose, LINEAR)
     editing.edit(window.session, other)
     before = cycling.document
     with pytest.raises(LissomError, match="bar copy: " + says(TWO_POSES_SHOWN, first=0, last=48)):
@@ -240,12 +240,12 @@ def test_a_drag_on_a_track_in_a_repeat_keys_it_where_it_repeats(window, cycling)
     tracks.choose(window.session, RIGHT)
     playback.seek(window.session, 56)
     window.settle()
-    shown = complex(cycling.puppet.shown.handle_places[RIGHT])
+    shown = complex(cycling.puppet.shown.handle_positions[RIGHT])
     drag_end_of_bar(window, cycling, 4 - 10j)
     track = cycling.layer.track_of(RIGHT)
     assert [key.frame for key in track.keys] == [0, 8, 16]
     assert track.keys[1].place != 12 + 6j
-    assert abs(complex(cycling.puppet.shown.handle_places[RIGHT]) - shown - (4 - 10j)) < 3
+    assert abs(complex(cycling.puppet.shown.handle_positions[RIGHT]) - shown - (4 - 10j)) < 3
     playback.seek(window.session, 60)
     window.settle()
     drag_end_of_bar(window, cycling, 2 - 5j)

@@ -12,8 +12,8 @@ from app.editor.action import do
 from app.editor.actions import viewing
 from app.editor.dialogs import FileDialog
 from app.storage.assets import sample_images
+from app.ui.dialogs.browser_shortcuts import list_recent_shortcuts, list_standard_shortcuts
 from app.ui.dialogs.folder_listing import Entry, read_folder
-from app.ui.dialogs.places import recent_places, usual_places
 from app.ui.style.theme import PALETTES
 
 
@@ -340,8 +340,8 @@ def test_places_and_recent_folders_are_one_click_away(window, show, folder, monk
     recent = (folder / "drawings" / "cow.png", folder / "drawings" / "b.png", home / "no" / "c.png")
     session = window.session
     session.preferences = replace(session.preferences, recent=recent)
-    assert [place.name for place in usual_places()] == ["Home", "Desktop", "Bilder"]
-    assert [place.folder for place in recent_places(recent)] == [folder / "drawings"]
+    assert [place.name for place in list_standard_shortcuts()] == ["Home", "Desktop", "Bilder"]
+    assert [place.folder for place in list_recent_shortcuts(recent)] == [folder / "drawings"]
     show()
     window.run(lambda robot: robot.item_click("//###dialog/**/###Places 2"))
     assert session.dialog.folder == home / "Bilder"

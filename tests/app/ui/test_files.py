@@ -15,7 +15,7 @@ from app.editor.dialogs import Question
 from app.storage import decode_picture, project_file
 from app.storage.assets import sample_images
 from app.storage.autosave import SECONDS
-from app.storage.pictures import cores
+from app.storage.pictures import parallel
 from app.storage.preferences import CHECKER, Preferences, load_preferences
 from app.storage.project_file import load_project, save_project
 from app.storage.thumbnail import read_thumbnail
@@ -120,7 +120,7 @@ def test_a_picture_dropped_on_a_scene_may_become_a_layer(window, project, drop):
 def test_a_layer_beyond_memory_is_refused(window, project, drop, monkeypatch):
     sizes = [decode_picture(path.read_bytes(), path.name).size for path in (BAR, RING)]
     both = sum(4 * width * height for width, height in sizes)
-    monkeypatch.setattr(cores, "memory_budget", lambda: both - 1)
+    monkeypatch.setattr(parallel, "memory_budget", lambda: both - 1)
     drop(RING)
     window.run(lambda robot: robot.item_click("//###dialog/New layer"))
     window.settle()

@@ -12,7 +12,7 @@ from app.editor.actions import editing, exporting, keys, playback, posing, savin
 from app.render.view import View
 from app.storage.assets import sample_images
 from app.ui.viewport import marks
-from app.ui.viewport.hand import hints
+from app.ui.viewport.interaction import hints
 from engine.deform import Status
 
 BAR = sample_images() / "bar.png"
@@ -36,7 +36,7 @@ def handle_places(project):
         handle.id: complex(place)
         for handle, place in zip(
             project.puppet.shown.clip.layer.handles,
-            project.puppet.shown.handle_places,
+            project.puppet.shown.handle_positions,
             strict=True,
         )
     }
@@ -287,10 +287,10 @@ def test_without_auto_key_a_pose_is_loose_until_it_is_inserted(window, bar):
     window.run(lambda robot: drag(robot, window, start, start + 100j))
     window.settle()
     assert [key.frame for key in bar.document.layers[0].keys] == [0]
-    assert bar.unkeyed is not None
+    assert bar.preview_pose is not None
     window.run(lambda robot: robot.key_press(int(window.Key.i)))
     window.settle()
-    assert bar.unkeyed is None
+    assert bar.preview_pose is None
     assert [key.frame for key in bar.document.layers[0].keys] == [0, 12]
 
 
@@ -386,7 +386,7 @@ def test_alt_drag_turns_the_shape_as_far_as_the_pointer(window, bar, press, angl
     window.run(turn)
     window.settle()
     assert turned(bar) == pytest.approx(angle, abs=2)
-    assert np.degrees(bar.puppet.shown.handle_turns[1]) == pytest.approx(angle, abs=6)
+    assert np.degrees(bar.puppet.shown.handle_rotations[1]) == pytest.approx(angle, abs=6)
     assert bar.history.undo_label == "Pose"
 
 
@@ -633,17 +633,17 @@ def test_three_hints_lead_to_the_first_motion(window):
     """Click, drag, move the playhead and drag again; one handle is enough."""
     session = window.session
     project = window.open(BAR)
-    steps = [hints.first_step(project)]
+    steps = [hints.find_first_step(project)]
     place = complex(*project.document.canvas) / 2
     posing.add_handle(session, place)
     window.settle()
-    steps.append(hints.first_step(project))
+    steps.append(hints.find_first_step(project))
     posing.wish(session, {0: Target(position=place + 60j)})
     window.settle()
-    steps.append(hints.first_step(project))
+    steps.append(hints.find_first_step(project))
     playback.seek(session, 24)
     window.settle()
     posing.wish(session, {0: Target(position=place)})
     window.settle()
-    steps.append(hints.first_step(project))
+    steps.append(hints.find_first_step(project))
     assert steps == [0, 1, 2, None]

@@ -10,7 +10,7 @@ from app.editor.actions import editing, playback, viewing
 from app.editor.dialogs import Question
 from app.ui.viewport import viewport
 from app.ui.window import guard
-from app.ui.window.guard import FrameStep, cannot_be_shown
+from app.ui.window.guard import FrameStep, format_failure
 
 FRAMES = 30  # half a second
 
@@ -102,10 +102,10 @@ def test_failing_panel_shows_a_notice_and_is_asked_once(window, parts, told, nam
     parts[name].draw = broken = Broken()
     window.frames(FRAMES)
     assert broken.asked == 1
-    assert cannot_be_shown(name) in told
+    assert format_failure(name) in told
     assert "a bug" in parts[name].failure.trace
     (toast,) = window.session.toasts
-    assert toast.text == cannot_be_shown(name)
+    assert toast.text == format_failure(name)
     assert "a bug" in toast.details
     assert all(part.failure is None for other, part in parts.items() if other != name)
 
@@ -136,7 +136,7 @@ def test_all_parts_can_fail_at_once_and_come_back(window, parts):
         part.draw = Broken()
     window.session.dialog = Question(title="Well", text="Well?", answers=())
     window.frames(FRAMES)
-    seen = [part.draw.asked for part in parts.values() if part.failure is not None]
+    seen = [part.draw.option_fields for part in parts.values() if part.failure is not None]
     assert set(seen) == {1}
     assert len(seen) >= 10
     for name, part in parts.items():
@@ -206,7 +206,7 @@ def test_failing_viewport_still_shows_the_drawing(window, parts, bar):
 
 @pytest.mark.usefixtures("bar")
 def test_failing_menu_of_a_handle_leaves_nothing_open(window, parts, bar, monkeypatch):
-    place = window.point(bar.puppet.shown.handle_places[0])
+    place = window.point(bar.puppet.shown.handle_positions[0])
 
     def open_menu(robot):
         robot.mouse_move_to_pos(place)
@@ -231,7 +231,7 @@ def test_failing_dialog_can_be_closed(window, parts):
 
 @pytest.mark.usefixtures("bar")
 def test_failing_keys_take_nothing_along(window, parts, monkeypatch):
-    monkeypatch.setattr("app.ui.window.shell.pressed", Broken())
+    monkeypatch.setattr("app.ui.window.window_frame.pressed", Broken())
     window.frames(3)
     assert all(part.failure is None for part in parts.values())
 

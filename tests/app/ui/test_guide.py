@@ -21,8 +21,8 @@ from app.editor.actions import (
     viewing,
 )
 from app.storage.assets import sample_images
-from app.ui.window.guide import NAME
-from app.ui.window.guide.placing import Rect, free_corner
+from app.ui.window.tutorial import NAME
+from app.ui.window.tutorial.layout import Rect, find_free_corner
 
 
 class Pupil(Newcomer):
@@ -99,7 +99,7 @@ def test_a_card_covers_nothing_that_it_points_at(seed):
     low = ImVec2(*random.uniform((room.low.x, room.low.y), (room.high.x - 40, room.high.y - 40)))
     box, size = Rect(low, low + ImVec2(40, 40)), ImVec2(*random.uniform((200, 80), (320, 140)))
     drawing = random.uniform(40, 500, 400) + 1j * random.uniform(25, 500, 400)
-    corner = free_corner(size, [box], [viewport, window], drawing, 24.0)
+    corner = find_free_corner(size, [box], [viewport, window], drawing, 24.0)
     card = Rect(corner, corner + size)
     assert not card.meets(box)
     assert window.low.x <= card.low.x <= card.high.x <= window.high.x
@@ -130,7 +130,7 @@ def test_the_giraffe_bows(window):
     assert pupil.step == "pose"
     pupil.drag(aim, goal)
     pupil.reach("play")
-    window.until(lambda: abs(complex(project.puppet.shown.handle_places[-1]) - goal) < 20)
+    window.until(lambda: abs(complex(project.puppet.shown.handle_positions[-1]) - goal) < 20)
     pupil.play()
     assert pupil.step == "export"
     assert (sample_images() / guiding.SAMPLE).read_bytes() == before
@@ -250,7 +250,7 @@ def test_samples_have_stories_and_move_under_the_pointer(window):
         assert sample.moving.exists() == (sample.what == "animated"), sample.name
     window.frames(20)
     thumbnails = window.program.thumbnails
-    assert not thumbnails.moving_files, "nothing moves before it is pointed at"
+    assert not thumbnails.animated_files, "nothing moves before it is pointed at"
 
     def point(robot):
         robot.mouse_move("//Welcome/**/sample Ring")
@@ -258,4 +258,4 @@ def test_samples_have_stories_and_move_under_the_pointer(window):
             robot.yield_()
 
     window.run(point)
-    assert [path.stem for path in thumbnails.moving_files] == ["ring"]
+    assert [path.stem for path in thumbnails.animated_files] == ["ring"]

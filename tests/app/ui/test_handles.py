@@ -31,7 +31,7 @@ def places(project):
     return dict(
         zip(
             (handle.id for handle in project.layer.handles),
-            map(complex, project.puppet.shown.handle_places),
+            map(complex, project.puppet.shown.handle_positions),
             strict=True,
         )
     )
@@ -220,7 +220,7 @@ def short(window, loose):
     """The bar with a handle that is wanted elsewhere, and has not arrived."""
     place, pose = places(loose)[1], loose.layer.key(24).pose
     targets = {**pose.targets, 1: Target(position=place - 120 + 80j)}
-    wished = key_commands.pose_key(0, 24, replace(pose, targets=targets))
+    wished = key_commands.replace_key_pose(0, 24, replace(pose, targets=targets))
     editing.edit(window.session, wished)
     window.settle()
     assert abs(targets[1].position - place) > 4 * window.grip(loose)

@@ -22,7 +22,7 @@ def bar(window):
 
 
 def places(bar):
-    return np.array(bar.puppet.shown.handle_places)
+    return np.array(bar.puppet.shown.handle_positions)
 
 
 def told(window):

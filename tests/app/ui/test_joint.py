@@ -14,21 +14,21 @@ from app.document import (
     Attachment,
     Command,
     FrameRange,
-    MoveKey,
+    TransformKey,
     clip_of,
-    fronts_at,
+    depth_points_at,
     key_commands,
     layer_commands,
-    movement_at,
     scene_commands,
     shape_commands,
+    transform_at,
 )
 from app.editor import layering
 from app.editor.actions import editing, files, playback, posing, viewing
 from app.editor.layering.hanging import HANGS_IN_CIRCLE
-from app.motion import Joints
-from app.motion.joints import animation_at
-from app.storage import Autosave, Origin, still_layer
+from app.motion import ParentTransforms
+from app.motion.parenting import layer_animation
+from app.storage import Autosave, SourceInfo, make_still_layer
 from app.ui.style import PALETTES
 from app.ui.viewport.marks import find_anchor, mark_all
 from engine.geometry import HERE
@@ -85,7 +85,7 @@ def drag(window, scene):
         def run(robot):
             shown = scene.puppet.shown
             start = find_anchor(scene, shown)
-            start = shown.handle_places[0] if start is None else start
+            start = shown.handle_positions[0] if start is None else start
             robot.mouse_move_to_pos(window.point(complex(start)))
             told.append(window.session.hint)
             if key is not None:
@@ -233,18 +233,18 @@ def test_unsaved_work_comes_back_with_its_joints_and_depths(window, scene, drag,
     window.act(posing.add_handle, PALM)
     window.settle()
     hand = scene.layer.handles[0].id
-    window.act(editing.edit, layer_commands.set_front(arm, hand, -0.5, 70.0))
+    window.act(editing.edit, layer_commands.set_depth(arm, hand, -0.5, 70.0))
     layer = scene.document.layer(body)
     pose = layer.keys[0].pose
     turned = replace(pose, phi=90 + (layer.domain.cage - 90) * np.exp(-0.4j))
     window.act(editing.edit, key_commands.insert_key(body, 12, turned))
     window.act(editing.edit, key_commands.insert_key(arm, 12, scene.layer.keys[0].pose))
-    window.act(editing.edit, layer_commands.key_front(arm, 12, hand, 1.0))
+    window.act(editing.edit, layer_commands.key_depth(arm, 12, hand, 1.0))
     window.act(playback.seek, 6)
     window.settle()
     was = {name: on_scene(scene, name) for name in LAYERS}
     # As another window left it that ended unexpectedly.
-    Autosave(tmp_path).write(scene.document, Origin("man", None))
+    Autosave(tmp_path).write(scene.document, SourceInfo("man", None))
     (kept,) = tmp_path.glob("unsaved-*.lissom")
     window.session.project = None
     window.act(files.recover, kept)
@@ -256,7 +256,7 @@ def test_unsaved_work_comes_back_with_its_joints_and_depths(window, scene, drag,
     for name, places in was.items():
         np.testing.assert_allclose(on_scene(again, name), places, rtol=0, atol=1e-3)
     clip = clip_of(again.document, arm)
-    assert [fronts_at(clip, frame)[0].depth for frame in (6, 12)] == [-0.5, 1.0]
+    assert [depth_points_at(clip, frame)[0].depth for frame in (6, 12)] == [-0.5, 1.0]
 
 
 @pytest.fixture
@@ -267,7 +267,9 @@ def swung(window, scene):
     pose = layer.keys[0].pose
     turned = replace(pose, phi=100 + (layer.domain.cage - 100) * np.exp(0.3j))
     scene.history.do(key_commands.insert_key(body, 24, turned), gesture=None)
-    joint = layer_commands.attach(arm, SHOULDER, Attachment(to=body, at=SHOULDER))
+    joint = layer_commands.attach_layer(
+        arm, SHOULDER, Attachment(parent=body, parent_point=SHOULDER)
+    )
     window.act(editing.edit, joint)
     window.act(playback.seek, 24)
     window.settle()
@@ -297,7 +299,7 @@ def test_a_layer_that_is_let_go_leaves_its_way_on_the_other_one(window, swung):
 
 def test_a_layer_that_is_let_go_stays_where_it_is_though_it_moves_by_itself(window, swung):
     arm = identity(swung, "arm")
-    moves = (MoveKey(frame=0), MoveKey(frame=12, shift=20 + 5j, turn=0.4))
+    moves = (TransformKey(frame=0), TransformKey(frame=12, shift=20 + 5j, turn=0.4))
     moved = replace(swung.document.layer(arm), movement=moves)
     window.act(editing.edit, Command("Move", lambda document: document.with_layer(moved)))
     window.act(playback.seek, 6)
@@ -307,8 +309,8 @@ def test_a_layer_that_is_let_go_stays_where_it_is_though_it_moves_by_itself(wind
     window.act(layering.let_hang, arm)
     window.settle()
     after = swung.puppets[arm].shown
-    assert not swung.document.layer(arm).hangs
-    assert after.placement == movement_at(swung.document, swung.document.layer(arm), 6)
+    assert not swung.document.layer(arm).has_parent
+    assert after.placement == transform_at(swung.document, swung.document.layer(arm), 6)
     np.testing.assert_allclose(after.placement.on(after.positions), before, rtol=0, atol=0.01)
 
 
@@ -318,7 +320,7 @@ def test_where_layers_hang_is_not_told_by_joints_of_an_earlier_document(window, 
     joints = swung.joints.value
     layer = swung.document.layer(identity(swung, "body"))
     pose = replace(layer.keys[0].pose, phi=layer.domain.cage + 50)
-    editing.edit(window.session, key_commands.pose_key(layer.id, 0, pose))
+    editing.edit(window.session, key_commands.replace_key_pose(layer.id, 0, pose))
     assert swung.joints.value is joints
     assert swung.placements([0], HERE) == [HERE]
     assert swung.placed_at(swung.active, [0]) is None
@@ -363,13 +365,13 @@ def nodding(window, swung):
     """The same before a wall that stands still, at frame 12, with one ghost at either end."""
     wall = replace(
         swung.document.layers[0],
-        id=layer_commands.free_identity(swung.document),
+        id=layer_commands.next_layer_id(swung.document),
         name="wall",
         handles=(),
         keys=swung.document.layers[0].keys[:1],
         joints=(),
     )
-    wall = still_layer(wall)
+    wall = make_still_layer(wall)
     swung.history.do(layer_commands.add_layer(wall), gesture=None)
     editing.follow_layers(swung)
     window.act(layering.move, wall.id, 0)
@@ -384,8 +386,10 @@ def nodding(window, swung):
 def placed(project, name, frame, place):
     """Return where a point of a layer at rest is in the scene at a frame, by its joints."""
     layer = project.document.layer(identity(project, name))
-    joints = Joints(project.document, project.samplers)
-    animation = animation_at(project.document, layer.id, np.array([place]), project.samplers, None)
+    joints = ParentTransforms(project.document, project.samplers)
+    animation = layer_animation(
+        project.document, layer.id, np.array([place]), project.samplers, None
+    )
     own = animation.frame(frame).positions
     return complex(joints.placement(layer.id, frame).on(own)[0])
 
@@ -430,7 +434,7 @@ def test_what_hangs_on_something_moved_just_now_has_no_ghost_until_it_is_known_w
     ghosts_of(window)
     layer = nodding.document.layer(identity(nodding, "body"))
     pose = replace(layer.keys[0].pose, phi=layer.domain.cage + 40j)
-    editing.edit(window.session, key_commands.pose_key(layer.id, 0, pose))
+    editing.edit(window.session, key_commands.replace_key_pose(layer.id, 0, pose))
     assert nodding.placed_at(identity(nodding, "arm"), [0]) is None
     assert nodding.placed_at(layer.id, [0]) == [HERE]
     window.settle()

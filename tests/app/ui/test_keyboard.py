@@ -10,7 +10,7 @@ from app.editor.actions import show_dialog, viewing
 from app.storage.assets import sample_images
 from app.ui.panel import is_in_front
 from app.ui.shortcuts import BINDINGS, MENUS
-from app.ui.shortcuts.keys import chords_of, in_words, with_key
+from app.ui.shortcuts.keys import format_chord, format_modified, parse_chords
 
 OPEN = imgui.test_engine.TestAction.open
 CTRL, SHIFT, ALT = (
@@ -129,29 +129,32 @@ def test_escape_in_a_field_of_a_popup_leaves_the_popup(window):
 
 def test_keys_are_written_as_the_system_writes_them():
     chord = CTRL | SHIFT | int(imgui.Key.s)
-    assert in_words(chord, is_mac=False) == "Ctrl+Shift+S"
-    assert in_words(chord, is_mac=True) == "⇧⌘S"
-    assert in_words(ALT | int(imgui.Key.up_arrow), is_mac=True) == "⌥Up"
-    assert with_key(ALT, "drag", is_mac=False) == "Alt+drag"
-    assert with_key(ALT, "drag", is_mac=True) == "⌥ drag"
+    assert format_chord(chord, is_mac=False) == "Ctrl+Shift+S"
+    assert format_chord(chord, is_mac=True) == "⇧⌘S"
+    assert format_chord(ALT | int(imgui.Key.up_arrow), is_mac=True) == "⌥Up"
+    assert format_modified(ALT, "drag", is_mac=False) == "Alt+drag"
+    assert format_modified(ALT, "drag", is_mac=True) == "⌥ drag"
 
 
 def test_chords_are_read_as_the_table_has_them():
     key = imgui.Key
     undone_again = (CTRL | SHIFT | int(key.z), CTRL | int(key.y))
-    assert chords_of("Ctrl+Shift+Z, Ctrl+Y") == undone_again
+    assert parse_chords("Ctrl+Shift+Z, Ctrl+Y") == undone_again
     named = (int(key.page_up), int(key._1), CTRL | int(key.keypad_add), ALT | int(key.f9))
-    assert chords_of("PageUp, 1, Ctrl+KeypadAdd, Alt+F9") == named
-    assert chords_of("") == ()
+    assert parse_chords("PageUp, 1, Ctrl+KeypadAdd, Alt+F9") == named
+    assert parse_chords("") == ()
     with pytest.raises(KeyError):
-        chords_of("Ctrl+Zed")
+        parse_chords("Ctrl+Zed")
 
 
 def test_the_fonts_have_the_signs_of_all_keys(window):
     window.frames()
     font = imgui.get_font()
     signs = {
-        sign for binding in BINDINGS.values() for key in binding.chords() for sign in in_words(key)
+        sign
+        for binding in BINDINGS.values()
+        for key in binding.chords()
+        for sign in format_chord(key)
     }
     for sign in signs | set("⌥⇧⌘σ×−…“”–"):
         assert font.is_glyph_in_font(ord(sign)), sign
@@ -293,8 +296,8 @@ def test_no_action_has_a_key_that_macos_takes():
 
 def test_the_mirror_axis_has_another_key_on_macos():
     axis = BINDINGS["mirror axis"]
-    assert [in_words(chord, is_mac=True) for chord in axis.chords(is_mac=True)] == ["⇧⌘M"]
-    assert [in_words(chord, is_mac=False) for chord in axis.chords(is_mac=False)] == ["Ctrl+M"]
+    assert [format_chord(chord, is_mac=True) for chord in axis.chords(is_mac=True)] == ["⇧⌘M"]
+    assert [format_chord(chord, is_mac=False) for chord in axis.chords(is_mac=False)] == ["Ctrl+M"]
 
 
 def test_a_tab_that_is_out_of_sight_is_found_by_its_name(window):

@@ -5,12 +5,12 @@ from itertools import count
 import numpy as np
 import pytest
 
-from app.document import Pose, intervals, time_of
+from app.document import Pose, segment_keys, segment_time_at
 from app.document.commands import key_commands
 from app.document.keyframe import Target
 from app.editor.actions import editing, keys, playback, posing
 from app.motion import PoseSampler
-from app.motion.inbetweens import AutoPins, pair_of
+from app.motion.inbetweens import AutoPins, segment_key
 
 
 def pull(window, bar, by):
@@ -84,7 +84,7 @@ def test_in_betweens_are_exact_while_the_pose_that_was_left_comes_to_rest(window
         shown = bent.puppet.shown
         assert (shown.frame, shown.clip) == (12, bent.clip)
         # Of the motion from key to key; how handles stay in it comes a moment later.
-        is_exact = shown.stand_in is None
+        is_exact = shown.placeholder is None
         if is_exact and not any(exact):
             # It comes alone, before the others of its interval.
             assert not bent.puppet.store.has(bent.clip)
@@ -111,22 +111,22 @@ def check(bent):
     def look():
         shown, clip = bent.puppet.shown, bent.clip
         assert shown.clip == clip
-        moment = time_of(clip, shown.frame)
-        if shown.pose is None and not isinstance(shown.stand_in, Pose):
-            if shown.stand_in is not None:
-                assert shown.stand_in.pair == pair_of(clip, moment.interval)
-                moment = moment._replace(weight=shown.stand_in.weight)
+        moment = segment_time_at(clip, shown.frame)
+        if shown.pose is None and not isinstance(shown.placeholder, Pose):
+            if shown.placeholder is not None:
+                assert shown.placeholder.pair == segment_key(clip, moment.segment)
+                moment = moment._replace(weight=shown.placeholder.weight)
             pins = AutoPins(clip, clip.layer.variant, sampler)
-            exact = pins.inbetweens(moment.interval, sampler)
+            exact = pins.inbetweens(moment.segment, sampler)
             expected = exact.frame(moment.weight).positions
             if shown.correction is not None:
                 expected = shown.correction.on(expected, shown.mesh.coordinates)
         else:
-            pose = shown.pose or shown.stand_in
-            around = [clip.keys[key].pose for key in intervals(clip)[moment.interval]]
+            pose = shown.pose or shown.placeholder
+            around = [clip.keys[key].pose for key in segment_keys(clip)[moment.segment]]
             assert pose in ([key.pose for key in clip.keys] if shown.is_current else around)
             expected = shown.mesh.posed(pose)
-        assert np.abs(shown.positions - expected).max() < 0.02, (shown.frame, shown.stand_in)
+        assert np.abs(shown.positions - expected).max() < 0.02, (shown.frame, shown.placeholder)
 
     return look
 
@@ -143,7 +143,7 @@ def test_in_betweens_are_there_when_the_playhead_leaves_a_pose_on_its_way(window
     assert not bent.pull.is_at_rest
     assert newest is not prepared
     window.act(playback.scrub, 12)
-    assert bent.puppet.shown.stand_in is None
+    assert bent.puppet.shown.placeholder is None
     assert bent.layer.key(24).pose is prepared
     check()
     # Back at the key nothing is lost of what the solver found.

@@ -10,8 +10,8 @@ from PIL import Image, ImageDraw
 from app.document import (
     PRESETS,
     Attachment,
-    Passing,
-    Placing,
+    DrawOrderKey,
+    TangentMode,
     clip_of,
     cycle_commands,
     filming_commands,
@@ -33,8 +33,8 @@ from app.editor.actions import (
 )
 from app.editor.poses import pasting
 from app.editor.timeline_view import Strip
-from app.errors import NOTHING_TOLD
-from app.motion import Joints
+from app.errors import EMPTY_IMPORT_LOG
+from app.motion import ParentTransforms
 from app.storage import load_project, save_project
 from app.ui.panel import is_in_front
 from app.ui.shortcuts import BINDINGS
@@ -264,8 +264,8 @@ def test_the_menu_of_a_layer(window, scene, listed):
     assert window.session.dialog.title == "Replace the picture of arm"
     window.act(close_dialog)
     # What hung on a layer that is deleted hangs on it again when that is undone.
-    joint = Attachment(to=body, at=95 + 118j)
-    window.act(editing.edit, layer_commands.attach(arm, 95 + 118j, joint))
+    joint = Attachment(parent=body, parent_point=95 + 118j)
+    window.act(editing.edit, layer_commands.attach_layer(arm, 95 + 118j, joint))
     window.act(layering.choose, body)
     joined = scene.document
     listed(lambda rows: rows.menu(body, "Delete"))
@@ -427,18 +427,18 @@ def test_what_stands_still_hangs_moves_and_fades_as_before(window, scene):
         filming_commands.key_opacity(arm, 12, 0.5),
         filming_commands.key_movement(body, 0, 0j, 0.0),
         filming_commands.key_movement(body, 12, 8 + 5j, 0.0),
-        filming_commands.place_at(arm, Placing(6, body, in_front=False)),
-        cycle_commands.repeat(arm, 0, 24),
+        filming_commands.place_at(arm, DrawOrderKey(6, body, in_front=False)),
+        cycle_commands.set_cycle(arm, 0, 24),
     )
     for command in commands:
         window.act(editing.edit, command)
     window.settle()
     before = scene.document.layer(arm)
-    there = Joints(scene.document).placement(arm, 12)
+    there = ParentTransforms(scene.document).placement(arm, 12)
 
     def as_layer():
         now = scene.document.layer(arm)
-        assert abs(Joints(scene.document).placement(arm, 12).shift - there.shift) < 1e-6
+        assert abs(ParentTransforms(scene.document).placement(arm, 12).shift - there.shift) < 1e-6
         names = ("joints", "opacities", "placings", "cycles", "group", "blend", "hidden", "corner")
         for name in names:
             assert getattr(now, name) == getattr(before, name)
@@ -462,7 +462,7 @@ def test_layers_take_turns(window, scene):
     window.act(playback.seek, 11)
     window.settle()
     assert np.abs(np.asarray(window.picture()).astype(int) - with_arm).max() > 100
-    assert [s.visible for s in scene.document.layer(arm).switches] == [True, False]
+    assert [s.visible for s in scene.document.layer(arm).visibility_keys] == [True, False]
 
 
 def test_depth_is_set_at_a_handle_and_shown_as_a_tint(window, scene):
@@ -481,7 +481,7 @@ def test_depth_is_set_at_a_handle_and_shown_as_a_tint(window, scene):
     assert tinted == [True, False]
     window.run(lambda robot: robot.item_input_value("Handle/##depth", 0.5))
     window.settle()
-    assert scene.layer.handles[0].front == 0.5
+    assert scene.layer.handles[0].depth == 0.5
 
 
 ARM, BODY = (0, 12, 24), (0, 18)
@@ -625,7 +625,7 @@ def test_where_a_layer_is_hidden_is_marked_on_its_row(window, keyed, play):
     window.act(playback.seek, 6)
     window.act(layering.switch_here, body)
     window.settle()
-    assert [switch.frame for switch in keyed.document.layer(body).switches] == [0, 6]
+    assert [switch.frame for switch in keyed.document.layer(body).visibility_keys] == [0, 6]
     window.act(playback.seek, 20)
     play(lambda rows: rows.click("body", "switch 6"))
     assert playback.current_frame(window.session, keyed) == 6
@@ -637,7 +637,7 @@ def test_where_a_layer_is_hidden_is_marked_on_its_row(window, keyed, play):
         rows.robot.item_click("//$FOCUSED/Delete")
 
     play(delete)
-    assert [switch.frame for switch in keyed.document.layer(body).switches] == [0]
+    assert [switch.frame for switch in keyed.document.layer(body).visibility_keys] == [0]
 
 
 def test_what_is_done_to_a_key_is_done_to_all_chosen_ones_of_other_rows(window, keyed, play):
@@ -666,7 +666,7 @@ def test_what_is_done_to_a_key_is_done_to_all_chosen_ones_of_other_rows(window, 
     window.act(keys.set_turns, keyed.keys_with(body, 0), 2)
     assert told(lambda key: key.turns) == {"body": [2, 0], "arm": [0, 2, 2]}
     window.act(keys.pass_otherwise)
-    passed = told(lambda key: key.passing is Passing.CORNER)
+    passed = told(lambda key: key.tangent_mode is TangentMode.CORNER)
     assert passed == {"body": [True, False], "arm": [False, True, True]}
     # One that is not chosen is alone.
     assert keyed.keys_with(body, 18) == {body: {18}}
@@ -713,11 +713,11 @@ def test_keys_of_several_rows_are_copied_and_pasted_each_on_its_own(window, keye
 def test_where_a_layer_comes_to_be_seen_is_dragged_in_time(window, keyed, play):
     body = identity(keyed, "body")
     for frame, visible in ((6, False), (20, True)):
-        window.act(editing.edit, layer_commands.switch_at(body, frame, visible=visible))
+        window.act(editing.edit, layer_commands.key_visibility(body, frame, visible=visible))
     before = keyed.document
 
     def frames():
-        return [switch.frame for switch in keyed.document.layer(body).switches]
+        return [switch.frame for switch in keyed.document.layer(body).visibility_keys]
 
     assert frames() == [0, 6, 20]
     play(lambda rows: rows.drag("body", "switch 6", 11))
@@ -728,7 +728,7 @@ def test_where_a_layer_comes_to_be_seen_is_dragged_in_time(window, keyed, play):
     assert frames() == [0, 19, 20]
     play(lambda rows: rows.drag("body", "switch 19", 26))
     assert frames() == [0, 20, 26]
-    assert [switch.visible for switch in keyed.document.layer(body).switches] == [
+    assert [switch.visible for switch in keyed.document.layer(body).visibility_keys] == [
         True,
         True,
         False,
@@ -821,8 +821,8 @@ def pixel(window, place):
 def posed(window, scene):
     """The scene with the arm hung on the body, and raised by a handle at frame 24."""
     arm, body = identity(scene, "arm"), identity(scene, "body")
-    joint = Attachment(to=body, at=95 + 118j)
-    window.act(editing.edit, layer_commands.attach(arm, 95 + 118j, joint))
+    joint = Attachment(parent=body, parent_point=95 + 118j)
+    window.act(editing.edit, layer_commands.attach_layer(arm, 95 + 118j, joint))
     window.act(posing.add_handle, 190 + 118j)
     window.act(playback.seek, 24)
     window.act(posing.wish, {0: Target(position=170 + 160j)})
@@ -871,7 +871,7 @@ def test_another_picture_keeps_handles_keys_and_joints(window, posed, tmp_path):
     window.settle()
     again = load_project(path).layer(arm)
     assert again.picture.sha256 == layer.picture.sha256
-    assert (again.corner, again.joints) == (layer.corner, layer.joints)
+    assert (again.corner, again.attachments) == (layer.corner, layer.joints)
 
 
 def test_what_is_outside_of_another_picture_comes_into_it(window, posed, tmp_path):
@@ -964,7 +964,7 @@ def test_what_an_import_told_stays_in_the_panel(window, stranger):
     assert "One thing looks different here" in toast.text
     told = project.document.told
     assert told.losses == ("shine, glow: drawn normally, not in the mode 'overlay'",)
-    assert "wall: opaque all over, so that it stands still" in told.matters
+    assert "wall: opaque all over, so that it stands still" in told.notes
     window.show_tab("Handle")
     window.act(toast.action.apply)
     window.frames(3)
@@ -989,7 +989,7 @@ def test_what_an_import_told_is_saved_and_not_told_again(window, stranger, tmp_p
     save_project(path, document)
     window.session.toasts = []
     project = window.open(path)
-    assert project.document.told == document.told != NOTHING_TOLD
+    assert project.document.told == document.told != EMPTY_IMPORT_LOG
     assert not window.session.toasts
     assert not project.shows_summary
     window.show_tab("Handle")
@@ -1046,7 +1046,7 @@ def test_layers_of_one_picture_share_it_on_the_graphics_card_until_one_is_cut(wi
     # Behind it are others with the same picture.
     project.solo = frozenset({glow})
     before = window.picture()
-    window.act(editing.edit, shape_commands.brush(glow, brush_at(project, glow)))
+    window.act(editing.edit, shape_commands.cut_with_brush(glow, brush_at(project, glow)))
     window.settle()
     assert drawing.picture(arm) is drawing.picture(shine) is not drawing.picture(glow)
     cut = window.picture()

@@ -6,11 +6,11 @@ from bars import BENT
 from imgui_bundle import ImVec2
 
 from app.document import Target, handle_commands
-from app.document.body import Bone
+from app.document.rig import Bone
 from app.editor.actions import editing, material, playback, posing, viewing
 from app.editor.tools import moving
-from app.ui.viewport.hand.gesture import covered
-from app.ui.viewport.material_view import tint_of
+from app.ui.viewport.interaction.drag import triangulate_stroke
+from app.ui.viewport.stiffness_overlay import measure_vertex_stiffness
 
 ENDS = (0, 1)
 
@@ -39,7 +39,7 @@ def drag(window, places, *, button_up=True):
 
 def place_of(project, handle):
     index = [each.id for each in project.layer.handles].index(handle)
-    return complex(project.puppet.shown.handle_places[index])
+    return complex(project.puppet.shown.handle_positions[index])
 
 
 def middle(project):
@@ -100,7 +100,7 @@ def test_a_bone_is_drawn_from_handle_to_handle(window, tab):
 
 @pytest.mark.parametrize("way", [[0], [0, 100], [0, 100, 0, 60], [0, 0]])
 def test_what_a_stroke_covers_is_shown_once_however_often_it_goes_there(way):
-    triangles = covered([ImVec2(x, 7) for x in way], 20.0)
+    triangles = triangulate_stroke([ImVec2(x, 7) for x in way], 20.0)
     area = sum(
         abs((two - one).x * (three - one).y - (two - one).y * (three - one).x) / 2
         for one, two, three in triangles
@@ -131,7 +131,7 @@ def test_the_drawing_is_tinted_as_long_as_the_tab_is_in_front(window, tab):
     assert window.session.tint == "stiffness"
     material.take_up(window.session, "stiff")
     drag(window, [middle(tab) - 10, middle(tab) + 10])
-    values = tint_of(tab.layer, tab.puppet.shown.mesh)
+    values = measure_vertex_stiffness(tab.layer, tab.puppet.shown.mesh)
     vertices = tab.puppet.shown.mesh.domain.mesh.vertices
     assert values[np.abs(vertices - middle(tab)).argmin()] > 0.2
     assert abs(values[np.abs(vertices - vertices.real.min()).argmin()]) < 0.05
@@ -201,9 +201,9 @@ def test_colours_are_worked_out_anew_only_where_something_is_stiff_otherwise(win
 
     def counted(*arguments):
         calls.append(arguments)
-        return tint_of(*arguments)
+        return measure_vertex_stiffness(*arguments)
 
-    monkeypatch.setattr("app.ui.viewport.drawing.tint_of", counted)
+    monkeypatch.setattr("app.ui.viewport.gpu_resources.tint_of", counted)
     material.add_bone(window.session, ENDS)
     window.settle()
     assert len(calls) == 1

@@ -11,7 +11,7 @@ from app.document.commands import Command, handle_commands
 from app.editor.actions import editing, playback
 from app.storage.assets import sample_images
 from app.ui.shortcuts import BINDINGS
-from app.ui.style import tip
+from app.ui.style import draw_tooltip
 from app.ui.viewport.viewport import CANVAS
 
 RIGHT = 1
@@ -24,7 +24,7 @@ def open_menu(robot, point):
 
 
 def on_handle(window, loose, *items):
-    place = window.point(loose.puppet.shown.handle_places[0])
+    place = window.point(loose.puppet.shown.handle_positions[0])
 
     def play(robot):
         open_menu(robot, place)
@@ -36,7 +36,7 @@ def on_handle(window, loose, *items):
 
 def test_a_handle_is_pinned_by_its_menu(window, loose):
     assert loose.selected == {1}
-    place = complex(loose.puppet.shown.handle_places[0])
+    place = complex(loose.puppet.shown.handle_positions[0])
     on_handle(window, loose, "Pin here")
     assert loose.selected == {0}, "what the menu is of is selected"
     assert loose.layer.key(BENT).pose.targets[0].position == pytest.approx(place, abs=0.1)
@@ -44,7 +44,7 @@ def test_a_handle_is_pinned_by_its_menu(window, loose):
 
 def test_menu_of_a_handle_closes_when_the_layer_changes(window, loose):
     """Until a mesh of the new outline is there, the old layer is shown with its handles."""
-    place = window.point(loose.puppet.shown.handle_places[1])
+    place = window.point(loose.puppet.shown.handle_positions[1])
     window.run(lambda robot: open_menu(robot, place))
     with window.session.jobs.held():
         fewer = handle_commands.remove_handles(loose.active, {1})(loose.document)
@@ -64,11 +64,11 @@ def test_how_firmly_a_handle_holds_is_in_its_menu(window, loose):
 
 def test_the_depth_of_a_handle_is_in_its_menu(window, loose):
     on_handle(window, loose, "Depth", "Behind")
-    assert [handle.front for handle in loose.layer.handles] == [-1.0, 0.0]
-    window.act(editing.edit_layer, editing.layer_commands.key_front, BENT, 0, 0.0)
+    assert [handle.depth for handle in loose.layer.handles] == [-1.0, 0.0]
+    window.act(editing.edit_layer, editing.layer_commands.key_depth, BENT, 0, 0.0)
     on_handle(window, loose, "Depth", "In front")
-    assert dict(loose.layer.key(BENT).fronts) == {0: 1.0}
-    assert loose.layer.handle(0).front == -1.0
+    assert dict(loose.layer.key(BENT).depths) == {0: 1.0}
+    assert loose.layer.handle(0).depth == -1.0
 
 
 def test_a_handle_is_locked_by_its_menu(window, loose):
@@ -95,7 +95,7 @@ def test_the_canvas_has_a_menu(window, loose):
 
 
 def test_a_right_click_in_a_drag_still_takes_it_back(window, loose):
-    document, place = loose.document, window.point(loose.puppet.shown.handle_places[1])
+    document, place = loose.document, window.point(loose.puppet.shown.handle_positions[1])
 
     def play(robot):
         robot.mouse_move_to_pos(place)
@@ -165,7 +165,7 @@ def test_a_long_tooltip_wraps(window):
         imgui.set_next_window_pos(ImVec2(100, 100))
         imgui.begin("probe")
         imgui.button("long", ImVec2(200, 100))
-        tip("What a click does here takes a sentence or two to say. " * 3, "Ctrl+Shift+S")
+        draw_tooltip("What a click does here takes a sentence or two to say. " * 3, "Ctrl+Shift+S")
         imgui.end()
 
     calls = hello_imgui.get_runner_params().callbacks

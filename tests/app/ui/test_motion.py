@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from silhouettes import paint
 
-from app.document import is_as_given
+from app.document import is_motion_unedited
 from app.editor import promises
 from app.editor.actions import drafting, editing, giving, placing, playback, posing, saving
 from app.storage.project_file import load_project
@@ -174,7 +174,7 @@ def test_a_motion_is_given_again_in_another_way_as_one_step_and_a_save_waits_for
     (again,) = ghost.layer.motions
     assert again.last < given.last
     assert ghost.document.frames.last == again.last == ghost.layer.keys[-1].frame
-    assert is_as_given(ghost.layer, again)
+    assert is_motion_unedited(ghost.layer, again)
     assert load_project(ghost.path).layers[0].motions == (again,)
     editing.undo(window.session)
     assert ghost.document is before
@@ -223,7 +223,7 @@ def test_another_motion_follows(window, ghost):
     arrive(window, ghost)
     first, second = ghost.layer.motions
     assert first is given
-    assert is_as_given(ghost.layer, first)
+    assert is_motion_unedited(ghost.layer, first)
     assert second.first == given.last < second.start
     assert ghost.document.frames.last == second.last
 

@@ -14,7 +14,7 @@ from app.editor.action import do
 from app.editor.actions import exporting, files, keys, saving, viewing
 from app.editor.dialogs import FileDialog
 from app.storage.assets import sample_images
-from app.storage.autosave import Autosave, Origin
+from app.storage.autosave import Autosave, SourceInfo
 from app.storage.preferences import load_preferences
 from app.storage.project_file import load_project
 
@@ -100,12 +100,12 @@ def test_failures_and_questions_tell_the_name(window, folder):
 
 def test_unsaved_work_is_offered_under_the_name(window, opened, folder):
     left = Autosave(window.folder)
-    left.write(opened.document, Origin(NAME, folder / f"{NAME}.lissom"))
+    left.write(opened.document, SourceInfo(NAME, folder / f"{NAME}.lissom"))
     os.close(left._lock)  # as the system does when its process ends
     window.act(saving.give_up)
     window.act(files.offer_recovery)
     (candidate,) = window.session.dialog.candidates
-    assert candidate.origin == Origin(SHOWN, folder / f"{NAME}.lissom")
+    assert candidate.origin == SourceInfo(SHOWN, folder / f"{NAME}.lissom")
     assert told(window) == []
     window.run(lambda robot: robot.item_click("//###dialog/**/Open"))
     window.settle()
@@ -153,7 +153,7 @@ DROP = """
 import ctypes, os, sys
 import imgui_bundle
 import glfw
-from app.ui.window.dropped import accept_files
+from app.ui.window.drag_and_drop import accept_files
 
 glfw.init_hint(glfw.PLATFORM, glfw.PLATFORM_NULL)
 assert glfw.init()

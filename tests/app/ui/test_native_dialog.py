@@ -118,7 +118,7 @@ def later(window):
 
 def test_a_picture_is_opened_and_the_window_does_not_wait(window, program):
     window.act(files.ask_open)
-    asked = program.asked()
+    asked = program.option_fields()
     assert "--file-selection" in asked
     assert "--save" not in asked
     assert f"--filename={window.session.usual_folder}/" in asked
@@ -139,7 +139,7 @@ def test_a_picture_is_opened_and_the_window_does_not_wait(window, program):
 
 def test_saving_asks_before_it_replaces_and_adds_the_suffix(program, ask, chosen, tmp_path):
     ask()
-    asked = program.asked()
+    asked = program.option_fields()
     assert "--save" in asked
     assert "--confirm-overwrite" in asked
     assert f"--filename={tmp_path}/walk.png" in asked
@@ -154,7 +154,7 @@ def test_a_name_that_its_suffix_makes_an_existing_one_is_asked_about(
 ):
     (tmp_path / "run.png").write_bytes(b"")
     ask()
-    program.asked()
+    program.option_fields()
     program.answer(f"{tmp_path}/run\n")
     program.wait_for_the_window()
     assert chosen == []
@@ -170,7 +170,7 @@ def test_frames_land_in_a_folder_of_their_own_where_other_files_are(program, ask
     desktop.mkdir()
     (desktop / "letter.txt").write_text("")
     ask(suffixes=(), name="walk frames", folder=desktop)
-    program.asked()
+    program.option_fields()
     program.answer(str(desktop))
     program.wait_for_the_window()
     assert chosen == [desktop / "walk frames"]
@@ -178,7 +178,7 @@ def test_frames_land_in_a_folder_of_their_own_where_other_files_are(program, ask
 
 def test_a_folder_is_chosen_as_such(program, ask, chosen, tmp_path):
     ask(suffixes=(), name="walk frames")
-    assert "--directory" in program.asked()
+    assert "--directory" in program.option_fields()
     empty = tmp_path / "empty"
     empty.mkdir()
     program.answer(f"{empty}\n")
@@ -190,7 +190,9 @@ def test_a_name_that_is_not_utf_8_is_left_to_our_own_browser(
     window, program, ask, chosen, tmp_path
 ):
     ask(folder=tmp_path / os.fsdecode(b"caf\xe9"), name=os.fsdecode(b"\xe9.png"))
-    assert f"--filename={tmp_path}/caf\N{REPLACEMENT CHARACTER}/" in " ".join(program.asked())
+    assert f"--filename={tmp_path}/caf\N{REPLACEMENT CHARACTER}/" in " ".join(
+        program.option_fields()
+    )
     program.answer(os.fsdecode(b"/caf\xe9.png"))
     program.wait_for_the_window()
     assert not window.session.system_dialogs
@@ -200,7 +202,7 @@ def test_a_name_that_is_not_utf_8_is_left_to_our_own_browser(
 
 def test_cancelling_the_dialog_closes_it(window, program, ask, chosen):
     ask()
-    program.asked()
+    program.option_fields()
     later(window)
     window.frames(3)
     program.answer("", status=1)
@@ -224,7 +226,7 @@ def test_a_program_that_cannot_show_anything_is_replaced_by_our_browser(
 
 def test_the_person_may_prefer_our_browser(window, program, ask, chosen, tmp_path):
     ask()
-    program.asked()
+    program.option_fields()
     window.run(lambda robot: robot.item_click("//###dialog/Use Lissom's own dialog"))
     window.frames(2)
     window.run(lambda robot: robot.item_click("//###dialog/Save"))
@@ -235,7 +237,7 @@ def test_the_person_may_prefer_our_browser(window, program, ask, chosen, tmp_pat
 @pytest.mark.parametrize("way", ["Cancel", "escape"])
 def test_the_window_can_cancel_a_dialog_that_hangs(window, program, ask, chosen, way):
     ask()
-    program.asked()
+    program.option_fields()
     if way == "Cancel":
         window.run(lambda robot: robot.item_click("//###dialog/Cancel"))
     else:
@@ -250,7 +252,7 @@ def test_a_question_that_comes_up_takes_the_dialog_away(window, program, ask):
     project = window.open(sample_images() / "bar.png")
     window.act(posing.add_handle, complex(*project.document.canvas) / 2)
     ask()
-    program.asked()
+    program.option_fields()
     window.act(saving.quit_lissom)
     window.frames(2)
     assert isinstance(window.session.dialog, Question)
@@ -260,7 +262,7 @@ def test_a_question_that_comes_up_takes_the_dialog_away(window, program, ask):
 
 def test_the_window_takes_the_dialog_with_it(window, program, ask):
     ask()
-    program.asked()
+    program.option_fields()
     window.program.shell.release()
     assert not is_running(program)
 

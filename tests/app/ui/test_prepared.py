@@ -8,8 +8,8 @@ from app.document.timing import Track, TrackKey
 from app.editor import Session
 from app.editor.actions import editing, playback
 from app.editor.work import Jobs
-from app.motion import Streamed
-from app.motion.extents.extent import extent_source
+from app.motion import StreamedVertices
+from app.motion.extents.extent import extent_key
 
 HALFWAY = 12  # between the two keys
 TRACK = Track(handles=(1,), keys=tuple(TrackKey(frame=f, place=0j + f) for f in (0, 4, 8)))
@@ -22,9 +22,9 @@ def prepared(project):
     return {
         "in-betweens": puppet.store.has(clip),
         "corrections": puppet.corrected.is_whole,
-        "smooth playback": isinstance(vertices, Streamed),
+        "smooth playback": isinstance(vertices, StreamedVertices),
         "distortion": project.curves.follows(clip),
-        "extent": project.extent.follows(extent_source(project.document)),
+        "extent": project.extent.follows(extent_key(project.document)),
     }
 
 

@@ -70,11 +70,11 @@ def test_drag_comes_to_rest_whatever_follows(window, loose, name):
 
 def test_drag_goes_on_while_rough_frames_play(window, loose):
     session = window.session
-    loose.puppet.shown = replace(loose.puppet.shown, is_rough=True)
+    loose.puppet.shown = replace(loose.puppet.shown, is_approximate=True)
     assert not is_there(session, loose)
     loose.playhead = loose.playhead.play(loose.document, session.clock())
     assert is_there(session, loose)
-    loose.puppet.shown = replace(loose.puppet.shown, stand_in=loose.layer.domain)
+    loose.puppet.shown = replace(loose.puppet.shown, placeholder=loose.layer.domain)
     assert not is_there(session, loose)
 
 
@@ -111,14 +111,14 @@ def test_a_drag_is_in_a_key_as_was_wanted_when_it_began(window, loose, auto_key)
         goal = drag_bar(window, loose)
         viewing.toggle_auto_key(window.session)
     window.settle()
-    assert (loose.unkeyed is None) == auto_key
+    assert (loose.preview_pose is None) == auto_key
     if auto_key:
         check_at_rest(loose.document, goal)
 
 
 def test_a_handle_that_comes_or_goes_meanwhile_keeps_its_place(window, loose):
     goal = drag_bar(window, loose)
-    posing.add_handle(window.session, complex(loose.puppet.shown.handle_places.mean()))
+    posing.add_handle(window.session, complex(loose.puppet.shown.handle_positions.mean()))
     (added,) = loose.selected
     posing.remove_handles(window.session, frozenset({0}))
     window.settle()
@@ -299,7 +299,7 @@ def test_a_pose_without_a_key_is_asked_about_and_kept(window, loose, tmp_path):
     window.settle()
     posing.wish(window.session, {1: Target(position=700 + 30j)})
     window.settle()
-    assert loose.unkeyed is not None
+    assert loose.preview_pose is not None
     # Also by the autosave.
     window.clock.now += 60
     window.settle()
@@ -347,7 +347,7 @@ def test_within_a_job_the_clock_goes_on(window):
 
 def beside_the_axis(window, project):
     """Add a handle that has no partner, but room for one; return its id."""
-    posing.add_handle(window.session, complex(project.puppet.shown.handle_places.mean()) + 60)
+    posing.add_handle(window.session, complex(project.puppet.shown.handle_positions.mean()) + 60)
     window.settle()
     (added,) = project.selected
     return added
@@ -440,7 +440,7 @@ def test_a_save_that_waits_is_not_taken_back(window, loose, tmp_path):
 def test_handles_that_come_before_a_drag_knows_where_it_begins_are_held_by_it(window, loose):
     playback.scrub(window.session, 12)
     window.settle()
-    places = loose.puppet.shown.handle_places
+    places = loose.puppet.shown.handle_positions
     with window.session.jobs.held(posing.POSING):
         posing.wish(window.session, {0: Target(position=places[0] + 5j)})
         posing.let_go(window.session)

@@ -112,7 +112,7 @@ def test_a_save_that_fails_ends_nothing(window, saved):
 
 
 def test_a_drag_that_goes_on_while_the_window_is_to_close_is_kept(window, bar, saved):
-    start = complex(bar.puppet.shown.handle_places[1])
+    start = complex(bar.puppet.shown.handle_positions[1])
 
     def play(robot):
         robot.mouse_move_to_pos(window.point(start))

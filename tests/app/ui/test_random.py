@@ -287,8 +287,8 @@ class Walk:
         """Move the pointer to a handle, to a widget, or anywhere."""
         io = imgui.get_io()
         shown = self.project.puppet.shown
-        if self.chance(0.35) and shown is not None and len(shown.handle_places):
-            place = self.window.point(complex(self.choice(shown.handle_places)))
+        if self.chance(0.35) and shown is not None and len(shown.handle_positions):
+            place = self.window.point(complex(self.choice(shown.handle_positions)))
             at = (place.x, place.y)
         elif self.chance(0.7) and (name := self.widgets.any(self.rng)) is not None:
             self.note(name)
@@ -364,7 +364,7 @@ class Walk:
     def pull(self) -> None:
         shown = self.project.puppet.shown
         wishes = {}
-        for handle, place in zip(shown.clip.layer.handles, shown.handle_places, strict=True):
+        for handle, place in zip(shown.clip.layer.handles, shown.handle_positions, strict=True):
             if handle in self.project.layer.handles and self.chance(0.4):
                 far = 1.0 if self.chance(0.05) else 0.05
                 offset = complex(*self.rng.normal(0, far * self.size, 2))
@@ -390,7 +390,9 @@ class Walk:
                 self.edit(handle_commands.rename_handle(self.project.active, handle.id, name))
             case 1:
                 weight = float(10 ** self.rng.uniform(-2, 2))
-                self.edit(handle_commands.weigh_handles(self.project.active, {handle.id}, weight))
+                self.edit(
+                    handle_commands.set_handle_weight(self.project.active, {handle.id}, weight)
+                )
             case 2:
                 outline = self.project.layer.domain.mesh.vertices
                 self.edit(
@@ -633,11 +635,11 @@ class Walk:
         depth = float(self.choice((-1, -0.3, 0, 0.5, 1)))
         if self.chance(0.5):
             extent = self.choice((None, float(self.rng.uniform(2, 200))))
-            self.edit(layer_commands.set_front(layer.id, handle.id, depth, extent))
+            self.edit(layer_commands.set_depth(layer.id, handle.id, depth, extent))
         else:
             frame = self.choice(layer.keys).frame
             front = self.choice((None, depth))
-            self.edit(layer_commands.key_front(layer.id, frame, handle.id, front))
+            self.edit(layer_commands.key_depth(layer.id, frame, handle.id, front))
         self.act(viewing.tint, "depth" if self.chance(0.3) else None)
 
     def change_material(self) -> None:
@@ -865,14 +867,14 @@ def test_random_walk_ends_where_it_began(small_window, workers, tmp_path, seed, 
     window.settle()
     # So would what waits for a mesh that waits for the brush to rest.
     project.afterwards.clear()
-    last = project.document, project.history.unkeyed
+    last = project.document, project.history.preview_pose
     steps = 0
     while project.history.undo_label is not None:
         window.act(editing.undo)
         steps += 1
-    assert (project.document, project.history.unkeyed) == (first, None)
+    assert (project.document, project.history.preview_pose) == (first, None)
     for _ in range(steps):
         window.act(editing.redo)
-    assert (project.document, project.history.unkeyed) == last
+    assert (project.document, project.history.preview_pose) == last
     walk.catch_up(wholly=True)
     walk.look(thorough=True, saves=True)

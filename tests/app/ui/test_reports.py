@@ -8,8 +8,8 @@ import pytest
 from app.editor import failures
 from app.editor.actions import files, viewing
 from app.editor.dialogs import FileDialog, ProblemReport, Recovery
-from app.reports import trace_in_words
-from app.storage.autosave import Autosave, keep_report, kept_report
+from app.reports import format_trace
+from app.storage.autosave import Autosave, load_report, write_report
 from app.ui.timeline import timeline
 
 ANN = Path("/home/ann-marie")
@@ -37,7 +37,7 @@ def caught(error):
 )
 def test_a_trace_names_nothing_of_the_persons(error, told, monkeypatch):
     monkeypatch.setattr(getpass, "getuser", lambda: ANN.name)
-    text = trace_in_words(caught(error), [SECRET])
+    text = format_trace(caught(error), [SECRET])
     assert text.splitlines()[-1].endswith(told)
     assert 'File "test_reports.py"' in text or 'File "tests/' in text
     assert str(Path(__file__).parents[3]) not in text
@@ -84,7 +84,7 @@ def test_a_bug_offers_a_report_that_is_shown_changed_and_saved(window, tmp_path,
 
 def test_after_a_crash_the_unsaved_work_comes_first_and_the_report_is_behind_it(window, bar):
     session = window.session
-    keep_report(window.folder, "It was this.")
+    write_report(window.folder, "It was this.")
     Autosave(window.folder).write(bar.document, bar.origin)
     for lock in window.folder.glob("unsaved-*.lock"):
         lock.unlink()
@@ -112,7 +112,7 @@ def test_after_a_crash_the_unsaved_work_comes_first_and_the_report_is_behind_it(
     window.run(lambda robot: robot.menu_click("//##MainMenuBar/Help/Report a problem…"))
     window.frames(2)
     window.run(lambda robot: robot.item_click("//###dialog/Discard"))
-    assert kept_report(window.folder) == ""
+    assert load_report(window.folder) == ""
     window.run(lambda robot: robot.menu_click("//##MainMenuBar/Help/Report a problem…"))
     window.frames(2)
     assert "Nothing failed" in session.dialog.text

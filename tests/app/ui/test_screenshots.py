@@ -8,7 +8,7 @@ import pytest
 from app.document.keyframe import Target
 from app.document.settings import Meshing
 from app.editor.actions import editing, playback, posing, viewing
-from app.render import heat_ramp
+from app.render import heat_colormap
 from app.storage.assets import sample_images
 from app.ui.style import PALETTES
 
@@ -105,7 +105,7 @@ def test_screenshots_of_the_main_states(window, dragon, save):
     playback.seek(session, 16)
     editing.select(session, frozenset({0}))
     posing_ = save("posing")
-    for number, place in enumerate(dragon.puppet.shown.handle_places):
+    for number, place in enumerate(dragon.puppet.shown.handle_positions):
         mark = around(window, posing_, complex(place))
         assert (mark.min(axis=2) > 225).sum() > 8, number
         is_blue = (mark[..., 2] > 200) & (mark[..., 0] < 90)
@@ -129,7 +129,7 @@ def test_screenshots_of_the_main_states(window, dragon, save):
     is_drawn = np.abs(in_viewport(posing_) - in_viewport(heat)).max(axis=2) > 12
     assert is_drawn.mean() > 0.1  # all of the dragon, and nothing around it
     assert is_drawn.mean() < 0.5
-    ramp = heat_ramp()[::16].astype(int)
+    ramp = heat_colormap()[::16].astype(int)
     panel = heat[60:200, 915:1270]
     missing = [tone for tone in ramp if (np.abs(panel - tone).max(axis=2) < 10).sum() < 3]
     assert len(missing) <= 2

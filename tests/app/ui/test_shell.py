@@ -8,7 +8,7 @@ from app.editor.actions import editing, playback, posing, saving, viewing
 from app.editor.work.jobs import Job, Kind
 from app.storage.assets import sample_images
 from app.ui.style import PALETTES
-from app.ui.style.widgets import shortened
+from app.ui.style.widgets import shorten_text
 from app.ui.window import window as window_module
 from app.ui.window.title import window_title
 
@@ -185,7 +185,7 @@ def _blue(picture):
 
 def test_a_gesture_is_as_far_on_a_finer_screen(window, fine_screen, bar):
     fine_screen(density=2.0)
-    start = complex(bar.puppet.shown.handle_places[1])
+    start = complex(bar.puppet.shown.handle_positions[1])
 
     def drag(robot):
         robot.mouse_move_to_pos(window.point(start))
@@ -336,7 +336,7 @@ def _docked(title):
 
 def test_long_texts_are_shortened_to_their_room(window):
     window.frames(1)
-    assert shortened("a name", 500.0) == "a name"
-    text = shortened("a name that is much too long for its place " * 5, 100.0)
+    assert shorten_text("a name", 500.0) == "a name"
+    text = shorten_text("a name that is much too long for its place " * 5, 100.0)
     assert text.endswith("…")
     assert 80.0 < imgui.calc_text_size(text).x <= 100.0

@@ -67,7 +67,7 @@ def test_the_mesh_of_a_project_that_was_closed_is_let_go(window):
     """Also where something of it is in front, and the anchor and the status bar were shown."""
     project = window.open(sample_images() / "bar.png")
     window.act(posing.add_handle, project.layer.domain.mesh.vertices.mean())
-    window.act(editing.edit, layer_commands.set_front(project.active, 0, 1.0, None))
+    window.act(editing.edit, layer_commands.set_depth(project.active, 0, 1.0, None))
     window.settle()
     shown = project.puppet.shown
     mesh = shown.mesh.domain.mesh

@@ -7,19 +7,19 @@ import numpy as np
 import pytest
 from documents import altered
 
-from app.document import RUBBERY, Extremes
+from app.document import RUBBERY, DistortionRange
 from app.document.keyframe import Target
 from app.document.queries.clips import clip_of
 from app.editor.actions import editing, playback, posing
 from app.errors import LissomError
-from app.motion import IntervalStore
+from app.motion import InbetweenCache
 from app.reports.curves import TIMES, measure_curves
 from app.ui import bars
 from engine.maps import distortion
 
 
 def facts(window):
-    return [fact.text for fact in bars.facts(window.session)]
+    return [fact.text for fact in bars.list_status_items(window.session)]
 
 
 def test_frames_per_second_are_told_while_it_plays(window, loose):
@@ -40,10 +40,12 @@ def test_a_pose_shows_its_distortion_the_handles_and_the_solver(window, loose):
     window.session.solver_seconds = 0.0064  # the clock of the tests stands still in a job
     shown, handles, solver = facts(window)
     proven = loose.document.layers[0].keys[1].pose.certificate
-    uses = Extremes(proven.k, proven.sigma_a, proven.sigma_b).uses(loose.document.layers[0].bounds)
+    uses = DistortionRange(proven.k, proven.sigma_a, proven.sigma_b).uses(
+        loose.document.layers[0].bounds
+    )
     most = max(uses, key=lambda use: use.share)
     word = {"k": "Shear", "σa": "Stretch", "σb": "Squeeze"}[most.name]
-    assert shown == f"{word} {most.value:.2f}, limit {most.bound:.2f}"
+    assert shown == f"{word} {most.value:.2f}, limit {most.limit:.2f}"
     assert most.share > 0.01
     assert handles == "2 handles"
     assert solver == "pose 6 ms"
@@ -70,19 +72,19 @@ def test_inbetweens_show_what_was_measured(window, loose):
 def test_a_bound_that_is_reached_warns(window):
     posing.wish(window.session, {1: Target(position=complex(9000, 0))})
     window.settle()
-    fact = bars.facts(window.session)[0]
-    assert fact.warns
-    assert not bars.facts(window.session)[1].warns
+    fact = bars.list_status_items(window.session)[0]
+    assert fact.is_warning
+    assert not bars.list_status_items(window.session)[1].is_warning
 
 
 def test_a_pull_that_is_held_back_is_told_with_its_remedy(window, loose):
-    assert bars.limit_of_pose(window.session) == ""
+    assert bars.describe_pose_limit(window.session) == ""
     width, height = loose.document.canvas
     posing.wish(window.session, {1: Target(position=complex(2.4 * width, 0.5 * height))})
     window.settle()
     layer = loose.layer
     lag = layer.lags(layer.key(24).pose)[1]
-    told = bars.limit_of_pose(window.session)
+    told = bars.describe_pose_limit(window.session)
     assert re.fullmatch(
         r"Stretch limit reached – handle \d is \d+ px short(, 1 more too)?", told
     ), told
@@ -120,8 +122,8 @@ def test_extremes_between_the_times_that_were_measured(loose):
         frames=replace(loose.document.frames, last=48),
     )
     looped = clip_of(looped, 0)
-    store = IntervalStore(mesh=loose.puppet.store.mesh)
-    store.take(store.preparing(looped, store.missing(looped, 0))())
+    store = InbetweenCache(mesh=loose.puppet.store.mesh)
+    store.add(store.segments_job(looped, store.missing_segments(looped, 0))())
     again = measure_curves(looped, store.prepared(looped))
     assert again.extremes_at(5) == again.extremes_at(53)
     assert again.extremes_at(5) != again.extremes_at(20)

@@ -13,8 +13,8 @@ from app.document.keyframe import Handle, Keyframe, Pose, Target
 from app.document.settings import NATURAL, RUBBERY, STIFF, Meshing
 from app.editor.actions import editing, exporting, playback, posing, upkeep
 from app.editor.actions.body.rebuilding import RENEWING
-from app.export_formats import ShapeDetail, SheetLayout
-from app.motion.extents.extent import extent_source
+from app.export_formats import MeshOptions, SpriteSheetOptions
+from app.motion.extents.extent import extent_key
 from app.storage import NO_FOLDER
 from engine.maps.boundary import Boundary
 from engine.maps.certificate import certify
@@ -117,7 +117,7 @@ def test_target_typed_in_poses_the_shape(window, project, tab):
 
 def test_turn_is_taken_from_the_shape_then_typed_then_freed(window, project, tab):
     editing.select(window.session, frozenset({1}))
-    turn = project.puppet.shown.handle_turns[1]
+    turn = project.puppet.shown.handle_rotations[1]
     tab("Handle", lambda robot: robot.item_click("**/##turns"))
     assert project.layer.key(24).pose.targets[1].rotation == pytest.approx(turn, abs=1e-6)
     tab("Handle", lambda robot: robot.item_input_value("**/##angle", 10.0))
@@ -377,13 +377,13 @@ def test_what_single_formats_ask_is_entered(window, project, tab):
 
     exporting.set_export(window.session, replace(project.document.export, format="spritesheet"))
     tab("Export", lay_out)
-    wanted = SheetLayout(trimmed=False, padding=256, power_of_two=True)
+    wanted = SpriteSheetOptions(trimmed=False, padding=256, power_of_two=True)
     assert project.document.export.sheet == wanted
     exporting.set_export(window.session, replace(project.document.export, format="glb"))
     tab("Export", detail)
-    assert project.document.export.shapes == ShapeDetail(triangles=900, tolerance=0.25)
+    assert project.document.export.shapes == MeshOptions(triangles=900, tolerance=0.25)
     tab("Export", lambda robot: robot.item_click("**/tolerance/###½ px, 8 shapes"))
-    assert project.document.export.shapes == ShapeDetail(triangles=900)
+    assert project.document.export.shapes == MeshOptions(triangles=900)
     assert project.document.export.sheet == wanted
 
 
@@ -392,7 +392,7 @@ def test_frame_of_the_export_shows_only_with_its_tab(window, project, tab):
     tab("Export", lambda _: None)
     assert window.session.export_frame is not None
     window.settle()
-    assert project.extent.follows(extent_source(project.document))
+    assert project.extent.follows(extent_key(project.document))
     tab("Handle", lambda _: None)
     assert window.session.export_frame is None
 
@@ -406,7 +406,7 @@ def note_of_the_frame(window, project):
         where["start"] = robot.item_info("**/###start").rect_full.min.y
 
     window.run(look)
-    source = extent_source(project.document)
+    source = extent_key(project.document)
     return project.extent.follows(source), where["start"]
 
 
@@ -435,7 +435,7 @@ def test_extent_follows_undo_and_redo_at_once(window, project, tab):
     tab("Handle", lambda _: None)
     editing.edit_layer(window.session, key_commands.move_keys, {24}, 3)
     window.settle()
-    assert project.extent.follows(extent_source(project.document)), "where the tab is hidden, too"
+    assert project.extent.follows(extent_key(project.document)), "where the tab is hidden, too"
 
 
 def test_export_is_started_repeated_and_told(window, project, tab, tmp_path):
@@ -514,7 +514,7 @@ def test_a_handle_that_is_outweighed_is_not_said_to_be_held_back_by_limits(
     key = layer.key(24)
     wish = Target(position=key.pose.targets[1].position + 12j)
     pose = replace(key.pose, targets={**key.pose.targets, 1: wish})
-    editing.edit(window.session, key_commands.pose_key(project.active, 24, pose))
+    editing.edit(window.session, key_commands.replace_key_pose(project.active, 24, pose))
     editing.select(window.session, frozenset({1}))
     written = []
     for name in ("text_unformatted", "text_colored"):

@@ -9,20 +9,20 @@ from projects import project_of
 
 from app.document import (
     camera_at,
-    exported_frames,
+    export_frame_range,
     filming_commands,
     key_commands,
     shape_commands,
 )
-from app.document.keyframe import Handle, Keyframe, Passing, Target
+from app.document.keyframe import Handle, Keyframe, TangentMode, Target
 from app.document.settings import FrameRange
 from app.document.timing import HOLD, LINEAR, PRESETS
 from app.editor import layering
 from app.editor.actions import editing, keys, playback, rebuilding, timeline_pointing, viewing
 from app.editor.timeline_view import Strip
-from app.ui.bars.status import limit_of_motion
+from app.ui.bars.status import describe_motion_limit
 from app.ui.style import PALETTES
-from app.ui.timeline import intervals
+from app.ui.timeline import segments
 from app.ui.viewport.marks import mark_all
 from engine.maps import Bounds
 
@@ -303,19 +303,19 @@ def test_how_keys_are_passed_is_chosen_in_their_menu_and_by_a_key(window, projec
         hand.robot.item_click("//$FOCUSED/Passing")
         hand.robot.item_click("//**/###stop")
 
-    passings = [key.shown_passing for key in play(choose).layers[0].keys]
+    passings = [key.shown_tangent_mode for key in play(choose).layers[0].keys]
     assert passings == ["through", "stop", "stop", "through"]
     for expected in ("hold", "through", "corner"):
         window.run(lambda robot: robot.key_press(int(window.Key.t)))
         window.settle()
-        passings = [key.shown_passing for key in project.layer.keys]
+        passings = [key.shown_tangent_mode for key in project.layer.keys]
         assert passings == ["through", expected, expected, "through"]
     assert undo_all(window) == 4
 
 
 def test_the_paths_of_selected_handles_are_shown_and_follow_the_keys(window, project):
     # The motion from key to key: one handle that stays would hide it.
-    project.history.do(shape_commands.set_stillness(0, stillness=False))
+    project.history.do(shape_commands.set_auto_pins(0, stillness=False))
     window.run(lambda robot: robot.key_press(int(window.Key.j)))
     window.settle()
     assert project.paths.value is None  # nothing is selected
@@ -332,7 +332,7 @@ def test_the_paths_of_selected_handles_are_shown_and_follow_the_keys(window, pro
     without, _ = mark_all(window.session, project, shown, PALETTES["dark"])
     assert len(with_path) > len(without)
     # In a corner at frame 12 the path is another one.
-    keys.set_passing(window.session, {0: frozenset({12})}, Passing.CORNER)
+    keys.set_passing(window.session, {0: frozenset({12})}, TangentMode.CORNER)
     project.selected = frozenset({1})
     window.settle()
     assert np.abs(project.paths.value.places - paths.places)[6:20].max() > 0.1
@@ -341,16 +341,16 @@ def test_the_paths_of_selected_handles_are_shown_and_follow_the_keys(window, pro
 
 @pytest.mark.usefixtures("everything")
 def test_keys_that_the_limits_slow_down_are_told_with_a_remedy(window, project):
-    assert limit_of_motion(window.session) == ""
+    assert describe_motion_limit(window.session) == ""
     tight = Bounds(k=0.01, sigma_a=1.001, sigma_b=0.999)
-    command = shape_commands.set_bounds(0, tight)
+    command = shape_commands.set_limits(0, tight)
     project.history.do(shape_commands.set_variant(0, "nu"))
     squeezed = project.layer.key(12).pose
     squeezed = replace(squeezed, psi=0.3 * (project.layer.domain.cage - CENTRE).conj())
-    project.history.do(key_commands.pose_key(0, 12, squeezed))
+    project.history.do(key_commands.replace_key_pose(0, 12, squeezed))
     project.history.do(command)
     window.settle()
-    assert limit_of_motion(window.session) == (
+    assert describe_motion_limit(window.session) == (
         "The motion stops at frame 12 to keep within the stretch limit"
     )
     rebuilding.loosen_bounds(window.session)
@@ -639,8 +639,8 @@ def test_the_preview_range_is_cleared_in_one_click_and_never_exported(window, pr
     playback.scrub(window.session, 40)
     keys.end_preview_here(window.session)
     window.frames(2)
-    assert project.document.preview == project.document.played == FrameRange(0, 40)
-    assert exported_frames(project.document) == FrameRange(0, 60)
+    assert project.document.preview == project.document.played_frames == FrameRange(0, 40)
+    assert export_frame_range(project.document) == FrameRange(0, 60)
     play(lambda hand: hand.click("clear preview"))
     assert project.document.preview is None
     editing.undo(window.session)
@@ -728,7 +728,7 @@ def labels(window, monkeypatch):
         told.append(name)
 
     with monkeypatch.context() as patched:
-        patched.setattr(intervals, "_label", label)
+        patched.setattr(segments, "_label", label)
         window.frames(1)
     return told
 
@@ -736,10 +736,10 @@ def labels(window, monkeypatch):
 @pytest.mark.usefixtures("project")
 def test_only_what_goes_straight_is_called_linear(window, monkeypatch):
     assert labels(window, monkeypatch) == ["smooth"] * 3
-    window.act(keys.set_passing, {0: {24}}, Passing.CORNER)
+    window.act(keys.set_passing, {0: {24}}, TangentMode.CORNER)
     window.settle()
     assert labels(window, monkeypatch) == ["smooth", "smooth", "linear"]
-    window.act(keys.set_passing, {0: {12}}, Passing.STOP)
+    window.act(keys.set_passing, {0: {12}}, TangentMode.STOP)
     window.act(keys.set_easing, {0: {24}}, HOLD)
     window.settle()
     assert labels(window, monkeypatch) == ["smooth", "smooth", "hold"]

@@ -13,13 +13,13 @@ from app.document import (
     track_commands,
 )
 from app.document.keyframe import Handle
-from app.document.timing import PRESETS, Passing, Spring, Track, TrackKey
+from app.document.timing import PRESETS, Spring, TangentMode, Track, TrackKey
 from app.editor.actions import editing, keys, playback, springs, timeline_pointing, tracks
 from app.editor.timeline_view import TrackRow, frames_in
 from app.motion import Animation
 from app.ui.style import PALETTES
-from app.ui.timeline.misses import misses_of, told
-from app.ui.viewport.marks import mark_all, staying, unreached
+from app.ui.timeline.track_residuals import describe_residual, find_residuals
+from app.ui.viewport.marks import find_auto_pinned, find_off_target, mark_all
 
 LEFT, RIGHT = 0, 1  # ids of the bar's handles
 WAVE = ((0, 0), (8, 12 + 6j), (16, 0))
@@ -305,7 +305,7 @@ def test_keys_of_a_track_are_eased_and_passed_by_their_menu(window, bent, play):
     key = bent.layer.track_of(RIGHT).keys[1]
     assert key.easing == PRESETS["in-out"]
     window.act(keys.pass_otherwise)
-    assert bent.layer.track_of(RIGHT).keys[1].passing is Passing.CORNER
+    assert bent.layer.track_of(RIGHT).keys[1].tangent_mode is TangentMode.CORNER
     # Without a chosen key, that of the chosen row at the playhead or before it is meant.
     window.act(editing.deselect_keys)
     window.act(playback.seek, 20)
@@ -426,12 +426,12 @@ def test_planting_moves_nothing_at_the_keys_and_leads_back(window, bent, press):
     before = places_of(bent, RIGHT, [key.frame + 1 for key in track.keys])
     press("kind/###picture")
     planted = bent.layer.track_of(RIGHT)
-    assert planted.planted
+    assert planted.is_scene_space
     places = [key.place for key in planted.keys]
     np.testing.assert_allclose(places, before, rtol=0, atol=0.1)
     press("kind/###pose")
     again = bent.layer.track_of(RIGHT)
-    assert not again.planted
+    assert not again.is_scene_space
     wanted = [key.place for key in track.keys]
     np.testing.assert_allclose([key.place for key in again.keys], wanted, rtol=0, atol=1e-6)
     window.act(editing.undo)
@@ -582,7 +582,7 @@ def test_a_spring_becomes_keys_that_swing_as_it_did(window, bent, press):
 
 
 def test_a_spring_that_nothing_moves_stays_a_spring(window, bent):
-    editing.edit(window.session, shape_commands.set_stillness(bent.active, stillness=False))
+    editing.edit(window.session, shape_commands.set_auto_pins(bent.active, stillness=False))
     editing.edit(window.session, key_commands.delete_keys(bent.active, {24}))
     spring = Spring(handle=RIGHT, frequency=2.0, damping=0.3)
     editing.edit(window.session, track_commands.put_spring(bent.active, spring))
@@ -599,26 +599,26 @@ def test_what_the_limits_hold_back_is_told_with_its_pixels(window, bent):
     hold = Track(handles=(LEFT,), keys=tuple(TrackKey(frame=f, place=0j) for f in (4, 16)))
     editing.edit(window.session, track_commands.put_track(bent.active, hold))
     track = with_track(window, bent, keys=((4, 0), (10, FAR), (16, 0)))
-    misses = misses_of(bent, bent.layer, track)
+    misses = find_residuals(bent, bent.layer, track)
     assert 10 in misses
     assert not {4, 16, 20} & misses.keys()
-    text = told(bent, bent.layer, track, 10)
+    text = describe_residual(bent, bent.layer, track, 10)
     assert f"{misses[10]:.0f} px" in text
     assert "limit of stretch holds" in text or "limits of stretch and" in text
-    assert told(bent, bent.layer, track, 4) == ""
+    assert describe_residual(bent, bent.layer, track, 4) == ""
     # In the viewport a dashed line leads from where it is to where it is wanted.
     window.act(playback.seek, 10)
     window.settle()
     shown = bent.puppet.shown
-    wish = shown.correction.wishes[RIGHT]
-    assert abs(abs(shown.handle_places[RIGHT] - wish) - misses[10]) < 1
+    wish = shown.correction.targets[RIGHT]
+    assert abs(abs(shown.handle_positions[RIGHT] - wish) - misses[10]) < 1
     palette = PALETTES[window.session.preferences.theme]
     ends = [line.points[0] for line in mark_all(window.session, bent, shown, palette)[0]]
     assert wish in ends
     # Switched off, it misses nothing.
     window.act(editing.edit, track_commands.enable_track(bent.active, RIGHT, enabled=False))
     window.settle()
-    assert not misses_of(bent, bent.layer, bent.layer.track_of(RIGHT))
+    assert not find_residuals(bent, bent.layer, bent.layer.track_of(RIGHT))
 
 
 @pytest.mark.usefixtures("everything")
@@ -639,8 +639,8 @@ def test_a_tracked_handle_at_a_key_of_poses_is_not_short_of_that(window, bent):
     window.settle()
     shown = bent.puppet.shown
     target = shown.pose.targets[RIGHT].position
-    assert abs(shown.handle_places[RIGHT] - target) > 50
-    assert not unreached(bent, shown)
+    assert abs(shown.handle_positions[RIGHT] - target) > 50
+    assert not find_off_target(bent, shown)
 
 
 def tooltip_at(window, place):
@@ -654,7 +654,7 @@ def tooltip_at(window, place):
 def test_handles_that_stay_have_a_mark_and_can_be_freed(window, bent, press):
     window.act(playback.seek, 12)
     window.settle()
-    assert staying(bent.puppet.shown) == {LEFT}
+    assert find_auto_pinned(bent.puppet.shown) == {LEFT}
 
     def lines():
         shown = bent.puppet.shown
@@ -664,13 +664,13 @@ def test_handles_that_stay_have_a_mark_and_can_be_freed(window, bent, press):
     window.act(editing.select, frozenset({LEFT}))
     press("Free between keys")
     assert bent.layer.handle(LEFT).free
-    assert not staying(bent.puppet.shown)
+    assert not find_auto_pinned(bent.puppet.shown)
     assert len(lines()) < len(marked)
     press("Free between keys")
-    assert staying(bent.puppet.shown) == {LEFT}
+    assert find_auto_pinned(bent.puppet.shown) == {LEFT}
     # With a track of its own it goes where that leads.
     with_track(window, bent, handle=LEFT)
-    assert not staying(bent.puppet.shown)
+    assert not find_auto_pinned(bent.puppet.shown)
 
 
 @pytest.mark.parametrize("is_narrow", [False, True])
@@ -691,17 +691,17 @@ def test_handles_stay_or_not_as_the_menu_of_interpolation_says(window, bent, is_
         window.settle()
         playback.seek(window.session, 12)
         window.settle()
-        return np.array(bent.puppet.shown.handle_places)
+        return np.array(bent.puppet.shown.handle_positions)
 
     target = bent.layer.key(24).pose.targets[LEFT].position
-    still = np.array(bent.puppet.shown.handle_places)
+    still = np.array(bent.puppet.shown.handle_positions)
     assert abs(still[LEFT] - target) < 0.3
     free = switch()
-    assert not bent.layer.stillness
-    assert not staying(bent.puppet.shown)
+    assert not bent.layer.has_auto_pins
+    assert not find_auto_pinned(bent.puppet.shown)
     assert np.abs(free - still).max() > 0.5
     np.testing.assert_allclose(switch(), still, rtol=0, atol=1e-6)
-    assert bent.layer.stillness
+    assert bent.layer.has_auto_pins
     window.act(editing.undo)
     window.act(editing.undo)
     assert bent.document is before

@@ -8,15 +8,15 @@ from bars import BENT, HALF, LAST, bend_bar
 from harness import FRAME, MOST_FRAMES
 from numpy.testing import assert_allclose
 
-from app.document import Keyframe, Target, clip_of, movement_at, track_at
+from app.document import Keyframe, Target, clip_of, track_at, transform_at
 from app.document.commands import filming_commands, key_commands, scene_commands, track_commands
 from app.document.timing import Track, TrackKey
 from app.editor.actions import editing, playback, posing, tracking
 from app.editor.actions.timing import tracks
 from app.editor.actions.tracking.solving import COMPLAINT
 from app.motion import Animation
-from app.ui.bars.status import limit_of_pose
-from app.ui.viewport.marks import unreached
+from app.ui.bars.status import describe_pose_limit
+from app.ui.viewport.marks import find_off_target
 from engine.errors import EngineError
 
 END = 1  # the handle near the right end
@@ -28,7 +28,7 @@ PIXEL = 2.0  # of the picture: where it is pressed and let go, to whole ones of 
 def place_of(project, handle=END):
     """Return where a handle is shown."""
     index = [each.id for each in project.layer.handles].index(handle)
-    return complex(project.puppet.shown.handle_places[index])
+    return complex(project.puppet.shown.handle_positions[index])
 
 
 def ground(project, frame, handle=END):
@@ -138,12 +138,12 @@ def test_what_is_out_of_reach_is_wished_all_the_same(window, keyed):
     goal = start + 1.5 * keyed.document.canvas[0]
     drag(window, start, goal)
     shown = keyed.puppet.shown
-    wishes = shown.correction.wishes
+    wishes = shown.correction.targets
     assert_allclose(wishes[END], goal, atol=PIXEL)
     assert abs(place_of(keyed) - goal) > 20
-    assert shown.correction.is_held_back
-    assert limit_of_pose(window.session).startswith("Stretch limit reached – handle 2 is ")
-    assert unreached(keyed, shown)[END] == wishes[END], "a dashed line leads there"
+    assert shown.correction.is_limited
+    assert describe_pose_limit(window.session).startswith("Stretch limit reached – handle 2 is ")
+    assert find_off_target(keyed, shown)[END] == wishes[END], "a dashed line leads there"
 
 
 def turn_by(window, project, angle, *, then=lambda robot: robot.mouse_up(0)):
@@ -165,7 +165,7 @@ def turn_by(window, project, angle, *, then=lambda robot: robot.mouse_up(0)):
 
 def turned(project):
     index = [each.id for each in project.layer.handles].index(END)
-    return project.puppet.shown.handle_turns[index]
+    return project.puppet.shown.handle_rotations[index]
 
 
 def test_the_ring_turns_the_track_of_a_chosen_row_and_not_the_pose(window, keyed):
@@ -189,7 +189,7 @@ def test_the_ring_turns_the_track_of_a_chosen_row_and_not_the_pose(window, keyed
 
 def test_the_ring_inserts_a_key_that_moves_nothing_and_turns_on_from_there(window, keyed):
     keys = tuple(TrackKey(frame=f, place=p, turn=0.3) for f, p in ((EARLIER, 0), (LATER, 8j)))
-    track = Track(handles=(END,), keys=keys, turns=True)
+    track = Track(handles=(END,), keys=keys, keys_rotation=True)
     keyed.history.do(track_commands.put_track(keyed.active, track))
     window.settle()
     at = track_at(track, keyed.clip, HALF)
@@ -254,8 +254,8 @@ def test_a_pose_has_what_a_track_adds_on_it_and_not_in_it(window, brief, auto_ke
 
     drag(window, other, other + 12j, then=then)
     assert max(abs(place - shown_at) for place in seen) < 4, "nothing pops"
-    pose = brief.unkeyed or brief.layer.key(HALF).pose
-    assert (brief.unkeyed is None) == auto_key
+    pose = brief.preview_pose or brief.layer.key(HALF).pose
+    assert (brief.preview_pose is None) == auto_key
     position = brief.layer.handle(END).position
     own = complex(brief.layer.map_of(pose)(np.array([position]))[0])
     assert abs(own - still) < 6, "the pose is where the body has the handle"
@@ -411,7 +411,7 @@ def test_in_a_loop_a_recording_goes_on_over_the_seam_at_most_once_round(window, 
 
 @pytest.mark.parametrize("is_over", [False, True])
 def test_deleting_a_handle_ends_its_recording(window, brief, is_over):
-    session, place = window.session, complex(brief.puppet.shown.handle_places[-1])
+    session, place = window.session, complex(brief.puppet.shown.handle_positions[-1])
     with session.jobs.held():
         tracking.begin_take(session, END, place, gesture=object())
         window.clock.now += 0.2
@@ -445,7 +445,7 @@ def hop_by_keys(project):
     keys = tuple(
         Keyframe(frame=frame, pose=pose) for frame, pose in ((0, rest), (HALF, up), (LAST, rest))
     )
-    project.history.do(key_commands.put_keys(layer.id, keys))
+    project.history.do(key_commands.insert_keys(layer.id, keys))
 
 
 def hop_as_a_layer(project):
@@ -497,7 +497,7 @@ def test_a_pointer_that_goes_with_the_body_changes_no_shape(window, brief, hop):
     def place():
         """Return where in the scene the body has the handle, when the next picture is drawn."""
         frame = min((session.clock() + FRAME - begun) * document.fps, LAST)
-        placement = movement_at(document, document.layers[0], frame)
+        placement = transform_at(document, document.layers[0], frame)
         return complex(placement.on(body.positions(frame))[0])
 
     begun = session.clock()
@@ -530,12 +530,14 @@ def test_passes_add_up_and_undo_takes_back_the_last(window, brief):
 def test_a_planted_track_is_recorded_in_places_of_the_picture(window, brief):
     playback.scrub(window.session, 0)
     window.settle()
-    planted = Track(handles=(END,), planted=True, keys=(TrackKey(frame=0, place=place_of(brief)),))
+    planted = Track(
+        handles=(END,), is_scene_space=True, keys=(TrackKey(frame=0, place=place_of(brief)),)
+    )
     brief.history.do(track_commands.put_track(brief.active, planted))
     window.settle()
     record(window, brief, ARC)
     (track,) = brief.layer.tracks
-    assert track.planted
+    assert track.is_scene_space
     places = {sample.time: sample.place for sample in brief.take.samples}
     for key in track.keys:
         time = min(places, key=lambda time: abs(time - key.frame))

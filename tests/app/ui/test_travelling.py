@@ -9,7 +9,7 @@ from messages import says
 from walkers import walker
 
 from app.document import layer_commands
-from app.document.body.pairs import NO_PAIR
+from app.document.rig.mirror_names import NO_PAIR
 from app.editor import layering
 from app.editor.actions import editing, playback, posing
 from app.storage import save_project

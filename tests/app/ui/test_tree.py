@@ -14,9 +14,9 @@ from app.document import (
     choice_commands,
     cycle_commands,
     group_commands,
-    in_order,
     is_visible,
     key_commands,
+    layers_in_draw_order,
 )
 from app.editor import layering
 from app.editor.actions import editing, playback, posing
@@ -131,7 +131,7 @@ def test_layers_take_turns_by_one_click(window, scene, ids, use):
 
 
 def test_only_the_layer_that_is_seen_has_a_full_circle(window, scene, ids, use):
-    window.act(editing.edit, choice_commands.form_choice("mouth", [ids["ah"], ids["oh"]]))
+    window.act(editing.edit, choice_commands.create_switch_group("mouth", [ids["ah"], ids["oh"]]))
     window.act(layering.toggle, "choice mouth")
     window.act(layering.choose, ids["head"])
     window.settle()
@@ -157,7 +157,7 @@ def test_only_the_layer_that_is_seen_has_a_full_circle(window, scene, ids, use):
 
 
 def test_where_a_turn_begins_is_dragged_in_the_timeline(window, scene, ids):
-    window.act(editing.edit, choice_commands.form_choice("mouth", [ids["ah"], ids["oh"]]))
+    window.act(editing.edit, choice_commands.create_switch_group("mouth", [ids["ah"], ids["oh"]]))
     other = next(i for i in (ids["ah"], ids["oh"]) if i != scene.document.choices[0].at(0))
     window.act(editing.edit, choice_commands.choose_at(other, 12))
     window.frames(3)
@@ -207,7 +207,7 @@ def test_rows_stay_where_they_are_when_another_layer_is_chosen(window, ids):
 def test_what_is_listed_stays_below_the_pointer_until_that_goes_back_to_the_drawing(
     window, scene, ids, use
 ):
-    window.act(editing.edit, choice_commands.form_choice("mouth", [ids["ah"], ids["oh"]]))
+    window.act(editing.edit, choice_commands.create_switch_group("mouth", [ids["ah"], ids["oh"]]))
     window.act(layering.choose, ids["ah"])
     window.frames(2)
     tops = []
@@ -368,7 +368,7 @@ def test_a_layer_is_handed_over_and_let_go_without_a_jump(window, scene, ids, us
 def test_what_is_handed_over_in_a_repeat_is_handed_over_in_all(window, scene, ids, use):
     window.act(layering.hang, ids["stick"], ids["head"])
     window.settle()
-    window.act(editing.edit, cycle_commands.repeat(ids["stick"], 0, 12))
+    window.act(editing.edit, cycle_commands.set_cycle(ids["stick"], 0, 12))
     window.act(layering.choose, ids["stick"])
     window.act(playback.seek, 18)
     window.settle()
@@ -437,7 +437,7 @@ def test_what_is_hidden_at_all_times_is_switched_instead(window, scene, ids, use
 
 
 def test_a_group_of_mouths_is_offered_as_a_choice(window, scene, ids, use):
-    command = group_commands.put_in_group([ids["ah"], ids["oh"]], "mouth")
+    command = group_commands.group_layers([ids["ah"], ids["oh"]], "mouth")
     window.act(editing.edit, command)
     window.frames(3)
     use(lambda robot: robot.item_click("**/Let them take turns"))
@@ -451,7 +451,7 @@ def test_a_group_of_mouths_is_offered_as_a_choice(window, scene, ids, use):
 
 def test_a_group_is_dragged_by_its_row(window, scene, ids, use):
     for names, path in ((("ah", "oh"), "mouth"), (("head", "stick"), "body")):
-        command = group_commands.put_in_group([ids[name] for name in names], path)
+        command = group_commands.group_layers([ids[name] for name in names], path)
         window.act(editing.edit, command)
     window.frames(3)
 
@@ -465,7 +465,7 @@ def test_a_group_is_dragged_by_its_row(window, scene, ids, use):
     before = scene.document
     use(lambda robot: drop(robot, key("mouth"), ids["hat"]))
     window.settle()
-    assert [scene.document.layer(ids[name]).hangs for name in ("ah", "oh")] == [True, True]
+    assert [scene.document.layer(ids[name]).has_parent for name in ("ah", "oh")] == [True, True]
     assert scene.history.undo_label == "Attach 2 layers"
     window.act(editing.undo)
     assert scene.document is before
@@ -484,7 +484,7 @@ def test_a_group_is_dragged_by_its_row(window, scene, ids, use):
 
 def test_a_group_in_a_group_of_mouths_is_not_taken_apart(window, scene, ids, use):
     for names, path in ((("ah", "oh", "hat", "stick"), "mouth"), (("hat", "stick"), "mouth/laugh")):
-        command = group_commands.put_in_group([ids[name] for name in names], path)
+        command = group_commands.group_layers([ids[name] for name in names], path)
         window.act(editing.edit, command)
     window.frames(3)
     key = next(row.key for row in scene.tree if row.group and row.group.name == "mouth")
@@ -523,7 +523,7 @@ def test_a_layer_is_moved_and_ordered_in_time_by_the_tab(window, scene, ids, use
         robot.item_click(f"//$FOCUSED/###in front of {ids['oh']}")
 
     use(paint_in_front)
-    assert [each.id for each in in_order(scene.document, 11)][-1] == ids["oh"]
-    assert [each.id for each in in_order(scene.document, 12)][-1] == ids["stick"]
+    assert [each.id for each in layers_in_draw_order(scene.document, 11)][-1] == ids["oh"]
+    assert [each.id for each in layers_in_draw_order(scene.document, 12)][-1] == ids["stick"]
     use(lambda robot: robot.item_click("**/No change of order at frame 12"))
-    assert scene.document.layer(ids["stick"]).placings == ()
+    assert scene.document.layer(ids["stick"]).draw_order_keys == ()

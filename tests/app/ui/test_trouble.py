@@ -19,12 +19,12 @@ from app.storage.assets import sample_images
 from app.storage.autosave import (
     SECONDS,
     Autosave,
-    Origin,
-    find_leftovers,
-    load_leftover,
-    remove_leftover,
+    SourceInfo,
+    find_recoverable_files,
+    load_recoverable_file,
+    remove_recoverable_file,
 )
-from app.storage.files import Hold, HoldError
+from app.storage.files import FileLock, FileLockedError
 from app.storage.project import NO_PROJECT
 from app.storage.project_file import load_project, save_project
 from app.ui.bars.status import ENDLESS
@@ -109,17 +109,17 @@ def crash(window, project):
     window.session.project = None
     files.offer_recovery(window.session)
     window.frames(3)
-    (leftover,) = find_leftovers(window.folder)
-    return load_leftover(leftover)[1]
+    (leftover,) = find_recoverable_files(window.folder)
+    return load_recoverable_file(leftover)[1]
 
 
 def test_unsaved_work_comes_back_after_a_crash(window, project):
     crashed = Autosave(window.folder)
     crashed.write(project.document, project.origin)
     (orphan,) = window.folder.glob("unsaved-*.lissom")
-    assert find_leftovers(window.folder) == []
+    assert find_recoverable_files(window.folder) == []
     orphan.with_suffix(".lock").unlink()
-    assert find_leftovers(window.folder) == [orphan]
+    assert find_recoverable_files(window.folder) == [orphan]
     window.session.project = None
     files.offer_recovery(window.session)
     window.frames(3)
@@ -131,7 +131,7 @@ def test_unsaved_work_comes_back_after_a_crash(window, project):
     assert recovered is not None
     assert not recovered.history.is_saved
     assert not orphan.exists()
-    crashed.forget()
+    crashed.remove()
 
 
 def test_recovered_work_has_its_name_and_goes_back_to_its_file_once_that_was_shown(
@@ -171,7 +171,7 @@ def test_recovered_work_has_its_name_and_goes_back_to_its_file_once_that_was_sho
     window.settle()
     assert window_title(window.session) == "posed.lissom – Lissom"
     assert len(load_project(path).layers[0].handles) == 1
-    assert find_leftovers(window.folder) == []
+    assert find_recoverable_files(window.folder) == []
 
     window.act(posing.add_handle, place / 2)
     window.settle()
@@ -214,7 +214,7 @@ def answer(window, text):
 
 def test_a_file_that_another_window_has_open_is_opened_only_after_a_question(window, saved):
     saving.put_project(window.session, None)
-    other = Hold(saved)
+    other = FileLock(saved)
     files.open_file(window.session, saved)
     window.settle()
     assert window.session.project is None
@@ -236,8 +236,8 @@ def test_a_file_that_another_window_has_open_is_opened_only_after_a_question(win
 
 
 def test_a_file_is_held_while_it_is_open_and_no_longer(window, saved, tmp_path):
-    with pytest.raises(HoldError):
-        Hold(saved)
+    with pytest.raises(FileLockedError):
+        FileLock(saved)
     # It is no other window's.
     files.open_file(window.session, saved)
     window.settle()
@@ -245,11 +245,11 @@ def test_a_file_is_held_while_it_is_open_and_no_longer(window, saved, tmp_path):
     elsewhere = tmp_path / "b.lissom"
     saving.write(window.session, elsewhere, None)
     window.settle()
-    Hold(saved).release()
-    with pytest.raises(HoldError):
-        Hold(elsewhere)
+    FileLock(saved).release()
+    with pytest.raises(FileLockedError):
+        FileLock(elsewhere)
     window.act(saving.give_up)
-    Hold(elsewhere).release()
+    FileLock(elsewhere).release()
     assert {path.name for path in tmp_path.iterdir()} == {"a.lissom", "b.lissom"}
 
 
@@ -258,7 +258,7 @@ def test_where_no_lock_can_be_had_the_file_opens_and_that_is_told(window, saved,
         raise OSError(errno.ENOLCK, "No locks available")
 
     saving.put_project(window.session, None)
-    monkeypatch.setattr("app.storage.files.hold.lock", no_locks)
+    monkeypatch.setattr("app.storage.files.file_lock.lock", no_locks)
     files.open_file(window.session, saved)
     window.settle()
     assert window.session.project.path == saved
@@ -367,7 +367,7 @@ def test_older_work_that_waits_to_be_kept_does_not_replace_what_was_kept_at_once
     end.set()
     window.settle()
     (kept,) = window.folder.glob("unsaved-*.lissom")
-    assert len(load_leftover(kept)[0].layers[0].handles) == 2
+    assert len(load_recoverable_file(kept)[0].layers[0].handles) == 2
 
 
 def test_every_unsaved_work_is_offered_whenever_it_was_kept(window, project):
@@ -375,7 +375,7 @@ def test_every_unsaved_work_is_offered_whenever_it_was_kept(window, project):
         path = window.folder / f"unsaved-{number}.lissom"
         keeper = Autosave(window.folder)
         keeper._path = path
-        keeper.write(project.document, Origin(f"work {number}", None))
+        keeper.write(project.document, SourceInfo(f"work {number}", None))
         os.close(keeper._lock)
         with suppress(OSError, OverflowError):
             os.utime(path, (time, time))
@@ -393,8 +393,8 @@ def test_every_unsaved_work_is_offered_whenever_it_was_kept(window, project):
     assert len(window.session.dialog.candidates) == 2
     answer(window, "Open")
     assert window.session.project is not None
-    assert len(find_leftovers(window.folder)) == 1
-    remove_leftover(find_leftovers(window.folder)[0])
+    assert len(find_recoverable_files(window.folder)) == 1
+    remove_recoverable_file(find_recoverable_files(window.folder)[0])
     window.act(files.show_recovery)
     assert any("no unsaved work" in text for text in texts(window))
 
@@ -468,6 +468,6 @@ def test_a_graphics_driver_that_fails_is_told_and_the_work_is_kept(
     window.session.toasts = []
     kept = list(window.folder.glob("unsaved-*.lissom"))
     assert len(kept) == has_room
-    assert all(len(load_leftover(each)[0].layers[0].handles) == 1 for each in kept)
+    assert all(len(load_recoverable_file(each)[0].layers[0].handles) == 1 for each in kept)
     window.frames(3)
     assert texts(window) == []

@@ -9,8 +9,8 @@ from harness import PATIENCE
 from imgui_bundle import ImVec2, imgui
 
 from app.document.commands import handle_commands, key_commands
-from app.document.keyframe import Passing, Target
-from app.document.queries.shortfall import HELD_BY_LIMITS, find_shortfall
+from app.document.keyframe import TangentMode, Target
+from app.document.queries.target_error import HELD_BY_LIMITS, measure_target_errors
 from app.document.settings import FrameRange, Meshing
 from app.editor.actions import (
     editing,
@@ -28,8 +28,8 @@ from app.editor.actions import (
 from app.editor.actions.posing.inserting import INSERTING
 from app.editor.timeline_view import KeyBox
 from app.editor.work.derived import Derived
-from app.errors import CANCELLED, tell
-from app.motion.extents.extent import Box, extent_source
+from app.errors import CANCELLED, report_progress
+from app.motion.extents.extent import BoundingBox, extent_key
 from app.storage.assets import sample_images
 from app.storage.autosave import SECONDS
 from app.ui.bars.status import SLOW
@@ -43,7 +43,7 @@ TABS = ("Handle", "Deform", "Distortion", "Mesh", "Export")
 def place_of(project, identity):
     shown = project.puppet.shown
     index = [handle.id for handle in shown.clip.layer.handles].index(identity)
-    return complex(shown.handle_places[index])
+    return complex(shown.handle_positions[index])
 
 
 def undo_all(window):
@@ -110,9 +110,9 @@ def test_undo_takes_a_loose_pose_back_first(window, loose):
     before = loose.document
     posing.wish(window.session, {1: Target(position=place_of(loose, 1) - 80j)})
     window.settle()
-    assert loose.unkeyed is not None
+    assert loose.preview_pose is not None
     window.run(lambda robot: press(robot, window.Key.mod_ctrl, window.Key.z))
-    assert loose.unkeyed is None
+    assert loose.preview_pose is None
     assert loose.document is before
 
 
@@ -124,22 +124,22 @@ def test_undo_and_redo_go_through_loose_poses_one_by_one(window, loose):
     for shift in (-30j, -60j, -90j):
         posing.wish(session, {1: Target(position=place_of(loose, 1) + shift)})
         window.settle()
-        poses.append(loose.unkeyed)
+        poses.append(loose.preview_pose)
     assert len(set(poses)) == 4
     for pose in poses[-2::-1]:
         editing.undo(session)
-        assert loose.unkeyed is pose
+        assert loose.preview_pose is pose
     assert loose.document is before
     for pose in poses[1:]:
         editing.redo(session)
-        assert loose.unkeyed is pose
+        assert loose.preview_pose is pose
     window.frames(2)
     assert loose.puppet.shown.pose is poses[-1]
     posing.insert_key(session)
-    assert loose.unkeyed is None
+    assert loose.preview_pose is None
     assert loose.layer.key(24).pose is poses[-1]
     editing.undo(session)
-    assert (loose.document, loose.unkeyed) == (before, poses[-1])
+    assert (loose.document, loose.preview_pose) == (before, poses[-1])
 
 
 def test_a_loose_pose_waits_at_its_frame(window, loose):
@@ -147,19 +147,19 @@ def test_a_loose_pose_waits_at_its_frame(window, loose):
     window.act(viewing.toggle_auto_key)
     posing.wish(session, {1: Target(position=place_of(loose, 1) - 80j)})
     window.settle()
-    pose = loose.unkeyed
+    pose = loose.preview_pose
     playback.scrub(session, 24)
-    assert loose.unkeyed is pose
+    assert loose.preview_pose is pose
     playback.scrub(session, 7)
     window.settle()
-    assert loose.unkeyed is None
+    assert loose.preview_pose is None
     assert loose.puppet.shown.pose is None
     playback.toggle_play(session)
     playback.seek(session, 24)
-    assert loose.unkeyed is None
+    assert loose.preview_pose is None
     playback.scrub(session, 24)
     window.settle()
-    assert loose.unkeyed is pose
+    assert loose.preview_pose is pose
     assert loose.puppet.shown.pose is pose
 
 
@@ -230,7 +230,7 @@ def test_other_changes_leave_the_solver_at_work(window, loose):
 def test_weights_and_places_that_change_leave_the_solver_at_work(window, loose):
     rest = loose.layer.handle(1).position
     for command in (
-        handle_commands.weigh_handles(0, {1}, 3.0),
+        handle_commands.set_handle_weight(0, {1}, 3.0),
         handle_commands.move_handle(0, 1, rest - 30),
     ):
         wish = place_of(loose, 1) - 20j
@@ -294,7 +294,7 @@ def test_loose_pose_stays_when_a_handle_is_deleted_by_its_key(window, loose):
     window.run(lambda robot: press(robot, window.Key.delete))
     window.settle()
     assert [handle.id for handle in loose.document.layers[0].handles] == [1]
-    assert loose.unkeyed is not None
+    assert loose.preview_pose is not None
     np.testing.assert_allclose(loose.puppet.shown.positions, before, rtol=0, atol=1e-9)
 
 
@@ -308,7 +308,7 @@ def test_loose_pose_over_a_cage_that_is_rebuilt_is_given_up(window, loose):
     rebuilding.rebuild(session)
     window.settle()
     assert len(loose.document.layers[0].domain.cage) != len(cage)
-    assert loose.unkeyed is None
+    assert loose.preview_pose is None
     assert loose.meshing is None
     assert loose.puppet.shown.is_current
 
@@ -347,7 +347,7 @@ def test_handle_out_of_reach_is_told_and_freed_again(window, loose, monkeypatch)
         k=pose.certificate.k, sigma_a=pose.certificate.sigma_a, sigma_b=pose.certificate.sigma_b
     )
     np.testing.assert_allclose(pose.targets[1].position, far, rtol=0, atol=10)
-    assert find_shortfall(loose.layer, loose.puppet.shown.pose).lags[1] > 100
+    assert measure_target_errors(loose.layer, loose.puppet.shown.pose).errors[1] > 100
 
     wishes, written = [], []
     mark, text = marks.mark_handles, imgui.text_colored
@@ -373,7 +373,7 @@ def test_handle_out_of_reach_is_told_and_freed_again(window, loose, monkeypatch)
 
     window.run(lambda robot: pull(robot, start))
     window.settle()
-    assert not find_shortfall(loose.layer, loose.puppet.shown.pose).lags
+    assert not measure_target_errors(loose.layer, loose.puppet.shown.pose).errors
     assert loose.document.layers[0].key(0).pose.certificate.certified
 
 
@@ -420,7 +420,7 @@ def test_poses_that_follow_each_other_twice_are_prepared_once(window, loose):
     editing.edit(window.session, key_commands.copy_keys(0, {0, 24}, 48))
     # Passed through, the keys would be met with other velocities at the ends.
     frames = {0, 24, 48, 72}
-    editing.edit(window.session, key_commands.set_passing(0, frames, Passing.CORNER))
+    editing.edit(window.session, key_commands.set_tangent_mode(0, frames, TangentMode.CORNER))
     window.settle()
     assert frames_of(loose) == [0, 24, 48, 72]
     # None of it is known of this one.
@@ -436,7 +436,7 @@ def test_poses_that_follow_each_other_twice_are_prepared_once(window, loose):
 
 FAILURES = {
     "In-betweens": (
-        "app.motion.interval_store.prepare_intervals",
+        "app.motion.inbetween_cache.prepare_intervals",
         lambda session: keys.set_variant(session, "nu"),
     ),
     "Measuring": (
@@ -448,12 +448,12 @@ FAILURES = {
         lambda session: keys.set_variant(session, "nu"),
     ),
     "Smooth playback": (
-        "app.motion.intervals.build_series",
+        "app.motion.inbetween_jobs.build_series",
         lambda session: keys.set_variant(session, "nu"),
     ),
     "Solving the keys": ("app.editor.actions.body.rebuilding.go_on", rebuilding.solve_again),
     "Rebuilding": (
-        "app.solving.renewal.build_domain",
+        "app.solving.resolve_keys.build_domain",
         lambda session: (
             viewing.draft_meshing(session, Meshing(triangles=1_500, detail="normal")),
             rebuilding.rebuild(session),
@@ -522,12 +522,12 @@ def test_work_that_tells_how_far_it_is_is_cancelled_at_once_and_ends(window, mon
     def endless(*_, **__):
         try:
             while True:
-                tell(0.4)
+                report_progress(0.4)
         finally:
             ended.set()
 
     monkeypatch.setattr(jobs, "_clock", window.clock)
-    monkeypatch.setattr("app.motion.interval_store.prepare_intervals", endless)
+    monkeypatch.setattr("app.motion.inbetween_cache.prepare_intervals", endless)
     window.act(keys.set_variant, "nu")
     window.until(lambda: any(jobs.share_of(kind) == 0.4 for kind in jobs.kinds))
     window.clock.now += SLOW
@@ -542,7 +542,7 @@ WAITING = {
     upkeep.SKETCHING: lambda session: keys.set_variant(session, "nu"),
     upkeep.SPANNING: lambda session: (
         setattr(session.project, "extent", Derived(None)),
-        exporting.show_frame(session, Box(0j, 1 + 1j)),
+        exporting.show_frame(session, BoundingBox(0j, 1 + 1j)),
         upkeep.maintain(session),
     ),
     rebuilding.RENEWING: rebuilding.solve_again,
@@ -592,8 +592,8 @@ def test_results_for_a_closed_project_go_nowhere(window, loose, kind):
     assert other.name == "s"
     assert len(other.document.layers[0].keys) == 1
     assert other.history.undo_label is None
-    assert other.extent.source in (None, extent_source(other.document))
-    assert (other.pull, other.renewal, other.unkeyed) == (None, None, None)
+    assert other.extent.source in (None, extent_key(other.document))
+    assert (other.pull, other.renewal, other.preview_pose) == (None, None, None)
     assert other.puppet.shown.is_current
     assert loose.document is closed
     assert closed.layers[0].handles == before.layers[0].handles

@@ -16,7 +16,7 @@ from harness import MOST_FRAMES, PATIENCE, Harness
 from imgui_bundle import hello_imgui
 from PIL import Image
 
-from app.document import UnkeyedPose
+from app.document import PreviewPose
 from app.document.settings import ExportSettings, FrameRange
 from app.editor.actions import cutting, editing, exporting, files, keys, playback, posing, saving
 from app.editor.dialogs import Question
@@ -584,8 +584,8 @@ def test_the_pose_that_is_shown_is_exported_and_copied(window, project, tmp_path
     window.settle()
     rest = project.layer.keys[0].pose
     moved = replace(rest, phi=rest.phi + 20)
-    project.history.pose(UnkeyedPose(layer=project.active, frame=4, pose=moved))
-    assert project.unkeyed is moved
+    project.history.pose(PreviewPose(layer=project.active, frame=4, pose=moved))
+    assert project.preview_pose is moved
     out = tmp_path / "pose.png"
 
     def exported():

@@ -42,7 +42,7 @@ def apply(session, name):
     """Do what a menu entry does, unless it says why not."""
     with suppress(*EXPECTED_ERRORS):
         if VERBS[name].is_possible(session):
-            VERBS[name].title(session)
+            VERBS[name].menu_title(session)
             VERBS[name].action.apply(session)
 
 

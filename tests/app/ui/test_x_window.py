@@ -20,7 +20,7 @@ from PIL import ImageGrab
 from app.cli.commands.window import WORK_KEPT
 from app.editor.actions import saving, viewing
 from app.storage.assets import sample_images
-from app.storage.autosave import find_leftovers, load_leftover
+from app.storage.autosave import find_recoverable_files, load_recoverable_file
 from app.storage.preferences import load_preferences
 from app.storage.project_file import load_project
 
@@ -293,8 +293,8 @@ def test_a_person_animates_a_drawing_and_finds_it_again(window, bar, person, tmp
         assert WORK_KEPT in process.stderr.readline()
         process.wait()
     assert process.returncode == 128 + signal.SIGTERM
-    (kept,) = find_leftovers(settings)
-    recovered, origin = load_leftover(kept)
+    (kept,) = find_recoverable_files(settings)
+    recovered, origin = load_recoverable_file(kept)
     assert origin == ("posed", path)
     assert len(recovered.markers) == 1
 

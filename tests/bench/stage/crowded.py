@@ -4,7 +4,16 @@ from copy import copy
 from dataclasses import replace
 from pathlib import Path
 
-from app.document import Choice, Document, FrameRange, Handle, Keyframe, Target, Turn, clip_of
+from app.document import (
+    Document,
+    FrameRange,
+    Handle,
+    Keyframe,
+    SwitchGroup,
+    SwitchKey,
+    Target,
+    clip_of,
+)
 from app.document.settings import Marker
 from app.editor import Puppet
 from app.editor.actions import files, saving
@@ -45,7 +54,7 @@ def _documents(sample: Document, count: int) -> dict[str, Document]:
     pose = layer.keys[0].pose
     layers, handles = min(count, LAYERS), min(count, MOST_HANDLES)
     keys = tuple(Keyframe(frame=at, pose=pose) for at in range(count))
-    turns = tuple(Turn(at, at % 2) for at in range(count))
+    turns = tuple(SwitchKey(at, at % 2) for at in range(count))
     vertices = layer.domain.mesh.vertices.tolist()
     spread = [
         Handle(id=each, name=f"handle {each}", position=vertices[each % len(vertices)])
@@ -60,7 +69,9 @@ def _documents(sample: Document, count: int) -> dict[str, Document]:
     )
     mesh = mesh_inside(layer.domain, triangles=TRIANGLES)
     small = replace(bare, domain=replace(layer.domain, mesh=mesh))
-    copies = [replace(small, id=each, name=f"layer {each}", joints=()) for each in range(layers)]
+    copies = [
+        replace(small, id=each, name=f"layer {each}", attachments=()) for each in range(layers)
+    ]
     return {
         "as it is": document,
         f"{count:,} markers": replace(
@@ -72,7 +83,7 @@ def _documents(sample: Document, count: int) -> dict[str, Document]:
         f"{count:,} turns of a switch": replace(
             document,
             layers=tuple(copies[:2]),
-            choices=(Choice(name="mouth", layers=(0, 1), turns=turns),),
+            switch_groups=(SwitchGroup(name="mouth", layers=(0, 1), keys=turns),),
         ),
         f"{handles:,} handles": replace(document, layers=(posed, *document.layers[1:])),
         f"{layers:,} layers": replace(document, layers=tuple(copies)),

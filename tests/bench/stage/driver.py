@@ -125,7 +125,7 @@ class Driver:
 
     def ask(self, verb: Callable[..., None], *arguments: object) -> None:
         """Do something at the end of the next frame, as if a panel had asked for it."""
-        self._window.ask(do(verb, *arguments))
+        self._window.queue_action(do(verb, *arguments))
 
     def point(self, place: complex) -> complex:
         """Return where a place of the drawing's plane is on the screen, x + iy."""
@@ -227,4 +227,4 @@ class HandleDrag:
 
 def handle_place(project: Project) -> complex:
     """Return where the first handle is on the screen's plane."""
-    return complex(project.puppet.shown.handle_places[0]) if project.puppet.shown else 0j
+    return complex(project.puppet.shown.handle_positions[0]) if project.puppet.shown else 0j

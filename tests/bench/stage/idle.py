@@ -64,7 +64,7 @@ def main() -> None:
         session = Session(clock=time.perf_counter, jobs=Jobs(), folder=Path(name))
         window = Window(session, lambda: Renderer(window_context()))
         for path in paths:
-            window.ask(do(files.open_file, Path(path)))
+            window.queue_action(do(files.open_file, Path(path)))
         threading.Thread(target=_watch, args=(session, seconds), daemon=True).start()
         window.run()
 

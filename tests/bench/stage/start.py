@@ -43,7 +43,7 @@ class Start:
     def __init__(self, window: Window) -> None:
         self._window = window
         self._frames = 0
-        window.ask(do(self.look))
+        window.queue_action(do(self.look))
 
     def look(self, session: Session) -> None:
         """Tell what the frame before this one has shown; leave when that was everything."""
@@ -56,7 +56,7 @@ class Start:
             print(MARKS[1], flush=True)
             saving.quit_lissom(session)
         else:
-            self._window.ask(do(self.look))
+            self._window.queue_action(do(self.look))
 
 
 def main() -> None:

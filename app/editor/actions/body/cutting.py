@@ -113,7 +113,7 @@ def pick(session: Session, project: Project, place: complex) -> None:
 
 def brush(session: Session, stroke: Stroke) -> None:
     """Keep or remove what a stroke covers."""
-    editing.edit_layer(session, shape_commands.brush, stroke)
+    editing.edit_layer(session, shape_commands.cut_with_brush, stroke)
 
 
 @with_project
@@ -128,7 +128,7 @@ def part(session: Session, project: Project, slit: Slit) -> None:
                 tone="error",
             )
             return
-    editing.edit_layer(session, shape_commands.part, slit)
+    editing.edit_layer(session, shape_commands.cut_with_line, slit)
 
 
 @with_project

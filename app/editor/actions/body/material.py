@@ -5,8 +5,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from app.document import brushed_stiffness, limb_of, material_commands
-from app.document.body import Bone
+from app.document import bone_region, brushed_stiffness, material_commands
+from app.document.rig import Bone
 from app.editor.actions import editing, playback, posing
 from app.editor.actions.body import cutting
 from app.editor.project import Project
@@ -55,7 +55,11 @@ def paint(session: Session, project: Project, places: Sequence[complex]) -> None
     if shown is None or tool is None:
         return
     at = np.array(places, dtype=np.complex128)
-    rest = shown.mesh.locate(at, shown.positions).on(shown.mesh.domain.mesh.vertices).tolist()
+    rest = (
+        shown.mesh.locate(at, shown.positions)
+        .positions_on(shown.mesh.domain.mesh.vertices)
+        .tolist()
+    )
     radius = cutting.brush_radius(project)
     amount = {"stiff": session.strength, "soft": 1 / min(session.strength, SOFTEST)}.get(tool, 1.0)
     _, is_reached = brushed_stiffness(
@@ -67,7 +71,7 @@ def paint(session: Session, project: Project, places: Sequence[complex]) -> None
             topic="material",
         )
         return
-    command = material_commands.paint(
+    command = material_commands.paint_stiffness(
         project.active, rest, radius=radius, amount=amount, softness=session.softness
     )
     editing.edit(session, command)
@@ -75,13 +79,13 @@ def paint(session: Session, project: Project, places: Sequence[complex]) -> None
 
 def clear(session: Session) -> None:
     """Take back all that is painted."""
-    editing.edit_layer(session, material_commands.clear)
+    editing.edit_layer(session, material_commands.clear_stiffness)
 
 
 @with_project
 def mirror(session: Session, project: Project) -> None:
     """Give both sides of the mirror axis what one of them has."""
-    editing.edit_layer(session, material_commands.mirror, project.document.pairs)
+    editing.edit_layer(session, material_commands.mirror_stiffness, project.document.pairs)
 
 
 @with_project
@@ -108,19 +112,19 @@ def remove_bone(session: Session, ends: tuple[int, int]) -> None:
 
 def set_bone(session: Session, ends: tuple[int, int], amount: float) -> None:
     """Set how stiff a bone is."""
-    editing.edit_layer(session, material_commands.set_bone_amount, ends, amount)
+    editing.edit_layer(session, material_commands.set_bone_stiffness, ends, amount)
 
 
 def show_bones(session: Session, *, shown: bool) -> None:
     """Show the bones, or hide them: they act either way."""
-    editing.edit_layer(session, material_commands.show_bones, shown=shown)
+    editing.edit_layer(session, material_commands.set_bones_visible, shown=shown)
 
 
 def refusal_of_bone(project: Project, ends: tuple[int, int]) -> str:
     """Return why there can be no bone between two handles; empty where there can be one."""
     layer = project.layer
     try:
-        limb_of(layer, Bone(ends=ends), layer.domain.outline)
+        bone_region(layer, Bone(ends=ends), layer.domain.outline)
     except (EngineError, LissomError) as error:
         return str(error)
     return ""
@@ -137,7 +141,7 @@ def suggest(session: Session, project: Project) -> None:
             continue
         outline, *holes = layer.domain.loops
         (depth,) = distance_to_boundary(outline, np.array([handle.position]), holes).tolist()
-        command = material_commands.paint(
+        command = material_commands.paint_stiffness(
             project.active, [handle.position], radius=AROUND * depth, amount=amount, softness=0.5
         )
         project.history.do(command, gesture=gesture)

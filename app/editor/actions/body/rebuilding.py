@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 
-from app.document import Target, loosened, shape_commands
+from app.document import Target, relax_limits, shape_commands
 from app.editor import promises
 from app.editor.action import do
 from app.editor.actions import editing, posing
@@ -12,7 +12,7 @@ from app.editor.failures import report, sentence
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work import Kind, Promise
-from app.solving import Renewal, go_on
+from app.solving import KeyResolver, step_resolver
 from engine.maps import Bounds
 
 RENEWING = Kind("Solving the keys")
@@ -38,9 +38,9 @@ def _set_bounds(session: Session, project: Project, bounds: Bounds) -> None:
     project.drafted_bounds = None
     certificates = [pose.certificate for pose in project.layer.poses]
     if all(bounds.allow(k=c.k, sigma_a=c.sigma_a, sigma_b=c.sigma_b) for c in certificates):
-        editing.edit_layer(session, shape_commands.set_bounds, bounds)
+        editing.edit_layer(session, shape_commands.set_limits, bounds)
     elif bounds != project.layer.bounds:
-        begin(session, Renewal(before=project.layer, bounds=bounds, pulls=False))
+        begin(session, KeyResolver(before=project.layer, bounds=bounds, solves_all=False))
 
 
 @with_project
@@ -49,23 +49,23 @@ def loosen(session: Session, project: Project, asked: Mapping[int, Target] | Non
 
     Handles that a hand could not bring to where they were asked are pulled there once more.
     """
-    bounds = loosened(project.layer.bounds)
+    bounds = relax_limits(project.layer.bounds)
     if bounds is None:
         return
     cancel(session)
     gesture = object()
     # What was allowed still is, so that no key has to be solved again.
-    project.history.do(shape_commands.set_bounds(project.active, bounds), gesture=gesture)
+    project.history.do(shape_commands.set_limits(project.active, bounds), gesture=gesture)
     posing.pull_again(session, asked or {}, gesture=gesture)
 
 
 @with_project
 def loosen_bounds(session: Session, project: Project) -> None:
     """Allow the next looser stretch on the way between the keys; poses stay as they are."""
-    bounds = loosened(project.layer.bounds)
+    bounds = relax_limits(project.layer.bounds)
     if bounds is not None:
         cancel(session)
-        project.history.do(shape_commands.set_bounds(project.active, bounds))
+        project.history.do(shape_commands.set_limits(project.active, bounds))
 
 
 def enter_bound(session: Session, bounds: Bounds, name: str, value: float) -> None:
@@ -86,7 +86,7 @@ def solve_again(session: Session) -> None:
 
 @with_project
 def _solve_again(session: Session, project: Project) -> None:
-    begin(session, Renewal(before=project.layer, bounds=project.layer.bounds))
+    begin(session, KeyResolver(before=project.layer, bounds=project.layer.bounds))
 
 
 def rebuild(session: Session) -> None:
@@ -97,7 +97,7 @@ def rebuild(session: Session) -> None:
 @with_project
 def _rebuild(session: Session, project: Project) -> None:
     layer, meshing = project.layer, project.meshing or project.layer.meshing
-    begin(session, Renewal(before=layer, bounds=layer.bounds, meshing=meshing))
+    begin(session, KeyResolver(before=layer, bounds=layer.bounds, meshing=meshing))
 
 
 @with_project
@@ -111,11 +111,11 @@ def maintain(session: Session, project: Project) -> None:
         project.stale = stale, session.clock()
     is_busy = session.pointer is not None or project.pending
     if not is_busy and session.clock() - project.stale[1] >= REST:
-        renewal = Renewal(before=stale, bounds=stale.bounds, meshing=stale.meshing)
+        renewal = KeyResolver(before=stale, bounds=stale.bounds, meshing=stale.meshing)
         _go_on(session, project, renewal)
 
 
-def _follows_cut_out(renewal: Renewal) -> bool:
+def _follows_cut_out(renewal: KeyResolver) -> bool:
     """Tell whether a domain is rebuilt only because its cut-out has changed."""
     return renewal.before.is_stale and renewal.meshing == renewal.before.meshing
 
@@ -130,13 +130,13 @@ def cancel(session: Session, project: Project) -> None:
 
 
 @with_project
-def begin(session: Session, project: Project, renewal: Renewal) -> None:
+def begin(session: Session, project: Project, renewal: KeyResolver) -> None:
     """Begin what replaces a layer's poses, in place of what is under way."""
     cancel(session)
     _go_on(session, project, renewal)
 
 
-def _go_on(session: Session, project: Project, renewal: Renewal) -> None:
+def _go_on(session: Session, project: Project, renewal: KeyResolver) -> None:
     if renewal.before not in project.document.layers:
         if _follows_cut_out(renewal):
             return  # and begins anew
@@ -148,7 +148,7 @@ def _go_on(session: Session, project: Project, renewal: Renewal) -> None:
     picture = project.puppets[renewal.before.id].picture.rgba
 
     def failed(error: Exception) -> None:
-        if renewal.replaces:
+        if renewal.replaces_picture:
             report(session, "The picture was not replaced", error)
             return
         builds = renewal.meshing is not None
@@ -160,31 +160,31 @@ def _go_on(session: Session, project: Project, renewal: Renewal) -> None:
         session,
         project,
         RENEWING,
-        lambda: go_on(renewal, picture),
+        lambda: step_resolver(renewal, picture),
         partial(_go_on, session, project),
         failed,
         promise=Promise(label=RENEWING.label, renewal=renewal),
     )
 
 
-def _accept(session: Session, project: Project, renewal: Renewal) -> None:
+def _accept(session: Session, project: Project, renewal: KeyResolver) -> None:
     if _follows_cut_out(renewal):
         project.history.extend_step(renewal.command)
     else:
         gesture = object()
         project.history.do(renewal.command, gesture=gesture)
-        if renewal.into is not None:
-            project.history.pose(None, gesture=gesture)
+        if renewal.new_layer is not None:
+            project.history.set_preview_pose(None, gesture=gesture)
             project.meshing = None
-    if renewal.replaces:
+    if renewal.replaces_picture:
         editing.follow_layers(project)
     for number, notice in enumerate(renewal.notices):
         # After every stroke: what was said of the one before is no news any more.
         session.tell(sentence(notice), topic=f"rebuilt {number}")
-    if renewal.outside:
-        poses = "pose" if len(renewal.outside) == 1 else "poses"
+    if renewal.unsolved:
+        poses = "pose" if len(renewal.unsolved) == 1 else "poses"
         session.tell(
-            f"The {poses} {', '.join(renewal.outside)} could not be brought within the limits. "
+            f"The {poses} {', '.join(renewal.unsolved)} could not be brought within the limits. "
             "Move the handles there nearer to the drawing, or undo.",
             tone="error",
         )

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from app.document import Command, Layer, Pose, UnkeyedPose, key_commands, retargeted
+from app.document import Command, Layer, Pose, PreviewPose, key_commands, with_all_targets
 from app.editor.failures import report
 from app.editor.project import Project
 from app.editor.session import Session
@@ -76,18 +76,18 @@ def _adopt_first(session: Session, project: Project, pull: Pull, pose: Pose) -> 
     if not frames:
         return False
     pull.frame = pull.frame if pull.frame in frames else min(frames)
-    pose = pull.brought_to(pose)(layer, retargeted(layer, pose))
+    pose = pull.brought_to(pose)(layer, with_all_targets(layer, pose))
     if not pull.is_keyed:
-        unkeyed = UnkeyedPose(layer=pull.layer, frame=pull.frame, pose=pose)
-        project.history.pose(unkeyed, gesture=pull.gesture)
+        unkeyed = PreviewPose(layer=pull.layer, frame=pull.frame, pose=pose)
+        project.history.set_preview_pose(unkeyed, gesture=pull.gesture)
         return True
     for frame in frames:
-        found = UnkeyedPose(layer=pull.layer, frame=frame, pose=pose)
+        found = PreviewPose(layer=pull.layer, frame=frame, pose=pose)
         command = replace(as_key(session, project, found), label="Move" if pull.ways else "Pose")
         project.history.do(command, gesture=pull.gesture)
-    left = project.history.unkeyed
+    left = project.history.preview_pose
     if left is not None and (left.layer, left.frame) == (pull.layer, pull.frame):
-        project.history.pose(None, gesture=pull.gesture)
+        project.history.set_preview_pose(None, gesture=pull.gesture)
     return True
 
 
@@ -104,9 +104,9 @@ def _frames_now(layer: Layer, pull: Pull) -> set[int]:
     return (alike - then.key_frames) | ({pull.frame} & layer.key_frames)
 
 
-def as_key(session: Session, project: Project, unkeyed: UnkeyedPose) -> Command:
+def as_key(session: Session, project: Project, unkeyed: PreviewPose) -> Command:
     """Return the command that gives a pose to the key at its frame, or inserts one with it."""
     layer, frame, pose = unkeyed.layer, unkeyed.frame, unkeyed.pose
     if frame in project.document.layer(layer).key_frames:
-        return key_commands.pose_key(layer, frame, pose)
+        return key_commands.replace_key_pose(layer, frame, pose)
     return key_commands.insert_key(layer, frame, pose, easing=session.preferences.easing)

@@ -8,15 +8,15 @@ from app.document import (
     Handle,
     handle_commands,
     layer_commands,
+    mirrored_handles_by_name,
     mirrored_name,
-    pairs_by_name,
     shape_commands,
 )
 from app.editor.action import do
 from app.editor.actions.posing.pulling import let_go
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.motion import Shown
+from app.motion import DisplayedFrame
 from engine import domain as domains
 from engine.domain import MeshedDomain
 from engine.geometry import contains, diameter
@@ -67,7 +67,7 @@ def suggest_handles(session: Session, project: Project) -> None:
         return
     names = {handle.name for handle in layer.handles}
     handles = [
-        Handle(id=0, name=layer_commands.numbered_name(name, names), position=place)
+        Handle(id=0, name=layer_commands.unique_name(name, names), position=place)
         for place, name in free
     ]
     gesture = object()
@@ -88,7 +88,7 @@ def _take_suggestions_back(
     """Remove the handles that were suggested; what was done since stays."""
     if session.project is not project:
         return
-    project.history.take_back(gesture)
+    project.history.revert(gesture)
     remaining = added & {handle.id for handle in project.layer.handles}
     if remaining:
         remove_handles(session, remaining)
@@ -99,7 +99,7 @@ def _take_suggestions_back(
 def mirror_handles(session: Session, project: Project) -> None:
     """Give each selected handle a partner on the other side of the mirror axis, named to match."""
     layer, words = project.layer, project.document.pairs
-    pairs = pairs_by_name(layer.handles, words)
+    pairs = mirrored_handles_by_name(layer.handles, words)
     alone = [handle for handle in layer.handles if handle.id in project.selected - pairs.keys()]
     gesture, outside = object(), 0
     partners: list[Handle] = []
@@ -149,7 +149,7 @@ def put_anchor(
         project.history.do(shape_commands.set_anchor(project.active, rest), gesture=gesture)
 
 
-def _at_rest(shown: Shown, place: complex) -> complex:
+def _at_rest(shown: DisplayedFrame, place: complex) -> complex:
     """Return the place, in the drawing at rest, of the point that is shown at a place."""
     found = shown.mesh.locate(np.array([place]), shown.positions)
-    return complex(found.on(shown.mesh.domain.mesh.vertices)[0])
+    return complex(found.positions_on(shown.mesh.domain.mesh.vertices)[0])

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from functools import partial
 
-from app.document import Clip, Pose, UnkeyedPose, clip_of
+from app.document import Clip, Pose, PreviewPose, clip_of
 from app.editor import promises
 from app.editor.action import do
 from app.editor.actions import playback
@@ -11,7 +11,7 @@ from app.editor.actions.posing.adopting import as_key
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work import Kind
-from app.solving import Rig, pose_at
+from app.solving import Rig, fit_shown_pose
 
 INSERTING = Kind("Inserting a key", "The key could not be inserted", "hand")
 
@@ -42,11 +42,11 @@ def insert_key_at(
     """Insert a key of the pose that a layer has at a frame; those of a gesture are one step."""
     if layer not in project.puppets:
         return
-    unkeyed = project.history.unkeyed
+    unkeyed = project.history.preview_pose
     if unkeyed is not None and (unkeyed.layer, unkeyed.frame) == (layer, frame):
         gesture = gesture or object()
         project.history.do(as_key(session, project, unkeyed), gesture=gesture)
-        project.history.pose(None, gesture=gesture)
+        project.history.set_preview_pose(None, gesture=gesture)
     elif frame not in project.document.layer(layer).key_frames:
         clip = clip_of(project.document, layer)
         take = partial(_insert, session, project, clip, frame, gesture)
@@ -69,7 +69,7 @@ def fit_pose(
     rig, sibling = Rig.of(clip.layer, puppet.rig), puppet.store.sampler
 
     def work() -> Pose:
-        return pose_at(rig, clip, frame, sibling)
+        return fit_shown_pose(rig, clip, frame, sibling)
 
     promises.begin(session, project, kind, work, take)
 
@@ -79,7 +79,7 @@ def _insert(
 ) -> None:
     layer = clip.layer.id
     if layer in project.puppets and clip_of(project.document, layer) == clip:
-        found = UnkeyedPose(layer=layer, frame=frame, pose=pose)
+        found = PreviewPose(layer=layer, frame=frame, pose=pose)
         project.history.do(as_key(session, project, found), gesture=gesture)
         if project.active == layer:
             project.chosen = frozenset({frame})

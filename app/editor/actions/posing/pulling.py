@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 
-from app.document import Pose, Target, resting_pose, time_of
+from app.document import Pose, Target, keyed_pose_at, segment_time_at
 from app.editor.actions import playback
 from app.editor.actions.posing.adopting import adopt
 from app.editor.actions.posing.solving import POSING, go_on
@@ -145,7 +145,7 @@ def take_back(session: Session, project: Project, gesture: object) -> None:
             pull.is_held = False
             if not pull.wishes:
                 give_up(session, project, pull)
-                project.history.take_back(pull.gesture)
+                project.history.revert(pull.gesture)
 
 
 def give_up(session: Session, project: Project, pull: Pull) -> None:
@@ -222,10 +222,10 @@ def _start(session: Session, project: Project, earlier: Pull | None) -> Start | 
     if layer.tracks or layer.springs:
         return None
     identities = [handle.id for handle in layer.handles]
-    places = shown.handle_places.tolist()
+    places = shown.handle_positions.tolist()
     return Start.at(
         dict(zip(identities, places, strict=True)),
-        dict(zip(identities, shown.handle_turns, strict=True)),
+        dict(zip(identities, shown.handle_rotations, strict=True)),
         {},
     )
 
@@ -235,4 +235,4 @@ def pose_here(session: Session, project: Project) -> Pose | None:
     if project.unkeyed is not None:
         return project.unkeyed
     clip = project.clip
-    return resting_pose(clip, time_of(clip, playback.current_frame(session, project)))
+    return keyed_pose_at(clip, segment_time_at(clip, playback.current_frame(session, project)))

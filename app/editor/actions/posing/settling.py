@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from app.document import Clip, clip_of, exchanged
+from app.document import Clip, clip_of, with_replaced_pose
 from app.editor.actions.posing.adopting import adopt
 from app.editor.actions.posing.solving import go_on, is_here
 from app.editor.project import Project
@@ -85,7 +85,7 @@ def _tried_clip(project: Project, pull: Pull) -> Clip | None:
         return None
     source = (project.document, pull.kept, pull.tried)
     if not pull.trial.follows(source):
-        document = exchanged(project.document, pull.kept, pull.brought_to(pull.tried))
+        document = with_replaced_pose(project.document, pull.kept, pull.brought_to(pull.tried))
         pull.trial.set(source, clip_of(document, pull.layer))
     return pull.trial.value
 

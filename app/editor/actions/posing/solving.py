@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import NamedTuple
 
-from app.document import Clip, Pose, Target, resting_pose, time_of
+from app.document import Clip, Pose, Target, keyed_pose_at, segment_time_at
 from app.editor.actions import playback
 from app.editor.actions.posing.adopting import adopt
 from app.editor.failures import ask_worker, report
@@ -12,7 +12,7 @@ from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.work import MOST_STEPS, Kind, Pull, Start, WishFrom, pulled_by, targets_of
 from app.motion import PoseSampler
-from app.solving import Drag, Rig, pose_at
+from app.solving import DragSolver, Rig, fit_shown_pose
 from engine.deform import Hand
 
 POSING = Kind("Posing", "This pose could not be found", "hand")
@@ -75,12 +75,12 @@ def is_there(session: Session, project: Project) -> bool:
     has_failed = store.has_failed(project.clip) or store.has_failed(project.clip, "correction")
     if project.unkeyed is not None or has_failed:
         return True
-    if shown is None or shown.stand_in is not None:
+    if shown is None or shown.placeholder is not None:
         return False
     if project.playhead.since is not None:
         # What is shown is always that of a moment ago, and nothing finds its own corrections.
         return True
-    return not shown.is_rough and shown.frame == playback.current_frame(session, project)
+    return not shown.is_approximate and shown.frame == playback.current_frame(session, project)
 
 
 class _Pace(NamedTuple):
@@ -103,7 +103,7 @@ class _Steps(NamedTuple):
     The start is what it began with, where it had to be worked out.
     """
 
-    drag: Drag
+    drag: DragSolver
     targets: Mapping[int, Target]
     hands: tuple[Hand, ...]
     taken: int
@@ -112,7 +112,7 @@ class _Steps(NamedTuple):
 
 
 def _take_steps(
-    drag: Drag | Callable[[], tuple[Drag, Pose]],
+    drag: DragSolver | Callable[[], tuple[DragSolver, Pose]],
     aim: Mapping[int, Target] | Sequence[WishFrom],
     hands: tuple[Hand, ...],
     pulled: frozenset[int],
@@ -121,7 +121,7 @@ def _take_steps(
 ) -> _Steps:
     """Go on with a drag, or begin it; on the worker thread."""
     begun, start = clock(), None
-    if not isinstance(drag, Drag):
+    if not isinstance(drag, DragSolver):
         drag, pose = drag()
         start = Start.of(drag.rig.layer, pose)
     if isinstance(aim, Mapping):
@@ -134,18 +134,22 @@ def _take_steps(
     while taken < pace.most and (
         taken == 0 or not (drag.is_over or clock() - begun >= pace.seconds)
     ):
-        drag = drag.towards(targets, 1, hands, pulled)
+        drag = drag.step_towards(targets, 1, hands, pulled)
         taken += 1
     return _Steps(drag, targets, hands, taken, clock() - begun, start)
 
 
 def _begin(
     clip: Clip, frame: int, before: Pose | None, rig: Rig | None, sibling: PoseSampler | None
-) -> tuple[Drag, Pose]:
+) -> tuple[DragSolver, Pose]:
     """Return the drag that begins with a pose, or with what is shown at a frame; and that pose."""
     rig = Rig.of(clip.layer, rig)
-    pose = before or resting_pose(clip, time_of(clip, frame)) or pose_at(rig, clip, frame, sibling)
-    return Drag.begin(rig, pose), pose
+    pose = (
+        before
+        or keyed_pose_at(clip, segment_time_at(clip, frame))
+        or fit_shown_pose(rig, clip, frame, sibling)
+    )
+    return DragSolver.begin(rig, pose), pose
 
 
 def _note(session: Session, project: Project, pull: Pull, steps: _Steps) -> None:
@@ -162,7 +166,7 @@ def _note(session: Session, project: Project, pull: Pull, steps: _Steps) -> None
     if (pull.targets, tuple(pull.hands.values())) == towards:
         pull.steps += steps.taken
     pull.drag, pull.solved = steps.drag, towards
-    newest = pull.take(steps.drag.pose(steps.targets))
+    newest = pull.take(steps.drag.make_pose(steps.targets))
     if pull.kept is None or is_here(session, project, pull):
         adopt(session, project, pull, newest)
     go_on(session, project)

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping
 
-from app.document import Target, falls_short, find_shortfall, loosened
+from app.document import Target, measure_target_errors, misses_target, relax_limits
 from app.editor.action import do
 from app.editor.actions import playback
 from app.editor.project import Project
@@ -34,14 +34,14 @@ def _tell(
     """Tell what stopped handles short of where they were pulled, and offer the remedy."""
     layer, pose = pull.clip.layer, pull.newest
     lacks = {i: abs(place.position - asked[i].position) for i, place in places.items()}
-    short = [i for i, lack in lacks.items() if falls_short(layer, lack)]
+    short = [i for i, lack in lacks.items() if misses_target(layer, lack)]
     if not short or pose is None:
         return
     name, others = layer.handle(short[0]).name, len(short) - 1
     who, its = (f"{name} and {others} more", "their") if others else (name, "its")
-    if not find_shortfall(layer, pose).at_limits:
+    if not measure_target_errors(layer, pose).at_limits:
         session.tell(f"{who} stopped where the other handles hold the shape.", topic="stopped")
-    elif loosened(layer.bounds) is None:
+    elif relax_limits(layer.bounds) is None:
         session.tell(STOPPED_AT_LIMIT.format(who=who, its=its), topic="stopped")
     else:
         session.tell(

@@ -35,16 +35,16 @@ def repeat(session: Session, project: Project) -> None:
     if stretch is None:
         return
     document, layers = project.document, _layers(project)
-    ends = [cycle_commands.end_of_repeats(document.layer(each), *stretch) for each in layers]
+    ends = [cycle_commands.end_of_cycle(document.layer(each), *stretch) for each in layers]
     until = min((end for end in ends if end is not None), default=None)
-    commands = [cycle_commands.repeat(each, *stretch, until) for each in layers]
+    commands = [cycle_commands.set_cycle(each, *stretch, until) for each in layers]
     editing.edit(session, Command("Repeat stretch", lambda now: _all_of(commands, layers, now)))
 
 
 @with_project
 def stop(session: Session, project: Project, frame: int | None = None) -> None:
     """Let what repeats at a frame, by default the present one, be there once."""
-    _change(session, project, frame, cycle_commands.stop)
+    _change(session, project, frame, cycle_commands.delete_cycle)
 
 
 @with_project
@@ -52,7 +52,7 @@ def make_keys(session: Session, project: Project, frame: int | None = None) -> N
     """Make the repeats at a frame, by default the present one, into keys of their own."""
     last = project.document.frames.last
     _change(
-        session, project, frame, lambda each, first: cycle_commands.make_keys(each, first, last)
+        session, project, frame, lambda each, first: cycle_commands.bake_cycle(each, first, last)
     )
 
 
@@ -86,8 +86,13 @@ def _layers(project: Project) -> list[int]:
 def _may_repeat(document: Document, identity: int) -> bool:
     """Tell whether a layer can have something to repeat: a still picture only beside its pose."""
     layer = document.layer(identity)
-    beside = (*layer.joints[1:], *layer.movement, *layer.opacities, *layer.placings)
-    in_time = beside or layer.switches or document.choice_of(identity) is not None
+    beside = (
+        *layer.attachments[1:],
+        *layer.transform_keys,
+        *layer.opacity_keys,
+        *layer.draw_order_keys,
+    )
+    in_time = beside or layer.visibility_keys or document.switch_group_of(identity) is not None
     return not layer.still or bool(in_time)
 
 

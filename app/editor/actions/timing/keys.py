@@ -7,7 +7,7 @@ from app.document import (
     Command,
     Easing,
     FrameRange,
-    Passing,
+    TangentMode,
     Variant,
     key_commands,
     scene_commands,
@@ -25,10 +25,10 @@ NO_LAST_FRAME = (
     "The last frame comes after frame {first} and is at most {most:,}, not {last:,}; type another."
 )
 EASE = editing.KeyVerb(key_commands.set_easing, track_commands.set_track_easing)
-PASS = editing.KeyVerb(key_commands.set_passing, track_commands.set_track_passing)
+PASS = editing.KeyVerb(key_commands.set_tangent_mode, track_commands.set_track_passing)
 REVERSE = editing.KeyVerb(key_commands.reverse_keys, track_commands.reverse_track_keys)
 SCALE = editing.KeyVerb(key_commands.scale_keys, track_commands.scale_track_keys)
-TURN = editing.KeyVerb(key_commands.set_turns)  # a track's keys turn by as much as they say
+TURN = editing.KeyVerb(key_commands.set_revolutions)  # a track's keys turn by as much as they say
 
 
 @with_project
@@ -62,7 +62,7 @@ def set_easing(session: Session, keys: KeysOf, easing: Easing) -> None:
     editing.edit(session, editing.change_keys(EASE, keys, easing))
 
 
-def set_passing(session: Session, keys: KeysOf, passing: Passing) -> None:
+def set_passing(session: Session, keys: KeysOf, passing: TangentMode) -> None:
     """Set how the motion passes keys."""
     editing.edit(session, editing.change_keys(PASS, keys, passing))
 
@@ -76,10 +76,10 @@ def set_turns(session: Session, keys: KeysOf, turns: int) -> None:
 def pass_otherwise(session: Session, project: Project) -> None:
     """Pass the chosen keys in the next way, or the key at the playhead or before it."""
     keys = _chosen_or_here(session, project)
-    passings = list(Passing)
+    passings = list(TangentMode)
     row = project.row if project.row in keys else next(iter(keys))
     frame = min(keys[row])
-    first = next(k.shown_passing for k in keys_in(project.document, row) if k.frame == frame)
+    first = next(k.shown_tangent_mode for k in keys_in(project.document, row) if k.frame == frame)
     set_passing(session, keys, passings[(passings.index(first) + 1) % len(passings)])
 
 
@@ -145,7 +145,7 @@ def _rearrange(session: Session, project: Project, command: Command) -> None:
 
 def match_ends(session: Session) -> None:
     """Give the last key the pose of the first one."""
-    editing.edit_layer(session, key_commands.match_ends)
+    editing.edit_layer(session, key_commands.match_loop_ends)
 
 
 @with_project
@@ -177,14 +177,14 @@ def play_all(session: Session) -> None:
 def start_preview_here(session: Session, project: Project) -> None:
     """Let the preview range begin at the playhead."""
     frame = playback.current_frame(session, project)
-    _set_preview(session, project, frame, max(frame, project.document.played.last))
+    _set_preview(session, project, frame, max(frame, project.document.played_frames.last))
 
 
 @with_project
 def end_preview_here(session: Session, project: Project) -> None:
     """Let the preview range end at the playhead."""
     frame = playback.current_frame(session, project)
-    _set_preview(session, project, min(frame, project.document.played.first), frame)
+    _set_preview(session, project, min(frame, project.document.played_frames.first), frame)
 
 
 def _set_preview(session: Session, project: Project, first: int, last: int) -> None:

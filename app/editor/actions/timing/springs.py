@@ -12,7 +12,7 @@ from app.editor import promises
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work import Kind
-from app.motion import PoseSampler, animation_at, carried_in
+from app.motion import PoseSampler, find_parent_motion, layer_animation
 from engine.arrays import Complexes, Indices
 from engine.geometry import diameter
 from engine.geometry.kinematics import fit_keys
@@ -50,7 +50,9 @@ def _measure(
     without = track_commands.remove_springs(identity, (handle,))(document)
     point = np.array([document.layer(identity).handle(handle).position])
     swinging, resting = (
-        animation_at(each, identity, point, siblings, carried_in(each, identity, siblings))
+        layer_animation(
+            each, identity, point, siblings, find_parent_motion(each, identity, siblings)
+        )
         for each in (document, without)
     )
     frames = np.arange(document.frames.first, document.frames.last + 1)

@@ -220,11 +220,11 @@ def _moved(drag: TimeDrag, frame: float) -> tuple[TimeDrag, Command] | None:
             return drag, _end_cycle(drag, round(frame))
         case SwitchDrag(layer=layer, switch=switch):
             at = before.frames.clamp(switch + by)
-            others = {each.frame for each in before.layer(layer).switches} - {switch}
-            command = layer_commands.move_switch(layer, switch, at)
+            others = {each.frame for each in before.layer(layer).visibility_keys} - {switch}
+            command = layer_commands.move_visibility_key(layer, switch, at)
         case TurnDrag(choice=choice, turn=turn):
             at = before.frames.clamp(turn + by)
-            others = {each.frame for each in before.choice(choice).turns} - {turn}
+            others = {each.frame for each in before.switch_group(choice).keys} - {turn}
             others.add(before.frames.first)
             command = choice_commands.move_turn(choice, turn, at)
         case _:
@@ -235,24 +235,24 @@ def _moved(drag: TimeDrag, frame: float) -> tuple[TimeDrag, Command] | None:
 def _end_cycle(drag: CycleDrag, frame: int) -> Command:
     """Return the command that puts the dragged end of a cycle where the pointer is, or near."""
     layer = drag.before.layer(drag.layer)
-    cycle = cycle_commands.cycle_from(layer, drag.first)
+    cycle = cycle_commands.cycle_starting_at(layer, drag.first)
     last, until = cycle.last, cycle.until
     if drag.is_stretch:
-        cycle = cycle_commands.stretched_to(layer, cycle, min(frame, drag.before.frames.last))
+        cycle = cycle_commands.with_cycle_end(layer, cycle, min(frame, drag.before.frames.last))
         last, until = cycle.last, cycle.until
     else:
-        until = cycle_commands.nearest_end(layer, cycle, frame, drag.before.frames.last)
-    return cycle_commands.repeat(drag.layer, drag.first, last, until)
+        until = cycle_commands.nearest_cycle_end(layer, cycle, frame, drag.before.frames.last)
+    return cycle_commands.set_cycle(drag.layer, drag.first, last, until)
 
 
 def _trim(drag: EdgeDrag, pointed: float) -> Command:
     """Return the command that puts the dragged end where the pointer is."""
     document = drag.before
-    frames, played = document.frames, document.played
+    frames, played = document.frames, document.played_frames
     frame = frames.clamp(round(pointed))
     match drag.edge:
         case "animation end":
-            last_key = max(layer.ends[1] for layer in document.layers)
+            last_key = max(layer.keyed_range[1] for layer in document.layers)
             least = max(last_key, frames.first + 1)
             last = min(max(round(pointed), least), LAST_FRAME)
             return scene_commands.set_frames(FrameRange(frames.first, last))

@@ -23,7 +23,7 @@ from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.timeline_view import seen_at
 from app.editor.work import Kind
-from app.motion import PoseSampler, animation_at, carried_in
+from app.motion import PoseSampler, find_parent_motion, layer_animation
 from engine.geometry import HERE, RigidMotion
 
 AROUND = 1 / 64  # frames beside a key, between which its velocity is measured
@@ -88,8 +88,8 @@ def _key(session: Session, project: Project, track: Track, gesture: object) -> N
 
     at = track_at(track, clip, frame)
     if at is not None:
-        put(at.place, at.turn if track.turns else None)
-    elif not track.planted:
+        put(at.place, at.turn if track.keys_rotation else None)
+    elif not track.is_scene_space:
         put(0j)
     else:
         place = partial(_beside, project.document, layer, track, [frame], project.samplers)
@@ -144,8 +144,8 @@ def _beside(
 ) -> list[_Beside]:
     """Return where the first handle of a track is in some frames without it."""
     point = np.array([layer.handle(track.handles[0]).position])
-    carried = carried_in(document, layer.id, siblings)
-    animation = animation_at(document, layer.id, point, siblings, carried)
+    carried = find_parent_motion(document, layer.id, siblings)
+    animation = layer_animation(document, layer.id, point, siblings, carried)
     found = []
     for frame in frames:
         still = animation.base.frame(frame)
@@ -159,7 +159,7 @@ def _beside(
 def plant(session: Session, project: Project, handle: int, planted: bool) -> None:  # noqa: FBT001
     """Let a track's keys be places in the picture, or beside the pose; none moves by that."""
     layer, track = project.layer, project.layer.track_of(handle)
-    if track is None or track.planted == planted:
+    if track is None or track.is_scene_space == planted:
         return
     around = [_frames_around(project.document, track, key) for key in track.keys]
     frames = [frame for each in around for frame in each]

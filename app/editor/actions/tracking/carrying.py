@@ -59,7 +59,7 @@ def turn(session: Session, project: Project, handle: int, angle: float, *, gestu
     track, shown = project.layer.track_of(handle), project.puppet.shown
     if track is None or shown is None:
         return
-    if not track.turns:
+    if not track.keys_rotation:
         command = track_commands.set_turning(project.active, handle, turns=True)
         project.history.do(command, gesture=gesture)
         session.tell("The keys of its track turn the shape now, too.", topic="turning")
@@ -67,7 +67,7 @@ def turn(session: Session, project: Project, handle: int, angle: float, *, gestu
         held.turn = angle
         return
     playback.halt(session)
-    frame, place = playback.current_frame(session, project), shown.handle_places
+    frame, place = playback.current_frame(session, project), shown.handle_positions
     begun = Carry(
         layer=project.active,
         handle=handle,

@@ -7,7 +7,7 @@ from app.document import Document, Track, track_at
 from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.timeline_view import own_frame
-from app.motion import Ground
+from app.motion import BaseMotionFrame
 
 
 def key_frame(session: Session, document: Document, track: Track, frame: int) -> int | None:
@@ -21,7 +21,7 @@ def key_frame(session: Session, document: Document, track: Track, frame: int) ->
     return own
 
 
-def ground_at(project: Project, frame: int) -> Ground | None:
+def ground_at(project: Project, frame: int) -> BaseMotionFrame | None:
     """Return what tracks are relative to at a frame, if it is known yet."""
     corrected = project.puppet.corrected
     return None if corrected is None else corrected.ground(frame)
@@ -41,12 +41,12 @@ def wished(project: Project, track: Track, frame: int) -> complex | None:
     shown = project.puppet.shown
     if at is None or shown is None:
         return None
-    if track.planted:
+    if track.is_scene_space:
         return project.placements([frame], shown.placement)[0].back(at.place)
     if ground is None:
         return None
     index = index_of(project, track.handles[0])
-    return complex(ground.places[index] + at.place * ground.turns[index])
+    return complex(ground.positions[index] + at.place * ground.rotations[index])
 
 
 def wished_turn(project: Project, handle: int, frame: int) -> float | None:
@@ -55,10 +55,10 @@ def wished_turn(project: Project, handle: int, frame: int) -> float | None:
     None where it turns nothing, or where that is not known yet.
     """
     track, ground = project.layer.track_of(handle), ground_at(project, frame)
-    at = None if track is None or not track.turns else track_at(track, project.clip, frame)
+    at = None if track is None or not track.keys_rotation else track_at(track, project.clip, frame)
     if at is None or ground is None:
         return None
-    return at.turn + cmath.phase(ground.turns[index_of(project, handle)])
+    return at.turn + cmath.phase(ground.rotations[index_of(project, handle)])
 
 
 def turn_beside(project: Project, handle: int, frame: int, turn: float) -> float | None:
@@ -72,7 +72,7 @@ def turn_beside(project: Project, handle: int, frame: int, turn: float) -> float
         return None
     at = None if track is None else track_at(track, project.clip, frame)
     near = 0.0 if at is None else at.turn
-    beside = turn - cmath.phase(ground.turns[index_of(project, handle)])
+    beside = turn - cmath.phase(ground.rotations[index_of(project, handle)])
     return beside + math.tau * round((near - beside) / math.tau)
 
 
@@ -82,7 +82,7 @@ def kept(project: Project, handle: int, frame: int, place: complex) -> complex |
     A handle without a track gets one with the pose. None where it is not known yet.
     """
     track, shown = project.layer.track_of(handle), project.puppet.shown
-    if track is not None and track.planted:
+    if track is not None and track.is_scene_space:
         if shown is None:
             return None
         (placement,) = project.placements([frame], shown.placement)
@@ -91,4 +91,4 @@ def kept(project: Project, handle: int, frame: int, place: complex) -> complex |
     if ground is None:
         return None
     index = index_of(project, handle)
-    return complex((place - ground.places[index]) * ground.turns[index].conjugate())
+    return complex((place - ground.positions[index]) * ground.rotations[index].conjugate())

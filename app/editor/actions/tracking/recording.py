@@ -12,7 +12,7 @@ from app.editor.session import CLICK, Session, with_project
 from app.editor.timeline_view import own_frame
 from app.editor.work import Carry, Sample, Take
 from app.errors import LissomError
-from app.motion import Ground, corrected_clip
+from app.motion import BaseMotionFrame, reuse_corrections
 from engine.geometry import RigidMotion
 from engine.geometry.kinematics import fit_keys
 
@@ -51,7 +51,7 @@ def begin_take(
     session.records = False
     track, document, standing = project.layer.track_of(handle), project.document, project.playhead
     running = replace(standing, speed=session.recording_speed).play(document, session.clock())
-    frames, played = document.frames, document.played
+    frames, played = document.frames, document.played_frames
     # Over the seam of a loop it goes on, at most once round; that of a part of it is a jump.
     goes_round = document.loop and played == frames
     project.playhead = running
@@ -130,7 +130,7 @@ def maintain(session: Session, project: Project) -> None:
     """Go on with what hands do with tracks; once a frame."""
     if not (project.carries or project.take):
         return
-    project.puppet.corrected = corrected_clip(
+    project.puppet.corrected = reuse_corrections(
         project.document, project.active, project.puppet.corrected
     )
     go_on(session, project)
@@ -239,7 +239,7 @@ def _fitted(
 
 def _values(project: Project, take: Take) -> list[complex] | None:
     """Return what was recorded as the track's keys have it; None until all of it is known."""
-    if take.before is not None and take.before.planted:
+    if take.before is not None and take.before.is_scene_space:
         return [sample.place for sample in take.samples]
     index, values = index_of(project, take.handle), []
     for time, place in take.samples:
@@ -258,10 +258,10 @@ def _values(project: Project, take: Take) -> list[complex] | None:
     return values
 
 
-def _beside(ground: Ground, placement: RigidMotion, index: int, place: complex) -> complex:
+def _beside(ground: BaseMotionFrame, placement: RigidMotion, index: int, place: complex) -> complex:
     """Return by how much a place of the scene is beside a handle's, in the axes of the shape."""
-    beside = placement.back(place) - ground.places[index]
-    return complex(beside * ground.turns[index].conjugate())
+    beside = placement.back(place) - ground.positions[index]
+    return complex(beside * ground.rotations[index].conjugate())
 
 
 def _wrapped(project: Project, frame: int) -> int:

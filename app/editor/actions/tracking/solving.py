@@ -8,7 +8,7 @@ from app.editor.failures import report
 from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.work import Job, Kind, Puppet
-from app.motion import CorrectedFrames, FoundCorrections
+from app.motion import CorrectedFrames, CorrectionUpdate
 
 COMPLAINT = "The handles cannot follow their tracks"
 CORRECTING = Kind("Corrections", COMPLAINT)
@@ -16,7 +16,7 @@ FOLLOWING = Kind("Frame correction", COMPLAINT, "hand")
 # What the tracks of handles that a hand may carry are relative to.
 GROUNDING = Kind("Places on tracks", COMPLAINT, "hand")
 
-Work = Callable[[], FoundCorrections]
+Work = Callable[[], CorrectionUpdate]
 
 
 def is_under_way(session: Session, project: Project) -> bool:
@@ -84,14 +84,14 @@ def _job(
 ) -> Job:
     """Return a job for some corrections; what fails is not tried again for the same keys."""
 
-    def done(found: FoundCorrections) -> None:
+    def done(found: CorrectionUpdate) -> None:
         # The hand may have gone on since.
         if puppet.corrected is not None:
             puppet.corrected.take(found, is_newest=kind == FOLLOWING)
             project.make_room()
 
     def failed(error: Exception) -> None:
-        puppet.store.fail("correction", clip)
+        puppet.store.mark_failed("correction", clip)
         report(session, kind.complaint, error)
 
     return Job(kind=kind, work=work, done=done, failed=failed)

@@ -117,7 +117,7 @@ class Boning(Tool):
         if shown is None:
             return {}
         handles = shown.clip.layer.handles
-        places = shown.handle_places.tolist()
+        places = shown.handle_positions.tolist()
         return {handle.id: place for handle, place in zip(handles, places, strict=True)}
 
     def _near(self, session: Session, place: complex) -> int | None:

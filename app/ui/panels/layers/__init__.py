@@ -5,4 +5,4 @@ Out: actions.
 Imports: `app.ui.style`, `app.ui.shortcuts`.
 """
 
-from app.ui.panels.layers.tab import draw as draw
+from app.ui.panels.layers.tab import draw_layers_panel as draw_layers_panel

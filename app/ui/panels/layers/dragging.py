@@ -4,14 +4,16 @@ from imgui_bundle import ImVec2, imgui
 
 from app.document import TreeRow
 from app.editor import Action, Project, do, layering
-from app.ui.style import Look, ink
+from app.ui.style import Look, colour_u32
 
 MOVED = "layer"  # what is dragged from row to row
 ONTO = 0.25  # of a row's height: from where on, at its edges, a drop is beside it
 PULL = 0.25  # em by which the list scrolls in each frame while a row is dragged at its edge
 
 
-def drag_row(look: Look, project: Project, row: TreeRow, low: ImVec2, high: ImVec2) -> list[Action]:
+def drag_layer_row(
+    look: Look, project: Project, row: TreeRow, low: ImVec2, high: ImVec2
+) -> list[Action]:
     """Let a row, the last item, be dragged between two others, or onto one.
 
     Onto a layer it hangs on it, in a group or a choice it is one of them. The row of a group or a
@@ -61,8 +63,8 @@ def _onto(project: Project, row: TreeRow, identity: int) -> Action | None:
         return None
     if row.group is not None:
         return do(layering.take_in, row.group.name, *dragged)
-    if row.choice is not None:
-        return do(layering.join, row.choice.name, *dragged)
+    if row.switch_group is not None:
+        return do(layering.join, row.switch_group.name, *dragged)
     # Where that would be a circle, it says so, and nothing moves.
     return do(layering.hang_together, row.layers[0], *dragged)
 
@@ -82,7 +84,7 @@ def _beside(project: Project, identity: int, dragged: int, *, is_above: bool) ->
 
 def _show(look: Look, low: ImVec2, high: ImVec2, *, is_onto: bool, is_above: bool) -> None:
     """Show where what is dragged comes: a frame around a row, or a line beside it."""
-    draw_list, colour = imgui.get_window_draw_list(), ink(look.palette.accent)
+    draw_list, colour = imgui.get_window_draw_list(), colour_u32(look.palette.accent)
     thick = 0.14 * look.em
     if is_onto:
         draw_list.add_rect(low, high, colour, 0.25 * look.em, thickness=thick)

@@ -4,31 +4,31 @@ from collections.abc import Sequence
 
 from imgui_bundle import icons_fontawesome_6 as icons, imgui
 
-from app.document import Choice, Group, Layer, TreeRow, whole_groups
+from app.document import Group, Layer, SwitchGroup, TreeRow, subgroups_with_layers
 from app.editor import Action, Project, do, layering
 from app.ui.shortcuts import BINDINGS
-from app.ui.style import tip
+from app.ui.style import draw_tooltip
 
 SOLO = icons.ICON_FA_BINOCULARS
 item = imgui.internal.menu_item_ex  # as menu_item_simple, with icons in a column
 
 
-def draw_menu(project: Project, row: TreeRow) -> tuple[list[Action], bool]:
+def draw_layer_menu(project: Project, row: TreeRow) -> tuple[list[Action], bool]:
     """Draw the menu of a row, the last item; return also whether a name is asked for."""
     if not imgui.begin_popup_context_item(f"menu of layer {row.key}"):
         return [], False
-    asks = item("Rename…", icons.ICON_FA_PEN, BINDINGS["rename layer"].keys_in_words)
+    asks = item("Rename…", icons.ICON_FA_PEN, BINDINGS["rename layer"].shown_keys)
     if row.layer is not None:
         actions = _of_layer(project, row.layer)
-    elif row.choice is not None:
-        actions = _of_choice(project, row.choice)
+    elif row.switch_group is not None:
+        actions = _draw_switch_items(project, row.switch_group)
     else:
         actions = [] if row.group is None else _of_group(project, row, row.group)
     imgui.end_popup()
     return actions, asks
 
 
-def kept_whole(groups: Sequence[str]) -> str:
+def explain_unswitchable_groups(groups: Sequence[str]) -> str:
     """Return why groups in a group take no turns, and what to do instead."""
     named = ", ".join(groups)
     return (
@@ -64,10 +64,12 @@ def _of_layer(project: Project, layer: Layer) -> list[Action]:
         actions.append(do(layering.group_together))
     if layer.group and item("Take out of the group", icons.ICON_FA_FOLDER_MINUS):
         actions.append(do(layering.group, layer.group.rpartition("/")[0], *whom))
-    free = is_many and all(project.document.choice_of(each) is None for each in chosen)
+    free = is_many and all(project.document.switch_group_of(each) is None for each in chosen)
     if item("Let them take turns", icons.ICON_FA_MASKS_THEATER, enabled=free):
         actions.append(do(layering.form, *chosen))
-    if project.document.choice_of(identity) and item("Take out of the choice", icons.ICON_FA_XMARK):
+    if project.document.switch_group_of(identity) and item(
+        "Take out of the choice", icons.ICON_FA_XMARK
+    ):
         actions.append(do(layering.leave, identity))
     imgui.separator()
     left = len(project.document.layers) > len(whom)
@@ -86,7 +88,7 @@ def _kind(layer: Layer) -> list[Action]:
     return actions
 
 
-def _of_choice(project: Project, choice: Choice) -> list[Action]:
+def _draw_switch_items(project: Project, choice: SwitchGroup) -> list[Action]:
     imgui.separator()
     actions = [
         do(layering.show_here, identity)
@@ -112,14 +114,14 @@ def _of_group(project: Project, row: TreeRow, group: Group) -> list[Action]:
     alone = project.solo == set(row.layers)
     if item("Look at all again" if alone else "Look at it alone", SOLO):
         actions.append(do(layering.look_at_alone, *row.layers))
-    whole = whole_groups(project.document, group.name)
+    whole = subgroups_with_layers(project.document, group.name)
     free = len(row.layers) > 1 and all(
-        project.document.choice_of(each) is None for each in row.layers
+        project.document.switch_group_of(each) is None for each in row.layers
     )
     if item("Let its layers take turns", icons.ICON_FA_MASKS_THEATER, enabled=free and not whole):
         actions.append(do(layering.form, *row.layers, name=row.name))
     if whole:
-        tip(kept_whole(whole))
+        draw_tooltip(explain_unswitchable_groups(whole))
     imgui.separator()
     if item("Ungroup", icons.ICON_FA_FOLDER_MINUS):
         actions.append(do(layering.ungroup, group.name))

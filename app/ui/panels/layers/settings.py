@@ -4,34 +4,38 @@ from imgui_bundle import ImVec2, imgui
 
 from app.document import (
     BLENDS,
-    Choice,
     Document,
     Group,
     Layer,
+    SwitchGroup,
     change_frame,
     is_visible,
     with_repeats,
 )
 from app.editor import Action, Project, do, layering
-from app.ui.panels.layers.in_time import draw_movement, draw_opacity, draw_order
+from app.ui.panels.layers.channels import (
+    draw_opacity_channel,
+    draw_order_channel,
+    draw_transform_channel,
+)
 from app.ui.style import (
     FILL,
     LABEL_WIDTH,
     Look,
     Scale,
+    draw_tooltip,
     label,
-    shortened,
+    shorten_text,
     slider,
-    small,
+    small_text,
     text_button,
-    tip,
 )
 
 PERCENT = Scale(left=0, right=100)
 NOTHING = "nothing"
 
 
-def draw_settings(project: Project, look: Look, layer: Layer, frame: int) -> list[Action]:
+def draw_layer_settings(project: Project, look: Look, layer: Layer, frame: int) -> list[Action]:
     """Draw the settings of a layer at a frame."""
     actions = []
     identity = layer.id
@@ -41,7 +45,7 @@ def draw_settings(project: Project, look: Look, layer: Layer, frame: int) -> lis
     )
     if entered or (imgui.is_item_deactivated_after_edit() and name != layer.name):
         actions.append(do(layering.rename, identity, name))
-    actions += draw_opacity(project.document, look, layer, frame)
+    actions += draw_opacity_channel(project.document, look, layer, frame)
     label(look, "Blend")
     if imgui.begin_combo("##blend", layer.blend):
         actions += [
@@ -50,23 +54,25 @@ def draw_settings(project: Project, look: Look, layer: Layer, frame: int) -> lis
             if imgui.selectable(blend, blend == layer.blend)[0]
         ]
         imgui.end_combo()
-    tip("How its colours meet those of what lies behind: multiply darkens, screen lightens")
+    draw_tooltip(
+        "How its colours meet those of what lies behind: multiply darkens, screen lightens"
+    )
     changed, _ = imgui.checkbox("Clipped", layer.clipped)
-    tip("Seen only where that is which lies below it in its group")
+    draw_tooltip("Seen only where that is which lies below it in its group")
     if changed:
         actions.append(do(layering.clip, identity))
     for group in project.document.groups_around(layer.group):
         actions += _group(look, group)
     changed, _ = imgui.checkbox("Reference only", layer.reference)
-    tip("Seen while you work, left out of exports")
+    draw_tooltip("Seen while you work, left out of exports")
     if changed:
         actions.append(do(layering.refer, identity))
-    actions += _switch(project.document, look, layer, frame)
-    actions += _joint(project, look, layer, frame)
-    actions += draw_movement(project.document, look, layer, frame)
-    actions += draw_order(project.document, look, layer, frame)
+    actions += _draw_visibility(project.document, look, layer, frame)
+    actions += _draw_parent(project, look, layer, frame)
+    actions += draw_transform_channel(project.document, look, layer, frame)
+    actions += draw_order_channel(project.document, look, layer, frame)
     if layer.still:
-        small(look, "A still picture: it is shown as it was drawn.")
+        small_text(look, "A still picture: it is shown as it was drawn.")
         if imgui.button("Let it be posed", ImVec2(FILL, 0)):
             actions.append(do(layering.stand_up, identity))
     elif imgui.button("Make it a still picture", ImVec2(FILL, 0)):
@@ -79,22 +85,22 @@ def _group(look: Look, group: Group) -> list[Action]:
     actions = []
     imgui.push_id(group.name)
     name = group.name.rpartition("/")[2]
-    label(look, shortened(f"In {name}", (LABEL_WIDTH - 0.5) * look.em))
+    label(look, shorten_text(f"In {name}", (LABEL_WIDTH - 0.5) * look.em))
     hint = f"How much all layers of the group {group.name} together cover of what lies behind"
     faded = slider(look, "opacity", 100 * group.opacity, PERCENT, text="%.0f %%", hint=hint)
     if faded is not None:
         actions.append(do(layering.fade_group, group.name, min(max(faded.value / 100, 0.0), 1.0)))
-    if imgui.checkbox(shortened(f"Hide all of {name}", 14 * look.em), group.hidden)[0]:
+    if imgui.checkbox(shorten_text(f"Hide all of {name}", 14 * look.em), group.hidden)[0]:
         actions.append(do(layering.show_group, group.name))
     imgui.pop_id()
     return actions
 
 
-def _switch(document: Document, look: Look, layer: Layer, frame: int) -> list[Action]:
+def _draw_visibility(document: Document, look: Look, layer: Layer, frame: int) -> list[Action]:
     """Draw what shows or hides a layer from the present frame on."""
-    choice = document.choice_of(layer.id)
+    choice = document.switch_group_of(layer.id)
     if choice is not None:
-        return _turns(document, look, choice, layer, frame)
+        return _draw_switch_keys(document, look, choice, layer, frame)
     actions = []
     is_seen = is_visible(document, layer, frame)
     text = f"{'Hide' if is_seen else 'Show'} from frame {frame} on"
@@ -107,23 +113,25 @@ def _switch(document: Document, look: Look, layer: Layer, frame: int) -> list[Ac
     )
     if text_button(text, FILL, hint):
         actions.append(do(layering.switch_here, layer.id))
-    keyed = change_frame(layer.switches, layer.cycles, frame)
-    is_switched = any(switch.frame == keyed for switch in layer.switches)
+    keyed = change_frame(layer.visibility_keys, layer.cycles, frame)
+    is_switched = any(switch.frame == keyed for switch in layer.visibility_keys)
     if is_switched and imgui.button(f"No change at frame {frame}", ImVec2(FILL, 0)):
         actions.append(do(layering.unswitch_here, layer.id))
-    if layer.switches:
-        told = (f"{'shown' if s.visible else 'hidden'} from {s.frame}" for s in layer.switches)
-        small(look, "This layer is " + ", ".join(told) + ".")
+    if layer.visibility_keys:
+        told = (
+            f"{'shown' if s.visible else 'hidden'} from {s.frame}" for s in layer.visibility_keys
+        )
+        small_text(look, "This layer is " + ", ".join(told) + ".")
     return actions
 
 
-def _turns(
-    document: Document, look: Look, choice: Choice, layer: Layer, frame: int
+def _draw_switch_keys(
+    document: Document, look: Look, choice: SwitchGroup, layer: Layer, frame: int
 ) -> list[Action]:
     """Draw which layer of a choice is seen from the present frame on."""
     actions = []
-    label(look, shortened(choice.name, (LABEL_WIDTH - 0.5) * look.em))
-    seen = with_repeats(document, choice).at(frame)
+    label(look, shorten_text(choice.name, (LABEL_WIDTH - 0.5) * look.em))
+    seen = with_repeats(document, choice).layer_at(frame)
     if imgui.begin_combo("##turn", document.layer(seen).name):
         actions += [
             do(layering.show_here, each)
@@ -131,24 +139,24 @@ def _turns(
             if imgui.selectable(f"{document.layer(each).name}###turn {each}", each == seen)[0]
         ]
         imgui.end_combo()
-    tip(f"Which of these layers is seen from frame {frame} on")
+    draw_tooltip(f"Which of these layers is seen from frame {frame} on")
     if text_button("Take it out of the choice", FILL, "It is seen when it was, by itself"):
         actions.append(do(layering.leave, layer.id))
     return actions
 
 
-def _joint(project: Project, look: Look, layer: Layer, frame: int) -> list[Action]:
+def _draw_parent(project: Project, look: Look, layer: Layer, frame: int) -> list[Action]:
     """Draw what a layer hangs on at the present frame, and from which frames on."""
     document = project.document
 
     def can_carry(other: Layer) -> bool:
         return not layering.hangs_on(project, other.id, layer.id)
 
-    if not layer.joints and not any(map(can_carry, document.layers)):
+    if not layer.attachments and not any(map(can_carry, document.layers)):
         return []
     actions = []
-    joint = document.joint_at(layer, frame)
-    parent = None if joint is None or joint.to is None else document.layer(joint.to)
+    joint = document.attachment_at(layer, frame)
+    parent = None if joint is None or joint.parent is None else document.layer(joint.parent)
     label(look, "Attached to")
     if imgui.begin_combo("##attached to", NOTHING if parent is None else parent.name):
         if imgui.selectable(NOTHING, parent is None)[0] and parent is not None:
@@ -159,45 +167,45 @@ def _joint(project: Project, look: Look, layer: Layer, frame: int) -> list[Actio
             if imgui.selectable(f"{other.name}###parent {other.id}", other is parent)[0]
         ]
         imgui.end_combo()
-    tip("The layer moves with the place of the other one that is under its anchor now")
+    draw_tooltip("The layer moves with the place of the other one that is under its anchor now")
     if joint is not None and parent is not None:
-        changed, turns = imgui.checkbox("Turns with it", joint.turns)
+        changed, turns = imgui.checkbox("Turns with it", joint.inherits_rotation)
         if changed:
             actions.append(do(layering.turn_with, layer.id, turns))
     if frame > document.frames.first:
-        actions += _hand_over(project, look, layer, frame)
+        actions += _draw_reparent(project, look, layer, frame)
     return actions
 
 
-def _hand_over(project: Project, look: Look, layer: Layer, frame: int) -> list[Action]:
+def _draw_reparent(project: Project, look: Look, layer: Layer, frame: int) -> list[Action]:
     """Draw what lets a layer hang on something else from the present frame on."""
     actions: list[Action] = []
-    document, joint = project.document, layer.keyed_joint(frame)
-    now = None if joint is None else joint.to
+    document, joint = project.document, layer.attachment_key_at(frame)
+    now = None if joint is None else joint.parent
     if text_button(f"Hand over from frame {frame} on…", FILL, "Nothing jumps at that frame"):
         imgui.open_popup("hand over")
     if imgui.begin_popup("hand over"):
         if imgui.menu_item_simple("Let it go", enabled=now is not None):
             actions.append(do(layering.hand_over, layer.id, None))
         for other in reversed([each for each in document.layers if each is not layer]):
-            is_circle = any(each is layer for each in document.carriers(other.id, frame))
+            is_circle = any(each is layer for each in document.parent_chain(other.id, frame))
             name = f"To {other.name}###to {other.id}"
             if imgui.menu_item_simple(name, enabled=not is_circle and other.id != now):
                 actions.append(do(layering.hand_over, layer.id, other.id))
             if is_circle:
-                tip(f"At frame {frame} it hangs on {layer.name} itself")
+                draw_tooltip(f"At frame {frame} it hangs on {layer.name} itself")
             elif other.id == now:
-                tip(f"It hangs there already at frame {frame}")
+                draw_tooltip(f"It hangs there already at frame {frame}")
         imgui.end_popup()
     keyed = layer.joint_frame(frame)
-    if joint is not None and joint.frame == keyed and len(layer.joints) > 1:
+    if joint is not None and joint.frame == keyed and len(layer.attachments) > 1:
         hint = "What held it before goes on holding it"
         if text_button(f"No change at frame {keyed}###joint", FILL, hint):
             actions.append(do(layering.take_back_joint, layer.id, keyed))
-    if len(layer.joints) > 1:
+    if len(layer.attachments) > 1:
         told = (
-            f"{'nothing' if each.to is None else document.layer(each.to).name} from {each.frame}"
-            for each in layer.joints
+            f"{'nothing' if each.parent is None else document.layer(each.parent).name} from {each.frame}"
+            for each in layer.attachments
         )
-        small(look, "It hangs on " + ", ".join(told) + ".")
+        small_text(look, "It hangs on " + ", ".join(told) + ".")
     return actions

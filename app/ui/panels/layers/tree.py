@@ -4,24 +4,24 @@ from collections.abc import Callable, Sequence
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
-from app.document import Document, Layer, TreeRow, carried_by, is_visible, with_repeats
+from app.document import Document, Layer, TreeRow, is_visible, parent_label, with_repeats
 from app.editor import Action, Project, Session, do, layering
 from app.editor.actions import playback
 from app.render import Thumbnail
-from app.ui.panels.layers.dragging import drag_row, scroll_while_dragged
-from app.ui.panels.layers.menus import draw_menu
+from app.ui.panels.layers.dragging import drag_layer_row, scroll_while_dragged
+from app.ui.panels.layers.menus import draw_layer_menu
 from app.ui.style import (
     SMALL,
     Look,
-    begin_tip,
+    begin_tooltip,
+    colour_u32,
+    draw_centred_text,
     icon_button,
-    in_hand,
-    ink,
+    is_hovered_or_held,
     name_popup,
-    shortened,
+    push_text_size,
+    shorten_text,
     show_picture,
-    sized,
-    write_in,
 )
 from engine.arrays import Bytes
 
@@ -36,7 +36,7 @@ SIGN = imgui.IM_COL32(12, 13, 16, 255)  # on the paper
 SmallPictures = Callable[[int, Bytes], Thumbnail | None]
 
 
-def draw_tree(
+def draw_layer_tree(
     session: Session, look: Look, project: Project, pictures: SmallPictures
 ) -> list[Action]:
     """Draw the buttons for whole layers, and a row for each group, choice and layer."""
@@ -115,15 +115,15 @@ def _row(
         # While another program drags a file here, nothing else is hovered.
         actions.append(do(layering.point_at, layer.id))
     is_named = imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton_.left)
-    actions += drag_row(look, project, row, low, high)
+    actions += drag_layer_row(look, project, row, low, high)
     _tell(project.document, row)
-    chosen, asks = draw_menu(project, row)
+    chosen, asks = draw_layer_menu(project, row)
     actions += chosen + _naming(session, look, project, row, low, asks=is_named or asks)
     middle = (low.y + high.y) / 2
     imgui.set_cursor_screen_pos(ImVec2(corner.x, middle - imgui.get_frame_height() / 2))
     frame = playback.current_frame(session, project)
     actions += _switches(look, project, row, frame)
-    hung, told = (0, "") if layer is None else carried_by(project.document, layer, frame)
+    hung, told = (0, "") if layer is None else parent_label(project.document, layer, frame)
     depth = min(row.depth + hung, DEEPEST_INDENT)
     left = imgui.get_item_rect_max().x + (GAP + INDENT * depth) * em
     is_seen = _is_seen(project, row, frame)
@@ -133,16 +133,18 @@ def _row(
     else:
         actions += _fold(look, row, ImVec2(left, middle))
         left += FOLD * em
-        if row.choice is not None:
+        if row.switch_group is not None:
             _picture(look, project, shown, ImVec2(left, middle), pictures, is_seen=is_seen)
         else:
             icon = icons.ICON_FA_FOLDER_OPEN if row.is_open else icons.ICON_FA_FOLDER
             box = ImVec2(left, low.y), ImVec2(left + WIDE * em, high.y)
-            write_in(*box, icon, ink(look.palette.text if is_seen else look.palette.dim))
+            draw_centred_text(
+                *box, icon, colour_u32(look.palette.text if is_seen else look.palette.dim)
+            )
     start = left + (WIDE + GAP) * em
     if layer is None:
         # What is seen of a choice, and how many are in a group.
-        told = shown.name if row.choice is not None else f"{len(row.layers)}"
+        told = shown.name if row.switch_group is not None else f"{len(row.layers)}"
     _text(look, project, row, told, start, ImVec2(high.x, middle), is_seen=is_seen)
     imgui.set_cursor_screen_pos(after)
     return actions
@@ -162,9 +164,9 @@ def _chosen(row: TreeRow) -> Action:
 
 def _shown(document: Document, row: TreeRow, frame: int) -> Layer:
     """Return the layer whose picture a row has: of a choice, the one that is seen."""
-    if row.choice is None:
+    if row.switch_group is None:
         return document.layer(row.layers[0])
-    return document.layer(with_repeats(document, row.choice).at(frame))
+    return document.layer(with_repeats(document, row.switch_group).layer_at(frame))
 
 
 def _is_seen(project: Project, row: TreeRow, frame: int) -> bool:
@@ -191,16 +193,16 @@ def _naming(
     kind = "layer"
     if layer is not None:
         taken = [other.name for other in document.layers if other is not layer]
-    elif row.choice is not None:
+    elif row.switch_group is not None:
         kind = "choice"
-        taken = [other.name for other in document.choices if other is not row.choice]
+        taken = [other.name for other in document.switch_groups if other is not row.switch_group]
     name = name_popup(look, f"name {row.key}", row.name, taken, kind)
     if name is None:
         return actions
     if layer is not None:
         return [*actions, do(layering.rename, layer.id, name)]
-    if row.choice is not None:
-        return [*actions, do(layering.rename_choice, row.choice.name, name)]
+    if row.switch_group is not None:
+        return [*actions, do(layering.rename_choice, row.switch_group.name, name)]
     if row.group is not None:
         return [*actions, do(layering.rename_group, row.group.name, name)]
     return actions
@@ -208,19 +210,19 @@ def _naming(
 
 def _tell(document: Document, row: TreeRow) -> None:
     """Explain a row, the last item, in a tooltip; its name may be longer than there is room for."""
-    if imgui.get_drag_drop_payload_py_id() is not None or not begin_tip():
+    if imgui.get_drag_drop_payload_py_id() is not None or not begin_tooltip():
         return
     imgui.text_unformatted(row.name)
     if row.layer is not None:
-        for joint in row.layer.joints:
-            to = "nothing" if joint.to is None else document.layer(joint.to).name
-            since = f" from frame {joint.frame} on" if len(row.layer.joints) > 1 else ""
+        for joint in row.layer.attachments:
+            to = "nothing" if joint.parent is None else document.layer(joint.parent).name
+            since = f" from frame {joint.frame} on" if len(row.layer.attachments) > 1 else ""
             imgui.text_unformatted(f"Hangs on {to}{since}")
         imgui.text_disabled(
             "Drag it to change the order, or onto another row to hang it there, double-click to "
             "rename it, right click for more"
         )
-    elif row.choice is not None:
+    elif row.switch_group is not None:
         imgui.text_disabled(
             "These layers take turns: open it, and a click on a circle shows one from here on"
         )
@@ -240,8 +242,8 @@ def _fold(look: Look, row: TreeRow, left: ImVec2) -> list[Action]:
     imgui.set_next_item_allow_overlap()
     clicked = imgui.invisible_button(f"fold {row.key}", ImVec2(FOLD * em, ROW * em))
     icon = icons.ICON_FA_CARET_DOWN if row.is_open else icons.ICON_FA_CARET_RIGHT
-    colour = ink(look.palette.text if in_hand() else look.palette.dim)
-    write_in(low, low + ImVec2(FOLD * em, ROW * em), icon, colour)
+    colour = colour_u32(look.palette.text if is_hovered_or_held() else look.palette.dim)
+    draw_centred_text(low, low + ImVec2(FOLD * em, ROW * em), icon, colour)
     return [do(layering.toggle, row.toggle)] if clicked else []
 
 
@@ -250,16 +252,16 @@ def _switches(look: Look, project: Project, row: TreeRow, frame: int) -> list[Ac
     actions = []
     document = project.document
     layers = [document.layer(each) for each in row.layers]
-    choice = None if row.layer is None else document.choice_of(row.layer.id)
+    choice = None if row.layer is None else document.switch_group_of(row.layer.id)
     if choice is not None:
-        is_on = with_repeats(document, choice).at(frame) == row.layers[0]
+        is_on = with_repeats(document, choice).layer_at(frame) == row.layers[0]
         icon = icons.ICON_FA_CIRCLE_DOT if is_on else ""
         hint = f"Seen from frame {frame} on, in place of the others of {choice.name}"
         if icon_button(look, icon, f"turn {row.key}", hint, active=is_on):
             actions.append(do(layering.show_here, row.layers[0]))
         if not is_on:
             _ring(look)
-    elif row.choice is not None:
+    elif row.switch_group is not None:
         imgui.dummy(ImVec2(1.15 * imgui.get_frame_height(), imgui.get_frame_height()))
     else:
         group = row.group
@@ -286,7 +288,9 @@ def _ring(look: Look) -> None:
     """Draw an empty circle on the last item; the icon of a circle is a full one."""
     middle = (imgui.get_item_rect_min() + imgui.get_item_rect_max()) / 2
     radius, thick = RING * look.em, 0.1 * look.em
-    imgui.get_window_draw_list().add_circle(middle, radius, ink(look.palette.text), thickness=thick)
+    imgui.get_window_draw_list().add_circle(
+        middle, radius, colour_u32(look.palette.text), thickness=thick
+    )
 
 
 def _of_chosen(project: Project, row: TreeRow) -> tuple[int, ...]:
@@ -316,7 +320,7 @@ def _picture(
     picture = None if pixels is None else pictures(layer.id, pixels)
     if picture is None:
         icon = icons.ICON_FA_IMAGE if layer.still else icons.ICON_FA_PERSON
-        write_in(low, high, icon, SIGN)
+        draw_centred_text(low, high, icon, SIGN)
         return
     corner, room = low + ImVec2(pad, pad), high - low - ImVec2(2 * pad, 2 * pad)
     opacity = 1.0 if is_seen else HIDDEN
@@ -330,7 +334,7 @@ def _signs(project: Project, row: TreeRow) -> list[str]:
         return [f"{100 * opacity:.0f}%"] if opacity < 1 else []
     layer = row.layer
     signs = [f"{100 * layer.opacity:.0f}%"] if layer.opacity < 1 else []
-    signs += [icons.ICON_FA_LINK] if layer.hangs else []
+    signs += [icons.ICON_FA_LINK] if layer.has_parent else []
     signs += [icons.ICON_FA_IMAGE] if layer.still else []
     signs += [icons.ICON_FA_BAN] if layer.reference else []
     return signs + ([icons.ICON_FA_BINOCULARS] if layer.id in project.solo else [])
@@ -350,18 +354,20 @@ def _text(
     palette, em = look.palette, look.em
     draw_list, middle = imgui.get_window_draw_list(), end.y
     right = end.x - GAP * em
-    with sized(SMALL):
+    with push_text_size(SMALL):
         for sign in reversed(_signs(project, row)):
             size = imgui.calc_text_size(sign)
             right -= size.x
-            draw_list.add_text(ImVec2(right, middle - size.y / 2), ink(palette.dim), sign)
+            draw_list.add_text(ImVec2(right, middle - size.y / 2), colour_u32(palette.dim), sign)
             right -= GAP * em
     top = middle - imgui.get_text_line_height() / 2
-    name = shortened(row.name, right - left)
-    draw_list.add_text(ImVec2(left, top), ink(palette.text if is_seen else palette.dim), name)
+    name = shorten_text(row.name, right - left)
+    draw_list.add_text(
+        ImVec2(left, top), colour_u32(palette.text if is_seen else palette.dim), name
+    )
     left += imgui.calc_text_size(name).x + 2 * GAP * em
-    with sized(SMALL):
+    with push_text_size(SMALL):
         size = imgui.calc_text_size(told)
         if told and right - left > 2 * em:
-            told = shortened(told, right - left)
-            draw_list.add_text(ImVec2(left, middle - size.y / 2), ink(palette.dim), told)
+            told = shorten_text(told, right - left)
+            draw_list.add_text(ImVec2(left, middle - size.y / 2), colour_u32(palette.dim), told)

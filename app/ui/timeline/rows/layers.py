@@ -5,56 +5,77 @@ from collections.abc import Sequence
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
-from app.document import Layer, Switch, carried_by, is_visible, layer_commands, sights_of
+from app.document import (
+    Layer,
+    VisibilityKey,
+    is_visible,
+    layer_commands,
+    parent_label,
+    visibility_keys,
+)
 from app.editor import Action, SwitchDrag, do
 from app.editor.actions import editing, playback, timeline_pointing
-from app.ui.style import CHOSEN, SMALL, begin_tip, in_hand, ink, is_pressed, shortened, sized
-from app.ui.timeline.bands import THIN, Bands, HasFrame, LayerRow, tag
-from app.ui.timeline.keys import choose_row
-from app.ui.timeline.rows.stage import INDENT, draw_stage, draw_stage_names
-from app.ui.timeline.tracks import FOLD, draw_fold, draw_names, draw_ways
+from app.ui.style import (
+    CHOSEN,
+    SMALL,
+    begin_tooltip,
+    colour_u32,
+    is_hovered_or_held,
+    is_pressed,
+    push_text_size,
+    shorten_text,
+)
+from app.ui.timeline.keys import select_row
+from app.ui.timeline.layout import THIN, HasFrame, LayerRow, TimelineLayout, draw_time_tag
+from app.ui.timeline.rows.groups import INDENT, draw_group_names, draw_group_rows
+from app.ui.timeline.tracks import (
+    EXPANDER_WIDTH,
+    draw_expander,
+    draw_track_names,
+    draw_track_segments,
+)
 
 HATCH = 0.55  # em between the lines over a time in which a layer is hidden
 EYE = 0.62  # em: half the width of the mark where a layer is shown or hidden
 CHANGE = 0.24  # em: half of the mark where a layer is moved, fades or is ordered as a whole
 BESIDE = 0.35  # em that it makes way for a key at the same frame
 DEEPEST_INDENT = 5  # rows that are deeper are not shifted any more
-LEAST_TOLD = 1.8  # em: with less room behind a name its carrier is told by the tooltip alone
+LEAST_PARENT_ROOM = 1.8  # em: with less room behind a name its carrier is told by the tooltip alone
 
 
-def draw_rows(bands: Bands, frame: int) -> list[Action]:
+def draw_layer_rows(bands: TimelineLayout, frame: int) -> list[Action]:
     """Draw what lies behind the keys of all layers; take clicks on names and on eyes."""
     actions: list[Action] = []
     if bands.has_names:
         actions += _draw_names(bands, frame)
-    bands.push_clip()
-    actions += draw_stage(bands)
+    bands.push_track_clip()
+    actions += draw_group_rows(bands)
     for row in filter(bands.shows_row, bands.rows):
         if bands.has_names:
             _draw_ground(bands, row)
         for begin, end in _hidden(bands, row.layer):
             _hatch(bands, row, begin, end)
-    draw_ways(bands)
+    draw_track_segments(bands)
     for row in filter(bands.shows_row, bands.rows):
         imgui.push_id(f"row {row.layer.id}")
         actions += _draw_changes(bands, row)
-        for index in bands.in_view(row.layer.switches):
-            actions += _draw_switch(bands, row, row.layer.switches[index])
+        for index in bands.in_view(row.layer.visibility_keys):
+            actions += _draw_visibility_key(bands, row, row.layer.visibility_keys[index])
         imgui.pop_id()
     imgui.pop_clip_rect()
     return actions
 
 
-def _draw_ground(bands: Bands, row: LayerRow) -> None:
+def _draw_ground(bands: TimelineLayout, row: LayerRow) -> None:
     """Part a row from the next one; that of the active layer is brighter."""
     palette, draw_list = bands.look.palette, imgui.get_window_draw_list()
     low, high = ImVec2(bands.left, row.top), ImVec2(bands.right, row.bottom)
     if row.is_active:
-        draw_list.add_rect_filled(low, high, ink(palette.accent, 0.08))
-    draw_list.add_line(ImVec2(low.x, high.y), high, ink(palette.line))
+        draw_list.add_rect_filled(low, high, colour_u32(palette.accent, 0.08))
+    draw_list.add_line(ImVec2(low.x, high.y), high, colour_u32(palette.line))
 
 
-def _draw_names(bands: Bands, frame: int) -> list[Action]:
+def _draw_names(bands: TimelineLayout, frame: int) -> list[Action]:
     actions: list[Action] = []
     document = bands.project.document
     palette, draw_list, em = bands.look.palette, imgui.get_window_draw_list(), bands.look.em
@@ -63,58 +84,60 @@ def _draw_names(bands: Bands, frame: int) -> list[Action]:
     for row in filter(bands.shows_row, bands.rows):
         box = ImVec2(low.x, row.top), ImVec2(high.x - 0.3 * em, row.bottom)
         if bands.button(f"name {row.layer.id}", *box):
-            actions += choose_row(row.layer.id, {})
-        if row.is_active or in_hand():
-            colour = ink(palette.accent, CHOSEN) if row.is_active else ink(palette.hovered)
+            actions += select_row(row.layer.id, {})
+        if row.is_active or is_hovered_or_held():
+            colour = (
+                colour_u32(palette.accent, CHOSEN) if row.is_active else colour_u32(palette.hovered)
+            )
             draw_list.add_rect_filled(*box, colour, 0.2 * em)
-        hung, carrier = carried_by(document, row.layer, frame)
-        if begin_tip():
+        hung, carrier = parent_label(document, row.layer, frame)
+        if begin_tooltip():
             imgui.text_unformatted(row.layer.name)
             if carrier:
                 imgui.text_disabled(f"Hangs {carrier}")
             imgui.end_tooltip()
         icon = icons.ICON_FA_IMAGE if row.layer.still else icons.ICON_FA_PERSON
-        colour = ink(palette.text if is_visible(document, row.layer, frame) else palette.dim)
+        colour = colour_u32(palette.text if is_visible(document, row.layer, frame) else palette.dim)
         indent = low.x + INDENT * min(row.depth + hung, DEEPEST_INDENT) * em
-        with sized(SMALL):
-            left = indent + (1.8 + FOLD * bool(row.layer.tracks)) * em
+        with push_text_size(SMALL):
+            left = indent + (1.8 + EXPANDER_WIDTH * bool(row.layer.tracks)) * em
             room = box[1].x - left - 0.8 * em
-            text = shortened(row.layer.name, room)
+            text = shorten_text(row.layer.name, room)
             top = row.middle - imgui.get_text_line_height() / 2
             draw_list.add_text(ImVec2(left - 1.4 * em, top), colour, icon)
             draw_list.add_text(ImVec2(left, top), colour, text)
             taken = imgui.calc_text_size(text).x + 0.5 * em
-            if carrier and room - taken > LEAST_TOLD * em:
-                told = shortened(carrier, room - taken)
-                draw_list.add_text(ImVec2(left + taken, top), ink(palette.dim), told)
-        actions += draw_fold(bands, row, indent)
-    actions += draw_stage_names(bands, frame)
-    actions += draw_names(bands)
+            if carrier and room - taken > LEAST_PARENT_ROOM * em:
+                told = shorten_text(carrier, room - taken)
+                draw_list.add_text(ImVec2(left + taken, top), colour_u32(palette.dim), told)
+        actions += draw_expander(bands, row, indent)
+    actions += draw_group_names(bands, frame)
+    actions += draw_track_names(bands)
     _draw_scrolled(bands)
     imgui.pop_clip_rect()
     return actions
 
 
-def _draw_scrolled(bands: Bands) -> None:
+def _draw_scrolled(bands: TimelineLayout) -> None:
     """Draw beside the names which of the rows are seen, if not all are."""
     if not bands.overflow:
         return
     height = bands.track_bottom - bands.track_top
     per_pixel = height / (height + bands.overflow)
-    first = min([bands.rows[0].top, *(lane.top for lane in bands.stage_rows[:1])])
+    first = min([bands.rows[0].top, *(lane.top for lane in bands.group_rows[:1])])
     top = bands.track_top + per_pixel * (bands.track_top - first)
     width = 0.18 * bands.look.em
     imgui.get_window_draw_list().add_rect_filled(
         ImVec2(bands.left - width, top),
         ImVec2(bands.left, top + per_pixel * height),
-        ink(bands.look.palette.dim, 0.8),
+        colour_u32(bands.look.palette.dim, 0.8),
         width / 2,
     )
 
 
-def _hidden(bands: Bands, layer: Layer) -> list[tuple[int | None, int | None]]:
+def _hidden(bands: TimelineLayout, layer: Layer) -> list[tuple[int | None, int | None]]:
     """Return the stretches in view in which a layer is hidden; None is where they do not end."""
-    switches = sights_of(bands.project.document, layer)
+    switches = visibility_keys(bands.project.document, layer)
     if not switches:
         return []
     stretches: list[tuple[int | None, int | None]] = []
@@ -135,7 +158,7 @@ def _hidden(bands: Bands, layer: Layer) -> list[tuple[int | None, int | None]]:
     return stretches
 
 
-def _hatch(bands: Bands, row: LayerRow, begin: int | None, end: int | None) -> None:
+def _hatch(bands: TimelineLayout, row: LayerRow, begin: int | None, end: int | None) -> None:
     palette, draw_list = bands.look.palette, imgui.get_window_draw_list()
     frames = bands.project.document.frames
     left = max(bands.x(frames.first if begin is None else begin), bands.left)
@@ -144,26 +167,28 @@ def _hatch(bands: Bands, row: LayerRow, begin: int | None, end: int | None) -> N
         return
     low, high = ImVec2(left, row.top + 1), ImVec2(right, row.bottom - 1)
     height, gap = high.y - low.y, HATCH * bands.look.em
-    draw_list.add_rect_filled(low, high, ink(palette.desk, 0.7))
+    draw_list.add_rect_filled(low, high, colour_u32(palette.desk, 0.7))
     imgui.push_clip_rect(low, high, intersect_with_current_clip_rect=True)
     # The lines stay where they are in time while the timeline is scrolled.
     first = bands.x(0)
     x = first + ((left - height - first) // gap) * gap
     while x < right:
-        draw_list.add_line(ImVec2(x, high.y), ImVec2(x + height, low.y), ink(palette.dim, 0.35))
+        draw_list.add_line(
+            ImVec2(x, high.y), ImVec2(x + height, low.y), colour_u32(palette.dim, 0.35)
+        )
         x += gap
     imgui.pop_clip_rect()
 
 
-def _draw_changes(bands: Bands, row: LayerRow) -> list[Action]:
+def _draw_changes(bands: TimelineLayout, row: LayerRow) -> list[Action]:
     """Draw where a layer is keyed as a whole: its movement, its opacity and its order."""
     actions: list[Action] = []
     layer, em, palette = row.layer, bands.look.em, bands.look.palette
     changes: dict[int, list[str]] = {}
     rows: dict[str, Sequence[HasFrame]] = {
-        "Moved": layer.movement,
-        "Opacity": layer.opacities,
-        "Order": layer.placings,
+        "Moved": layer.transform_keys,
+        "Opacity": layer.opacity_keys,
+        "Order": layer.draw_order_keys,
     }
     for what, row_of_keys in rows.items():
         for index in bands.in_view(row_of_keys):
@@ -174,16 +199,21 @@ def _draw_changes(bands: Bands, row: LayerRow) -> list[Action]:
         if bands.button(f"change {frame}", *box):
             actions.append(do(playback.scrub, frame))
         imgui.get_window_draw_list().add_ngon_filled(
-            ImVec2(x, y), half, ink(palette.text if in_hand() else palette.anchor), 4
+            ImVec2(x, y),
+            half,
+            colour_u32(palette.text if is_hovered_or_held() else palette.anchor),
+            4,
         )
-        if begin_tip():
+        if begin_tooltip():
             imgui.text_unformatted(f"{' and '.join(told).capitalize()} at frame {frame}")
             imgui.text_disabled("Click to go there; it is changed in the Layers tab")
             imgui.end_tooltip()
     return actions
 
 
-def _draw_switch(bands: Bands, row: LayerRow, switch: Switch) -> list[Action]:
+def _draw_visibility_key(
+    bands: TimelineLayout, row: LayerRow, switch: VisibilityKey
+) -> list[Action]:
     """Draw an eye where a layer comes to be seen, or a struck one where it is hidden."""
     frame, half = switch.frame, EYE * bands.look.em
     x = bands.x(frame)
@@ -195,13 +225,13 @@ def _draw_switch(bands: Bands, row: LayerRow, switch: Switch) -> list[Action]:
     origin = frame if drag is None else drag.switch
     box = left - ImVec2(0, half), left + ImVec2(2 * half, half)
     bands.button(f"switch {origin}", *box, right=True)
-    _draw_eye(bands, row, switch, left, is_hot=in_hand() or drag is not None)
+    _draw_eye(bands, row, switch, left, is_hot=is_hovered_or_held() or drag is not None)
     if origin != frame:
-        tag(bands, x, f"{frame}  ({frame - origin:+d})")
+        draw_time_tag(bands, x, f"{frame}  ({frame - origin:+d})")
     return _point(bands, row, switch) + _menu(row, frame)
 
 
-def _left_of_eye(bands: Bands, row: LayerRow, frame: int) -> ImVec2:
+def _left_of_eye(bands: TimelineLayout, row: LayerRow, frame: int) -> ImVec2:
     """Return where an eye begins: below the keys of the active layer, and beside the others'."""
     em, x = bands.look.em, bands.x(frame)
     if row.is_active and row.bottom - row.top > 2 * THIN * em:
@@ -211,20 +241,22 @@ def _left_of_eye(bands: Bands, row: LayerRow, frame: int) -> ImVec2:
     return ImVec2(x + (BESIDE * em if is_at_key else 0.0), row.middle)
 
 
-def _draw_eye(bands: Bands, row: LayerRow, switch: Switch, left: ImVec2, *, is_hot: bool) -> None:
+def _draw_eye(
+    bands: TimelineLayout, row: LayerRow, switch: VisibilityKey, left: ImVec2, *, is_hot: bool
+) -> None:
     draw_list, x = imgui.get_window_draw_list(), bands.x(switch.frame)
-    colour = ink(bands.look.palette.text if is_hot else bands.look.palette.anchor)
+    colour = colour_u32(bands.look.palette.text if is_hot else bands.look.palette.anchor)
     draw_list.add_line(ImVec2(x, row.top + 2), ImVec2(x, row.bottom - 2), colour, 1.5)
     icon = icons.ICON_FA_EYE if switch.visible else icons.ICON_FA_EYE_SLASH
-    with sized(SMALL * SMALL):
+    with push_text_size(SMALL * SMALL):
         top = left.y - imgui.get_text_line_height() / 2
         draw_list.add_text(ImVec2(left.x + 0.15 * bands.look.em, top), colour, icon)
 
 
-def _point(bands: Bands, row: LayerRow, switch: Switch) -> list[Action]:
+def _point(bands: TimelineLayout, row: LayerRow, switch: VisibilityKey) -> list[Action]:
     """Take what the pointer does to an eye, the last item, and tell what can be done with it."""
     frame, document = switch.frame, bands.project.document
-    if in_hand():
+    if is_hovered_or_held():
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
     if imgui.is_item_clicked(imgui.MouseButton_.right):
         imgui.open_popup(f"menu of switch {frame}")
@@ -237,8 +269,8 @@ def _point(bands: Bands, row: LayerRow, switch: Switch) -> list[Action]:
             before=document,
             after=document,
         )
-        return [do(timeline_pointing.begin, drag, bands.strip)]
-    if bands.project.timing.gesture is None and begin_tip():
+        return [do(timeline_pointing.begin, drag, bands.time_view)]
+    if bands.project.timing.gesture is None and begin_tooltip():
         imgui.text_unformatted(f"{'Shown' if switch.visible else 'Hidden'} from frame {frame} on")
         imgui.text_disabled("Click to go there, drag to move it, right click to take it away")
         imgui.end_tooltip()
@@ -250,7 +282,7 @@ def _menu(row: LayerRow, frame: int) -> list[Action]:
     actions: list[Action] = []
     if imgui.begin_popup(f"menu of switch {frame}"):
         if imgui.menu_item_simple("Delete"):
-            command = layer_commands.switch_at(row.layer.id, frame, visible=None)
+            command = layer_commands.key_visibility(row.layer.id, frame, visible=None)
             actions.append(do(editing.edit, command))
         imgui.end_popup()
     return actions

@@ -2,11 +2,11 @@
 
 In: the bands of the timeline.
 Out: actions on time.
-Imports: `app.ui.style`, `app.ui.shortcuts`, `app.ui.timeline.bands`.
+Imports: `app.ui.style`, `app.ui.shortcuts`, `app.ui.timeline.layout`.
 """
 
-from app.ui.timeline.ruler.camera import draw_camera as draw_camera
-from app.ui.timeline.ruler.edges import draw_edges as draw_edges
+from app.ui.timeline.ruler.camera import draw_camera_row as draw_camera_row
+from app.ui.timeline.ruler.edges import draw_range_edges as draw_range_edges
 from app.ui.timeline.ruler.markers import draw_markers as draw_markers
 from app.ui.timeline.ruler.ruler import (
     draw_overview as draw_overview,

@@ -5,47 +5,52 @@ from imgui_bundle import ImVec2, imgui
 from app.editor import Action, Edge, EdgeDrag, do
 from app.editor.actions import keys, timeline_pointing
 from app.ui.shortcuts import BINDINGS
-from app.ui.style import in_hand, ink, is_pressed, tip
-from app.ui.timeline.bands import PREVIEW, Bands, tag
+from app.ui.style import colour_u32, draw_tooltip, is_hovered_or_held, is_pressed
+from app.ui.timeline.layout import PREVIEW, TimelineLayout, draw_time_tag
 
 GRIP = 0.55  # em: half the width in which the pointer takes an end
 
 
-def draw_edges(bands: Bands) -> list[Action]:
+def draw_range_edges(bands: TimelineLayout) -> list[Action]:
     """Draw what plays and where the animation ends; both are changed by dragging."""
     return _preview_range(bands) + _animation_end(bands)
 
 
-def _preview_range(bands: Bands) -> list[Action]:
+def _preview_range(bands: TimelineLayout) -> list[Action]:
     palette, draw_list, em = bands.look.palette, imgui.get_window_draw_list(), bands.look.em
     document = bands.project.document
-    played, is_part = document.played, document.preview is not None
+    played, is_part = document.played_frames, document.preview is not None
     left, right = bands.x(played.first), bands.x(played.last)
     low, high = bands.top + 0.05 * em, bands.top + (PREVIEW - 0.15) * em
     draw_list.push_clip_rect(*bands.bounds, intersect_with_current_clip_rect=True)
     draw_list.add_rect_filled(
-        ImVec2(bands.left, low), ImVec2(bands.right, high), ink(palette.desk), 0.2 * em
+        ImVec2(bands.left, low), ImVec2(bands.right, high), colour_u32(palette.desk), 0.2 * em
     )
     actions = _edge(bands, "preview range", left, right, resizes=False) if is_part else []
-    hot = is_part and in_hand()
+    hot = is_part and is_hovered_or_held()
     colour = palette.accent if is_part else palette.dim
     alpha = 0.2 if not is_part else 0.6 if hot else 0.4
-    draw_list.add_rect_filled(ImVec2(left, low), ImVec2(right, high), ink(colour, alpha), 0.2 * em)
+    draw_list.add_rect_filled(
+        ImVec2(left, low), ImVec2(right, high), colour_u32(colour, alpha), 0.2 * em
+    )
     grip = GRIP * em
     ends: tuple[tuple[Edge, float, int], ...]
     ends = ("preview start", left, 1), ("preview end", right, -1)
     for edge, x, side in ends:
         actions += _edge(bands, edge, x - grip, x + grip, resizes=True)
         inner, outer = sorted((x, x + side * 0.32 * em))
-        tone = ink(palette.accent if in_hand() else colour, 1.0 if is_part or in_hand() else 0.7)
+        tone = colour_u32(
+            palette.accent if is_hovered_or_held() else colour,
+            1.0 if is_part or is_hovered_or_held() else 0.7,
+        )
         draw_list.add_rect_filled(ImVec2(inner, low), ImVec2(outer, high), tone, 0.1 * em)
         where = "begins" if side > 0 else "ends"
-        tip(f"Playback {where} here: drag, or double-click to play all frames")
+        draw_tooltip(f"Playback {where} here: drag, or double-click to play all frames")
     draw_list.pop_clip_rect()
     return actions + (_clear(bands, left, right) if is_part else [])
 
 
-def _clear(bands: Bands, left: float, right: float) -> list[Action]:
+def _clear(bands: TimelineLayout, left: float, right: float) -> list[Action]:
     """Draw a cross that clears the preview range, near the end of what is seen of it."""
     palette, draw_list, em = bands.look.palette, imgui.get_window_draw_list(), bands.look.em
     x = min(right, bands.right) - 3 * GRIP * em
@@ -54,36 +59,38 @@ def _clear(bands: Bands, left: float, right: float) -> list[Action]:
         return []
     low, high = ImVec2(x - GRIP * em, bands.top), ImVec2(x + GRIP * em, bands.ruler_top)
     clicked = bands.button("clear preview", low, high)
-    colour = ink(palette.text, 1.0 if in_hand() else 0.7)
+    colour = colour_u32(palette.text, 1.0 if is_hovered_or_held() else 0.7)
     for side in (-1, 1):
         start, end = ImVec2(x - half, y - side * half), ImVec2(x + half, y + side * half)
         draw_list.add_line(start, end, colour, 0.12 * em)
-    tip("Clear the preview range: play all frames", BINDINGS["preview none"].keys_in_words)
+    draw_tooltip("Clear the preview range: play all frames", BINDINGS["preview none"].shown_keys)
     return [do(keys.play_all)] if clicked else []
 
 
-def _edge(bands: Bands, edge: Edge, left: float, right: float, *, resizes: bool) -> list[Action]:
+def _edge(
+    bands: TimelineLayout, edge: Edge, left: float, right: float, *, resizes: bool
+) -> list[Action]:
     actions: list[Action] = []
     top, bottom = bands.top, bands.ruler_top
     bands.button(edge, ImVec2(left, top), ImVec2(right, bottom))
-    if in_hand():
+    if is_hovered_or_held():
         cursor = imgui.MouseCursor_.resize_ew if resizes else imgui.MouseCursor_.hand
         imgui.set_mouse_cursor(cursor)
     if is_pressed():
-        actions.append(begin_drag(bands, edge))
+        actions.append(begin_edge_drag(bands, edge))
     if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton_.left):
         actions.append(do(keys.play_all))
     return actions
 
 
-def begin_drag(bands: Bands, edge: Edge) -> Action:
+def begin_edge_drag(bands: TimelineLayout, edge: Edge) -> Action:
     """Begin to drag an end."""
     document = bands.project.document
     drag = EdgeDrag(edge=edge, start=bands.pointed, before=document, after=document)
-    return do(timeline_pointing.begin, drag, bands.strip)
+    return do(timeline_pointing.begin, drag, bands.time_view)
 
 
-def _animation_end(bands: Bands) -> list[Action]:
+def _animation_end(bands: TimelineLayout) -> list[Action]:
     palette, draw_list, em = bands.look.palette, imgui.get_window_draw_list(), bands.look.em
     last = bands.project.document.frames.last
     x = bands.x(last)
@@ -92,22 +99,24 @@ def _animation_end(bands: Bands) -> list[Action]:
     low = ImVec2(x, bands.track_top)
     high = ImVec2(x + 0.75 * em, bands.track_top + 1.35 * em)
     bands.button("animation end", ImVec2(x - 0.2 * em, low.y), ImVec2(x + 1.1 * em, high.y))
-    hot = in_hand()
+    hot = is_hovered_or_held()
     if hot:
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
-    tip(f"The animation ends at frame {last}: drag to make it longer or shorter")
-    actions = [begin_drag(bands, "animation end")] if is_pressed() else []
+    draw_tooltip(f"The animation ends at frame {last}: drag to make it longer or shorter")
+    actions = [begin_edge_drag(bands, "animation end")] if is_pressed() else []
     gesture = bands.project.timing.gesture
     if isinstance(gesture, EdgeDrag) and gesture.edge == "animation end":
-        tag(bands, x, f"{last}")
-    colour = ink(palette.accent if hot else palette.dim, 1.0 if hot else 0.8)
+        draw_time_tag(bands, x, f"{last}")
+    colour = colour_u32(palette.accent if hot else palette.dim, 1.0 if hot else 0.8)
     draw_list.push_clip_rect(*bands.bounds, intersect_with_current_clip_rect=True)
     draw_list.add_line(low, ImVec2(x, bands.track_bottom), colour, 1.5)
     draw_list.add_rect_filled(low, high, colour, 0.25 * em, imgui.ImDrawFlags_.round_right)
     for part in (0.28, 0.5):
         line = x + part * em
         draw_list.add_line(
-            ImVec2(line, low.y + 0.4 * em), ImVec2(line, high.y - 0.4 * em), ink(palette.desk)
+            ImVec2(line, low.y + 0.4 * em),
+            ImVec2(line, high.y - 0.4 * em),
+            colour_u32(palette.desk),
         )
     draw_list.pop_clip_rect()
     return actions

@@ -7,23 +7,32 @@ from imgui_bundle import ImVec2, imgui
 from app.document import Marker
 from app.editor import Action, MarkerDrag, TimeGesture, do
 from app.editor.actions import keys, playback, timeline_pointing
-from app.ui.shortcuts import bound_item
-from app.ui.style import SMALL, begin_tip, in_hand, ink, is_pressed, name_popup, shortened, sized
-from app.ui.timeline.bands import Bands, in_seconds, tag
+from app.ui.shortcuts import draw_action_item
+from app.ui.style import (
+    SMALL,
+    begin_tooltip,
+    colour_u32,
+    is_hovered_or_held,
+    is_pressed,
+    name_popup,
+    push_text_size,
+    shorten_text,
+)
+from app.ui.timeline.layout import TimelineLayout, draw_time_tag, format_seconds
 
 HALF, GRIP = 0.42, 0.6  # em: half the width of a flag, and of where the pointer takes it
 NAME_ROOM = 30.0  # em that a name may reach into view from a marker at the left of it
 LEAST_NAME = 3.0  # em: with less room names are left out
 
 
-def draw_markers(bands: Bands) -> list[Action]:
+def draw_markers(bands: TimelineLayout) -> list[Action]:
     """Draw the markers, and take what the pointer does to them."""
     markers, em = bands.project.document.markers, bands.look.em
     if not markers:
         return []
     actions: list[Action] = []
     gesture = bands.project.timing.gesture
-    low, high = ImVec2(bands.left, bands.marks_top), ImVec2(bands.right, bands.track_bottom)
+    low, high = ImVec2(bands.left, bands.markers_top), ImVec2(bands.right, bands.track_bottom)
     draw_list = imgui.get_window_draw_list()
     draw_list.push_clip_rect(low, high, intersect_with_current_clip_rect=True)
     shown = list(bands.in_view(markers, room=NAME_ROOM))
@@ -31,14 +40,17 @@ def draw_markers(bands: Bands) -> list[Action]:
         marker = markers[index]
         x = bands.x(marker.frame)
         room = bands.size.x if after is None else bands.x(markers[after].frame) - x
-        text = shortened(marker.name, room - 1.4 * em) if room > LEAST_NAME * em else ""
+        text = shorten_text(marker.name, room - 1.4 * em) if room > LEAST_NAME * em else ""
         width = imgui.calc_text_size(text).x if text else 0.0
         if not bands.shows(x - GRIP * em, x + GRIP * em + width):
             continue
         name = f"marker {_origin(gesture, marker.frame)}"
         end = x + max(GRIP * em, HALF * em + width)
         bands.button(
-            name, ImVec2(x - GRIP * em, bands.marks_top), ImVec2(end, bands.camera_top), right=True
+            name,
+            ImVec2(x - GRIP * em, bands.markers_top),
+            ImVec2(end, bands.camera_top),
+            right=True,
         )
         _draw(bands, marker, x, text)
         actions += _point(bands, marker)
@@ -55,11 +67,11 @@ def _origin(gesture: TimeGesture | None, frame: int) -> int:
     return gesture.marker if isinstance(gesture, MarkerDrag) and gesture.at == frame else frame
 
 
-def _draw(bands: Bands, marker: Marker, x: float, text: str) -> None:
+def _draw(bands: TimelineLayout, marker: Marker, x: float, text: str) -> None:
     palette, draw_list, em = bands.look.palette, imgui.get_window_draw_list(), bands.look.em
-    hot = in_hand()
+    hot = is_hovered_or_held()
     colour = palette.accent if hot else palette.anchor
-    top, bottom = bands.marks_top + 0.15 * em, bands.camera_top - 0.1 * em
+    top, bottom = bands.markers_top + 0.15 * em, bands.camera_top - 0.1 * em
     waist = top + 0.55 * (bottom - top)
     half = HALF * em
     for point in (
@@ -70,19 +82,19 @@ def _draw(bands: Bands, marker: Marker, x: float, text: str) -> None:
         ImVec2(x - half, waist),
     ):
         draw_list.path_line_to(point)
-    draw_list.path_fill_convex(ink(colour))
+    draw_list.path_fill_convex(colour_u32(colour))
     begin, end = ImVec2(x, bands.camera_top), ImVec2(x, bands.track_bottom)
-    draw_list.add_line(begin, end, ink(colour, 0.8 if hot else 0.35), 1.0)
+    draw_list.add_line(begin, end, colour_u32(colour, 0.8 if hot else 0.35), 1.0)
     if text and not bands.is_cramped:
-        with sized(SMALL):
+        with push_text_size(SMALL):
             place = ImVec2(x + half + 0.3 * em, (top + bottom - imgui.get_text_line_height()) / 2)
-            draw_list.add_text(place, ink(palette.text if hot else palette.dim), text)
+            draw_list.add_text(place, colour_u32(palette.text if hot else palette.dim), text)
     gesture = bands.project.timing.gesture
     if isinstance(gesture, MarkerDrag) and gesture.at == marker.frame != gesture.marker:
-        tag(bands, x, f"{marker.frame}")
+        draw_time_tag(bands, x, f"{marker.frame}")
 
 
-def _point(bands: Bands, marker: Marker) -> list[Action]:
+def _point(bands: TimelineLayout, marker: Marker) -> list[Action]:
     document = bands.project.document
     if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton_.left):
         imgui.open_popup(f"name of marker {marker.frame}")
@@ -95,19 +107,19 @@ def _point(bands: Bands, marker: Marker) -> list[Action]:
             before=document,
             after=document,
         )
-        return [do(timeline_pointing.begin, drag, bands.strip)]
+        return [do(timeline_pointing.begin, drag, bands.time_view)]
     if imgui.is_item_clicked(imgui.MouseButton_.right):
         imgui.open_popup(f"menu of marker {marker.frame}")
-    if bands.project.timing.gesture is None and begin_tip():
+    if bands.project.timing.gesture is None and begin_tooltip():
         imgui.text_unformatted(marker.name)
         imgui.same_line()
-        imgui.text_disabled(f"{marker.frame}, {in_seconds(marker.frame, document.fps)}")
+        imgui.text_disabled(f"{marker.frame}, {format_seconds(marker.frame, document.fps)}")
         imgui.text_disabled("Click to go there, drag to move it, double-click to name it")
         imgui.end_tooltip()
     return []
 
 
-def _menu(bands: Bands, marker: Marker) -> list[Action]:
+def _menu(bands: TimelineLayout, marker: Marker) -> list[Action]:
     """Draw the menu of a marker, if it is open."""
     asks = False
     actions: list[Action] = []
@@ -119,7 +131,7 @@ def _menu(bands: Bands, marker: Marker) -> list[Action]:
             actions.append(do(keys.delete_marker, marker.frame))
         imgui.separator()
         for name in ("previous marker", "next marker"):
-            actions += bound_item(bands.session, name)
+            actions += draw_action_item(bands.session, name)
         imgui.end_popup()
     if asks:
         imgui.open_popup(f"name of marker {marker.frame}")

@@ -2,11 +2,18 @@
 
 from imgui_bundle import ImVec2, imgui
 
-from app.document import Layer, remembered
+from app.document import Layer, memoized_on
 from app.editor import Action, Scrub, do
 from app.editor.actions import timeline_pointing
-from app.ui.style import SMALL, in_hand, ink, is_pressed, sized, write_in
-from app.ui.timeline.bands import Bands, in_seconds
+from app.ui.style import (
+    SMALL,
+    colour_u32,
+    draw_centred_text,
+    is_hovered_or_held,
+    is_pressed,
+    push_text_size,
+)
+from app.ui.timeline.layout import TimelineLayout, format_seconds
 
 TICK_ROOM = 0.55  # em between small ticks at least
 RULER_TAG = 1.2  # em: height of the playhead's number
@@ -14,14 +21,16 @@ LABEL_GAP = 2.4  # em between labels at least
 MULTIPLES = (2, 5, 10, 30, 60, 120, 300, 600, 1800, 3600, 7200, 18000)
 
 
-def draw_ruler(bands: Bands, frame: int) -> list[Action]:
+def draw_ruler(bands: TimelineLayout, frame: int) -> list[Action]:
     """Draw frame numbers and seconds; a press there takes the playhead along."""
-    bands.button("ruler", ImVec2(bands.left, bands.ruler_top), ImVec2(bands.right, bands.marks_top))
+    bands.button(
+        "ruler", ImVec2(bands.left, bands.ruler_top), ImVec2(bands.right, bands.markers_top)
+    )
     bands.look.note_place("ruler")
     actions: list[Action] = []
     if is_pressed():
         actions += [
-            do(timeline_pointing.begin, Scrub(), bands.strip),
+            do(timeline_pointing.begin, Scrub(), bands.time_view),
             do(timeline_pointing.move, bands.pointed, bands.row.layer.id),
         ]
     if imgui.is_item_hovered():
@@ -29,28 +38,32 @@ def draw_ruler(bands: Bands, frame: int) -> list[Action]:
     draw_list = imgui.get_window_draw_list()
     low, high = ImVec2(bands.left, bands.ruler_top), ImVec2(bands.right, bands.track_bottom)
     draw_list.push_clip_rect(low, high, intersect_with_current_clip_rect=True)
-    with sized(SMALL):
+    with push_text_size(SMALL):
         _draw_ticks(bands, frame)
     draw_list.pop_clip_rect()
     return actions
 
 
-def _draw_ticks(bands: Bands, present: int) -> None:
+def _draw_ticks(bands: TimelineLayout, present: int) -> None:
     """Draw ticks, and their labels where the playhead does not cover them."""
     palette, draw_list, em = bands.look.palette, imgui.get_window_draw_list(), bands.look.em
     document = bands.project.document
-    per_frame = bands.strip.scale * em
+    per_frame = bands.time_view.scale * em
     last = max(int(bands.frame(bands.right)) + 1, 0)
-    widest = imgui.calc_text_size(f"{last}  {in_seconds(last, document.fps)}").x
+    widest = imgui.calc_text_size(f"{last}  {format_seconds(last, document.fps)}").x
     steps = _steps(document.fps)
     large = next((s for s in steps if s * per_frame > widest + LABEL_GAP * em), steps[-1])
     small = next(
         s for s in steps if large % s == 0 and (s == large or s * per_frame >= TICK_ROOM * em)
     )
     begin = max(int(bands.frame(bands.left)) // large * large, 0)
-    text, dim, faint = ink(palette.text, 0.85), ink(palette.dim), ink(palette.dim, 0.5)
-    grid = ink(palette.line, 0.55)
-    bottom = bands.marks_top - 0.2 * em
+    text, dim, faint = (
+        colour_u32(palette.text, 0.85),
+        colour_u32(palette.dim),
+        colour_u32(palette.dim, 0.5),
+    )
+    grid = colour_u32(palette.line, 0.55)
+    bottom = bands.markers_top - 0.2 * em
     tag = _tag_width(bands, present) / 2 + 0.2 * em
     covered = bands.x(present) - tag, bands.x(present) + tag
     for frame in range(begin, last + 1, small):
@@ -61,7 +74,7 @@ def _draw_ticks(bands: Bands, present: int) -> None:
         draw_list.add_line(ImVec2(x, bands.ruler_top + 0.15 * em), ImVec2(x, bottom), dim)
         draw_list.add_line(ImVec2(x, bands.track_top), ImVec2(x, bands.track_bottom), grid)
         number, top = f"{frame}", bands.ruler_top + 0.1 * em
-        seconds = in_seconds(frame, document.fps)
+        seconds = format_seconds(frame, document.fps)
         wide = 0.7 * em + imgui.calc_text_size(number).x + imgui.calc_text_size(seconds).x
         if x < covered[1] and x + wide > covered[0]:
             continue
@@ -77,11 +90,11 @@ def _steps(fps: float) -> list[int]:
     return parts + [second * multiple for multiple in MULTIPLES]
 
 
-def draw_playhead(bands: Bands, frame: int) -> list[Action]:
+def draw_playhead(bands: TimelineLayout, frame: int) -> list[Action]:
     """Draw a line at the present frame, and its number on the ruler, to be dragged."""
     palette, draw_list, em = bands.look.palette, imgui.get_window_draw_list(), bands.look.em
     x = bands.x(frame)
-    with sized(SMALL, bands.look.bold):
+    with push_text_size(SMALL, bands.look.bold):
         width = _tag_width(bands, frame)
     low = ImVec2(x - width / 2, bands.ruler_top + 0.05 * em)
     high = low + ImVec2(width, RULER_TAG * em)
@@ -91,42 +104,42 @@ def draw_playhead(bands: Bands, frame: int) -> list[Action]:
         bands.look.note_place("playhead")
         if is_pressed():
             scrub = Scrub(offset=frame - bands.pointed)
-            actions.append(do(timeline_pointing.begin, scrub, bands.strip))
+            actions.append(do(timeline_pointing.begin, scrub, bands.time_view))
         colour = palette.warning if bands.project.unkeyed is not None else palette.accent
-        if in_hand():
+        if is_hovered_or_held():
             imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
         draw_list.push_clip_rect(*bands.bounds, intersect_with_current_clip_rect=True)
         draw_list.add_line(
-            ImVec2(x, high.y), ImVec2(x, bands.track_bottom), ink(colour), max(1.5, 0.1 * em)
+            ImVec2(x, high.y), ImVec2(x, bands.track_bottom), colour_u32(colour), max(1.5, 0.1 * em)
         )
-        draw_list.add_rect_filled(low, high, ink(colour), 0.35 * em)
+        draw_list.add_rect_filled(low, high, colour_u32(colour), 0.35 * em)
         half = 0.32 * em
         draw_list.add_triangle_filled(
             ImVec2(x - half, high.y - 0.5),
             ImVec2(x + half, high.y - 0.5),
             ImVec2(x, high.y + half),
-            ink(colour),
+            colour_u32(colour),
         )
-        with sized(SMALL, bands.look.bold):
-            write_in(low, high, f"{frame}", ink(palette.on_accent))
+        with push_text_size(SMALL, bands.look.bold):
+            draw_centred_text(low, high, f"{frame}", colour_u32(palette.on_accent))
         draw_list.pop_clip_rect()
     return actions
 
 
-def _tag_width(bands: Bands, frame: int) -> float:
+def _tag_width(bands: TimelineLayout, frame: int) -> float:
     """Return the width of the playhead's number with its margins."""
     return max(imgui.calc_text_size(f"{frame}").x + 0.9 * bands.look.em, 1.9 * bands.look.em)
 
 
-@remembered
+@memoized_on
 def _frames_apart(layer: Layer, step: int) -> frozenset[int]:
     """Return frames of keys, of which there is one in each of so many frames at most."""
     return frozenset(key.frame // step * step for key in layer.keys if not layer.still)
 
 
-def draw_overview(bands: Bands, frame: int) -> list[Action]:
+def draw_overview(bands: TimelineLayout, frame: int) -> list[Action]:
     """Draw below what part of all frames is on the screen; dragging it scrolls."""
-    strip, frames, em = bands.strip, bands.project.document.frames, bands.look.em
+    strip, frames, em = bands.time_view, bands.project.document.frames, bands.look.em
     end = strip.frame(bands.width)
     low, high = min(frames.first, strip.start), max(frames.last, end)
     if bands.is_cramped or bands.project.timing.strip is None or high - low <= end - strip.start:
@@ -138,16 +151,16 @@ def draw_overview(bands: Bands, frame: int) -> list[Action]:
     bands.button("overview", ImVec2(left, top), ImVec2(right, bottom))
     rounding = (bottom - top) / 2
     draw_list.add_rect_filled(
-        ImVec2(bands.left, top), ImVec2(bands.right, bottom), ink(palette.desk), rounding
+        ImVec2(bands.left, top), ImVec2(bands.right, bottom), colour_u32(palette.desk), rounding
     )
-    bar = ink(palette.dim if in_hand() else palette.pressed)
+    bar = colour_u32(palette.dim if is_hovered_or_held() else palette.pressed)
     draw_list.add_rect_filled(ImVec2(left, top), ImVec2(right, bottom), bar, rounding)
     middle = (top + bottom) / 2
     # Each place once, however many keys there are; those of the active layer over them.
     layer = bands.project.layer
     for layers, radius, colour in (
-        (tuple(row.layer for row in bands.rows), 0.09 * em, ink(palette.dim)),
-        ((layer,), 0.11 * em, ink(palette.text, 0.8)),
+        (tuple(row.layer for row in bands.rows), 0.09 * em, colour_u32(palette.dim)),
+        ((layer,), 0.11 * em, colour_u32(palette.text, 0.8)),
     ):
         step = max(round(2 * radius / per_frame), 1)
         for at in frozenset[int]().union(*(_frames_apart(each, step) for each in layers)):
@@ -157,7 +170,7 @@ def draw_overview(bands: Bands, frame: int) -> list[Action]:
             )
             draw_list.add_rect_filled(place - half, place + half, colour)
     x = bands.left + (frame - low) * per_frame
-    draw_list.add_line(ImVec2(x, top), ImVec2(x, bottom), ink(palette.accent), 1.5)
+    draw_list.add_line(ImVec2(x, top), ImVec2(x, bottom), colour_u32(palette.accent), 1.5)
     delta = imgui.get_io().mouse_delta.x
     if imgui.is_item_active() and delta:
         moved = strip.panned(delta / per_frame * strip.scale)

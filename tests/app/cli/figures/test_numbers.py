@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from app.cli.figures.measure import MeasuredMotion
 from app.cli.figures.methods import ARAP, FFMP, LINEAR, METRIC, NU, SCALED_ETA, SIG13
-from app.cli.figures.plates import figure_3, figure_4, figure_8, figure_9, figure_11
-from app.cli.figures.shapes import bar_to_ring, letter_s, sample
-from app.cli.figures.track import Tracked
+from app.cli.figures.plots import figure_3, figure_4, figure_8, figure_9, figure_11
+from app.cli.figures.shapes import bar_to_ring, letter_s, make_sample_pair
 from engine.maps import Boundary, Bounds, certify
 
 TRIANGLES = 1_000
@@ -19,11 +19,11 @@ def s_to_u():
 
 
 def measured(pair, method, times=11):
-    return Tracked(pair, method, times).measured()
+    return MeasuredMotion(pair, method, times).summarize()
 
 
 def test_figure_1_linear_interpolation_shrinks_the_giraffe_and_folds_it():
-    pair = sample("giraffe", 0, 1, TRIANGLES)
+    pair = make_sample_pair("giraffe", 0, 1, TRIANGLES)
     linear, metric = measured(pair, LINEAR, 5), measured(pair, METRIC, 5)
     assert linear.area < 0.85
     assert linear.tau == np.inf
@@ -32,7 +32,7 @@ def test_figure_1_linear_interpolation_shrinks_the_giraffe_and_folds_it():
 
 
 def test_figure_3_nu_loses_the_direction_of_the_stretch_and_the_others_keep_it():
-    nu, eta, metric = figure_3.measure()
+    nu, eta, metric = figure_3.measure_stretch()
     # μ turns by twice the angle of the map: at t = 0.8 by 144° instead of 180°.
     assert nu.direction == pytest.approx(18.0, abs=1e-4)
     assert nu.k == pytest.approx(0.2, abs=1e-6)
@@ -42,7 +42,7 @@ def test_figure_3_nu_loses_the_direction_of_the_stretch_and_the_others_keep_it()
 
 
 def test_figure_4_scaling_brings_eta_back_within_the_bounds():
-    unscaled, scaled = (each.measured() for each in figure_4.bar_wound_up(TRIANGLES).values())
+    unscaled, scaled = (each.summarize() for each in figure_4.make_wound_bar(TRIANGLES).values())
     assert unscaled.k > 2
     assert unscaled.tau == np.inf
     assert scaled.k <= 1 + ROUNDING
@@ -69,7 +69,7 @@ def test_figure_5_its_keyframe_is_certified(s_to_u):
 
 
 def test_figure_5_nu_is_linear_in_time(s_to_u):
-    track = Tracked(s_to_u, NU, 5)
+    track = MeasuredMotion(s_to_u, NU, 5)
     np.testing.assert_allclose(
         track.k_shares, np.repeat(track.times[:, None], 100, axis=1), rtol=0, atol=1e-6
     )
@@ -83,9 +83,9 @@ def test_figure_6_arap_exceeds_the_ring_and_ours_do_not():
 
 
 def test_figure_8_the_tail_turns_evenly_by_scaled_eta_only_and_chen_is_near_metric():
-    pair = figure_8.pair(TRIANGLES)
-    tracks = tuple(Tracked(pair, method) for method in (METRIC, SCALED_ETA, SIG13))
-    metric, eta, chen = figure_8.measure(tracks)
+    pair = figure_8.make_tail_pair(TRIANGLES)
+    tracks = tuple(MeasuredMotion(pair, method) for method in (METRIC, SCALED_ETA, SIG13))
+    metric, eta, chen = figure_8.measure_tail(tracks)
     assert eta.turned == pytest.approx(0.5, abs=0.02)
     assert abs(metric.turned - 0.5) > 0.05
     assert chen.from_metric < 0.03
@@ -94,7 +94,7 @@ def test_figure_8_the_tail_turns_evenly_by_scaled_eta_only_and_chen_is_near_metr
 
 def test_figure_9_methods_are_timed_at_sizes_up_to_the_largest(monkeypatch):
     monkeypatch.setattr(figure_9, "SIZES", (300, 500))
-    (timing,) = figure_9.measure(400, (METRIC, SIG13))
+    (timing,) = figure_9.measure_frame_times(400, (METRIC, SIG13))
     assert 240 < timing.vertices < 400
     assert len(timing.seconds) == 3
     assert all(seconds > 0 for seconds in timing.seconds.values())
@@ -102,7 +102,7 @@ def test_figure_9_methods_are_timed_at_sizes_up_to_the_largest(monkeypatch):
 
 
 def test_figure_11_the_poisson_error_goes_to_zero_under_refinement():
-    *bars, octopus = figure_11.measure(TRIANGLES)
+    *bars, octopus = figure_11.measure_errors(TRIANGLES)
     errors = [loss.error for loss in bars]
     sizes = [loss.triangles**-0.5 for loss in bars]
     order = np.polyfit(np.log(sizes), np.log(errors), 1)[0]

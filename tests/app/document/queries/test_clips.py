@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from documents import altered, disc_document
 
-from app.document.body import Bone, UnreadMotion
 from app.document.commands import handle_commands
-from app.document.keyframe import KeptPose
-from app.document.layering import Group, OpacityKey, Placing, Switch
+from app.document.keyframe import LibraryPose
+from app.document.layers import DrawOrderKey, Group, OpacityKey, VisibilityKey
 from app.document.queries.clips import UNMOVING, UNMOVING_OF_HANDLES, clip_of, motion_source
+from app.document.rig import Bone, UnreadMotion
 from app.document.timing import Spring
-from app.motion.extents.extent import extent_source
+from app.motion.extents.extent import extent_key
 from engine.maps.bounds import Bounds
 
 DOCUMENT = disc_document()
@@ -23,20 +23,20 @@ POSE = DOCUMENT.layers[0].keys[0].pose
 UNSEEN = {
     "name": "other",
     "next_handle": 9,
-    "library": (KeptPose(name="Pose 1", pose=POSE),),
+    "library": (LibraryPose(name="Pose 1", pose=POSE),),
     "mirror": 10.0,
     "motions": (),
     "unread_motions": (UnreadMotion(index=0, content={}, reason="It is new."),),
     "reference": True,
     "locked": True,
     "hidden": True,
-    "switches": (Switch(4, visible=False),),
+    "switches": (VisibilityKey(4, visible=False),),
     "opacity": 0.5,
     "opacities": (OpacityKey(frame=3, opacity=0.5),),
     "blend": "multiply",
     "clipped": True,
     "group": "all",
-    "placings": (Placing(4, None),),
+    "placings": (DrawOrderKey(4, None),),
     "unknown": {"later": 1},
 }
 SEEN = {
@@ -59,14 +59,14 @@ def test_clips_are_equal_where_only_other_things_change(field):
     assert clip_of(changed, 0) == clip_of(DOCUMENT, 0)
     assert hash(clip_of(changed, 0)) == hash(clip_of(DOCUMENT, 0))
     if field not in {"reference", "hidden"}:  # which is not exported
-        assert extent_source(changed) == extent_source(DOCUMENT)
+        assert extent_key(changed) == extent_key(DOCUMENT)
 
 
 @pytest.mark.parametrize("field", SEEN)
 def test_clips_differ_where_the_motion_does(field):
     changed = altered(DOCUMENT, **{field: SEEN[field]})
     assert clip_of(changed, 0) != clip_of(DOCUMENT, 0)
-    assert extent_source(changed) != extent_source(DOCUMENT)
+    assert extent_key(changed) != extent_key(DOCUMENT)
 
 
 def test_clips_are_equal_where_stiffness_is_painted_alike():

@@ -20,7 +20,7 @@ def document():
     for number in range(1, 6):
         layer = replace(
             document.layers[0],
-            id=layers.free_identity(document),
+            id=layers.next_layer_id(document),
             name=f"layer {number}",
             domain=disc_domain(),
         )
@@ -41,8 +41,8 @@ def test_without_groups_and_choices_it_is_the_order_of_painting(document):
 
 
 def test_groups_hold_what_is_in_them(document):
-    document = groups.put_in_group((1, 2), "body/legs")(document)
-    document = groups.put_in_group((3,), "body")(document)
+    document = groups.group_layers((1, 2), "body/legs")(document)
+    document = groups.group_layers((3,), "body")(document)
     assert told(document) == [
         "layer 5",
         "layer 4",
@@ -68,7 +68,7 @@ def test_groups_hold_what_is_in_them(document):
 
 
 def test_layers_that_take_turns_are_one_row_where_the_foremost_is(document):
-    document = choices.form_choice("mouth", (1, 4))(document)
+    document = choices.create_switch_group("mouth", (1, 4))(document)
     assert told(document) == ["layer 5", "mouth +", "layer 3", "layer 2", "layer"]
     assert told(document, "choice mouth") == [
         "layer 5",
@@ -82,8 +82,8 @@ def test_layers_that_take_turns_are_one_row_where_the_foremost_is(document):
 
 
 def test_a_choice_in_a_group(document):
-    document = groups.put_in_group((3, 4), "face")(document)
-    document = choices.form_choice("mouth", (2, 4))(document)
+    document = groups.group_layers((3, 4), "face")(document)
+    document = choices.create_switch_group("mouth", (2, 4))(document)
     assert told(document, "choice mouth") == [
         "layer 5",
         "face",
@@ -97,7 +97,7 @@ def test_a_choice_in_a_group(document):
 
 
 def test_a_group_that_others_lie_amid_has_a_row_for_each_run(document):
-    document = groups.put_in_group((1, 2, 3), "arm")(document)
+    document = groups.group_layers((1, 2, 3), "arm")(document)
     document = layers.move_layer(5, 2)(document)
     rows = [row for row in layer_tree(document) if row.group]
     assert len({row.key for row in rows}) == len(rows)

@@ -7,9 +7,9 @@ from dataclasses import replace
 from documents import disc_document, random_pose
 from numpy import random
 
-from app.document import clip_of, find_shortfall, transits
+from app.document import clip_of, measure_target_errors, pose_segments
 from app.document.commands import key_commands
-from app.document.queries.remembered import MOST, remembered
+from app.document.queries.memo import MOST, memoized_on
 from app.document.settings import FrameRange
 
 
@@ -24,17 +24,20 @@ def clips_of_layers(count):
 
 def test_what_is_known_of_twenty_layers_is_not_found_out_again_in_each_frame():
     clips = clips_of_layers(20)
-    first = [(transits(clip), find_shortfall(clip.layer, clip.keys[-1].pose)) for clip in clips]
+    first = [
+        (pose_segments(clip), measure_target_errors(clip.layer, clip.keys[-1].pose))
+        for clip in clips
+    ]
     for clip, (ways, shortfall) in zip(clips, first, strict=True):
-        assert transits(clip) is ways
-        assert transits(replace(clip)) is ways
-        assert find_shortfall(clip.layer, clip.keys[-1].pose) is shortfall
+        assert pose_segments(clip) is ways
+        assert pose_segments(replace(clip)) is ways
+        assert measure_target_errors(clip.layer, clip.keys[-1].pose) is shortfall
 
 
 def test_what_is_known_of_a_layer_goes_with_it():
     (clip,) = clips_of_layers(1)
-    transits(clip)
-    find_shortfall(clip.layer, clip.keys[0].pose)
+    pose_segments(clip)
+    measure_target_errors(clip.layer, clip.keys[0].pose)
     layer = weakref.ref(clip.layer)
     del clip
     gc.collect()
@@ -44,7 +47,7 @@ def test_what_is_known_of_a_layer_goes_with_it():
 def test_threads_that_ask_at_once_are_all_answered():
     """Also while others make room for new answers; with so many of them that they do."""
     layer, failures = disc_document().layers[0], []
-    ask = remembered(lambda _, frames: frames.last + 1)
+    ask = memoized_on(lambda _, frames: frames.last + 1)
 
     def go(step):
         try:

@@ -9,7 +9,11 @@ from numpy.testing import assert_allclose
 
 from app.document.commands.handle_commands import add_handle
 from app.document.keyframe import Target
-from app.document.queries.shortfall import LAG, Extremes, find_shortfall
+from app.document.queries.target_error import (
+    LEAST_TARGET_ERROR,
+    DistortionRange,
+    measure_target_errors,
+)
 from app.document.timing import Spring
 from engine.maps import Bounds
 
@@ -27,21 +31,21 @@ def layer_and_pose(*, lag, share):
 def least(layer):
     low, high = layer.domain.outline.real.min(), layer.domain.outline.real.max()
     assert high - low == pytest.approx(2 * RADIUS, rel=0.05)
-    return LAG * (high - low)
+    return LEAST_TARGET_ERROR * (high - low)
 
 
 @pytest.mark.parametrize("share", [0.02, 0.9, 0.99])
 def test_a_handle_falls_short_where_it_lags_by_enough_to_be_seen(share):
     layer, _ = layer_and_pose(lag=0, share=share)
     for lag, is_short in ((0.9 * least(layer), False), (1.1 * least(layer), True)):
-        short = find_shortfall(*layer_and_pose(lag=lag, share=share))
-        assert set(short.lags) == ({0} if is_short else set())
-    assert_allclose(short.lags[0], lag, rtol=0, atol=1e-9)
+        short = measure_target_errors(*layer_and_pose(lag=lag, share=share))
+        assert set(short.errors) == ({0} if is_short else set())
+    assert_allclose(short.errors[0], lag, rtol=0, atol=1e-9)
 
 
 @pytest.mark.parametrize(("share", "at_limits"), [(0.02, False), (0.9, False), (0.99, True)])
 def test_only_limits_that_are_reached_hold_a_handle_back(share, at_limits):
-    short = find_shortfall(*layer_and_pose(lag=30, share=share))
+    short = measure_target_errors(*layer_and_pose(lag=30, share=share))
     assert short.at_limits == at_limits
     assert ("limits" in short.reason) == at_limits
 
@@ -49,19 +53,19 @@ def test_only_limits_that_are_reached_hold_a_handle_back(share, at_limits):
 def test_what_follows_by_a_spring_never_falls_short():
     layer, pose = layer_and_pose(lag=30, share=0.5)
     spring = Spring(handle=0, frequency=2.0, damping=0.3)
-    assert find_shortfall(replace(layer, springs=(spring,)), pose).lags == {}
+    assert measure_target_errors(replace(layer, springs=(spring,)), pose).errors == {}
     still = replace(spring, enabled=False)
-    assert find_shortfall(replace(layer, springs=(still,)), pose).lags.keys() == {0}
+    assert measure_target_errors(replace(layer, springs=(still,)), pose).errors.keys() == {0}
 
 
 @pytest.mark.parametrize(
     ("extremes", "words"),
     [
-        (Extremes(k=0.1, sigma_a=3.9, sigma_b=0.9), ("stretch",)),
-        (Extremes(k=0.495, sigma_a=1.1, sigma_b=0.9), ("shear",)),
-        (Extremes(k=0.497, sigma_a=2.0, sigma_b=0.2505), ("squeeze", "shear")),
+        (DistortionRange(k=0.1, sigma_a=3.9, sigma_b=0.9), ("stretch",)),
+        (DistortionRange(k=0.495, sigma_a=1.1, sigma_b=0.9), ("shear",)),
+        (DistortionRange(k=0.497, sigma_a=2.0, sigma_b=0.2505), ("squeeze", "shear")),
         # Walls stand a little inside: what is nearest to its limit holds.
-        (Extremes(k=0.2, sigma_a=1.1, sigma_b=0.29), ("squeeze",)),
+        (DistortionRange(k=0.2, sigma_a=1.1, sigma_b=0.29), ("squeeze",)),
     ],
 )
 def test_what_a_limit_holds_back_has_a_word(extremes, words):
@@ -73,10 +77,10 @@ def test_shares_count_from_no_distortion_to_the_limit():
     none, half, full, folded = (
         [use.share for use in extremes.uses(bounds)]
         for extremes in (
-            Extremes(0.0, 1.0, 1.0),
-            Extremes(0.25, 2.0, 0.5),
-            Extremes(0.5, 4.0, 0.25),
-            Extremes(np.inf, np.inf, -1.0),
+            DistortionRange(0.0, 1.0, 1.0),
+            DistortionRange(0.25, 2.0, 0.5),
+            DistortionRange(0.5, 4.0, 0.25),
+            DistortionRange(np.inf, np.inf, -1.0),
         )
     )
     assert_allclose([none, half, full], [[0] * 3, [0.5] * 3, [1] * 3], rtol=0, atol=1e-12)
@@ -85,4 +89,4 @@ def test_shares_count_from_no_distortion_to_the_limit():
 
 def test_a_pose_older_than_a_handle_says_nothing_of_it():
     layer, pose = layer_and_pose(lag=30, share=0.5)
-    assert find_shortfall(layer, replace(pose, targets={})).lags == {}
+    assert measure_target_errors(layer, replace(pose, targets={})).errors == {}

@@ -12,22 +12,22 @@ from numpy.testing import assert_allclose
 from app.document import (
     HOLD,
     CameraKey,
+    DrawOrderKey,
     FrameRange,
-    MoveKey,
     OpacityKey,
-    Passing,
-    Placing,
+    TangentMode,
+    TransformKey,
     camera_at,
-    exported_frames,
-    in_order,
+    export_frame_range,
     layer_commands,
-    movement_at,
+    layers_in_draw_order,
     opacity_at,
     scene_commands,
-    seen_alone,
+    transform_at,
+    without_foreign_clips,
 )
 from app.document.commands.scene_commands import KEY_OUTSIDE
-from app.document.layering import Group
+from app.document.layers import Group
 from app.document.model import NO_LAYER
 from app.errors import LissomError
 
@@ -71,21 +71,21 @@ def test_the_camera_passes_its_keys_and_the_ends_of_its_motion_without_a_jerk():
     for key in KEYS:
         assert_allclose(*slopes(filmed(), key.frame), rtol=0, atol=1e-3)
     assert np.abs(slopes(filmed(), 10)).min() > 0.01
-    corners = filmed(replace(key, passing=Passing.CORNER) for key in KEYS)
+    corners = filmed(replace(key, tangent_mode=TangentMode.CORNER) for key in KEYS)
     assert np.abs(np.subtract(*slopes(corners, 10))).max() > 1
 
 
 def test_zoom_is_blended_by_its_logarithm():
     two = (CameraKey(frame=0, centre=0j), CameraKey(frame=24, centre=0j, zoom=4.0))
     assert camera_at(filmed(two), 12).zoom == pytest.approx(2.0, rel=1e-12)
-    even = filmed(replace(key, passing=Passing.CORNER) for key in two)
+    even = filmed(replace(key, tangent_mode=TangentMode.CORNER) for key in two)
     for frame in (3, 6, 17.5):
         assert camera_at(even, frame).zoom == pytest.approx(exp(log(4) * frame / 24), rel=1e-12)
 
 
 def test_what_is_seen_is_zoomed_and_turned_counter_clockwise_around_the_centre():
     document = filmed([CameraKey(frame=0, centre=30 + 40j, zoom=2.0, turn=pi / 2)])
-    seen = camera_at(document, 0).on_canvas((200, 100))
+    seen = camera_at(document, 0).canvas_motion((200, 100))
     # What lies to the right of the centre is seen above it.
     places = seen.on(np.array([30 + 40j, 35 + 40j]))
     assert_allclose(places, [100 + 50j, 100 + 60j], rtol=0, atol=1e-12)
@@ -106,14 +106,14 @@ def test_in_a_loop_the_camera_comes_round():
 
 
 def test_the_last_frame_of_a_loop_is_left_out_only_where_all_of_it_is_the_first_again():
-    assert exported_frames(altered(EMPTY, loop=True)).last == 47
+    assert export_frame_range(altered(EMPTY, loop=True)).last == 47
     panned = (replace(KEYS[0], frame=0), replace(KEYS[1], frame=48))
-    assert exported_frames(filmed(panned, loop=True)).last == 48
+    assert export_frame_range(filmed(panned, loop=True)).last == 48
     # A wheel that has turned round is where it was.
-    wheel = (MoveKey(frame=0), MoveKey(frame=48, turn=2 * pi))
-    assert exported_frames(altered(EMPTY, movement=wheel, loop=True)).last == 47
-    rolled = (MoveKey(frame=0), MoveKey(frame=48, shift=1, turn=2 * pi))
-    assert exported_frames(altered(EMPTY, movement=rolled, loop=True)).last == 48
+    wheel = (TransformKey(frame=0), TransformKey(frame=48, turn=2 * pi))
+    assert export_frame_range(altered(EMPTY, movement=wheel, loop=True)).last == 47
+    rolled = (TransformKey(frame=0), TransformKey(frame=48, shift=1, turn=2 * pi))
+    assert export_frame_range(altered(EMPTY, movement=rolled, loop=True)).last == 48
 
 
 def test_a_held_camera_jumps():
@@ -122,16 +122,16 @@ def test_a_held_camera_jumps():
 
 
 def test_a_layer_is_moved_and_turned_around_its_anchor_or_its_middle():
-    keys = (MoveKey(frame=0), MoveKey(frame=8, shift=10 + 5j, turn=pi / 2))
+    keys = (TransformKey(frame=0), TransformKey(frame=8, shift=10 + 5j, turn=pi / 2))
     document = altered(EMPTY, movement=keys)
     layer = document.layers[0]
-    motion = movement_at(document, layer, 8)
+    motion = transform_at(document, layer, 8)
     assert abs(layer.pivot - CENTRE) < 1e-9
     places = motion.on(np.array([layer.pivot, layer.pivot + 1]))
     assert_allclose(places, layer.pivot + 10 + 5j + np.array([0, 1j]), rtol=0, atol=1e-9)
-    assert abs(movement_at(document, layer, 3.7).factor) == pytest.approx(1, abs=1e-15)
+    assert abs(transform_at(document, layer, 3.7).factor) == pytest.approx(1, abs=1e-15)
     by_anchor = replace(layer, anchor=80 + 90j)
-    assert movement_at(document, by_anchor, 8).on(np.array([80 + 90j]))[0] == pytest.approx(
+    assert transform_at(document, by_anchor, 8).on(np.array([80 + 90j]))[0] == pytest.approx(
         90 + 95j, abs=1e-9
     )
 
@@ -144,7 +144,7 @@ def test_fades_are_even_and_stay_between_nothing_and_all():
     assert opacity_at(document, layer, 40) == 0.2
     peaks = [0.9, 1.0, 0.1, 0.0, 0.8]
     keys = tuple(
-        OpacityKey(frame=6 * i, opacity=each, passing=Passing.THROUGH)
+        OpacityKey(frame=6 * i, opacity=each, tangent_mode=TangentMode.SMOOTH)
         for i, each in enumerate(peaks)
     )
     through = altered(EMPTY, opacities=keys)
@@ -156,14 +156,14 @@ def test_fades_are_even_and_stay_between_nothing_and_all():
 def stack(**placings):
     document = EMPTY
     for name in "abcd"[: 4 - len(document.layers)]:
-        copy = replace(EMPTY.layers[0], id=layer_commands.free_identity(document), name=f"{name}")
+        copy = replace(EMPTY.layers[0], id=layer_commands.next_layer_id(document), name=f"{name}")
         document = layer_commands.add_layer(copy)(document)
     ids = {layer.name: layer.id for layer in document.layers}
     layers = tuple(
         replace(
             layer,
-            placings=tuple(
-                Placing(frame, ids.get(beside), in_front)
+            draw_order_keys=tuple(
+                DrawOrderKey(frame, ids.get(beside), in_front)
                 for frame, beside, in_front in placings.get(layer.name, ())
             ),
         )
@@ -173,7 +173,7 @@ def stack(**placings):
 
 
 def order(document, frame):
-    return "".join(each.name[0] for each in in_order(document, frame))
+    return "".join(each.name[0] for each in layers_in_draw_order(document, frame))
 
 
 def test_a_layer_lies_in_front_of_another_one_from_a_frame_on():
@@ -191,15 +191,15 @@ def test_time_edits_carry_all_of_them_along():
     document = altered(
         EMPTY,
         camera=KEYS,
-        movement=(MoveKey(frame=4), MoveKey(frame=8, shift=1j)),
+        movement=(TransformKey(frame=4), TransformKey(frame=8, shift=1j)),
         opacities=(OpacityKey(frame=2, opacity=0.5),),
-        placings=(Placing(6, None),),
+        placings=(DrawOrderKey(6, None),),
     )
     twice = scene_commands.scale_time(2.0)(document)
     layer = twice.layers[0]
     assert [key.frame for key in twice.camera] == [8, 20, 60, 80]
-    assert [key.frame for key in layer.movement] == [8, 16]
-    assert [layer.opacities[0].frame, layer.placings[0].frame] == [4, 12]
+    assert [key.frame for key in layer.transform_keys] == [8, 16]
+    assert [layer.opacity_keys[0].frame, layer.draw_order_keys[0].frame] == [4, 12]
     for frame in (3.0, 7.3, 11.0):
         assert_allclose(told(twice, 2 * frame), told(document, frame), rtol=0, atol=1e-12)
 
@@ -216,13 +216,13 @@ def test_what_cannot_be_is_refused():
     with pytest.raises(LissomError, match=says(KEY_OUTSIDE, frame=40)):
         scene_commands.set_frames(FrameRange(0, 39))(filmed())
     with pytest.raises(LissomError, match="in front of itself"):
-        altered(EMPTY, placings=(Placing(0, 0),))
+        altered(EMPTY, placings=(DrawOrderKey(0, 0),))
     with pytest.raises(LissomError, match=says(NO_LAYER, identity=7)):
-        altered(EMPTY, placings=(Placing(0, 7),))
+        altered(EMPTY, placings=(DrawOrderKey(0, 7),))
     with pytest.raises(LissomError, match="between 0 and 1"):
         OpacityKey(frame=0, opacity=1.5)
     with pytest.raises(LissomError, match="within"):
-        MoveKey(frame=0, shift=complex(0, float("inf")))
+        TransformKey(frame=0, shift=complex(0, float("inf")))
 
 
 def test_a_layer_that_is_removed_leaves_none_that_lies_beside_it():
@@ -248,7 +248,7 @@ def stacked(places=None, **groups):
     layers = []
     for name, (group, clipped) in drawn.items():
         placed = (places or {}).get(name)
-        placings = (Placing(6, ids[placed[0]], placed[1]),) if placed else ()
+        placings = (DrawOrderKey(6, ids[placed[0]], placed[1]),) if placed else ()
         layers.append(
             replace(
                 EMPTY.layers[0],
@@ -256,7 +256,7 @@ def stacked(places=None, **groups):
                 name=name,
                 group=group if groups else "",
                 clipped=clipped,
-                placings=placings,
+                draw_order_keys=placings,
             )
         )
     return replace(document, layers=tuple(layers))
@@ -279,22 +279,22 @@ def stacked(places=None, **groups):
 @pytest.mark.parametrize("groups", [{}, {"trunk": {}}])
 def test_nothing_comes_between_what_is_clipped_and_what_clips_it(places, expected, groups):
     document = stacked(places, **groups)
-    assert in_order(document, 5) == document.layers
-    assert " ".join(each.name for each in in_order(document, 6)) == expected
+    assert layers_in_draw_order(document, 5) == document.layers
+    assert " ".join(each.name for each in layers_in_draw_order(document, 6)) == expected
 
 
 def test_what_is_clipped_by_a_group_goes_beyond_all_of_it():
     document = stacked({"ball": ("arm", False)}, trunk={})
     clipped = document.with_layer(replace(document.layer(5), clipped=True))
-    assert [each.name for each in in_order(clipped, 6)][:2] == ["wall", "ball"]
+    assert [each.name for each in layers_in_draw_order(clipped, 6)][:2] == ["wall", "ball"]
 
 
 def test_layers_looked_at_alone_are_clipped_by_nothing_else():
     document = stacked(trunk={"clipped": True})
-    alone = seen_alone(document, [3])
+    alone = without_foreign_clips(document, [3])
     assert not alone.layer(3).clipped
     assert not alone.groups[0].clipped
     assert alone.layer(4).clipped == alone.layer(3).clipped
-    assert seen_alone(document, [2, 3]).layer(3).clipped
-    assert not seen_alone(document, [2, 3]).groups[0].clipped
-    assert seen_alone(document, [each.id for each in document.layers]) is document
+    assert without_foreign_clips(document, [2, 3]).layer(3).clipped
+    assert not without_foreign_clips(document, [2, 3]).groups[0].clipped
+    assert without_foreign_clips(document, [each.id for each in document.layers]) is document

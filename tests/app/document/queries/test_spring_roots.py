@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from animations import still_document, within
 
-from app.document import Bone, Spring, handle_commands, root_of
+from app.document import Bone, Spring, handle_commands, spring_root
 
 # A drawing like a U, and its handles: the tips of its arms are far from each other along it.
 CORNERS = np.array(
@@ -33,31 +33,31 @@ def swinging(layer, *springs, **changes):
 
 
 def test_a_root_is_nearest_along_the_drawing_and_not_across_a_gap(drawn):
-    assert root_of(swinging(drawn, spring(TIP)), spring(TIP)) == FOOT
-    assert root_of(swinging(drawn, spring(ACROSS)), spring(ACROSS)) == HEEL
+    assert spring_root(swinging(drawn, spring(TIP)), spring(TIP)) == FOOT
+    assert spring_root(swinging(drawn, spring(ACROSS)), spring(ACROSS)) == HEEL
 
 
 def test_a_bone_leads_to_the_root(drawn):
     boned = swinging(drawn, spring(TIP), bones=(Bone(ends=(HEEL, TIP)),))
-    assert root_of(boned, spring(TIP)) == HEEL
+    assert spring_root(boned, spring(TIP)) == HEEL
 
 
 def test_what_follows_itself_is_no_root_unless_it_is_off(drawn):
     foot = spring(FOOT)
-    assert root_of(swinging(drawn, spring(TIP), foot), spring(TIP)) == HEEL
+    assert spring_root(swinging(drawn, spring(TIP), foot), spring(TIP)) == HEEL
     off = replace(foot, enabled=False)
-    assert root_of(swinging(drawn, spring(TIP), off), spring(TIP)) == FOOT
+    assert spring_root(swinging(drawn, spring(TIP), off), spring(TIP)) == FOOT
 
 
 def test_a_root_that_follows_hands_on_its_own_root(drawn):
     tip = spring(TIP, root=FOOT)
-    assert root_of(swinging(drawn, tip), tip) == FOOT
-    assert root_of(swinging(drawn, tip, spring(FOOT, root=ACROSS)), tip) == ACROSS
+    assert spring_root(swinging(drawn, tip), tip) == FOOT
+    assert spring_root(swinging(drawn, tip, spring(FOOT, root=ACROSS)), tip) == ACROSS
     # In a circle nothing holds.
     around = swinging(drawn, tip, spring(FOOT, root=TIP))
-    assert root_of(around, tip) == HEEL
+    assert spring_root(around, tip) == HEEL
 
 
 def test_without_a_handle_that_is_held_there_is_no_root(drawn):
     springs = [spring(handle) for handle in range(4)]
-    assert root_of(swinging(drawn, *springs), springs[0]) is None
+    assert spring_root(swinging(drawn, *springs), springs[0]) is None

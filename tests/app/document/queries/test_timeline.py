@@ -9,12 +9,17 @@ from hypothesis import given, strategies as st
 from numpy.testing import assert_allclose
 
 from app.document.commands.handle_commands import add_handle
-from app.document.commands.key_commands import pose_key
-from app.document.keyframe import Keyframe, Passing, Target
+from app.document.commands.key_commands import replace_key_pose
+from app.document.keyframe import Keyframe, TangentMode, Target
 from app.document.playhead import Playhead
 from app.document.queries.clips import clip_of
-from app.document.queries.spans import closing_span, intervals
-from app.document.queries.timeline import Moment, exported_frames, frame_times, time_of
+from app.document.queries.key_segments import loop_segment, segment_keys
+from app.document.queries.timeline import (
+    SegmentTime,
+    export_frame_range,
+    frame_times,
+    segment_time_at,
+)
 from app.document.settings import FrameRange
 from app.document.timing import HOLD, PRESETS, Spring
 from app.errors import LissomError
@@ -26,7 +31,8 @@ MIDDLE = 100 + 100j
 def keyed(*frames, last=48, first=0, easing=PRESETS["linear"], **settings):
     pose = EMPTY.layers[0].keys[0].pose
     keys = tuple(
-        Keyframe(frame=frame, pose=pose, easing=easing, passing=Passing.CORNER) for frame in frames
+        Keyframe(frame=frame, pose=pose, easing=easing, tangent_mode=TangentMode.CORNER)
+        for frame in frames
     )
     return altered(EMPTY, keys=keys, frames=FrameRange(first, last), **settings)
 
@@ -46,7 +52,7 @@ def keyed(*frames, last=48, first=0, easing=PRESETS["linear"], **settings):
     ],
 )
 def test_poses_stand_still_before_the_first_key_and_after_the_last(frame, moment):
-    assert time_of(clip_of(keyed(10, 20, 30), 0), frame) == Moment(*moment)
+    assert segment_time_at(clip_of(keyed(10, 20, 30), 0), frame) == SegmentTime(*moment)
 
 
 @pytest.mark.parametrize(
@@ -62,16 +68,16 @@ def test_poses_stand_still_before_the_first_key_and_after_the_last(frame, moment
 )
 def test_a_loop_leads_from_the_last_key_to_the_first(frame, moment):
     # The gap leads from 30 over 48, which is 0 again, to 10: 28 frames.
-    shown = time_of(clip_of(keyed(10, 20, 30, loop=True), 0), frame)
+    shown = segment_time_at(clip_of(keyed(10, 20, 30, loop=True), 0), frame)
     assert_allclose(shown, moment, rtol=0, atol=1e-15)
 
 
 def test_a_loop_comes_round_beyond_its_ends_but_shows_both_of_them():
     document = keyed(0, 24, 48, loop=True)
-    assert time_of(clip_of(document, 0), 48) == (1, 1.0)
-    assert time_of(clip_of(document, 0), 49) == time_of(clip_of(document, 0), 1)
-    assert time_of(clip_of(document, 0), -1) == time_of(clip_of(document, 0), 47)
-    assert closing_span(clip_of(document, 0)) is None
+    assert segment_time_at(clip_of(document, 0), 48) == (1, 1.0)
+    assert segment_time_at(clip_of(document, 0), 49) == segment_time_at(clip_of(document, 0), 1)
+    assert segment_time_at(clip_of(document, 0), -1) == segment_time_at(clip_of(document, 0), 47)
+    assert loop_segment(clip_of(document, 0)) is None
 
 
 @given(
@@ -83,11 +89,11 @@ def test_moments_are_the_linear_interpolation_of_the_keys(frames, loop, frame):
     frames = sorted(frames)
     document = keyed(*frames, first=2, last=70, loop=loop)
     values = np.sin(np.arange(len(frames)) * 2.3)
-    interval, weight = time_of(clip_of(document, 0), frame)
+    interval, weight = segment_time_at(clip_of(document, 0), frame)
     assert interval in range(len(frames))
     assert 0 <= weight <= 1
     if weight:
-        assert (interval, (interval + 1) % len(frames)) in intervals(clip_of(document, 0))
+        assert (interval, (interval + 1) % len(frames)) in segment_keys(clip_of(document, 0))
     shown = (1 - weight) * values[interval] + weight * values[(interval + 1) % len(values)]
     period = 68 if loop else None
     assert_allclose(shown, np.interp(frame, frames, values, period=period), rtol=0, atol=1e-9)
@@ -95,48 +101,50 @@ def test_moments_are_the_linear_interpolation_of_the_keys(frames, loop, frame):
 
 def test_hold_and_easing():
     document = keyed(0, 10, 20, easing=HOLD)
-    assert [time_of(clip_of(document, 0), f) for f in (9.99, 10, 19, 20)] == [
+    assert [segment_time_at(clip_of(document, 0), f) for f in (9.99, 10, 19, 20)] == [
         (0, 0),
         (1, 0),
         (1, 0),
         (1, 1),
     ]
     eased = keyed(0, 10, easing=PRESETS["in"])
-    assert time_of(clip_of(eased, 0), 5) == (0, PRESETS["in"](0.5))
+    assert segment_time_at(clip_of(eased, 0), 5) == (0, PRESETS["in"](0.5))
 
 
 def test_one_key_is_a_still_picture():
     for loop in (False, True):
         document = keyed(7, loop=loop)
-        assert {time_of(clip_of(document, 0), frame) for frame in range(-3, 60)} == {Moment(0, 0.0)}
-        assert intervals(clip_of(document, 0)) == ()
-    assert time_of(clip_of(keyed(7, first=7, last=7, loop=True), 0), 9) == (0, 0.0)
+        assert {segment_time_at(clip_of(document, 0), frame) for frame in range(-3, 60)} == {
+            SegmentTime(0, 0.0)
+        }
+        assert segment_keys(clip_of(document, 0)) == ()
+    assert segment_time_at(clip_of(keyed(7, first=7, last=7, loop=True), 0), 9) == (0, 0.0)
 
 
 def test_intervals():
-    assert intervals(clip_of(keyed(0, 9, 20), 0)) == ((0, 1), (1, 2))
-    assert intervals(clip_of(keyed(0, 9, 20, loop=True), 0)) == ((0, 1), (1, 2), (2, 0))
-    assert intervals(clip_of(keyed(0, 9, 48, loop=True), 0)) == ((0, 1), (1, 2))
+    assert segment_keys(clip_of(keyed(0, 9, 20), 0)) == ((0, 1), (1, 2))
+    assert segment_keys(clip_of(keyed(0, 9, 20, loop=True), 0)) == ((0, 1), (1, 2), (2, 0))
+    assert segment_keys(clip_of(keyed(0, 9, 48, loop=True), 0)) == ((0, 1), (1, 2))
 
 
 def test_exports_keep_the_last_frame_of_a_loop_that_ends_elsewhere():
     document = add_handle(0, EMPTY.layers[0].domain.mesh.vertices[0])(keyed(0, 48, loop=True))
-    assert exported_frames(document) == FrameRange(0, 47)
+    assert export_frame_range(document) == FrameRange(0, 47)
     pose = document.layers[0].keys[1].pose
     moved = {i: replace(target, position=0j) for i, target in pose.targets.items()}
-    posed = pose_key(0, 48, replace(pose, targets=moved))(document)
-    assert exported_frames(posed) == FrameRange(0, 48)
+    posed = replace_key_pose(0, 48, replace(pose, targets=moved))(document)
+    assert export_frame_range(posed) == FrameRange(0, 48)
 
 
 def test_exports_leave_out_the_frame_that_a_loop_repeats():
-    assert exported_frames(keyed(0, 9)) == FrameRange(0, 48)
-    assert exported_frames(keyed(0, 9, loop=True)) == FrameRange(0, 47)
-    assert exported_frames(keyed(0, last=0, loop=True)) == FrameRange(0, 0)
-    assert exported_frames(keyed(0, 9, loop=True, preview=FrameRange(3, 8))) == FrameRange(0, 47)
-    assert exported_frames(keyed(0, 48, loop=True)) == FrameRange(0, 47)
-    assert exported_frames(keyed(10, 30, loop=True)) == FrameRange(0, 47)
+    assert export_frame_range(keyed(0, 9)) == FrameRange(0, 48)
+    assert export_frame_range(keyed(0, 9, loop=True)) == FrameRange(0, 47)
+    assert export_frame_range(keyed(0, last=0, loop=True)) == FrameRange(0, 0)
+    assert export_frame_range(keyed(0, 9, loop=True, preview=FrameRange(3, 8))) == FrameRange(0, 47)
+    assert export_frame_range(keyed(0, 48, loop=True)) == FrameRange(0, 47)
+    assert export_frame_range(keyed(10, 30, loop=True)) == FrameRange(0, 47)
     chosen = replace(EMPTY.export, frames=FrameRange(5, 48))
-    assert exported_frames(keyed(0, 9, loop=True, export=chosen)) == FrameRange(5, 48)
+    assert export_frame_range(keyed(0, 9, loop=True, export=chosen)) == FrameRange(5, 48)
 
 
 def test_what_follows_does_not_keep_a_loop_from_closing():
@@ -145,9 +153,9 @@ def test_what_follows_does_not_keep_a_loop_from_closing():
     first, last = layer.keys
     carried = replace(last.pose, targets={0: Target(position=MIDDLE + 1e-3j)})
     changed = altered(document, keys=(first, replace(last, pose=carried)))
-    assert exported_frames(changed) == FrameRange(0, 48)
+    assert export_frame_range(changed) == FrameRange(0, 48)
     spring = Spring(handle=0, frequency=2.0, damping=0.2)
-    assert exported_frames(altered(changed, springs=(spring,))) == FrameRange(0, 47)
+    assert export_frame_range(altered(changed, springs=(spring,))) == FrameRange(0, 47)
 
 
 def test_frame_times_at_another_rate():

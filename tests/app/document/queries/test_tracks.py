@@ -12,7 +12,7 @@ from scipy.interpolate import CubicHermiteSpline
 from app.document.queries.clips import clip_of
 from app.document.queries.tracks import track_at, velocity_at
 from app.document.settings import FrameRange
-from app.document.timing import HOLD, LINEAR, PRESETS, Easing, Passing, Track, TrackKey
+from app.document.timing import HOLD, LINEAR, PRESETS, Easing, TangentMode, Track, TrackKey
 
 EMPTY = disc_document()
 PLACES = [0j, 3 + 1j, -2 + 4j, 1 / 3 - 0.1j, 7 - 5j]
@@ -27,7 +27,7 @@ def track_of(*frames, places=PLACES, delay=0, turns=(), **changes):
     ]
     if turns:
         keys = [replace(key, turn=turn) for key, turn in zip(keys, turns, strict=True)]
-    return Track(handles=(0,), keys=tuple(keys), delay=delay, turns=bool(turns))
+    return Track(handles=(0,), keys=tuple(keys), delay=delay, keys_rotation=bool(turns))
 
 
 def clip(last=48, first=0, *, loop=False):
@@ -62,15 +62,15 @@ def test_a_keys_own_place_and_turn_are_given_to_the_bit(frames, data, delay, loo
             place=complex(data.draw(numbers), data.draw(numbers)),
             turn=0.1 * data.draw(numbers),
             easing=data.draw(easings),
-            passing=data.draw(st.sampled_from(["through", "corner", "stop"])),
+            tangent_mode=data.draw(st.sampled_from(["through", "corner", "stop"])),
         )
         for frame in sorted(frames)
     )
-    track = Track(handles=(0,), keys=keys, delay=delay, turns=True)
+    track = Track(handles=(0,), keys=keys, delay=delay, keys_rotation=True)
     shown = clip(91, loop=loop)  # a frame longer than from the first possible key to the last
     for key in keys:
         assert track_at(track, shown, key.frame + delay) == (key.place, key.turn)
-    unturned = replace(track, turns=False)
+    unturned = replace(track, keys_rotation=False)
     assert track_at(unturned, shown, keys[0].frame + delay).turn == 0.0
 
 
@@ -119,7 +119,7 @@ def test_a_track_begins_and_ends_at_rest_beside_what_is_not_moved(easing, loop):
     ends = (PLACES[2] - places(track, [37 - STEP], shown)[0]) / STEP
     assert abs(ends) < 1e-3 or easing == PRESETS["in"]
     # A person who wants otherwise says so.
-    straight = track_of(4, 14, 34, passing=[Passing.CORNER] * 3, delay=3)
+    straight = track_of(4, 14, 34, passing=[TangentMode.CORNER] * 3, delay=3)
     begin = (places(straight, [7 + STEP], shown)[0] - PLACES[0]) / STEP
     assert_allclose(begin, (PLACES[1] - PLACES[0]) / 10, rtol=0, atol=1e-3)
 
@@ -165,9 +165,9 @@ def test_easings_that_stand_still_or_jump_at_a_key_leave_no_velocity_there(befor
         assert_allclose(slope, VELOCITIES[1] if is_led else other, rtol=0, atol=2e-3)
 
 
-@pytest.mark.parametrize("passing", [Passing.CORNER, Passing.STOP])
+@pytest.mark.parametrize("passing", [TangentMode.CORNER, TangentMode.STOP])
 def test_a_velocity_is_of_keys_that_are_passed_through(passing):
-    passings = [Passing.THROUGH, passing, Passing.THROUGH]
+    passings = [TangentMode.SMOOTH, passing, TangentMode.SMOOTH]
     led = track_of(0, 10, 30, passing=passings, velocity=[None, 99j, None])
     frames = np.linspace(0, 30, 61)
     assert (places(led, frames) == places(track_of(0, 10, 30, passing=passings), frames)).all()
@@ -207,7 +207,7 @@ def test_where_no_key_tells_a_velocity_a_new_one_has_none():
 
 
 def test_a_corner_comes_and_goes_straight():
-    passings = [Passing.CORNER] * 3
+    passings = [TangentMode.CORNER] * 3
     track = track_of(0, 10, 30, passing=passings)
     frames = np.linspace(0, 30, 61)
     straight = np.interp(frames, [0, 10, 30], PLACES[:3])

@@ -8,10 +8,10 @@ from numpy import random
 from numpy.testing import assert_allclose
 
 from app.document.commands import key_commands
-from app.document.keyframe import Keyframe, Passing
+from app.document.keyframe import Keyframe, TangentMode
 from app.document.queries.clips import clip_of
-from app.document.queries.timeline import time_of
-from app.document.queries.transits import transits
+from app.document.queries.pose_tangents import pose_segments
+from app.document.queries.timeline import segment_time_at
 from app.document.settings import FrameRange
 from app.document.timing import HOLD, LINEAR, PRESETS, Easing
 from app.errors import LissomError
@@ -32,31 +32,31 @@ def keyed(*frames, last=48, loop=False, poses=POSES, **changes):
 
 
 def ends(clip):
-    return [(transit.start, transit.end) for transit in transits(clip)]
+    return [(transit.start, transit.end) for transit in pose_segments(clip)]
 
 
 def test_new_keys_between_others_are_passed_through():
     clip = keyed(0, 10, 30, 48)
     one, other = Joint(10, 20), Joint(20, 18)
     assert ends(clip) == [(1.0, one), (one, other), (other, 1.0)]
-    frames = [[key.frame for key in transit.keys] for transit in transits(clip)]
+    frames = [[key.frame for key in transit.keys] for transit in pose_segments(clip)]
     assert frames == [[0, 10, 30], [0, 10, 30, 48], [10, 30, 48]]
 
 
 def test_two_keys_are_blended_straight_whatever_is_set():
     assert ends(keyed(0, 20)) == [(1.0, 1.0)]
-    assert time_of(keyed(0, 20), 5).weight == 0.25
-    stopped = keyed(0, 20, passing=[Passing.STOP, Passing.STOP])
-    assert_allclose(time_of(stopped, 5).weight, 0.25**2 * (3 - 0.5), rtol=1e-15)
-    assert not transits(stopped)[0].is_joined
+    assert segment_time_at(keyed(0, 20), 5).weight == 0.25
+    stopped = keyed(0, 20, passing=[TangentMode.STOP, TangentMode.STOP])
+    assert_allclose(segment_time_at(stopped, 5).weight, 0.25**2 * (3 - 0.5), rtol=1e-15)
+    assert not pose_segments(stopped)[0].has_smooth_tangent
 
 
 def test_a_corner_and_a_stop_take_no_heed_of_other_keys():
-    passings = [Passing.THROUGH, Passing.CORNER, Passing.STOP, Passing.THROUGH]
+    passings = [TangentMode.SMOOTH, TangentMode.CORNER, TangentMode.STOP, TangentMode.SMOOTH]
     clip = keyed(0, 10, 30, 48, passing=passings)
     assert ends(clip) == [(1.0, 1.0), (1.0, 0.0), (0.0, 1.0)]
-    assert time_of(clip, 5).weight == 0.5
-    slow, fast = time_of(clip, 29.9).weight, time_of(clip, 10.1).weight
+    assert segment_time_at(clip, 5).weight == 0.5
+    slow, fast = segment_time_at(clip, 29.9).weight, segment_time_at(clip, 10.1).weight
     assert 1 - slow < 1e-4 < fast < 0.006
 
 
@@ -64,14 +64,18 @@ def test_in_a_loop_the_motion_passes_its_first_and_last_key():
     closing = keyed(0, 10, 30, loop=True)
     joints = [Joint(18, 10), Joint(10, 20), Joint(20, 18)]
     assert ends(closing) == [(joints[i], joints[(i + 1) % 3]) for i in range(3)]
-    frames = [[key.frame for key in transit.keys] for transit in transits(closing)]
+    frames = [[key.frame for key in transit.keys] for transit in pose_segments(closing)]
     assert frames == [[30, 0, 10, 30], [0, 10, 30, 0], [10, 30, 0, 10]]
     # The last key is the first one again.
     around = keyed(0, 10, 30, 48, loop=True, poses=[*POSES[:3], POSES[0]], turns=[1, 2, 3, 9])
     assert ends(around) == ends(closing)
-    frames = [[key.frame for key in transit.keys] for transit in transits(around)]
+    frames = [[key.frame for key in transit.keys] for transit in pose_segments(around)]
     assert frames == [[30, 0, 10, 30], [0, 10, 30, 48], [10, 30, 48, 10]]
-    assert [transit.turns for transit in transits(around)] == [(3, 1, 2), (1, 2, 3), (2, 3, 1)]
+    assert [transit.revolutions for transit in pose_segments(around)] == [
+        (3, 1, 2),
+        (1, 2, 3),
+        (2, 3, 1),
+    ]
     # Here it is another pose, at which the loop jumps.
     assert ends(keyed(0, 10, 30, 48, loop=True)) == ends(keyed(0, 10, 30, 48))
 
@@ -79,7 +83,7 @@ def test_in_a_loop_the_motion_passes_its_first_and_last_key():
 def test_a_hold_is_left_and_reached_straight():
     clip = keyed(0, 10, 30, 48, easing=[LINEAR, HOLD, LINEAR, LINEAR])
     assert ends(clip) == [(1.0, 1.0), (1.0, 1.0), (1.0, 1.0)]
-    assert time_of(clip, 29).weight == 0.0
+    assert segment_time_at(clip, 29).weight == 0.0
 
 
 def test_a_pose_that_is_given_twice_is_kept():
@@ -120,17 +124,17 @@ def test_easings_beside_a_key_agree_on_its_velocity(before, after, reached, left
 )
 def test_the_paces_of_an_easing(curve, paces):
     easing = Easing(curve)
-    assert_allclose(easing.paces, paces, rtol=1e-9)
-    assert_allclose(easing.reversed().paces, paces[::-1], rtol=1e-9)
+    assert_allclose(easing.end_speeds, paces, rtol=1e-9)
+    assert_allclose(easing.reversed().end_speeds, paces[::-1], rtol=1e-9)
 
 
 def test_passings_are_set_and_holds_undone():
     document = altered(EMPTY, keys=keyed(0, 10, 30).keys)
-    held = key_commands.set_passing(0, {10, 30}, Passing.HOLD)(document)
-    assert [key.shown_passing for key in held.layers[0].keys] == ["through", "hold", "hold"]
-    assert key_commands.set_passing(0, {10}, Passing.HOLD)(held) is held
-    stopped = key_commands.set_passing(0, {0, 10}, Passing.STOP)(held)
-    assert [key.shown_passing for key in stopped.layers[0].keys] == ["stop", "stop", "hold"]
+    held = key_commands.set_tangent_mode(0, {10, 30}, TangentMode.HOLD)(document)
+    assert [key.shown_tangent_mode for key in held.layers[0].keys] == ["through", "hold", "hold"]
+    assert key_commands.set_tangent_mode(0, {10}, TangentMode.HOLD)(held) is held
+    stopped = key_commands.set_tangent_mode(0, {0, 10}, TangentMode.STOP)(held)
+    assert [key.shown_tangent_mode for key in stopped.layers[0].keys] == ["stop", "stop", "hold"]
     assert stopped.layers[0].key(10).easing == LINEAR
     with pytest.raises(LissomError, match="to hold is an easing"):
-        replace(stopped.layers[0].keys[0], passing=Passing.HOLD)
+        replace(stopped.layers[0].keys[0], tangent_mode=TangentMode.HOLD)

@@ -116,7 +116,7 @@ def test_a_pose_is_proven_against_the_limits_of_now(session):
     go(session, 6)
     copying.copy(session)
     tighter = replace(NATURAL.bounds, sigma_a=1.01)
-    editing.edit_layer(session, shape_commands.set_bounds, tighter)
+    editing.edit_layer(session, shape_commands.set_limits, tighter)
     go(session, 3)
     pasting.paste(session)
     layer = project.layer
@@ -145,12 +145,12 @@ def test_a_pose_that_no_key_holds_is_copied_and_gives_way_to_a_pasted_one(sessio
     editing.select(session, frozenset({0}))
     posing.nudge(session, 4j)
     settle(session)
-    unkeyed = project.unkeyed
+    unkeyed = project.preview_pose
     assert unkeyed is not None
     pasting.paste(session)
-    assert project.unkeyed is None
+    assert project.preview_pose is None
     editing.undo(session)
-    assert project.unkeyed is unkeyed
+    assert project.preview_pose is unkeyed
     project.chosen = frozenset()
     copying.copy(session)
     assert session.copied[0].keys[0].pose is unkeyed

@@ -21,8 +21,8 @@ def session(tmp_path):
         document = handle_commands.add_handle(0, place, name=name)(document)
     first = document.layers[0].keys[0]
     keys = (
-        replace(first, turns=2, fronts={0: 1.0}),
-        Keyframe(frame=6, pose=first.pose, turns=-1),
+        replace(first, revolutions=2, depths={0: 1.0}),
+        Keyframe(frame=6, pose=first.pose, revolutions=-1),
     )
     return session_of(altered(document, keys=keys), tmp_path)
 
@@ -36,7 +36,7 @@ def test_keys_are_flipped_with_their_turns_and_what_is_in_front(session):
     settle(session)
     assert project.chosen == {20, 26}
     assert (project.layer.key(20).turns, project.layer.key(26).turns) == (-2, 1)
-    assert dict(project.layer.key(20).fronts) == {1: 1.0}
+    assert dict(project.layer.key(20).depths) == {1: 1.0}
     assert flipping.is_fresh(project)
     editing.choose_keys(session, frozenset({20}))
     assert not flipping.is_fresh(project)

@@ -12,7 +12,7 @@ from app.document import (
     PAIRS,
     PRESETS,
     Document,
-    Passing,
+    TangentMode,
     Target,
     handle_commands,
     key_commands,
@@ -116,9 +116,9 @@ def test_keys_take_their_ways_passings_turns_and_fronts_along(session):
     near, knee = identity(session, "near leg"), 1
     editing.edit(session, key_commands.insert_key(near, 8, layer(session, "near leg").keys[0].pose))
     editing.edit(session, key_commands.set_easing(near, {0}, PRESETS["in-out"]))
-    editing.edit(session, key_commands.set_passing(near, {8}, Passing.STOP))
-    editing.edit(session, key_commands.set_turns(near, {0}, 1))
-    editing.edit(session, layer_commands.key_front(near, 0, knee, 0.5))
+    editing.edit(session, key_commands.set_tangent_mode(near, {8}, TangentMode.STOP))
+    editing.edit(session, key_commands.set_revolutions(near, {0}, 1))
+    editing.edit(session, layer_commands.key_depth(near, 0, knee, 0.5))
     editing.choose_keys(session, frozenset({0, 8}))
     copying.copy_keys(session)
     layering.choose(session, identity(session, "far leg"))
@@ -128,8 +128,8 @@ def test_keys_take_their_ways_passings_turns_and_fronts_along(session):
     far = layer(session, "far leg")
     assert far.key_frames == {0, 12, 20}
     one, other = far.key(12), far.key(20)
-    assert (one.easing, one.turns, dict(one.fronts)) == (PRESETS["in-out"], 1, {knee: 0.5})
-    assert other.passing is Passing.STOP
+    assert (one.easing, one.turns, dict(one.depths)) == (PRESETS["in-out"], 1, {knee: 0.5})
+    assert other.tangent_mode is TangentMode.STOP
     close(ways(session, "far leg", 20), ways(session, "near leg", 8))
 
 
@@ -174,7 +174,7 @@ def test_left_and_right_layers_exchange_mirrored_when_flipped(tmp_path):
     document = Document(layers=(mirrored, leg("leg.L", 0)), size=(240, 200))
     session = walking(tmp_path, document)
     pull(session, "leg.L", knee=18 + 8j, foot=-20 + 30j)
-    editing.edit(session, key_commands.set_turns(0, {0}, 2))
+    editing.edit(session, key_commands.set_revolutions(0, {0}, 2))
     editing.choose_keys_of(session, {0: frozenset({0}), 2: frozenset({0})})
     copying.copy_keys(session)
     go(session, 12)
@@ -281,7 +281,7 @@ def test_handles_that_are_not_copied_stay_where_the_motion_has_them(session):
     go(session, 12)
     shown = session.project.puppet.shown
     names = [handle.name for handle in shown.clip.layer.handles]
-    here = complex(shown.handle_places[names.index("shin")])
+    here = complex(shown.handle_positions[names.index("shin")])
     pasting.paste(session)
     settle(session)
     shin = next(each for each in layer(session, "far leg").handles if each.name == "shin")
@@ -400,7 +400,7 @@ def test_what_is_turned_as_a_whole_stays_turned_where_its_sides_are_swapped():
     pose = replace(key.pose, targets=targets, phi=turn * body.domain.cage)
     copied = CopiedKeys(body, (replace(key, pose=pose),))
     landing = receiving.landing_on(scene, copied, body, SWAPPED)
-    wished = landing.carriage(SWAPPED).targets(body, pose)
+    wished = landing.carriage(SWAPPED).transfer_targets(body, pose)
     for handle in body.handles:
         assert wished[handle.id].position == pytest.approx(targets[handle.id].position, abs=1e-9)
 

@@ -7,7 +7,7 @@ from PIL import Image, ImageDraw
 from sessions import session_of, settle
 
 from app.document import NATURAL, RUBBERY
-from app.document.commands import handle_commands, material_commands, shape_commands
+from app.document.commands import handle_commands, shape_commands, stiffness_commands
 from app.editor.actions import editing, playback, posing
 from app.editor.actions.posing.stopping import STOPPED_AT_LIMIT
 from app.editor.actions.upkeep import maintain
@@ -64,7 +64,7 @@ def session(request, tmp_path):
     document = still_document(picture)
     # Half of the corners do, and make poses several times as fast.
     document = within(document, document.layers[0].domain.outline[::2])
-    document = shape_commands.set_bounds(0, NATURAL.bounds)(document)
+    document = shape_commands.set_limits(0, NATURAL.bounds)(document)
     for place in places:
         document = handle_commands.add_handle(0, place)(document)
     return session_of(document, tmp_path, picture)
@@ -225,7 +225,7 @@ def test_a_joint_that_gave_in_is_wanted_where_it_came_to(tmp_path):
     for place in (24 + 40j, 100 + 40j, 176 + 40j):
         document = handle_commands.add_handle(0, place)(document)
     for ends in ((0, 1), (1, 2)):
-        document = material_commands.add_bone(0, ends, 30.0)(document)
+        document = stiffness_commands.add_bone(0, ends, 30.0)(document)
     session = session_of(document, tmp_path, picture)
     project = session.project
     asked = drag(session, 2, 160j)

@@ -13,7 +13,7 @@ from app.editor.actions import editing, playback, posing
 from app.editor.actions.upkeep import maintain
 from app.editor.tools import Spot, moving, pointing
 from app.storage import Preferences
-from app.ui.viewport.marks import unreached
+from app.ui.viewport.marks import find_off_target
 
 LEFT, RIGHT, BESIDE = 40 + 45j, 80 + 45j, 5 + 5j
 WAY = 30 - 12j
@@ -110,11 +110,11 @@ def test_ctrl_click_still_sets_the_anchor(session):
 
 def test_escape_in_the_middle_takes_it_back(session):
     project, document = session.project, session.project.document
-    before = unreached(project, project.puppet.shown)
+    before = find_off_target(project, project.puppet.shown)
     assert before
     drag(session, end=False, ctrl=True, shift=True)
     assert project.document is not document
-    marked = unreached(project, project.puppet.shown)
+    marked = find_off_target(project, project.puppet.shown)
     assert marked == pytest.approx({i: place + WAY for i, place in before.items()})
     pointing.cancel(session)
     settle(session)
@@ -230,14 +230,14 @@ def test_an_in_between_becomes_a_pose_of_its_own(tmp_path, auto_key, is_there):
     playback.seek(session, 3)
     if is_there:
         settle(session)
-    middle = project.puppet.shown.handle_places.mean()
+    middle = project.puppet.shown.handle_positions.mean()
     drag(session, ctrl=True, shift=True)
     settle(session)
     frames = [key.frame for key in project.layer.keys]
     assert frames == ([0, 3, 6] if auto_key else [0, 6])
     assert (project.unkeyed is None) == auto_key
     if is_there:
-        moved = project.puppet.shown.handle_places.mean()
+        moved = project.puppet.shown.handle_positions.mean()
         assert abs(moved - middle - WAY) < 0.01 * abs(WAY)
     editing.undo(session)
     assert [key.frame for key in project.layer.keys] == [0, 6]

@@ -48,7 +48,7 @@ def drag(session, spot, *places):
 
 
 def state(project):
-    unkeyed = project.history.unkeyed
+    unkeyed = project.history.preview_pose
     return project.document, unkeyed, project.selected, project.chosen, project.pull
 
 

@@ -12,9 +12,9 @@ from PIL import Image
 from psd_tools import PSDImage
 from psd_tools.constants import BlendMode
 
-from app.document.layering import Group
+from app.document.layers import Group
 from app.errors import LissomError
-from app.storage.pictures import Names, read_openraster, read_photoshop
+from app.storage.pictures import UniqueNames, read_openraster, read_photoshop
 from app.storage.pictures.layered import GROUPS_DEEP, LONGEST_NAME, MOST_GROUPS
 from app.storage.pictures.openraster import DAMAGED_STACK
 
@@ -91,7 +91,7 @@ def test_layers_that_inherit_alpha_are_clipped():
     def clipped(stack, *more):
         pictures = (*more, blob(30, 20), blob(50, 60))
         read = read_openraster(openraster((100, 120), stack, pictures))
-        return [layer.name for layer in read.layers if layer.clipped], read.summary.losses
+        return [layer.name for layer in read.layers if layer.clipped], read.summary.warnings
 
     assert clipped(kept + atop + base) == (["head", "kept"], ())
     assert clipped(atop) == ([], ())
@@ -119,11 +119,11 @@ def test_what_cannot_be_kept_is_told():
     empty = Image.new("RGBA", (4, 4))
     read = read_openraster(openraster((100, 100), stack, [blob(9, 9), blob(9, 9), empty]))
     assert [layer.name for layer in read.layers] == ["head"]
-    assert sorted(read.summary.losses) == [
+    assert sorted(read.summary.warnings) == [
         "head: drawn normally, not in the mode 'overlay'",
         "title: left out, since Lissom takes drawn layers only",
     ]
-    assert read.summary.matters == ("nothing: left out, since it is empty",)
+    assert read.summary.notes == ("nothing: left out, since it is empty",)
 
 
 @pytest.mark.parametrize(
@@ -265,11 +265,11 @@ def test_a_photoshop_file_cut_short_is_told_in_words():
 
 
 def test_names_that_are_alike_get_the_next_free_numbers():
-    names = Names()
-    given = [names.free(name) for name in ("a", "a 2", "a", "a", "b", "a 2", "a")]
+    names = UniqueNames()
+    given = [names.claim(name) for name in ("a", "a 2", "a", "a", "b", "a 2", "a")]
     assert given == ["a", "a 2", "a 3", "a 4", "b", "a 2 2", "a 5"]
     # Looked for one by one, these would take minutes.
-    assert [names.free("c") for _ in range(100_000)][-1] == "c 100000"
+    assert [names.claim("c") for _ in range(100_000)][-1] == "c 100000"
 
 
 def test_too_many_groups_and_long_names_are_refused():

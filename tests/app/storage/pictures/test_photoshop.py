@@ -17,8 +17,8 @@ from photoshop_files import (
     photoshop_file,
 )
 
-from app.document.layering import Group
-from app.errors import ImportSummary, LissomError
+from app.document.layers import Group
+from app.errors import ImportLog, LissomError
 from app.storage.pictures import read_photoshop
 from app.storage.pictures.layered import GROUPS_DEEP
 from app.storage.pictures.photoshop import DAMAGED, MOST_RECORDS
@@ -72,7 +72,7 @@ def test_groups_keep_what_they_do():
         Group(name="limbs 2", blend="screen"),
     )
     assert found.layers[-1].opacity == 0.2
-    assert found.summary == ImportSummary(matters=("at all: left out, since it is empty",))
+    assert found.summary == ImportLog(notes=("at all: left out, since it is empty",))
 
 
 def test_clipping_layers_are_clipped_by_what_is_below_them_in_their_group():
@@ -117,7 +117,7 @@ def test_what_an_empty_layer_clips_is_nowhere_and_what_an_adjustment_does_is_eve
         "shade": True,
     }
     assert found.summary.losses == ("levels: left out, since it is an adjustment layer",)
-    assert found.summary.matters == (
+    assert found.summary.notes == (
         "blank, hollow: left out, since it is empty",
         "gone: left out, since it is clipped by the empty layer blank",
         "gone too: left out, since it is clipped by the empty layer hollow",
@@ -136,7 +136,7 @@ def test_what_an_empty_group_clips_is_nowhere_too():
         Folder(name="lights", layers=[drawn("light")], clipped=True),
     )
     assert [layer.name for layer in found.layers] == ["arm", "leg", "light"]
-    assert found.summary.matters == (
+    assert found.summary.notes == (
         "hollow, blank, blank: left out, since it is empty",
         "gone: left out, since it is clipped by the empty group hollow",
         "gone too: left out, since it is clipped by the empty group limbs",
@@ -192,7 +192,7 @@ def test_masks_are_taken_into_the_pixels_of_layers_and_groups(mask):
     grouped = read(Folder(name="limbs", layers=[drawn("arm")], mask=mask))
     assert_array_equal(grouped.layers[0].picture.rgba, own.picture.rgba)
     told = ("limbs: its mask is cut into the layers of the group, as they are drawn",)
-    assert grouped.summary.matters == (() if mask.disabled else told)
+    assert grouped.summary.notes == (() if mask.disabled else told)
 
 
 def test_a_feathered_mask_is_soft():

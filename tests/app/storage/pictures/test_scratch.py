@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from app.storage.pictures import Picture, let_go, on_disk
+from app.storage.pictures import Picture, move_to_disk, release_pages
 
 
 @pytest.fixture
@@ -13,13 +13,13 @@ def picture():
 
 
 def test_pixels_on_disk_are_the_same_and_come_back(picture):
-    kept = on_disk(picture)
+    kept = move_to_disk(picture)
     assert (kept.suffix, kept.notices, kept.size) == (".webp", ("read",), (300, 200))
     assert not kept.rgba.flags.writeable
     for _ in range(2):
         assert np.array_equal(kept.rgba, picture.rgba)
-        let_go(kept.rgba)
-        let_go(kept.rgba[5:, ::2])
+        release_pages(kept.rgba)
+        release_pages(kept.rgba[5:, ::2])
 
 
 def test_where_nothing_fits_on_the_disk_pixels_stay_in_memory(picture, monkeypatch):
@@ -27,6 +27,6 @@ def test_where_nothing_fits_on_the_disk_pixels_stay_in_memory(picture, monkeypat
         raise OSError("no space left")
 
     monkeypatch.setattr("tempfile.TemporaryFile", full)
-    assert on_disk(picture) is picture
-    let_go(picture.rgba)
+    assert move_to_disk(picture) is picture
+    release_pages(picture.rgba)
     assert picture.rgba.any()

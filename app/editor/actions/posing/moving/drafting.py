@@ -4,7 +4,7 @@ from collections.abc import Collection
 from dataclasses import replace
 from typing import Any
 
-from app.document import GivenMotion, Layer, is_as_given
+from app.document import AppliedMotion, Layer, is_motion_unedited
 from app.editor.actions import playback
 from app.editor.actions.posing.moving.placing import joints_in
 from app.editor.project import Project
@@ -52,7 +52,7 @@ def begin(session: Session, project: Project) -> None:
 
 
 @with_project
-def begin_again(session: Session, project: Project, given: GivenMotion) -> None:
+def begin_again(session: Session, project: Project, given: AppliedMotion) -> None:
     """Draft a motion that the layer was given once more, to give it in another way."""
     if given in project.layer.motions:
         playback.scrub(session, given.first)
@@ -60,7 +60,7 @@ def begin_again(session: Session, project: Project, given: GivenMotion) -> None:
 
 
 @with_project
-def begin_after(session: Session, project: Project, given: GivenMotion) -> None:
+def begin_after(session: Session, project: Project, given: AppliedMotion) -> None:
     """Draft another motion, to follow one that the layer was given; joints stay as they are."""
     draft = project.draft
     if draft is None:
@@ -102,7 +102,7 @@ def _new(layer: Layer, frame: int) -> MotionDraft:
     )
 
 
-def draft_again(layer: Layer, given: GivenMotion) -> MotionDraft:
+def draft_again(layer: Layer, given: AppliedMotion) -> MotionDraft:
     """Return the draft by which a layer was given a motion."""
     there = {handle.id: handle.position for handle in layer.handles}
     names = given.joints.items()
@@ -116,7 +116,7 @@ def draft_again(layer: Layer, given: GivenMotion) -> MotionDraft:
         joints=joints if given.kind != "anything" else {},
         suggested=joints_in(layer, given.kind),
         parameters=given.parameters,
-        rounds=given.rounds,
+        rounds=given.repeat_count,
         facing=given.facing,
         bones=not ends.isdisjoint(limb_joints(given)),
         first=given.first,
@@ -124,7 +124,7 @@ def draft_again(layer: Layer, given: GivenMotion) -> MotionDraft:
     )
 
 
-def limb_joints(given: GivenMotion) -> set[int]:
+def limb_joints(given: AppliedMotion) -> set[int]:
     """Return the ids of the handles that are joints of limbs, or links of a chain."""
     return {handle for name, handle in given.joints.items() if "." in name}
 
@@ -196,7 +196,7 @@ def was_edited(project: Project) -> bool:
     return (
         draft is not None
         and draft.given is not None
-        and not is_as_given(project.layer, draft.given)
+        and not is_motion_unedited(project.layer, draft.given)
     )
 
 

@@ -13,7 +13,7 @@ from app.editor.failures import report
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work import Kind, MotionDraft, MotionErrand, Promise
-from app.solving import Giving, MotionOrder, begin_giving, give_on
+from app.solving import MotionRequest, MotionSolve, start_motion_solve, step_motion_solve
 
 GIVING = Kind("Giving the motion", "The motion was not given", "hand")
 MOST_TOLD = 3  # joints that are out of reach
@@ -39,18 +39,18 @@ def _begin(session: Session, project: Project, draft: MotionDraft) -> None:
     base = _without(project.document, draft)
     errand = MotionErrand(draft=draft, before=before, base=base)
     order = _order(draft, is_first=not before.motions)
-    _step(session, project, errand, partial(begin_giving, base, before.id, order))
+    _step(session, project, errand, partial(start_motion_solve, base, before.id, order))
 
 
-def _order(draft: MotionDraft, *, is_first: bool) -> MotionOrder:
+def _order(draft: MotionDraft, *, is_first: bool) -> MotionRequest:
     """Return what the solver is asked for; what is stiff and the limits are as after the first."""
-    return MotionOrder(
+    return MotionRequest(
         motion=draft.motion,
         kind=draft.kind,
         joints=draft.joints,
         parameters=draft.parameters,
         first=draft.first,
-        rounds=draft.rounds,
+        repeat_count=draft.rounds,
         facing=draft.facing,
         # Its own handles go where its joints were dragged.
         handles={} if draft.given is None else draft.given.joints,
@@ -87,7 +87,7 @@ def _without(document: Document, draft: MotionDraft) -> Document:
 
 
 def _step(
-    session: Session, project: Project, errand: MotionErrand, work: Callable[[], Giving]
+    session: Session, project: Project, errand: MotionErrand, work: Callable[[], MotionSolve]
 ) -> None:
     """Let the worker take a step."""
 
@@ -95,7 +95,7 @@ def _step(
         project.draft = project.draft or errand.draft
         report(session, GIVING.complaint, error)
 
-    def arrived(giving: Giving) -> None:
+    def arrived(giving: MotionSolve) -> None:
         _go_on(session, project, replace(errand, giving=giving))
 
     promise = Promise(label=GIVING.label, errand=errand)
@@ -105,12 +105,12 @@ def _step(
 def _go_on(session: Session, project: Project, errand: MotionErrand) -> None:
     """Take the next step, or let the layer have the motion."""
     if errand.giving is not None and not errand.giving.is_over:
-        _step(session, project, errand, partial(give_on, errand.giving))
+        _step(session, project, errand, partial(step_motion_solve, errand.giving))
     elif errand.giving is not None:
         _accept(session, project, errand, errand.giving)
 
 
-def _accept(session: Session, project: Project, errand: MotionErrand, giving: Giving) -> None:
+def _accept(session: Session, project: Project, errand: MotionErrand, giving: MotionSolve) -> None:
     """Let the layer have the motion, and play it; where it changed meanwhile, say so."""
     before, draft = errand.before, errand.draft
     if before not in project.document.layers:
@@ -120,25 +120,25 @@ def _accept(session: Session, project: Project, errand: MotionErrand, giving: Gi
     gesture, command = object(), giving.command
     change = Command(command.label, lambda document: command(_without(document, draft)))
     project.history.do(change, gesture=gesture)
-    unkeyed = project.history.unkeyed
+    unkeyed = project.history.preview_pose
     if unkeyed is not None and unkeyed.layer == before.id:
-        project.history.pose(None, gesture=gesture)
+        project.history.set_preview_pose(None, gesture=gesture)
     _tell_what_is_short(session, giving)
     if session.pointer is None:
-        playback.scrub(session, giving.given.first)
+        playback.scrub(session, giving.applied.first)
         playback.toggle_play(session)
 
 
-def _tell_what_is_short(session: Session, giving: Giving) -> None:
+def _tell_what_is_short(session: Session, giving: MotionSolve) -> None:
     """Tell which joints are out of reach, and offer a size at which none is."""
-    if not giving.short:
+    if not giving.target_errors:
         return
-    parts = [f"{name} by {lag:.0f} px" for name, (lag, _) in giving.short.items()]
+    parts = [f"{name} by {lag:.0f} px" for name, (lag, _) in giving.target_errors.items()]
     told = ", ".join(parts[:MOST_TOLD])
     if len(parts) > MOST_TOLD:
         told += f" and {len(parts) - MOST_TOLD} more"
     text = f"Some joints fall short of the motion, held back by the limits: {told}."
-    size = giving.fitting
+    size = giving.reachable_size
     if size is None:
         session.tell(text, topic="motion")
         return
@@ -146,7 +146,7 @@ def _tell_what_is_short(session: Session, giving: Giving) -> None:
         text,
         topic="motion",
         label=f"Use size {size:.2f}",
-        action=do(give_at_size, giving.before.id, giving.given.first, size),
+        action=do(give_at_size, giving.before.id, giving.applied.first, size),
     )
 
 

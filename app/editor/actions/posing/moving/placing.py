@@ -66,7 +66,7 @@ def put_shown(session: Session, project: Project, name: str, place: complex) -> 
     shown = project.puppet.shown
     if shown is not None:
         found = shown.mesh.locate(np.array([place]), shown.positions)
-        put(session, name, complex(found.on(shown.mesh.domain.mesh.vertices)[0]))
+        put(session, name, complex(found.positions_on(shown.mesh.domain.mesh.vertices)[0]))
 
 
 def shown_joints(project: Project) -> dict[str, complex]:
@@ -75,7 +75,7 @@ def shown_joints(project: Project) -> dict[str, complex]:
     if draft is None or shown is None or not draft.joints:
         return {}
     rest = np.array(list(draft.joints.values()), dtype=np.complex128)
-    places = shown.mesh.locate(rest, shown.mesh.domain.mesh.vertices).on(shown.positions)
+    places = shown.mesh.locate(rest, shown.mesh.domain.mesh.vertices).positions_on(shown.positions)
     return dict(zip(draft.joints, places.tolist(), strict=True))
 
 

@@ -1,0 +1,88 @@
+"""Figure 8: the dragon's tail between two keyframes that both differ from the drawing."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from app.cli.figures.measure import MeasuredMotion
+from app.cli.figures.methods import METRIC, SCALED_ETA, SIG13
+from app.cli.figures.plots.paper_figure import FigureContext, PaperFigure
+from app.cli.figures.shape_renderer import bounds_of
+from app.cli.figures.shapes import ShapePair, make_sample_pair
+from app.cli.figures.sheet import as_png, draw_panels
+from engine.arrays import Complexes
+from engine.maps import HarmonicMap
+
+TIME = 0.5
+NEAR = 0.04  # of the width: what turns with the tip of the tail
+CAPTION = (
+    "Dragon with a moving tail: Ω in the first picture and f⁰ ≠ Id in the second. Scaled η blends "
+    "the angle of the tail linearly and metric does not; metric and Chen et al. (2013) look alike."
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TailPosition:
+    """Where a method's in-betweens are at t = 0.5."""
+
+    name: str
+    turned: float  # the part of its way that the tip of the tail has turned
+    from_metric: float  # the largest distance from the metric variant, over the diameter
+
+
+def make_tail_pair(triangles: int) -> ShapePair:
+    """Return two keys of the dragon with its tail high and low."""
+    return make_sample_pair("dragon", 1, 2, triangles)
+
+
+def measure_tail(tracks: tuple[MeasuredMotion, ...]) -> tuple[TailPosition, ...]:
+    """Measure methods, of which the first is metric."""
+    both = tracks[0].pair
+    rest = both.shape.domain.mesh.vertices
+    tip = int(rest.real.argmax())
+    reference = tracks[0].frame(TIME).positions
+    size = abs(bounds_of(reference).upper - bounds_of(reference).lower)
+    found = []
+    for track in tracks:
+        first, now, last = (track.frame(time).positions for time in (0.0, TIME, 1.0))
+        found.append(
+            TailPosition(
+                name=track.method.name,
+                turned=_turn(rest, first, now, tip) / _turn(rest, first, last, tip),
+                from_metric=float(np.abs(now - reference).max() / size),
+            )
+        )
+    return tuple(found)
+
+
+def make_figure_8(studio: FigureContext) -> PaperFigure:
+    """Draw the figure."""
+    both = make_tail_pair(studio.triangles)
+    tracks = tuple(MeasuredMotion(both, method) for method in (METRIC, SCALED_ETA, SIG13))
+    metric, eta, chen = tracks
+    rest = MeasuredMotion(replace(both, first=HarmonicMap.identity(both.first.cage)), METRIC)
+    panels = (
+        ("Ω", rest, 0.0),
+        ("f⁰", metric, 0.0),
+        ("scaled η", eta, TIME),
+        ("metric", metric, TIME),
+        ("Chen et al. 2013", chen, TIME),
+        ("f¹", metric, 1.0),
+    )
+    return PaperFigure(
+        title="The dragon's tail",
+        caption=CAPTION,
+        picture=as_png(draw_panels(studio.renderer, panels, (14, 2.6))),
+        column_names=("t = 0.5", "of the tail's turn", "from metric, of the diameter"),
+        rows=tuple(
+            (one.name, f"{one.turned:.3f}", f"{one.from_metric:.2%}")
+            for one in measure_tail(tracks)
+        ),
+    )
+
+
+def _turn(rest: Complexes, first: Complexes, second: Complexes, tip: int) -> float:
+    """Return by how many radians the neighbourhood of a vertex turns from one pose to another."""
+    near = np.abs(rest - rest[tip]) < NEAR * np.ptp(rest.real)
+    before, after = (positions[near] - positions[near].mean() for positions in (first, second))
+    return float(np.angle(np.vdot(before, after)))

@@ -1,0 +1,58 @@
+"""What every figure comes to, and what it is made with."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from app.cli.figures.measure import MeasuredMotion
+from app.cli.figures.shape_renderer import ShapeRenderer
+from app.cli.figures.sheet import as_png, format_number
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+BOUNDED = ("", "k, of its key", "τ − 1, of its key", "largest k", "largest τ − 1", "least area")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FigureContext:
+    """What figures are made with."""
+
+    renderer: ShapeRenderer
+    triangles: int  # of a shape's mesh
+    largest: int  # vertices of the largest mesh that is timed
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PaperFigure:
+    """A figure as it is shown.
+
+    Parameters
+    ----------
+    title, caption : str
+    picture : bytes
+        A PNG file.
+    heads : tuple of str
+        Of the columns of numbers beside it; the first is of the rows' names.
+    rows : tuple of tuple of str
+    """
+
+    title: str
+    caption: str
+    picture: bytes
+    column_names: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+
+
+def make_distortion_figure(
+    title: str, caption: str, sheet: "Figure", tracks: Mapping[str, MeasuredMotion]
+) -> PaperFigure:
+    """Return a figure, and beside it how far in-betweens keep to their keyframes, by name."""
+    rows = []
+    for name, track in tracks.items():
+        one = track.summarize()
+        numbers = map(format_number, (one.k, one.tau, one.k_of_all, one.tau_of_all))
+        rows.append((name, *numbers, f"{one.area:.3f}"))
+    return PaperFigure(
+        title=title, caption=caption, picture=as_png(sheet), column_names=BOUNDED, rows=tuple(rows)
+    )

@@ -1,0 +1,135 @@
+"""Commands on what has keys of its own: the camera, and how layers fade, move and are ordered."""
+
+from collections.abc import Collection
+from dataclasses import replace
+from typing import TypeVar
+
+from app.document.commands import retime
+from app.document.commands.command import command, layer_command
+from app.document.commands.retime import Keys
+from app.document.layer import Layer
+from app.document.layers import CameraKey, DrawOrderKey, OpacityKey, TransformKey
+from app.document.model import Document
+from app.document.queries import change_frame, keyed_frame, repeating_cycle
+from app.document.settings import FrameRange
+
+Key = TypeVar("Key", CameraKey, TransformKey, OpacityKey)
+Moving = TypeVar("Moving", TransformKey, OpacityKey)
+
+
+@command("Key the camera")
+def key_camera(document: Document, key: CameraKey) -> Document:
+    """Let the camera have a key, in place of the one at its frame, whose way on it keeps."""
+    return _filmed(document, _with(document.camera, key, [key.frame]))
+
+
+@command("Move camera key")
+def move_camera_key(document: Document, frame: int, to: int) -> Document:
+    """Move the key of the camera at a frame to another one."""
+    return _filmed(document, retime.with_moved_keys(document.camera, {frame}, to - frame))
+
+
+@command("Delete camera key")
+def delete_camera_key(document: Document, frame: int) -> Document:
+    """Delete the key of the camera at a frame; without any, frames show the canvas."""
+    return _filmed(document, retime.without_keys(document.camera, {frame}))
+
+
+@layer_command("Key opacity")
+def key_opacity(layer: Layer, frame: int, opacity: float) -> Layer:
+    """Let a layer be so opaque at a frame, and fade evenly from key to key."""
+    row = layer.opacity_keys
+    new = OpacityKey(frame=keyed_frame(layer, row, frame), opacity=float(opacity))
+    changed = _with(row, new, _like(layer, row, new.frame))
+    return layer if changed is row else replace(layer, opacity_keys=changed)
+
+
+@layer_command("Delete opacity key")
+def delete_opacity_key(layer: Layer, frame: int) -> Layer:
+    """Delete a key of a layer's opacity; without any it stays as opaque as the last one had it."""
+    row = layer.opacity_keys
+    left = retime.without_keys(row, {keyed_frame(layer, row, frame)})
+    if left:
+        return replace(layer, opacity_keys=left)
+    return replace(layer, opacity_keys=(), opacity=row[0].opacity)
+
+
+@layer_command("Key movement")
+def key_movement(layer: Layer, frame: int, shift: complex, turn: float) -> Layer:
+    """Let a whole layer be moved and turned so at a frame, beside where its poses have it."""
+    row = layer.transform_keys
+    new = TransformKey(frame=keyed_frame(layer, row, frame), shift=shift, turn=float(turn))
+    changed = _with(row, new, _like(layer, row, new.frame))
+    return layer if changed is row else replace(layer, transform_keys=changed)
+
+
+@layer_command("Delete movement key")
+def delete_movement_key(layer: Layer, frame: int) -> Layer:
+    """Delete a key of a layer's movement; without any it is where its poses have it."""
+    row = layer.transform_keys
+    left = retime.without_keys(row, {keyed_frame(layer, row, frame)})
+    return replace(layer, transform_keys=left)
+
+
+@layer_command("Set order from here on")
+def place_at(layer: Layer, placing: DrawOrderKey) -> Layer:
+    """Paint a layer right in front of another one, or behind it, from a frame on.
+
+    In repeats, from that frame on in all of them.
+    """
+    at = change_frame(layer.draw_order_keys, layer.cycles, placing.frame)
+    placing = replace(placing, frame=at)
+    others = [each for each in layer.draw_order_keys if each.frame != placing.frame]
+    placings = tuple(sorted([*others, placing], key=lambda each: each.frame))
+    return layer if placings == layer.draw_order_keys else replace(layer, draw_order_keys=placings)
+
+
+@layer_command("Change no order here")
+def unplace_at(layer: Layer, frame: int) -> Layer:
+    """Take back what is said of a layer's order from a frame on."""
+    at = change_frame(layer.draw_order_keys, layer.cycles, frame)
+    placings = tuple(each for each in layer.draw_order_keys if each.frame != at)
+    return layer if placings == layer.draw_order_keys else replace(layer, draw_order_keys=placings)
+
+
+def _like(layer: Layer, row: Keys[Moving], frame: int) -> list[int]:
+    """Return a frame, and that of the key which is the one there again: where a cycle ends."""
+    cycle = repeating_cycle(layer, row)
+    if cycle is not None and (frame, frame + cycle.period) == (row[0].frame, row[-1].frame):
+        return [frame, row[-1].frame]
+    return [frame]
+
+
+def _with(row: Keys[Key], key: Key, frames: Collection[int]) -> Keys[Key]:
+    """Return a row with a key, or with ones like it for those at some frames.
+
+    Their ways on are kept, and by how many whole turns the later ones have turned around.
+    """
+    olds = [each for each in row if each.frame in frames]
+    if not olds:
+        return retime.with_inserted_key(row, key) if row else (key,)
+    put: dict[int, Key] = {}
+    for old in olds:
+        new = replace(
+            key,
+            frame=old.frame,
+            easing=old.easing,
+            tangent_mode=old.tangent_mode,
+            unknown=old.unknown,
+        )
+        if (
+            isinstance(new, TransformKey)
+            and isinstance(old, TransformKey)
+            and isinstance(olds[0], TransformKey)
+        ):
+            new = replace(new, turn=new.turn + old.turn - olds[0].turn)
+        put[old.frame] = new
+    return retime.with_replaced_keys(row, put)
+
+
+def _filmed(document: Document, camera: tuple[CameraKey, ...]) -> Document:
+    """Return a document with another camera, and with room for its keys."""
+    if camera is document.camera:
+        return document
+    ends = [document.frames.first, document.frames.last, *(key.frame for key in camera)]
+    return replace(document, camera=camera, frames=FrameRange(min(ends), max(ends)))

@@ -1,0 +1,36 @@
+"""Showing what is hidden."""
+
+from dataclasses import replace
+
+from app.document.layers import ancestor_paths
+from app.document.model import Document
+
+
+def with_layer_shown(document: Document, identity: int) -> Document:
+    """Return a document in which neither a layer nor a group that it is in is hidden.
+
+    What such a group has in it besides is hidden by itself then: the layer alone comes to be seen.
+    """
+    layer = document.layer(identity)
+    around = ancestor_paths(layer.group)
+    hidden = {path for path in around if document.group(path).hidden}
+    if not (hidden or layer.hidden):
+        return document
+
+    def was_hidden(path: str) -> bool:
+        """Tell whether what lies in a group at a path is hidden no more, but for the layer."""
+        return path in around and not hidden.isdisjoint(ancestor_paths(path))
+
+    layers = tuple(
+        replace(each, hidden=each is not layer) if each is layer or was_hidden(each.group) else each
+        for each in document.layers
+    )
+    groups = tuple(
+        replace(group, hidden=False)
+        if group.name in hidden
+        else replace(group, hidden=True)
+        if group.name not in around and was_hidden(group.name.rpartition("/")[0])
+        else group
+        for group in document.groups
+    )
+    return replace(document, layers=layers, groups=groups)

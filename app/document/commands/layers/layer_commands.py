@@ -1,0 +1,338 @@
+"""Commands on the layers as layers: which there are, in what order, seen when, hung on what."""
+
+from collections.abc import Collection, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from app.document.commands.command import command, layer_command, with_number
+from app.document.commands.handle_commands import with_handles
+from app.document.commands.key_commands import replace_keys
+from app.document.commands.layers import switch_group_commands
+from app.document.commands.layers.hidden import with_layer_shown
+from app.document.keyframe import Pose, Target
+from app.document.layer import Layer
+from app.document.layers import Attachment, BlendMode, VisibilityKey, ancestor_paths, common_path
+from app.document.model import Document
+from app.document.queries import change_frame
+from app.errors import ImportLog, LissomError
+
+LAST_LAYER = "A document has at least one layer; add another one first."
+
+
+@command("Add layer")
+def add_layer(document: Document, layer: Layer, index: int | None = None) -> Document:
+    """Add a layer in front of all others, or at an index in the order from back to front.
+
+    Its id must be a free one, as `free_identity` gives it; its name is numbered where it is taken.
+    """
+    layers = list(document.layers)
+    place = len(layers) if index is None else index
+    group, name = group_at(layers, place, layer), unique_layer_name(document, layer.name)
+    layers.insert(place, replace(layer, name=name, group=group))
+    # A canvas that was one picture's stays what it was.
+    return replace(document, layers=tuple(layers), size=document.canvas)
+
+
+@command("Add layers")
+def append_import_log(document: Document, summary: ImportLog) -> Document:
+    """Keep what was told when layers were brought in, after what was told before."""
+    return replace(document, import_log=document.import_log + summary) if summary else document
+
+
+@command("Replace layer")
+def replace_layer(document: Document, identity: int, layer: Layer) -> Document:
+    """Put another layer with the same id in a layer's place.
+
+    What hangs on it does so as before, or at the nearest points where it is not there any more.
+    """
+    size = document.canvas
+    changed = keep_attachments(identity)(document.with_layer(replace(layer, id=identity)))
+    return changed if changed.canvas == size else replace(changed, size=size)
+
+
+@command("Keep joints")
+def keep_attachments(document: Document, identity: int) -> Document:
+    """Move joints that are beside a layer now to the nearest points of it."""
+    domain = document.layer(identity).domain
+    for child in document.layers:
+        places = np.array([joint.parent_point for joint in child.attachments], dtype=np.complex128)
+        nearest = domain.nearest(places) if len(places) else places
+        joints = tuple(
+            replace(joint, parent_point=complex(at))
+            if joint.parent == identity and at != joint.parent_point
+            else joint
+            for joint, at in zip(child.attachments, nearest, strict=True)
+        )
+        if joints != child.attachments:
+            document = document.with_layer(replace(child, attachments=joints))
+    return document
+
+
+@command("Duplicate layer")
+def duplicate_layer(document: Document, identity: int) -> Document:
+    """Put a copy of a layer in front of it, which takes turns with it where it takes turns."""
+    layer = document.layer(identity)
+    index = document.layers.index(layer)
+    copy = replace(
+        layer, id=next_layer_id(document), name=unique_layer_name(document, f"{layer.name} copy")
+    )
+    layers = (*document.layers[: index + 1], copy, *document.layers[index + 1 :])
+    choices = tuple(
+        replace(choice, layers=(*choice.layers, copy.id)) if identity in choice.layers else choice
+        for choice in document.switch_groups
+    )
+    return replace(document, layers=layers, switch_groups=choices, size=document.canvas)
+
+
+@command("Delete layer")
+def remove_layer(document: Document, identity: int) -> Document:
+    """Remove a layer. What hung on it hangs as it did before that, else on nothing."""
+    document.layer(identity)
+    if len(document.layers) == 1:
+        raise LissomError(LAST_LAYER)
+    document = switch_group_commands.without_switch_member(document, identity)
+    layers = tuple(
+        _without_references_to(each, identity) for each in document.layers if each.id != identity
+    )
+    return without_empty_groups(replace(document, layers=layers, size=document.canvas))
+
+
+@command("Move layer")
+def move_layer(document: Document, identity: int, index: int) -> Document:
+    """Put a layer at an index in the order from back to front.
+
+    It stays in its groups as long as it lies beside others of them, and joins those amid which it
+    comes to lie.
+    """
+    layer = document.layer(identity)
+    others = [other for other in document.layers if other is not layer]
+    if not 0 <= index <= len(others):
+        raise LissomError(f"There are {len(others) + 1} layers; none can be number {index + 1}.")
+    if document.layers[index] is layer:
+        return document
+    group = group_at(others, index, layer)
+    others.insert(index, layer if group == layer.group else replace(layer, group=group))
+    moved = replace(document, layers=tuple(others), size=document.canvas)
+    return without_empty_groups(moved)
+
+
+@command("Rename layer")
+def rename_layer(document: Document, identity: int, name: str) -> Document:
+    """Give a layer another name, which no other one may have."""
+    return _with(document, identity, name=name.strip())
+
+
+@command("Set opacity")
+def set_opacity(document: Document, identity: int, opacity: float) -> Document:
+    """Set how opaque a layer is painted."""
+    return _with(document, identity, opacity=float(opacity))
+
+
+@command("Set blend")
+def set_blend(document: Document, identity: int, blend: BlendMode) -> Document:
+    """Set how the colours of a layer meet those behind it."""
+    return _with(document, identity, blend=blend)
+
+
+@command("Clip layer")
+def set_clipped(document: Document, identity: int, *, clipped: bool) -> Document:
+    """Let a layer be seen only where what lies below it in its group is, or everywhere again."""
+    return _with(document, identity, clipped=clipped)
+
+
+@command("Show or hide layer")
+def set_hidden(document: Document, identity: int, *, hidden: bool) -> Document:
+    """Hide a layer at all times, or show it again."""
+    return _with(document, identity, hidden=hidden)
+
+
+@command("Show layer")
+def show_layer(document: Document, identity: int) -> Document:
+    """Show a layer in whatever groups, and of those that were hidden nothing else."""
+    return with_layer_shown(document, identity)
+
+
+@command("Lock or unlock layer")
+def set_locked(document: Document, identity: int, *, locked: bool) -> Document:
+    """Let clicks on the drawing pass through a layer, or stop at it again."""
+    return _with(document, identity, locked=locked)
+
+
+@command("Set reference")
+def set_reference(document: Document, identity: int, *, reference: bool) -> Document:
+    """Leave a layer out of exports, or take it in again."""
+    return _with(document, identity, reference=reference)
+
+
+@command("Show or hide from here on")
+def key_visibility(
+    document: Document, identity: int, frame: int, *, visible: bool | None
+) -> Document:
+    """Show or hide a layer from a frame on; None takes back what was said at that frame.
+
+    In repeats, from that frame on in all of them. One that was hidden at all times is shown there,
+    and hidden until then.
+    """
+    layer = document.layer(identity)
+    frame = change_frame(layer.visibility_keys, layer.cycles, frame)
+    switches = layer.visibility_keys
+    if visible and (layer.hidden or document.is_in_hidden(layer)):
+        document = with_layer_shown(document, identity)
+        layer = document.layer(identity)
+        switches = switches or (VisibilityKey(0, visible=False),)
+    others = [switch for switch in switches if switch.frame != frame]
+    if visible is not None:
+        if not others and not switches and frame > 0:
+            # What was seen before stays so.
+            others = [VisibilityKey(0, not visible)]
+        others.append(VisibilityKey(frame, visible))
+    switches = tuple(sorted(others, key=lambda switch: switch.frame))
+    return _with(document, identity, switches=switches)
+
+
+@layer_command("Move visibility")
+def move_visibility_key(layer: Layer, frame: int, to: int) -> Layer:
+    """Move the frame at which a layer is shown or hidden."""
+    moved = [switch for switch in layer.visibility_keys if switch.frame == frame]
+    if not moved:
+        raise LissomError(f"{layer.name!r} is neither shown nor hidden at frame {frame}.")
+    if to == frame:
+        return layer
+    others = [switch for switch in layer.visibility_keys if switch.frame != frame]
+    switches = sorted([*others, replace(moved[0], frame=to)], key=lambda switch: switch.frame)
+    return replace(layer, visibility_keys=tuple(switches))
+
+
+@command("Attach")
+def attach_layer(document: Document, identity: int, anchor: complex, joint: Attachment) -> Document:
+    """Hang a layer by its anchor on a point of another one from a frame on; circles are refused.
+
+    What began to hold at that frame does no longer. `app.motion` finds the point and the turn with
+    which nothing moves at a frame.
+    """
+    joints = [each for each in document.layer(identity).attachments if each.frame != joint.frame]
+    joints = sorted([*joints, joint], key=lambda each: each.frame)
+    return _with(document, identity, anchor=anchor, joints=tuple(joints))
+
+
+@layer_command("Attach as before")
+def delete_attachment_key(layer: Layer, frame: int) -> Layer:
+    """Take back what a layer hangs on from a frame on: what held before it still does."""
+    joints = tuple(joint for joint in layer.attachments if joint.frame != frame)
+    return layer if joints == layer.attachments else replace(layer, attachments=joints)
+
+
+@layer_command("Move joint in time")
+def move_attachment_key(layer: Layer, frame: int, to: int) -> Layer:
+    """Let what a layer hangs on from a frame on hold from another frame on."""
+    moved = next((joint for joint in layer.attachments if joint.frame == frame), None)
+    if moved is None:
+        raise LissomError(f"{layer.name!r} is not attached anew at frame {frame}.")
+    if to == frame:
+        return layer
+    others = [joint for joint in layer.attachments if joint is not moved]
+    joints = sorted([*others, replace(moved, frame=to)], key=lambda joint: joint.frame)
+    return replace(layer, attachments=tuple(joints))
+
+
+@command("Detach")
+def detach_layer(document: Document, identity: int, factor: complex, shift: complex) -> Document:
+    """Let a layer hang on nothing at any time, turned and moved as it was seen at one moment.
+
+    Parameters
+    ----------
+    identity : int
+    factor : complex
+        Of modulus 1: by which all poses are turned.
+    shift : complex
+        By which they are moved then.
+    """
+    layer = document.layer(identity)
+    if not layer.attachments:
+        return document
+    poses = (_transformed_pose(layer, pose, factor, shift) for pose in layer.poses)
+    return document.with_layer(layer.with_poses(poses, joints=()))
+
+
+@layer_command("Set depth")
+def set_depth(layer: Layer, identity: int, front: float, extent: float | None) -> Layer:
+    """Set what is in front around a handle, where no key says otherwise, and how far around it."""
+    return with_handles(layer, {identity}, front=float(front), extent=extent)
+
+
+@layer_command("Set depth from here on")
+def key_depth(layer: Layer, frame: int, identity: int, front: float | None) -> Layer:
+    """Set what is in front around a handle from a key on; None says nothing at that key."""
+    key = layer.key(frame)
+    handle = layer.handle(identity)
+    fronts = {i: depth for i, depth in key.depths.items() if i != handle.id}
+    if front is not None:
+        fronts[handle.id] = float(front)
+    if fronts == key.depths:
+        return layer
+    return replace_keys(layer, {frame: replace(key, depths=fronts)})
+
+
+def next_layer_id(document: Document) -> int:
+    """Return an id that no layer has."""
+    return 1 + max(layer.id for layer in document.layers)
+
+
+def unique_layer_name(document: Document, name: str) -> str:
+    """Return a name for a layer that no other one has: this one, or this one with a number."""
+    return unique_name(name, {layer.name for layer in document.layers})
+
+
+def unique_name(name: str, taken: Collection[str]) -> str:
+    """Return a name that is not taken: this one, or this one with a number."""
+    return with_number(name, taken, 2) if name in taken else name
+
+
+def without_empty_groups(document: Document) -> Document:
+    """Return the document without groups that no layer is in any more."""
+    filled = {path for layer in document.layers for path in ancestor_paths(layer.group)}
+    groups = tuple(group for group in document.groups if group.name in filled)
+    return document if groups == document.groups else replace(document, groups=groups)
+
+
+def group_at(others: Sequence[Layer], index: int, layer: Layer) -> str:
+    """Return the group that a layer is in which is put at an index among others."""
+    own, beside = layer.group, [each.group for each in others[max(index - 1, 0) : index + 1]]
+    amid = common_path(*beside) if len(beside) == 2 else ""
+    if amid and amid not in ancestor_paths(own):
+        return amid
+    stays = max((common_path(own, group) for group in beside), key=len, default="")
+    shared = max((common_path(own, each.group) for each in others), key=len, default="")
+    # With all of what else is in its groups elsewhere, it leaves them; alone in one, it keeps it.
+    return own if stays == shared else stays
+
+
+def _without_references_to(layer: Layer, other: int) -> Layer:
+    """Return a layer that neither hangs on another one at any time nor is painted beside it."""
+    joints = tuple(joint for joint in layer.attachments if joint.parent != other)
+    placings = tuple(placing for placing in layer.draw_order_keys if placing.beside != other)
+    if (joints, placings) == (layer.attachments, layer.draw_order_keys):
+        return layer
+    return replace(layer, attachments=joints, draw_order_keys=placings)
+
+
+def _with(document: Document, identity: int, **changes: object) -> Document:
+    layer = document.layer(identity)
+    if all(getattr(layer, name) == value for name, value in changes.items()):
+        return document
+    return document.with_layer(replace(layer, **changes))  # type: ignore[arg-type]
+
+
+def _transformed_pose(layer: Layer, pose: Pose, factor: complex, shift: complex) -> Pose:
+    moved = layer.map_of(pose).moved(factor, shift)
+    turn = float(np.angle(factor))
+    targets = {
+        identity: Target(
+            position=factor * target.position + shift,
+            rotation=None if target.rotation is None else target.rotation + turn,
+            unknown=target.unknown,
+        )
+        for identity, target in pose.targets.items()
+    }
+    return replace(pose.with_map(moved), targets=targets)

@@ -1,0 +1,203 @@
+"""Keys moved about in time, be they of poses or of a track: pure functions of rows of keys.
+
+A row is in the order of its frames, and has at most one key at each.
+"""
+
+from collections import Counter
+from collections.abc import Callable, Collection, Iterable, Mapping
+from dataclasses import dataclass, replace
+from itertools import chain, pairwise
+from math import floor
+from typing import Protocol, TypeVar
+
+from app.document.keyframe import Keyframe
+from app.document.layer import NO_KEY
+from app.document.layers import CameraKey, OpacityKey, TransformKey
+from app.document.timing import HOLD, LINEAR, Easing, TangentMode, TrackKey
+from app.errors import LissomError
+
+Key = TypeVar("Key", Keyframe, TrackKey, CameraKey, TransformKey, OpacityKey)
+Keys = tuple[Key, ...]
+
+
+class AtFrame(Protocol):
+    """A key of any kind, or a marker."""
+
+    @property
+    def frame(self) -> int:
+        """The frame that it stands at."""
+
+
+Timed = TypeVar("Timed", bound=AtFrame)
+KEYS_COLLIDE = "Two keys would be at frame {frame}; move or delete the one there first."
+KEYS_MEET = (
+    "The {keys} at frames {one} and {other} would both be at frame {frame}. Delete one of them "
+    "first, or shorten the time less."
+)
+BAD_TIME_FACTOR = "Time can be scaled by more than 0 and up to 1000, not by {factor:g}."
+
+
+@dataclass(frozen=True, slots=True)
+class TimeScale:
+    """Time stretched or shortened around a frame that stays."""
+
+    stays: int
+    factor: float
+
+    def __post_init__(self) -> None:
+        if not 0 < self.factor <= 1000:
+            raise LissomError(BAD_TIME_FACTOR.format(factor=self.factor))
+
+    def __call__(self, frame: int) -> int:
+        """Return where a frame comes, never before frame 0."""
+        return max(self.stays + nearest_frame((frame - self.stays) * self.factor), 0)
+
+    def paced(self, keys: Iterable[Key], named: str) -> Keys[Key]:
+        """Return keys at their new frames, and the motion through them as much faster."""
+        return self.retimed(keys, named, lambda key, at: key.retimed(at, 1 / self.factor))
+
+    def retimed(
+        self, keys: Iterable[Timed], named: str, at_frame: Callable[[Timed, int], Timed]
+    ) -> tuple[Timed, ...]:
+        """Return keys, in their order, at their new frames, as a function has one at a frame.
+
+        Two that meet are refused. Of those that hold before the frame that stays, where nothing is
+        seen, the last one counts.
+        """
+        placed: dict[int, Timed] = {}
+        for key in keys:
+            at = self(key.frame)
+            if at in placed and key.frame > self.stays:
+                one, other = placed[at].frame, key.frame
+                raise LissomError(KEYS_MEET.format(keys=named, one=one, other=other, frame=at))
+            placed[at] = key
+        return tuple(at_frame(key, at) for at, key in placed.items())
+
+
+def nearest_frame(time: float) -> int:
+    """Return the frame nearest to a time, of two the later one, so that no two steps differ.
+
+    `round` takes the even one, so that times .5, 1.5 and 2.5 come to frames 0, 2 and 2.
+    """
+    return floor(time + 0.5)
+
+
+def keys_at_frames(keys: Keys[Key], frames: Iterable[int]) -> list[Key]:
+    """Return the keys at these frames in order of time."""
+    found = {key.frame: key for key in keys}
+    for frame in frames:
+        if frame not in found:
+            raise LissomError(NO_KEY.format(frame=frame))
+    return [found[frame] for frame in sorted(set(frames))]
+
+
+def sorted_by_frame(keys: Iterable[Key]) -> Keys[Key]:
+    """Return a row of keys."""
+    ordered = tuple(sorted(keys, key=lambda key: key.frame))
+    for frame, count in Counter(key.frame for key in ordered).items():
+        if count > 1:
+            raise LissomError(KEYS_COLLIDE.format(frame=frame))
+    return ordered
+
+
+def with_replaced_keys(keys: Keys[Key], changed: Mapping[int, Key]) -> Keys[Key]:
+    """Return a row with others for the keys at some frames, itself if they are the same."""
+    row = sorted_by_frame(changed.get(key.frame, key) for key in keys)
+    return keys if row == keys else row
+
+
+def with_inserted_key(keys: Keys[Key], new: Key) -> Keys[Key]:
+    """Return a row with one more key.
+
+    A key that divides an interval takes its easing. Else the new way, that from a new first or last
+    key, has the new key's, and so has that from the key that was last, unless it was given one.
+    """
+    row: list[Key] = list(keys)
+    before = [key for key in row if key.frame < new.frame]
+    if new.frame > row[-1].frame:
+        if row[-1].easing == LINEAR:
+            row[-1] = replace(row[-1], easing=new.easing)
+    elif before:
+        new = replace(new, easing=before[-1].easing)
+    return sorted_by_frame(chain(row, [new]))
+
+
+def with_overwritten_keys(keys: Keys[Key], others: Iterable[Key]) -> Keys[Key]:
+    """Return a row with other keys at their frames, in place of those that are there."""
+    return sorted_by_frame(
+        ({key.frame: key for key in keys} | {key.frame: key for key in others}).values()
+    )
+
+
+def with_moved_keys(keys: Keys[Key], frames: Collection[int], by: int) -> Keys[Key]:
+    """Return a row with the keys at some frames moved by a number of frames."""
+    chosen = keys_at_frames(keys, frames)
+    return with_replaced_keys(
+        keys, {key.frame: replace(key, frame=key.frame + by) for key in chosen if by}
+    )
+
+
+def with_copied_keys(keys: Keys[Key], frames: Collection[int], by: int) -> Keys[Key]:
+    """Return a row with the keys at some frames repeated a number of frames later, or earlier."""
+    copies: list[Key] = [replace(key, frame=key.frame + by) for key in keys_at_frames(keys, frames)]
+    return sorted_by_frame(chain(keys, copies)) if copies else keys
+
+
+def without_keys(keys: Keys[Key], frames: Collection[int]) -> Keys[Key]:
+    """Return a row without the keys at some frames; it may be empty."""
+    gone = keys_at_frames(keys, frames)
+    return tuple(key for key in keys if key not in gone) if gone else keys
+
+
+def with_reversed_keys(
+    keys: Keys[Key], frames: Collection[int], span: tuple[int, int] | None = None
+) -> Keys[Key]:
+    """Return a row in which the keys at some frames, and the motion between them, run backwards.
+
+    By default they do so between the first of them and the last one, else within the span.
+    """
+    chosen = keys_at_frames(keys, frames)
+    ends = sum(span) if span else chosen[0].frame + chosen[-1].frame if chosen else 0
+    if len(chosen) < 2 and all(2 * key.frame == ends for key in chosen):
+        return keys
+    # A way belongs to the interval after its key: those between the keys turn round with them, and
+    # those after the last key stay where they are.
+    turned = {chosen[0].frame: chosen[0].with_easing_of(chosen[-1])}
+    for before, key in pairwise(chosen):
+        turned[key.frame] = key.with_easing_of(before, backwards=True)
+    return with_replaced_keys(
+        keys, {frame: key.retimed(ends - frame, -1) for frame, key in turned.items()}
+    )
+
+
+def with_scaled_keys(
+    keys: Keys[Key], frames: Collection[int], factor: float, first: int | None = None
+) -> Keys[Key]:
+    """Return a row with the keys at some frames moved apart or together around one that stays."""
+    chosen = keys_at_frames(keys, frames)
+    stays = min(frames, default=0) if first is None else first
+    scale = TimeScale(stays, factor)
+    if factor == 1 or not chosen:
+        return keys
+    changed = {key.frame: key.retimed(scale(key.frame), 1 / factor) for key in chosen}
+    return with_replaced_keys(keys, changed)
+
+
+def with_easing(keys: Keys[Key], frames: Collection[int], easing: Easing) -> Keys[Key]:
+    """Return a row in which time runs so from the keys at some frames to the next ones."""
+    chosen = [key for key in keys_at_frames(keys, frames) if key.easing != easing]
+    return with_replaced_keys(keys, {key.frame: replace(key, easing=easing) for key in chosen})
+
+
+def with_tangent_mode(keys: Keys[Key], frames: Collection[int], passing: TangentMode) -> Keys[Key]:
+    """Return a row whose keys at some frames are passed so; what was held is no longer."""
+    changed = {}
+    for key in keys_at_frames(keys, frames):
+        if key.shown_tangent_mode is passing:
+            continue
+        if passing is TangentMode.HOLD:
+            changed[key.frame] = replace(key, easing=HOLD)
+        else:
+            easing = LINEAR if key.easing == HOLD else key.easing
+            changed[key.frame] = replace(key, easing=easing, tangent_mode=passing)
+    return with_replaced_keys(keys, changed)

@@ -1,0 +1,128 @@
+"""Commands on what a layer is made of. None of them changes a pose: later ones are solved so."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from app.document.checks import require
+from app.document.commands.command import layer_command
+from app.document.layer import Layer
+from app.document.queries import bone_region, brushed_stiffness
+from app.document.rig import (
+    DEFAULT_BONE_STIFFNESS,
+    PAIRS,
+    Bone,
+    SidePairs,
+    default_as_none,
+    mirrored_handles_by_name,
+    require_stiffness_amount,
+)
+from app.errors import LissomError
+from engine.arrays import Floats
+from engine.domain.material import carried_stiffness
+from engine.errors import EngineError
+
+
+@layer_command("Paint stiffness")
+def paint_stiffness(
+    layer: Layer,
+    places: Sequence[complex],
+    *,
+    radius: float,
+    amount: float,
+    softness: float = 0.5,
+) -> Layer:
+    """Paint along a stroke, as `brushed_stiffness` has it."""
+    require_stiffness_amount(amount)
+    require(radius > 0, f"The radius of a brush is above 0, not {radius:g}.")
+    require(0 <= softness <= 1, f"A brush is soft from 0 to 1, not {softness:g}.")
+    stiffness, reached = brushed_stiffness(
+        layer, places, radius=radius, amount=amount, softness=softness
+    )
+    return replace(layer, stiffness=stiffness) if reached else layer
+
+
+@layer_command("Clear stiffness")
+def clear_stiffness(layer: Layer) -> Layer:
+    """Take back all that is painted; bones stay."""
+    return layer if layer.stiffness is None else replace(layer, stiffness=None)
+
+
+@layer_command("Add bone")
+def add_bone(layer: Layer, ends: tuple[int, int], amount: float = DEFAULT_BONE_STIFFNESS) -> Layer:
+    """Add a bone between two handles, which must not leave the drawing on its way."""
+    bone = Bone(ends=ends, stiffness=amount)
+    names = [layer.handle(identity).name for identity in ends]
+    if any(other.is_between(ends) for other in layer.bones):
+        raise LissomError(f"There is a bone from {names[0]!r} to {names[1]!r} already.")
+    bone_region(layer, bone, layer.domain.outline)
+    return replace(layer, bones=(*layer.bones, bone))
+
+
+@layer_command("Delete bone")
+def remove_bone(layer: Layer, ends: tuple[int, int]) -> Layer:
+    """Remove the bone between two handles."""
+    gone = _bone(layer, ends)
+    return replace(layer, bones=tuple(bone for bone in layer.bones if bone is not gone))
+
+
+@layer_command("Set bone strength")
+def set_bone_stiffness(layer: Layer, ends: tuple[int, int], amount: float) -> Layer:
+    """Set how stiff the bone between two handles is."""
+    old = _bone(layer, ends)
+    if old.stiffness == amount:
+        return layer
+    bones = (replace(bone, stiffness=amount) if bone is old else bone for bone in layer.bones)
+    return replace(layer, bones=tuple(bones))
+
+
+@layer_command("Show or hide bones")
+def set_bones_visible(layer: Layer, *, shown: bool) -> Layer:
+    """Show all bones of a layer or none; they act either way."""
+    bones = tuple(replace(bone, is_shown=shown) for bone in layer.bones)
+    return layer if bones == layer.bones else replace(layer, bones=bones)
+
+
+@layer_command("Mirror material")
+def mirror_stiffness(layer: Layer, pairs: SidePairs = PAIRS) -> Layer:
+    """Give both sides of a layer what one of them has.
+
+    Where the drawing at the mirror image of a place differs more from the usual material, it is
+    taken over. Bones are mirrored to the partners of their handles, by name.
+    """
+    stiffness, domain = layer.stiffness, layer.domain
+    if stiffness is not None:
+        opposite = 2 * layer.axis - np.concatenate(domain.loops).conj()
+        there = carried_stiffness(domain.loops, stiffness, opposite)
+        farther = np.abs(np.log(there)) > np.abs(np.log(stiffness))
+        stiffness = default_as_none(np.where(farther, there, stiffness))
+    partners, bones = mirrored_handles_by_name(layer.handles, pairs), list(layer.bones)
+    for bone in layer.bones:
+        first, second = (partners.get(end, end) for end in bone.ends)
+        mirrored = replace(bone, ends=(first, second))
+        if not any(other.is_between(mirrored.ends) for other in bones) and _fits(layer, mirrored):
+            bones.append(mirrored)
+    if tuple(bones) == layer.bones and _same(stiffness, layer.stiffness):
+        return layer
+    return replace(layer, stiffness=stiffness, bones=tuple(bones))
+
+
+def _fits(layer: Layer, bone: Bone) -> bool:
+    try:
+        bone_region(layer, bone, layer.domain.outline)
+    except EngineError:
+        return False
+    return True
+
+
+def _same(one: Floats | None, other: Floats | None) -> bool:
+    return one is other or (one is not None and other is not None and np.allclose(one, other))
+
+
+def _bone(layer: Layer, ends: tuple[int, int]) -> Bone:
+    for bone in layer.bones:
+        if bone.is_between(ends):
+            return bone
+    names = [layer.handle(identity).name for identity in ends]
+    raise LissomError(f"There is no bone from {names[0]!r} to {names[1]!r}.")

@@ -1,0 +1,64 @@
+"""Groups of layers, and how colours meet."""
+
+from dataclasses import dataclass, field
+from typing import Literal, get_args
+
+from app.document.checks import NOTHING, Unknown, require
+
+# How colours of what is in front meet those of what lies behind ("Compositing and Blending Level
+# 1" of the W3C, Section 10).
+BlendMode = Literal["normal", "multiply", "screen"]
+BLENDS: tuple[BlendMode, ...] = get_args(BlendMode)
+# A group passes through where each of its layers meets all that lies behind it, as if there were
+# no group, and what comes of that is faded in; else they meet each other only, and then as one what
+# lies behind.
+GroupBlend = Literal["pass-through", BlendMode]
+GROUP_BLENDS: tuple[GroupBlend, ...] = ("pass-through", *BLENDS)
+MAX_GROUP_DEPTH = 50  # groups in each other
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Group:
+    """Layers that are painted together, faded and hidden as one.
+
+    Each run of them in the order of painting is composited by itself.
+    """
+
+    name: str  # with those of the groups around it, as "limbs/left"; unique in the document
+    opacity: float = 1.0  # in [0, 1]
+    hidden: bool = False  # whether none of its layers is seen at any time
+    blend: GroupBlend = "pass-through"
+    clipped: bool = False  # as of a layer
+    unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
+
+    def __post_init__(self) -> None:
+        require_path(self.name)
+        require(0 <= self.opacity <= 1, f"Opacity is between 0 and 1, not {self.opacity:g}.")
+        require(
+            self.blend in GROUP_BLENDS,
+            f"A group's blend is one of {', '.join(GROUP_BLENDS)}, not {self.blend!r}.",
+        )
+
+
+def require_path(path: str) -> None:
+    """Raise a `LissomError` unless names are divided by single slashes, as in "limbs/left"."""
+    names = path.split("/")
+    require(
+        all(name and name == name.strip() for name in names),
+        f"A group needs a name, and groups in groups names divided by slashes, unlike {path!r}.",
+    )
+    require(
+        len(names) <= MAX_GROUP_DEPTH, f"Groups lie at most {MAX_GROUP_DEPTH} deep in each other."
+    )
+
+
+def ancestor_paths(path: str) -> tuple[str, ...]:
+    """Return the paths of the groups around a group, the outermost first, and its own."""
+    names = path.split("/") if path else []
+    return tuple("/".join(names[: depth + 1]) for depth in range(len(names)))
+
+
+def common_path(one: str, other: str) -> str:
+    """Return the path of the innermost group that has both of these in it, "" where none has."""
+    both = [a for a, b in zip(ancestor_paths(one), ancestor_paths(other), strict=False) if a == b]
+    return both[-1] if both else ""

@@ -1,0 +1,79 @@
+"""When layers are seen: each by itself, or one of several that take turns."""
+
+from bisect import bisect_right
+from dataclasses import dataclass, field
+from itertools import pairwise
+from operator import attrgetter
+from typing import NamedTuple
+
+from app.document.checks import NOTHING, Unknown, require, require_distinct, require_frame
+from app.errors import LissomError
+
+
+@dataclass(frozen=True, slots=True)
+class VisibilityKey:
+    """From a frame on a layer is seen, or is not."""
+
+    frame: int
+    visible: bool
+
+    def __post_init__(self) -> None:
+        require_frame(self.frame, "A visibility key")
+
+
+def require_ascending_visibility_keys(switches: tuple[VisibilityKey, ...]) -> None:
+    """Raise a `LissomError` unless each switch comes after the one before."""
+    for before, after in pairwise(switches):
+        require(
+            before.frame < after.frame,
+            f"The layer is shown or hidden at frame {after.frame} after frame {before.frame}.",
+        )
+
+
+class SwitchKey(NamedTuple):
+    """From a frame on one layer of a choice is seen, by its id."""
+
+    frame: int
+    layer: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SwitchGroup:
+    """Layers of one place that take turns, such as mouths: of these exactly one is seen.
+
+    It alone decides whether they are seen, whatever is said of each of them.
+    """
+
+    name: str  # unique in the document
+    layers: tuple[int, ...]  # by their ids, at least two, in the order in which they are offered
+    # In the order of their frames; before the first one its layer is seen, and without any the
+    # first layer.
+    keys: tuple[SwitchKey, ...] = ()
+    unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
+
+    def __post_init__(self) -> None:
+        require(bool(self.name.strip()), "A choice needs a name.")
+        require(len(self.layers) > 1, f"The choice {self.name!r} is between two layers or more.")
+        require_distinct(self.layers, "A choice has the layer {!r} twice.")
+        known = set(self.layers)
+        for turn in self.keys:
+            require_frame(turn.frame, "What a choice shows")
+            if turn.layer not in known:
+                raise LissomError(
+                    f"The choice {self.name!r} shows a layer at frame {turn.frame} that it has not."
+                )
+        for before, after in pairwise(self.keys):
+            if before.frame >= after.frame:
+                raise LissomError(
+                    f"The choice {self.name!r} is made at frame {after.frame} after frame "
+                    f"{before.frame}."
+                )
+
+    def layer_at(self, frame: float) -> int:
+        """Return the id of the layer that is seen at a frame."""
+        count = self.count_keys_until(frame)
+        return self.keys[max(count - 1, 0)].layer if self.keys else self.layers[0]
+
+    def count_keys_until(self, frame: float) -> int:
+        """Return how many turns have begun at a frame."""
+        return bisect_right(self.keys, frame, key=attrgetter("frame"))

@@ -1,0 +1,128 @@
+"""Where a layer is stiffer or softer, by what is painted and by its bones."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from app.document.keyframe import Pose
+from app.document.layer import Layer
+from app.document.queries.memo import memoized_on
+from app.document.rig import Bone, combined_stiffness, default_as_none
+from engine.arrays import Complexes, Floats, as_points
+from engine.domain.material import brushed, limb_around
+from engine.errors import EngineError
+from engine.maps import Boundary, along_loops
+
+A_SIDE = 4  # points that are looked at along a side of the outline
+
+
+class StiffOutline(NamedTuple):
+    """Points of a layer's outline and of its holes', in their order, and how stiff it is there."""
+
+    points: Complexes
+    stiffness: Floats
+
+
+def with_stiffness(layer: Layer, boundary: Boundary) -> Boundary:
+    """Return the boundary of a layer's domain with the layer's material."""
+    points = np.split(boundary.points, boundary.starts[1:])
+    return boundary.stiffened_at_samples(_stiffness_at(layer, points))
+
+
+@memoized_on
+def stiff_outline(layer: Layer) -> StiffOutline:
+    """Return where a layer is stiff or soft, at the vertices of its loops and between them."""
+    share = np.arange(A_SIDE) / A_SIDE
+    points = [
+        (loop[:, None] + (np.roll(loop, -1) - loop)[:, None] * share).ravel()
+        for loop in layer.domain.loops
+    ]
+    return StiffOutline(np.concatenate(points), _stiffness_at(layer, points))
+
+
+def have_same_stiffness(layer: Layer, other: Layer) -> bool:
+    """Tell whether two layers of one domain are stiff in the same places."""
+    own, others = (
+        [(bone.stiffness, *(each.handle(end).position for end in bone.ends)) for bone in each.bones]
+        for each in (layer, other)
+    )
+    return layer.stiffness is other.stiffness and own == others
+
+
+def uses_local_limits(layer: Layer, pose: Pose, share: float) -> bool:
+    """Tell whether a pose spends such a share of the tighter limits where its layer is stiff."""
+    points, stiffness = stiff_outline(layer)
+    is_stiff = stiffness > 1.0
+    if not is_stiff.any():
+        return False
+    f, g = layer.map_of(pose).derivatives(points[is_stiff])
+    a, b = np.abs(f), np.abs(g)
+    limits = layer.bounds.stiffened(stiffness[is_stiff])
+    # A map that folds spends them, too: its logarithms are infinite or no numbers.
+    with np.errstate(all="ignore"):
+        spent = [
+            b / a / limits.k,
+            np.log(a + b) / np.log(limits.sigma_a),
+            np.log(a - b) / np.log(limits.sigma_b),
+        ]
+    return not bool(np.max(spent) <= share)
+
+
+def _stiffness_at(layer: Layer, points: Sequence[Complexes]) -> Floats:
+    """Return the stiffness at points of each loop in its order, from its first vertex on.
+
+    A bone that has come to leave the drawing, as by another cut-out, does nothing.
+    """
+    every = np.concatenate(points)
+    parts = [np.ones(len(every))]
+    if layer.stiffness is not None:
+        parts[0] = along_loops(layer.stiffness, layer.domain.loops, points)
+    for bone in layer.bones:
+        try:
+            share = bone_region(layer, bone, every)
+        except EngineError:
+            continue
+        parts.append(bone.stiffness**share)
+    return combined_stiffness(parts)
+
+
+def bone_region(layer: Layer, bone: Bone, points: Complexes) -> Floats:
+    """Return how much of a bone's stiffness points of the drawing's boundary have (t,), 0 to 1.
+
+    Raises
+    ------
+    EngineError
+        If the bone leaves the drawing or crosses a hole.
+    """
+    start, end = (layer.handle(identity).position for identity in bone.ends)
+    return limb_around(layer.domain.loops, start, end, points)
+
+
+def brushed_stiffness(
+    layer: Layer,
+    places: Sequence[complex],
+    *,
+    radius: float,
+    amount: float,
+    softness: float = 0.5,
+) -> tuple[Floats | None, bool]:
+    """Return what is painted on a layer after a stroke, and whether that reached any outline.
+
+    Parameters
+    ----------
+    places : sequence of complex
+        The centres of its dabs, in pixels of the canvas, y up.
+    radius : float
+        In pixels.
+    amount : float
+        The stiffness, which a dab brings to the outline within its radius.
+    softness : float
+        The part of the radius over which that becomes less, 0 to 1.
+    """
+    loops = layer.domain.loops
+    shares = brushed(loops, as_points(list(places), "places"), radius, softness)
+    if not shares.any():
+        return layer.stiffness, False
+    before = np.ones(len(shares)) if layer.stiffness is None else layer.stiffness
+    return default_as_none(before ** (1 - shares) * amount**shares), True

@@ -1,0 +1,142 @@
+"""The layers as a tree, as they are listed: groups and choices, and what is in them."""
+
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
+
+from app.document.layer import Layer
+from app.document.layers import Group, SwitchGroup, ancestor_paths
+from app.document.model import Document
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class TreeRow:
+    """A row of the tree: a group, a choice, or a layer, of which one is given."""
+
+    key: str  # unique in the tree
+    depth: int  # in how many rows above it lies
+    layers: tuple[int, ...]  # the ids of the layers in it, from front to back
+    is_open: bool = True  # whether the rows in it are listed
+    group: Group | None = None
+    switch_group: SwitchGroup | None = None
+    layer: Layer | None = None
+
+    @property
+    def toggle(self) -> str:
+        """What tells whether it is open otherwise than usual; empty for a layer."""
+        if self.group is not None:
+            return f"group {self.group.name}"
+        return "" if self.switch_group is None else f"choice {self.switch_group.name}"
+
+    @property
+    def name(self) -> str:
+        """What it is called."""
+        if self.group is not None:
+            return self.group.name.rpartition("/")[2]
+        named = self.switch_group or self.layer
+        return "" if named is None else named.name
+
+
+def layer_tree(
+    document: Document, toggled: Collection[str] = (), kept: Collection[int] = ()
+) -> tuple[TreeRow, ...]:
+    """Return the rows of a document's layers, the one in front on top.
+
+    Groups are open and choices closed, unless they are among those that are toggled. Layers
+    that take turns are listed together where the foremost of them is; of a group each run without
+    others between is a row.
+
+    Parameters
+    ----------
+    document : Document
+    toggled : collection of str
+    kept : collection of int
+        The ids of layers that are listed even where a row around them is closed.
+    """
+    rows = _whole_tree(document, toggled)
+    listed: list[TreeRow] = []
+    closed: int | None = None  # the depth of the row around that is closed
+    for row in rows:
+        if closed is not None and row.depth > closed:
+            if row.layer is not None and row.layer.id in kept:
+                listed.append(row)
+            continue
+        closed = None if row.is_open else row.depth
+        listed.append(row)
+    return tuple(listed)
+
+
+def parent_label(document: Document, layer: Layer, frame: float) -> tuple[int, str]:
+    """Return on how many others a layer hangs at a frame, one on the other, and in words on which.
+
+    The words are empty where it hangs on nothing at any time; an ellipsis tells of others at other
+    times.
+    """
+    parents = {joint.parent for joint in layer.attachments if joint.parent is not None}
+    _, *carriers = document.parent_chain(layer.id, frame)
+    if not parents:
+        return 0, ""
+    now = carriers[0].name if carriers else "nothing"
+    others = parents - {each.id for each in carriers[:1]}
+    return len(carriers), f"on {now}…" if others else f"on {now}"
+
+
+def _whole_tree(document: Document, toggled: Collection[str]) -> Iterator[TreeRow]:
+    order = _in_order(document)
+    path: tuple[str, ...] = ()
+    told: SwitchGroup | None = None
+    for index, (layer, choice, where) in enumerate(order):
+        around = ancestor_paths(where)
+        shared = sum(1 for one, other in zip(path, around, strict=False) if one == other)
+        for depth in range(shared, len(around)):
+            run = _run(order, index, around[depth])
+            key = f"group {around[depth]}"
+            yield TreeRow(
+                key=f"{key} {run[0]}",
+                depth=depth,
+                layers=run,
+                is_open=key not in toggled,
+                group=document.group(around[depth]),
+            )
+        path = around
+        if choice is not None and choice is not told:
+            yield TreeRow(
+                key=f"choice {choice.name}",
+                depth=len(around),
+                layers=tuple(each.id for each, other, _ in order if other is choice),
+                is_open=f"choice {choice.name}" in toggled,
+                switch_group=choice,
+            )
+        told = choice
+        depth = len(around) + (choice is not None)
+        yield TreeRow(key=f"{layer.id}", depth=depth, layers=(layer.id,), layer=layer)
+
+
+_Listed = tuple[Layer, SwitchGroup | None, str]
+
+
+def _in_order(document: Document) -> list[_Listed]:
+    """Return the layers from front to back, with the choices and the groups that they are in.
+
+    Those that take turns follow each other, where the foremost of them is.
+    """
+    order: list[_Listed] = []
+    told: set[str] = set()
+    for layer in reversed(document.layers):
+        choice = document.switch_group_of(layer.id)
+        if choice is None:
+            order.append((layer, None, layer.group))
+        elif choice.name not in told:
+            told.add(choice.name)
+            members = (each for each in reversed(document.layers) if each.id in choice.layers)
+            order += [(each, choice, layer.group) for each in members]
+    return order
+
+
+def _run(order: list[_Listed], first: int, path: str) -> tuple[int, ...]:
+    """Return the ids of the layers from one on that are in a group without others between."""
+    run = []
+    for layer, _, where in order[first:]:
+        if path not in ancestor_paths(where):
+            break
+        run.append(layer.id)
+    return tuple(run)

@@ -1,0 +1,240 @@
+"""How the motion reaches each of some keys, and leaves it, by their passings and easings.
+
+Between two keys, what moves is a cubic Hermite polynomial of the eased time.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from math import inf, isfinite
+from typing import Generic, NamedTuple, Protocol, TypeVar
+
+from app.document.timing import HOLD, Easing, TangentMode
+from engine.interpolation import Joint
+
+# How an interval leaves a key, or reaches it: by the joint with which the motion passes it, or at a
+# share of a straight blend's pace, 1 at a corner and 0 at a stop.
+KeyTangent = Joint | float
+
+
+class KeyLike(Protocol):
+    """A key, of a pose or of a track."""
+
+    @property
+    def frame(self) -> int:
+        """Its frame."""
+
+    @property
+    def easing(self) -> Easing:
+        """How time runs until the next key."""
+
+    @property
+    def tangent_mode(self) -> TangentMode:
+        """How the motion passes it, other than by a hold."""
+
+
+Key = TypeVar("Key", bound=KeyLike)
+Value = TypeVar("Value", float, complex)
+
+
+@dataclass(frozen=True)  # with slots, Python 3.11 could not make one of given types
+class KeyedProperty(Generic[Key, Value]):
+    """What moves between keys."""
+
+    value_of: Callable[[Key], Value]
+    tolerance: float  # by how much two keys may differ that want the same
+    # With which a key of its own is passed, a frame; None for what its neighbours make of it.
+    velocity: Callable[[Key], Value | None] = lambda _: None
+
+    def is_same(self, one: Key, other: Key) -> bool:
+        """Tell whether two keys want the same."""
+        return abs(self.value_of(one) - self.value_of(other)) <= self.tolerance
+
+
+class TangentSegment(NamedTuple):
+    """From one key to another, by their indices, and in how many frames."""
+
+    first: int
+    last: int
+    frames: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class KeySequence(Generic[Key]):
+    """Keys that follow each other in time, and how the motion goes through them."""
+
+    keys: tuple[Key, ...]
+    # How many frames lead from the last key to the first one again; 0 where it is the first one
+    # again, and None where it leads nowhere.
+    gap: int | None
+    is_same: Callable[[Key, Key], bool]  # whether two keys have what moves alike
+    # Whether the motion comes from rest at a key that no leg leads to, and so at one without a way
+    # on, where it passes these through; else as straight as a corner.
+    starts_and_ends_at_rest: bool = False
+
+    def tangents(self, index: int) -> tuple[KeyTangent, KeyTangent]:
+        """Return how a key is reached, and how it is left."""
+        before, after = self.segment_before(index), self.segment_after(index)
+        is_end = self.starts_and_ends_at_rest and None in (before, after)
+        return tangents_at(self.keys, index, before, after, self.is_same, is_end=is_end)
+
+    def segment_before(self, index: int) -> TangentSegment | None:
+        """Return the leg that leads to a key."""
+        last = len(self.keys) - 1
+        if index > 0:
+            return TangentSegment(
+                index - 1, index, self.keys[index].frame - self.keys[index - 1].frame
+            )
+        if self.gap is None:
+            return None
+        return TangentSegment(last, 0, self.gap) if self.gap else self.segment_before(last)
+
+    def segment_after(self, index: int) -> TangentSegment | None:
+        """Return the leg that leads on from a key."""
+        last = len(self.keys) - 1
+        if index < last:
+            return TangentSegment(
+                index, index + 1, self.keys[index + 1].frame - self.keys[index].frame
+            )
+        if self.gap is None:
+            return None
+        return TangentSegment(last, 0, self.gap) if self.gap else self.segment_after(0)
+
+
+def tangents_at(
+    keys: Sequence[Key],
+    index: int,
+    before: TangentSegment | None,
+    after: TangentSegment | None,
+    is_same: Callable[[Key, Key], bool],
+    *,
+    is_end: bool = False,
+) -> tuple[KeyTangent, KeyTangent]:
+    """Return how one of some keys is reached by a leg, and how it is left by another one.
+
+    Parameters
+    ----------
+    keys : sequence of Key
+    index : int
+    before, after : TangentSegment or None
+    is_same : callable
+        Tells whether two keys have what moves alike.
+    is_end : bool
+        Whether the motion comes from rest or to rest there, where it would pass through.
+    """
+    before, after = _moving_segment(keys, before), _moving_segment(keys, after)
+    reached = keys[index if before is None else before.last]
+    left = keys[index if after is None else after.first]
+    end_pace = 1.0 if before is None else keys[before.first].easing.end_speeds[1]
+    start_pace = 1.0 if after is None else left.easing.end_speeds[0]
+    stops = stop_factor(end_pace), stop_factor(start_pace)
+    if before and after and reached.tangent_mode is left.tangent_mode is TangentMode.SMOOTH:
+        if is_same(left, keys[before.first]) or is_same(left, keys[after.last]):
+            # What is given twice is meant to be kept: past it the motion would swing beyond.
+            return stops
+        joint = Joint(before.frames, after.frames)
+        if end_pace == start_pace == 0.0:
+            return joint, joint
+        if 0.0 in (end_pace, start_pace):
+            return stops
+        if isfinite(end_pace) and isfinite(start_pace):
+            joint = replace(joint, end_pace=end_pace, start_pace=start_pace)
+            return joint, joint
+        return 1.0, 1.0
+    resting = {TangentMode.STOP, TangentMode.SMOOTH} if is_end else {TangentMode.STOP}
+    return (
+        stops[0] if reached.tangent_mode in resting else 1.0,
+        stops[1] if left.tangent_mode in resting else 1.0,
+    )
+
+
+def _moving_segment(keys: Sequence[KeyLike], leg: TangentSegment | None) -> TangentSegment | None:
+    """Return a leg, unless there is no motion in it."""
+    return None if leg is None or keys[leg.first].easing == HOLD else leg
+
+
+def stop_factor(pace: float) -> float:
+    """Return 0 where a blend must stop at a key, and 1 where its easing stops there by itself."""
+    return 1.0 if pace == 0.0 else 0.0
+
+
+def sample_segment(
+    passages: KeySequence[Key], leg: TangentSegment, time: float, moved: KeyedProperty[Key, Value]
+) -> Value:
+    """Return what moves at a share of the frames of a leg, from 0 to 1; that of a key to the bit.
+
+    It passes a key at the key's own velocity, or with the slope of the parabola through it and its
+    neighbours, and with a stop where a neighbour wants the same of it.
+    """
+    one, other = passages.keys[leg.first], passages.keys[leg.last]
+    share = one.easing(time)
+    if share in (0.0, 1.0):
+        return moved.value_of(other if share else one)
+    change, rest = moved.value_of(other) - moved.value_of(one), 1.0 - share
+    leaving, reaching = segment_slopes(passages, leg, moved)
+    return moved.value_of(one) + share * (
+        share * (3.0 - 2.0 * share) * change + rest * (rest * leaving - share * reaching)
+    )
+
+
+def segment_slopes(
+    passages: KeySequence[Key], leg: TangentSegment, moved: KeyedProperty[Key, Value]
+) -> tuple[Value, Value]:
+    """Return the slopes, over the eased time, with which the keys of a leg are left and reached."""
+    change = moved.value_of(passages.keys[leg.last]) - moved.value_of(passages.keys[leg.first])
+    return (
+        _slope(passages, leg.first, moved, change, side=1),
+        _slope(passages, leg.last, moved, change, side=0),
+    )
+
+
+def _slope(
+    passages: KeySequence[Key],
+    index: int,
+    moved: KeyedProperty[Key, Value],
+    change: Value,
+    *,
+    side: int,
+) -> Value:
+    """Return the slope, over the eased time, with which a key is reached or, on side 1, left.
+
+    The change is that from the leg's first key to its second one.
+    """
+    keys = passages.keys
+    before, after = passages.segment_before(index), passages.segment_after(index)
+    velocity, arms = _own_velocity(passages, index, moved)
+    if velocity is not None:
+        return arms[side] * velocity
+    end = passages.tangents(index)[side]
+    if not isinstance(end, Joint):
+        return end * change
+    window = (before.first if before else index, index, after.last if after else index)
+    first, middle, last = (
+        share * moved.value_of(keys[i]) for share, i in zip(end.velocity.tolist(), window, strict=True)
+    )
+    slope: Value = 3.0 * abs(end.arms[side]) * (first + middle + last)
+    return slope
+
+
+def _own_velocity(
+    passages: KeySequence[Key], index: int, moved: KeyedProperty[Key, Value]
+) -> tuple[Value | None, tuple[float, float]]:
+    """Return a key's own velocity, and the frames that an even blend takes at the paces there.
+
+    They are those of the leg that leads to it, and of the one that leads on. There is no velocity
+    where the key is not passed through, nor where an easing stands still there, or jumps.
+    """
+    keys = passages.keys
+    before, after = passages.segment_before(index), passages.segment_after(index)
+    reached, left = keys[before.last if before else index], keys[after.first if after else index]
+    end_pace = keys[before.first].easing.end_speeds[1] if before else 1.0
+    start_pace = left.easing.end_speeds[0] if after else 1.0
+    velocity = moved.velocity(left)
+    is_led = (
+        velocity == moved.velocity(reached)
+        and reached.tangent_mode is left.tangent_mode is TangentMode.SMOOTH
+        and all(0.0 < pace < inf for pace in (end_pace, start_pace))
+    )
+    if not is_led:
+        return None, (0.0, 0.0)
+    arms = (before.frames if before else 0) / end_pace, (after.frames if after else 0) / start_pace
+    return velocity, arms

@@ -1,0 +1,143 @@
+"""Which handles, and which layers, are each other's other side: by their names, or their places."""
+
+from collections.abc import Iterable, Iterator, Mapping
+from functools import lru_cache
+
+import numpy as np
+
+from app.document.checks import require, require_distinct
+from app.document.keyframe import Handle
+from app.errors import LissomError
+from engine.arrays import Complexes
+from engine.geometry import diameter
+
+# Of the shape's diameter: handles that mirror each other this nearly are pairs without names.
+PAIR_DISTANCE = 0.03
+# Words, or whole names, that tell of one side and of the other.
+SidePairs = tuple[tuple[str, str], ...]
+SIDES: SidePairs = (("L", "R"), ("left", "right"))
+MAX_PAIRS = 1_000  # each name is compared with all of them
+PAIRS: SidePairs = (*SIDES, ("near", "far"))
+NO_PAIR = (
+    "“{words}” is no pair: write two words, or two whole names, with a slash between, as in "
+    "near/far, and commas between pairs."
+)
+
+
+@lru_cache(maxsize=4096)
+def mirrored_name(name: str, pairs: SidePairs = PAIRS) -> str | None:
+    """Return the name of a handle or a layer on the other side; None where it tells of no side.
+
+    A pair of whole names comes first. Else a word counts where it begins and ends, be it in the
+    middle of "handLeftUpper", but not in "bright" or "cleft", and a letter where it stands alone:
+    ".L", "_r", "L arm", "arm.l.001". Of several the last one counts, as in "right tail.L", and its
+    case is kept.
+    """
+    both_ways = [*pairs, *((other, word) for word, other in pairs)]
+    for word, other in both_ways:
+        if name == word:
+            return other
+    found = [
+        (start, form, instead)
+        for word, other in both_ways
+        for form, instead in _forms(word, other).items()
+        for start in _places(name, form)
+    ]
+    if not found:
+        return None
+    start, form, instead = max(found, key=lambda each: (each[0], len(each[1])))
+    return name[:start] + instead + name[start + len(form) :]
+
+
+def _forms(word: str, other: str) -> Mapping[str, str]:
+    """Return how a word may be written, and the other one likewise."""
+    ways = (str.upper, str.capitalize, str.lower)
+    return {way(word): way(other) for way in ways} | {word: other}
+
+
+def _places(name: str, form: str) -> Iterator[int]:
+    """Yield where a word stands in a name as a word of its own."""
+    start = name.find(form)
+    while start >= 0:
+        before, after = name[:start][-1:], name[start + len(form) :][:1]
+        if len(form) == 1:
+            is_word = not (before.isalnum() or after.isalnum())
+        else:
+            begins = not before.isalpha() or (before.islower() and form[0].isupper())
+            is_number = (before + form[0]).isdecimal() and before != ""
+            is_number |= (form[-1] + after).isdecimal() and after != ""
+            is_word = begins and not after.islower() and not is_number
+        if is_word:
+            yield start
+        start = name.find(form, start + 1)
+
+
+def require_pairs(pairs: SidePairs) -> None:
+    """Raise a `LissomError` unless each of some words has one partner."""
+    require(len(pairs) <= MAX_PAIRS, f"There are at most {MAX_PAIRS:,} pairs, not {len(pairs):,}.")
+    words = [word.casefold() for pair in pairs for word in pair]
+    require(all(word.strip() for word in words), "A pair is of two words, such as near and far.")
+    require_distinct(words, "“{}” is twice among the pairs; it has one partner only.")
+
+
+def parse_pairs(text: str) -> SidePairs:
+    """Return the pairs that a text tells, such as "L/R, near/far".
+
+    Raises
+    ------
+    LissomError
+        If it tells no pairs.
+    """
+    pairs = []
+    for part in filter(str.strip, text.split(",")):
+        words = tuple(word.strip() for word in part.split("/"))
+        if len(words) != 2:
+            raise LissomError(NO_PAIR.format(words=part.strip()))
+        pairs.append((words[0], words[1]))
+    require_pairs(tuple(pairs))
+    return tuple(pairs)
+
+
+def format_pairs(pairs: SidePairs) -> str:
+    """Return pairs as `read_pairs` reads them."""
+    return ", ".join("/".join(pair) for pair in pairs)
+
+
+def mirrored_handles_by_name(
+    handles: Iterable[Handle], pairs: SidePairs = PAIRS
+) -> Mapping[int, int]:
+    """Return the partner of each handle that has one by name; both by their ids, both ways."""
+    names = {handle.name: handle.id for handle in handles}
+    others = {
+        identity: names.get(mirrored_name(name, pairs) or "") for name, identity in names.items()
+    }
+    return {identity: other for identity, other in others.items() if other is not None}
+
+
+def mirrored_handles(
+    handles: Iterable[Handle], axis: float, outline: Complexes, pairs: SidePairs = PAIRS
+) -> Mapping[int, int]:
+    """Return the partner of each handle that has one, by name or else by place, by their ids.
+
+    A handle next to the axis is its own partner, unless its name tells of another.
+
+    Parameters
+    ----------
+    handles : iterable of Handle
+    axis : float
+        The upright line at which they mirror each other, in pixels from the left.
+    outline : complex128, shape (n,)
+        Of their layer.
+    pairs : tuple of tuple of str
+        Of words that tell of sides.
+    """
+    handles = tuple(handles)
+    partners = dict(mirrored_handles_by_name(handles, pairs))
+    alone = [handle for handle in handles if handle.id not in partners]
+    places = np.array([handle.position for handle in alone])
+    for handle in alone:
+        away = np.abs(places - (2 * axis - handle.position.conjugate()))
+        nearest = int(away.argmin())
+        if away[nearest] < PAIR_DISTANCE * diameter(outline):
+            partners[handle.id] = alone[nearest].id
+    return partners

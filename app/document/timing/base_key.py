@@ -1,0 +1,36 @@
+"""What keys of all that moves have alike, but for those of poses."""
+
+from dataclasses import dataclass, field, replace
+from typing import Self
+
+from app.document.checks import NOTHING, Unknown, require_frame
+from app.document.timing.easing import HOLD, LINEAR, Easing
+from app.document.timing.tangent_mode import TangentMode, require_tangent_mode
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BaseKey:
+    """A key of what moves as poses do, and the way from there to the next one."""
+
+    frame: int
+    easing: Easing = LINEAR
+    tangent_mode: TangentMode = TangentMode.SMOOTH
+    unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
+
+    def __post_init__(self) -> None:
+        require_frame(self.frame, "A key")
+        require_tangent_mode(self.tangent_mode)
+        object.__setattr__(self, "tangent_mode", TangentMode(self.tangent_mode))
+
+    @property
+    def shown_tangent_mode(self) -> TangentMode:
+        """How the motion passes the key, by a hold too."""
+        return TangentMode.HOLD if self.easing == HOLD else self.tangent_mode
+
+    def with_easing_of(self, other: Self, *, backwards: bool = False) -> Self:
+        """Return the key with the way on from another one, or with that way run backwards."""
+        return replace(self, easing=other.easing.reversed() if backwards else other.easing)
+
+    def retimed(self, frame: int, pace: float) -> Self:  # noqa: ARG002 - it has no velocity
+        """Return the key at another frame of a motion that runs so many times as fast."""
+        return self if frame == self.frame else replace(self, frame=frame)

@@ -1,0 +1,188 @@
+"""Fewer triangles that draw a posed mesh as all of them would."""
+
+from collections.abc import Sequence
+from typing import Final, NamedTuple
+
+import numpy as np
+from scipy.spatial import Delaunay
+
+from app.render.gpu import border_edges
+from engine.arrays import Booleans, Complexes, Indices, Integers, Singles
+from engine.domain import MeshedDomain
+from engine.domain.meshing import Mesh, in_order_of
+from engine.geometry import as_xy
+
+TOLERANCE: Final = 0.05  # pixels between where a vertex is and where it is drawn, at most
+# Of the tolerance: what is looked for, so that the frames in between need no more.
+_AIM: Final = 0.7
+_SPACING: Final = 10.0  # pixels between vertices where nothing bends
+_WORTH: Final = 0.5  # of the vertices, above which it is easier to draw all triangles
+# Of the spacing. Points of a lattice lie on common circles, which takes Qhull long to sort out.
+_SHAKE: Final = 1e-5
+_FLAT: Final = 1e-8  # of the spacing's square: triangles between points of one straight edge
+
+
+class _ReducedMesh(NamedTuple):
+    """Triangles between some of a mesh's vertices, and where the others lie in them.
+
+    Parameters
+    ----------
+    triangles : int32, shape (k, 3)
+        They cover the convex hull.
+    dropped : int64, shape (d,)
+        The vertices that no triangle has.
+    homes : int32, shape (d,)
+        The triangles in which they lie at rest.
+    weights : float32, shape (3, d)
+        Barycentric, at rest.
+    """
+
+    triangles: Integers
+    dropped: Indices
+    homes: Integers
+    weights: Singles
+
+    def distances(self, positions: Complexes) -> Singles:
+        """Return how far each dropped vertex (d,) is from where it is drawn."""
+        places = positions.astype(np.complex64)
+        off = -places[self.dropped]
+        for corner, weight in zip(self.triangles[self.homes].T, self.weights, strict=True):
+            off += weight * places[corner]
+        distances: Singles = np.abs(off)
+        return distances
+
+
+class MeshDecimator:
+    """Finds fewer triangles of a mesh that show the same in every pose that it is asked about.
+
+    To software OpenGL a triangle of a few pixels is as dear as one of many. Where a map bends
+    little, a few vertices tell where all are. They are triangulated (Delaunay) together with the
+    whole border, and wherever a pose bends more, more of them, until each vertex of the mesh lies
+    within the tolerance of where it is drawn.
+
+    Parameters
+    ----------
+    scale : float
+        Pixels of the frame per unit of the plane.
+    """
+
+    def __init__(self, domain: MeshedDomain, scale: float) -> None:
+        self._domain = domain
+        self._tolerance = TOLERANCE / scale
+        self._spacing = _SPACING / scale
+        # Of an equilateral triangle of the mean size.
+        self._edge = float(np.sqrt(4 / np.sqrt(3) * domain.mesh.areas().mean()))
+        self._border = border_edges(domain.mesh.triangles)
+        self._kept: Booleans = np.zeros(len(domain.mesh.vertices), dtype=np.bool_)
+        self._sheet: _ReducedMesh | None = None
+        self._fewer: Mesh | None = None
+        self._ordered: tuple[Integers, Integers] | None = None
+
+    def prepare(self, poses: Sequence[Complexes]) -> None:
+        """Find triangles that show these poses, each (v,), and most likely those between them.
+
+        For 100,000 triangles it takes a second where they bend much, a quarter where they do not.
+        """
+        self._kept = _one_in_each_square(self._domain.mesh.vertices, self._spacing)
+        self._kept[self._border] = True
+        self._triangulate()
+        self._refine(poses)
+
+    def triangles(self, positions: Complexes, painted: Integers) -> Integers:
+        """Return the triangles to draw, (k, 3), from back to front.
+
+        Parameters
+        ----------
+        positions : complex128, shape (v,)
+            Where the vertices of the mesh are.
+        painted : int32, shape (m, 3)
+            The triangles of the mesh from back to front; they come back where fewer would not do.
+        """
+        sheet = self._sheet
+        if sheet is not None and not (sheet.distances(positions) <= self._tolerance).all():
+            self._refine([positions])
+        if self._fewer is None:
+            return painted
+        if self._ordered is None or self._ordered[0] is not painted:
+            everything = Mesh(vertices=self._fewer.vertices, triangles=painted)
+            self._ordered = painted, in_order_of(self._fewer, everything).triangles
+        return self._ordered[1]
+
+    def _refine(self, poses: Sequence[Complexes]) -> None:
+        """Keep more vertices until none is farther off than is aimed at."""
+        is_first = True
+        while self._sheet is not None:
+            off = np.max([self._sheet.distances(positions) for positions in poses], axis=0)
+            excess = off / (_AIM * self._tolerance)
+            # Not a number where a triangle is too flat to tell the place in it.
+            if (excess <= 1).all():
+                break
+            self._keep_more(self._sheet, excess, is_graded=is_first)
+            self._triangulate()
+            is_first = False
+        self._fewer = None if self._sheet is None else self._inside(self._sheet)
+        self._ordered = None
+
+    def _keep_more(self, sheet: _ReducedMesh, excess: Singles, *, is_graded: bool) -> None:
+        """Keep dropped vertices, by how many times farther off (d,) than is aimed at they are.
+
+        Graded, it is one in each square that is as small as it must be: the error of linear
+        interpolation falls with the square of the spacing. Else all in the triangles that fail.
+        """
+        fails = ~(excess <= 1)
+        if not is_graded:
+            self._kept[sheet.dropped[np.isin(sheet.homes, sheet.homes[fails])]] = True
+            return
+        side = self._spacing / 2
+        while side >= 1.5 * self._edge:
+            is_enough = fails & (excess <= (self._spacing / side) ** 2)
+            found = sheet.dropped[is_enough]
+            places = self._domain.mesh.vertices[found]
+            self._kept[found[_one_in_each_square(places, side)]] = True
+            fails &= ~is_enough
+            side /= 2
+        self._kept[sheet.dropped[fails]] = True
+
+    def _triangulate(self) -> None:
+        """Triangulate the vertices that are kept, unless there are too many."""
+        vertices = self._domain.mesh.vertices
+        kept, dropped = np.flatnonzero(self._kept), np.flatnonzero(~self._kept)
+        if len(kept) > _WORTH * len(vertices):
+            self._sheet = None
+            return
+        shaken = as_xy(vertices)
+        shake = _SHAKE * self._spacing
+        shaken = shaken + np.random.default_rng(0).uniform(-shake, shake, shaken.shape)
+        found = Delaunay(shaken[kept])
+        homes = found.find_simplex(shaken[dropped])
+        to_weights = found.transform[homes]
+        weights = np.einsum("nij,nj->in", to_weights[:, :2], shaken[dropped] - to_weights[:, 2])
+        self._sheet = _ReducedMesh(
+            triangles=kept[found.simplices].astype(np.int32),
+            dropped=dropped,
+            homes=homes,
+            weights=np.vstack([weights, 1 - weights.sum(axis=0)]).astype(np.float32),
+        )
+
+    def _inside(self, sheet: _ReducedMesh) -> Mesh | None:
+        """Return what of a sheet lies in the domain; None if its border is not the domain's."""
+        vertices = self._domain.mesh.vertices
+        areas = Mesh(vertices=vertices, triangles=sheet.triangles).areas()
+        inside = np.abs(areas) > _FLAT * self._spacing**2
+        inside &= self._domain.contains(vertices[sheet.triangles].mean(axis=1))
+        triangles = np.where(areas[:, np.newaxis] < 0, sheet.triangles[:, ::-1], sheet.triangles)
+        # Across a narrow gap, a nearer point may have taken the place of a part of the border.
+        is_whole = np.array_equal(border_edges(triangles[inside]), self._border)
+        return Mesh(vertices=vertices, triangles=triangles[inside]) if is_whole else None
+
+
+def _one_in_each_square(points: Complexes, side: float) -> Booleans:
+    """Mark of the points (n,) in each square of a grid the one that is nearest to its middle."""
+    columns, rows = np.floor(points.real / side), np.floor(points.imag / side)
+    away = np.abs(points / side - (columns + 0.5) - 1j * (rows + 0.5))
+    order = np.lexsort((away, columns, rows))
+    is_first = np.diff(columns[order], prepend=np.nan) != 0
+    is_first |= np.diff(rows[order], prepend=np.nan) != 0
+    marked: Booleans = np.zeros(len(points), dtype=np.bool_)
+    marked[order[is_first]] = True
+    return marked

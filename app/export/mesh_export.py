@@ -1,0 +1,157 @@
+"""Exports of shapes: nothing is drawn, and a few steps of the work are taken at a time."""
+
+from collections.abc import Generator, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from typing import Final
+
+from app.document import Document, Group, Layer
+from app.export.frame_vertices import FrameVertices
+from app.export.morph_mesh import (
+    DEFAULT_TOLERANCE,
+    MOST_TARGETS,
+    MorphMesh,
+    MorphScene,
+    build_morph_scene,
+)
+from app.export.plan import ExportPlan
+from app.export.run import wait_some
+from app.export.writers import SHAPE_WRITERS
+from app.export_formats import EXPORT_FORMATS
+from app.storage import Cancellation, write_atomically
+from engine.arrays import Bytes
+
+_BATCH: Final = 16  # steps between two looks at whether the export is still wanted
+
+
+class MeshExport:
+    """An export of shapes.
+
+    Parameters
+    ----------
+    document : Document
+        With the meshes that are exported.
+    pictures : mapping of int to uint8, shape (h, w, 4)
+        The layers' pictures, decoded, by their ids.
+    poses : mapping of int to Poses
+        The layers', by their ids.
+    plan : ExportPlan
+    """
+
+    def __init__(
+        self,
+        document: Document,
+        pictures: Mapping[int, Bytes],
+        poses: Mapping[int, FrameVertices],
+        plan: ExportPlan,
+    ) -> None:
+        self._plan = plan
+        self._work = build_morph_scene(document, pictures, poses, plan)
+        self._share = 0.0
+        self._document = document
+        self._scene: MorphScene | None = None
+
+    @property
+    def meshes(self) -> tuple[MorphMesh, ...]:
+        """What was found of the layers; none before the end."""
+        return () if self._scene is None else self._scene.meshes
+
+    def run(
+        self, *, waits: bool = True, cancellation: Cancellation | None = None
+    ) -> Generator[int]:
+        """Make what was planned, a part of it at each step.
+
+        Parameters
+        ----------
+        waits, cancellation
+            As in `export`.
+
+        Yields
+        ------
+        int
+            As how many of the plan's frames the work that is done may count.
+
+        Raises
+        ------
+        LissomError
+            If the motion fails somewhere, or the file cannot be written.
+
+        Notes
+        -----
+        Closing the iterator, or an exception, ends the export, and nothing of it stays. What is
+        under way is left to itself, as it may take long.
+        """
+        cancellation = cancellation or Cancellation()
+        total, worker = len(self._plan.times), ThreadPoolExecutor(1)
+        try:
+            while self._scene is None:
+                batch = worker.submit(self._advance)
+                yield from wait_some(batch, count=int(self._share * total), waits=waits)
+                yield int(self._share * total)
+            end = worker.submit(self._write, self._scene, cancellation)
+            yield from wait_some(end, count=total, waits=waits)
+        except BaseException:
+            cancellation.cancel()
+            raise
+        finally:
+            worker.shutdown(wait=False, cancel_futures=True)
+        yield total
+
+    @property
+    def notices(self) -> tuple[str, ...]:
+        """What the person should know about the shapes that were found."""
+        wanted, format_ = self._plan.shapes.tolerance, EXPORT_FORMATS[self._plan.format]
+        found = []
+        for shape in self.meshes:
+            count, error = len(shape.motion.targets), shape.motion.error
+            if wanted is None and error > DEFAULT_TOLERANCE:
+                found.append(
+                    f"{count} shapes come within {error:.2g} pixels of the motion of {shape.name}; "
+                    "a tolerance of your own takes as many as it needs"
+                )
+            elif count > MOST_TARGETS:
+                found.append(
+                    f"{shape.name} has {count} shapes, and viewers of glTF need show only "
+                    f"{MOST_TARGETS}; a larger tolerance takes fewer"
+                )
+            if len(shape.triangle_orders) > 1 and not format_.keeps_order:
+                found.append(
+                    f"what lies in front of what changes in {shape.name}; a {format_.label} keeps "
+                    "what is so at first"
+                )
+        layers = self._document.exported_layers
+        constant = [f"the opacity of {each.name}" for each in layers if each.opacity_keys]
+        constant += [f"the order of {each.name}" for each in layers if each.draw_order_keys]
+        constant += ["the camera"] if self._document.camera and not format_.has_frame else []
+        if constant:
+            found.append(f"in a {format_.label} these do not change: {', '.join(constant)}")
+        return (*found, *(() if format_.composites else self._uncomposited(format_.label)))
+
+    def _uncomposited(self, label: str) -> Iterator[str]:
+        """Tell what does not look as it does here in a format that paints layer upon layer."""
+        groups = self._document.groups
+        painted: list[Layer | Group] = [*self._document.exported_layers, *groups]
+        for what, names in (
+            ("multiplied", [each.name for each in painted if each.blend == "multiply"]),
+            ("screened", [each.name for each in painted if each.blend == "screen"]),
+            ("clipped", [each.name for each in painted if each.clipped]),
+        ):
+            if names:
+                yield f"{', '.join(names)}: not {what} in a {label}, but painted over the rest"
+        faint = [group.name for group in groups if group.opacity < 1]
+        if faint:
+            yield (
+                f"{', '.join(faint)}: faded layer by layer in a {label}, so that they shine "
+                "through each other"
+            )
+
+    def _write(self, scene: MorphScene, cancellation: Cancellation) -> None:
+        contents = SHAPE_WRITERS[self._plan.format](scene, self._plan)
+        write_atomically(self._plan.out, lambda file: file.write(contents), cancellation)
+
+    def _advance(self) -> None:
+        for _ in range(_BATCH):
+            try:
+                self._share = next(self._work)
+            except StopIteration as stop:
+                self._scene = stop.value
+                return

@@ -1,0 +1,237 @@
+"""A layer as other programs play it: a light textured mesh, and few shapes that it blends."""
+
+import math
+from collections.abc import Callable, Generator, Mapping
+from dataclasses import dataclass, replace
+from typing import Final, TypeVar
+
+import numpy as np
+
+from app.document import (
+    CompositeGroup,
+    Document,
+    Layer,
+    camera_at,
+    clip_of,
+    composite_layers,
+    is_visible,
+    layers_in_draw_order,
+)
+from app.errors import LissomError
+from app.export.alpha_bleed import bleed_edges
+from app.export.frame_vertices import FrameVertices
+from app.export.plan import ExportPlan
+from app.export_formats import EXPORT_FORMATS
+from app.motion import TriangleOrder, bounding_box
+from engine.arrays import Bytes, Complexes, Floats, Integers, freeze
+from engine.domain import Seam, find_seam
+from engine.domain.meshing import in_order_of, triangulate
+from engine.streaming import ShapeTargets, build_targets
+
+Value = TypeVar("Value")
+
+DEFAULT_TOLERANCE: Final = 0.5  # pixels
+MOST_TARGETS: Final = 8  # viewers of glTF need show no more
+_BORDER: Final = 2  # transparent pixels around a texture: readers repeat what is at its edge
+_CLOSE: Final = 0.5  # frames between the moments that are looked at first
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class MorphMesh:
+    """A layer's mesh, picture and motion.
+
+    Parameters
+    ----------
+    name : str
+    texture : uint8, shape (h, w, 4)
+        Straight alpha, with colours where it is transparent; the part of the picture that the mesh
+        shows.
+    opacity : float
+        Of the whole layer, where it is the most, with those of its groups.
+    uv : float64, shape (v, 2)
+        u right, v up; [0, 1] spans the texture.
+    orders : tuple of (float, int32 of shape (m, 3))
+        The triangles, counter-clockwise, in the order of painting, and from when on they are
+        painted so.
+    sights : tuple of (float, bool)
+        From when on the layer is seen, or is not.
+    motion : ShapeTargets
+        In pixels, y up; its times, like all others, are seconds from the first frame on.
+    """
+
+    name: str
+    texture: Bytes
+    opacity: float
+    uv: Floats
+    triangle_orders: tuple[tuple[float, Integers], ...]
+    visibility_changes: tuple[tuple[float, bool], ...]
+    motion: ShapeTargets
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class MorphScene:
+    """The shapes of a scene, the one behind all others first.
+
+    Parameters
+    ----------
+    shapes : tuple of MorphMesh
+    parts : tuple of (int or Composite)
+        How they are composited, by their numbers, from back to front.
+    """
+
+    meshes: tuple[MorphMesh, ...]
+    parts: tuple[int | CompositeGroup[int], ...]
+
+
+def with_reduced_meshes(document: Document, triangles: int) -> Document:
+    """Return a document whose meshes have at most so many triangles, about."""
+    return replace(document, layers=tuple(_lighter(f, triangles) for f in document.layers))
+
+
+def _lighter(layer: Layer, triangles: int) -> Layer:
+    domain = layer.domain
+    if len(domain.mesh.triangles) <= triangles:
+        return layer
+    mesh = triangulate(domain.outline, triangles, holes=domain.loops[1:])
+    return replace(layer, domain=replace(domain, mesh=in_order_of(mesh, domain.mesh)))
+
+
+def build_morph_scene(
+    document: Document,
+    pictures: Mapping[int, Bytes],
+    poses: Mapping[int, FrameVertices],
+    plan: ExportPlan,
+) -> Generator[float, None, MorphScene]:
+    """Find the shapes of every layer; yield how much of the work is done, from 0 to 1.
+
+    Where the format shows a part of the plane, shapes are as the camera shows them there.
+
+    Parameters
+    ----------
+    document : Document
+        With the meshes that are exported.
+    pictures : mapping of int to uint8, shape (h, w, 4)
+        The layers' pictures, decoded, by their ids.
+    poses : mapping of int to Poses
+        The layers', by their ids.
+    plan : ExportPlan
+
+    Raises
+    ------
+    LissomError
+        If nothing is seen, or the motion fails somewhere.
+    """
+    document = _with_peak_opacity(document)
+    first, last = plan.span
+    times = np.linspace(first, last, round((last - first) / _CLOSE) + 1).tolist()
+    tolerance = plan.shapes.tolerance
+    numbers = range(first, last + 1)
+    clips = [
+        clip_of(document, layer.id)
+        for layer in layers_in_draw_order(document, first)
+        if layer in document.exported_layers
+        and any(is_visible(document, layer, frame) for frame in numbers)
+    ]
+    if not clips:
+        raise LissomError("no layer is seen in these frames; there is nothing to export")
+    found = []
+    for index, clip in enumerate(clips):
+        layer, mesh = clip.layer, clip.layer.domain.mesh
+        seam = find_seam(layer.domain)
+        places = mesh.vertices if seam is None else seam.closed(mesh.vertices)
+        steps = build_targets(
+            _painted(document, plan, seam, poses[layer.id]),
+            places,
+            times,
+            tolerance=DEFAULT_TOLERANCE if tolerance is None else tolerance,
+            most=MOST_TARGETS if tolerance is None else None,
+        )
+        motion = yield from _share(steps, plan.span, (index, len(clips)))
+        texture, uv = _cut_out(pictures[layer.id], places - layer.corner)
+        order = TriangleOrder(mesh)
+        orders = [(frame, order.triangles(clip, frame)) for frame in numbers]
+        sights = [(frame, is_visible(document, layer, frame)) for frame in numbers]
+        shape = MorphMesh(
+            name=plan.out.stem if len(document.layers) == 1 else layer.name,
+            texture=bleed_edges(texture),
+            opacity=layer.opacity
+            * math.prod(group.opacity for group in document.groups_around(layer.group)),
+            uv=uv,
+            triangle_orders=tuple(
+                ((n - first) / document.fps, order) for n, order in _changes(orders)
+            ),
+            visibility_changes=tuple(
+                ((n - first) / document.fps, seen) for n, seen in _changes(sights)
+            ),
+            motion=replace(motion, times=freeze((motion.times - first) / document.fps)),
+        )
+        found.append(shape)
+    numbered = {clip.layer.id: number for number, clip in enumerate(clips)}
+    return MorphScene(meshes=tuple(found), parts=composite_layers(document, numbered, first))
+
+
+def _with_peak_opacity(document: Document) -> Document:
+    """Return a document whose layers are as opaque as they are at most, at all times."""
+    layers = tuple(
+        replace(each, opacity_keys=(), opacity=max(key.opacity for key in each.opacity_keys))
+        if each.opacity_keys
+        else each
+        for each in document.layers
+    )
+    return replace(document, layers=layers)
+
+
+def _painted(
+    document: Document, plan: ExportPlan, seam: Seam | None, poses: FrameVertices
+) -> Callable[[float], Complexes]:
+    """Return where vertices are painted at a time: with slits closed, as the camera shows them."""
+    has_frame = EXPORT_FORMATS[plan.format].has_frame
+
+    def at(frame: float) -> Complexes:
+        places = poses.positions(frame)
+        places = places if seam is None else seam.closed(places)
+        shot = camera_at(document, frame) if has_frame else None
+        return places if shot is None else shot.canvas_motion(document.canvas).on(places)
+
+    return at
+
+
+def _changes(values: list[tuple[int, Value]]) -> list[tuple[int, Value]]:
+    """Return the first of each run of values that are the same object."""
+    return [
+        pair
+        for index, pair in enumerate(values)
+        if not index or pair[1] is not values[index - 1][1]
+    ]
+
+
+def _share(
+    steps: Generator[float, None, ShapeTargets], frames: tuple[int, int], part: tuple[int, int]
+) -> Generator[float, None, ShapeTargets]:
+    """Take steps that tell which frame they are at, and yield what that is of the whole work."""
+    (first, last), (index, count) = frames, part
+    while True:
+        try:
+            frame = next(steps)
+        except StopIteration as stop:
+            motion: ShapeTargets = stop.value
+            return motion
+        yield (index + (frame - first) / max(last - first, 1)) / count
+
+
+def _cut_out(picture: Bytes, vertices: Complexes) -> tuple[Bytes, Floats]:
+    """Return the part of a picture that a mesh shows, with a border, and the places in it.
+
+    The vertices are in pixels from the lower left corner of the picture.
+    """
+    height, width, _ = picture.shape
+    box = bounding_box(vertices)
+    left, bottom = (math.floor(side) - _BORDER for side in (box.lower.real, box.lower.imag))
+    right, top = (math.ceil(side) + _BORDER for side in (box.upper.real, box.upper.imag))
+    texture = np.zeros((top - bottom, right - left, 4), dtype=np.uint8)
+    # The mesh may reach beyond the picture.
+    x0, x1, y0, y1 = max(left, 0), min(right, width), max(bottom, 0), min(top, height)
+    texture[top - y1 : top - y0, x0 - left : x1 - left] = picture[height - y1 : height - y0, x0:x1]
+    offsets = vertices - complex(left, bottom)
+    uv = np.column_stack([offsets.real / (right - left), offsets.imag / (top - bottom)])
+    return texture, freeze(uv)

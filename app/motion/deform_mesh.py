@@ -1,0 +1,172 @@
+"""A mesh on the screen: it takes any pose to the places of its vertices, and points with it."""
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from app.document import Pose
+from app.motion.triangle_order import TriangleOrder
+from engine.arrays import Booleans, Complexes, Floats, Integers
+from engine.domain import MeshedDomain
+from engine.domain.meshing import Mesh, in_order_of, triangulate
+from engine.maps import Span
+
+# Triangles of the meshes, of all layers together, that are shown while the full ones would be too
+# slow; and of each, however many share them.
+COARSE_TRIANGLES = 12_000
+FEWEST_TRIANGLES = 4_000
+# How many times finer a layer's own mesh is at least where it has a coarse one beside it: all that
+# is prepared of a layer is prepared of both.
+FINER = 2
+EDGE = 1e-6  # barycentric weights that rounding may lack of 0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class MeshPoints:
+    """Points that stick to a mesh, by the triangles they are in."""
+
+    vertices: Integers  # int32 (p, 3)
+    # float64 (p, 3): Barycentric; one is clearly negative where a point is outside the mesh.
+    weights: Floats
+
+    @property
+    def is_inside(self) -> Booleans:
+        """Which of the points are in the mesh, (p,)."""
+        inside: Booleans = self.weights.min(axis=1) >= -EDGE
+        return inside
+
+    def positions_on(self, positions: Complexes) -> Complexes:
+        """Return where the points are when the mesh's vertices are at these positions."""
+        places: Complexes = (self.weights * positions[self.vertices]).sum(axis=1)
+        return places
+
+    def rotations(self, rest: Complexes, positions: Complexes) -> Floats:
+        """Return by which angles the mesh turns around the points, arg f_z."""
+        before, after = rest[self.vertices], positions[self.vertices]
+        u, v = before[:, 1] - before[:, 0], before[:, 2] - before[:, 0]
+        p, q = after[:, 1] - after[:, 0], after[:, 2] - after[:, 0]
+        # The affine map p = F u + conj(G) conj(u), q likewise; F up to a positive factor.
+        angles: Floats = np.angle((p * v.conj() - q * u.conj()) / (u * v.conj() - v * u.conj()))
+        return angles
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class DeformMesh:
+    """A mesh of a domain, with what takes any pose to the places of its vertices.
+
+    Parameters
+    ----------
+    domain : MeshedDomain
+        With the mesh that is shown, which may be coarser than the layer's own.
+    source : MeshedDomain
+        The layer's.
+    coordinates : complex64, shape (v, n)
+        Values at the vertices of the functions that maps are made of: single precision is plenty
+        for a screen.
+
+    Attributes
+    ----------
+    order : TriangleOrder
+        In which order the mesh's triangles are painted.
+    """
+
+    domain: MeshedDomain
+    source: MeshedDomain
+    coordinates: npt.NDArray[np.complex64]
+    order: TriangleOrder = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "order", TriangleOrder(self.domain.mesh))
+
+    @classmethod
+    def fine(cls, source: MeshedDomain) -> "DeformMesh":
+        """Return the layer's own mesh."""
+        return cls(domain=source, source=source, coordinates=_coordinates(source))
+
+    @classmethod
+    def coarse(cls, source: MeshedDomain, *, among: int = 1) -> "DeformMesh":
+        """Return a coarse mesh of the same domain, or the layer's own if that is hardly finer.
+
+        The more layers are drawn (it is `among` them), the fewer triangles it has.
+        """
+        wanted = max(FEWEST_TRIANGLES, COARSE_TRIANGLES // among)
+        if len(source.mesh.triangles) <= FINER * wanted:
+            return cls.fine(source)
+        mesh = triangulate(source.outline, wanted, holes=source.loops[1:])
+        coarse = replace(source, mesh=in_order_of(mesh, source.mesh))
+        return cls(domain=coarse, source=source, coordinates=_coordinates(coarse))
+
+    def locate(self, points: Complexes, positions: Complexes) -> "MeshPoints":
+        """Find points (p,) in the mesh whose vertices are at `positions` (v,).
+
+        Those are the domain's own, or where a pose has them.
+        """
+        corners = positions[self.domain.mesh.triangles]
+        origin, side, other = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2]
+        other = other - origin
+        area = _cross(side, other)
+        found, weights = [], []
+        for point in points:
+            offset = point - origin
+            v, w = _cross(offset, other) / area, _cross(side, offset) / area
+            depth = np.minimum(np.minimum(v, w), 1.0 - v - w)
+            inside = np.flatnonzero(depth >= -EDGE)
+            # Of triangles on top of each other the last one is painted over the others.
+            index = int(inside[-1]) if len(inside) else int(np.argmax(depth))
+            found.append(index)
+            weights.append((1.0 - v[index] - w[index], v[index], w[index]))
+        return MeshPoints(
+            vertices=self.domain.mesh.triangles[np.array(found, dtype=np.intp)],
+            weights=np.array(weights, dtype=np.float64).reshape(len(found), 3),
+        )
+
+    def derivatives(self, positions: Complexes) -> tuple[Complexes, Complexes]:
+        """Return f_z and f_z̄ at the vertices as the drawn triangles have them, each (v,)."""
+        return _mean_derivatives(self.domain.mesh, positions)
+
+    def pose_vertices(self, pose: Pose) -> Complexes:
+        """Return where a pose takes the vertices, (v,)."""
+        # Relative to the identity, so that few digits are lost far from the origin.
+        span = _span(self.domain)
+        phi = np.concatenate([pose.phi, pose.logs]) - span.identity()
+        psi = np.concatenate([pose.psi, pose.logs.conj()])
+        moved = np.column_stack([phi, psi]).astype(np.complex64)
+        shift = self.coordinates @ moved
+        places: Complexes = self.domain.mesh.vertices + shift[:, 0] + shift[:, 1].conj()
+        return places
+
+
+def _mean_derivatives(mesh: Mesh, positions: Complexes) -> tuple[Complexes, Complexes]:
+    """Return the means, by area, of the affine maps of the triangles around each vertex."""
+    rest, after = mesh.vertices[mesh.triangles], positions[mesh.triangles]
+    u, v = rest[:, 1] - rest[:, 0], rest[:, 2] - rest[:, 0]
+    p, q = after[:, 1] - after[:, 0], after[:, 2] - after[:, 0]
+    # p = a u + b conj(u) and q = a v + b conj(v); the determinant is −2i times twice the area, so
+    # that sums of a and b times it are sums by area.
+    determinant = u * v.conj() - v * u.conj()
+    parts = (p * v.conj() - q * u.conj(), u * q - v * p, determinant)
+    sums = [_gather(part, mesh) for part in parts]
+    return sums[0] / sums[2], sums[1] / sums[2]
+
+
+def _gather(values: Complexes, mesh: Mesh) -> Complexes:
+    """Add up at each vertex what its triangles have."""
+    corners = mesh.triangles.ravel()
+    count = len(mesh.vertices)
+    real = np.bincount(corners, np.repeat(values.real, 3), minlength=count)
+    imaginary = np.bincount(corners, np.repeat(values.imag, 3), minlength=count)
+    return real + 1j * imaginary
+
+
+def _cross(first: Complexes, second: Complexes) -> Floats:
+    product: Floats = (first.conj() * second).imag
+    return product
+
+
+def _coordinates(domain: MeshedDomain) -> npt.NDArray[np.complex64]:
+    return _span(domain).coordinates(domain.mesh.vertices).astype(np.complex64)
+
+
+def _span(domain: MeshedDomain) -> Span:
+    return Span(cage=domain.cage, holes=domain.holes)

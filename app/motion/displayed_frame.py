@@ -1,0 +1,216 @@
+"""What is on the screen: which pose of a layer, on which mesh."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from app.document import (
+    Attachment,
+    Clip,
+    Document,
+    Layer,
+    Pose,
+    keyed_pose_at,
+    segment_time_at,
+    transform_at,
+)
+from app.motion.corrected_frames import CorrectedFrames
+from app.motion.deform_mesh import DeformMesh, MeshPoints
+from app.motion.inbetween_cache import InbetweenCache
+from app.motion.inbetween_jobs import SingleFrame
+from app.motion.inbetweens import SecondaryCorrection
+from app.motion.parenting import ParentTransforms, PivotFrame, compose_chain, parent_links
+from app.motion.vertices import StreamedVertices, Vertices
+from engine.arrays import Complexes
+from engine.domain import MeshedDomain
+from engine.geometry import HERE, RigidMotion
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class DisplayedFrame:
+    """A frame as it is drawn, and what it was made from."""
+
+    clip: Clip
+    frame: int
+    pose: Pose | None  # the pose that is shown; None for an in-between
+    mesh: DeformMesh
+    vertices: Vertices  # the mesh's
+    handles: MeshPoints  # of the layer's handles in the mesh
+    # What is shown instead until the in-between is there: one of its two keys, or another of their
+    # in-betweens; or what was drawn of another domain.
+    placeholder: Pose | SingleFrame | MeshedDomain | None = None
+    correction: SecondaryCorrection | None = None  # what tracks and springs add
+    is_approximate: bool = False  # whether that only stands in for the frame's own
+    # Where the layer is in the scene; all else is where it is by itself.
+    placement: RigidMotion = HERE
+
+    @property
+    def is_current(self) -> bool:
+        """Whether it shows what it should, and nothing that stands in for it."""
+        return self.placeholder is None and not self.is_approximate
+
+    @property
+    def positions(self) -> Complexes:
+        """Where the mesh's vertices are, (v,)."""
+        return self.vertices.positions
+
+    @property
+    def derivatives(self) -> tuple[Complexes, Complexes]:
+        """f_z and f_z̄ at the vertices, each (v,)."""
+        streamed = (
+            self.vertices.derivatives if isinstance(self.vertices, StreamedVertices) else None
+        )
+        return self.mesh.derivatives(self.positions) if streamed is None else streamed
+
+    def pivot_frame_at(self, place: complex) -> PivotFrame:
+        """Return about where a point of the layer is by itself, and by what it is turned there.
+
+        As exact as the triangles are small.
+        """
+        rest = self.mesh.domain.mesh.vertices
+        found = self.mesh.locate(np.array([place]), rest)
+        positions = self.positions
+        turn = found.rotations(rest, positions)[0]
+        return PivotFrame(complex(found.positions_on(positions)[0]), complex(np.exp(1j * turn)))
+
+    @property
+    def handle_positions(self) -> Complexes:
+        """Where the handles are, (h,)."""
+        return self.handles.positions_on(self.positions)
+
+    @property
+    def handle_rotations(self) -> list[float]:
+        """By how much the shape turns at the handles, in radians."""
+        turns = self.handles.rotations(self.mesh.domain.mesh.vertices, self.positions)
+        return [float(turn) for turn in turns]
+
+
+def show(
+    clip: Clip,
+    frame: int,
+    pose: Pose | None,
+    stores: Sequence[InbetweenCache],
+    earlier: DisplayedFrame | None,
+    corrected: CorrectedFrames | None = None,
+) -> DisplayedFrame:
+    """Return the best there is to draw; the earlier one itself if nothing changed.
+
+    Until an in-between is there, the nearest in time of its two keys and of what is known of their
+    in-betweens stands in: exact, and never the pose of another key. What was drawn of another
+    domain stays until there is a mesh of this one.
+
+    Parameters
+    ----------
+    frame : int
+    pose : Pose, optional
+        Shown instead of what the layer has at the frame.
+    stores : sequence of InbetweenCache
+        Where to look for it, the preferred one first; at least one.
+    earlier : DisplayedFrame, optional
+        What was drawn before.
+    corrected : CorrectedFrames, optional
+        Of the clip's frames; a pose that is shown instead has what tracks add to the frame.
+    """
+    domain, moment = clip.layer.domain, segment_time_at(clip, frame)
+    correction, is_rough = None, False
+    if corrected is not None and pose is not None:
+        correction = corrected.at(corrected.clip, frame)
+    elif corrected is not None:
+        correction, is_rough = corrected.at(clip, frame), not corrected.is_exact(clip, frame)
+    pose = pose or keyed_pose_at(clip, moment)
+    fitting = [store for store in stores if store.mesh.source is domain]
+    exact = [store for store in fitting if pose is not None or store.is_exact(clip, frame)]
+    if not exact and earlier is not None and (not fitting or earlier.mesh.source is not domain):
+        old = earlier.mesh.source
+        return earlier if earlier.placeholder is old else replace(earlier, placeholder=old)
+    if not fitting:
+        raise ValueError("none of the stores is of the layer's domain")
+    store = (*exact, fitting[-1])[0]
+    mesh, near = store.mesh, None if exact else store.nearest_pose(clip, moment)
+    triangles = mesh.order.triangles(clip, frame)
+    if (
+        earlier is not None
+        and (earlier.clip, earlier.mesh, earlier.pose) == (clip, mesh, pose)
+        and (earlier.frame == frame or pose is not None)
+        and (earlier.correction, earlier.is_approximate) == (correction, is_rough)
+        and earlier.placeholder is near
+        and earlier.vertices.triangles is triangles
+    ):
+        return earlier if earlier.frame == frame else replace(earlier, frame=frame)
+    vertices = store.vertices(clip, frame, near or pose, None if near else correction)
+    if vertices is None:
+        raise ValueError("what is exact has vertices")
+    return DisplayedFrame(
+        clip=clip,
+        frame=frame,
+        pose=pose,
+        mesh=mesh,
+        vertices=vertices,
+        handles=_locate(clip, mesh, earlier),
+        placeholder=near,
+        correction=correction,
+        is_approximate=is_rough,
+    )
+
+
+def hang_shown(
+    document: Document,
+    shown: Mapping[int, DisplayedFrame],
+    joints: ParentTransforms | None,
+    poses: Mapping[int, Pose],
+    earlier: ParentTransforms | None = None,
+) -> dict[int, DisplayedFrame]:
+    """Return what is drawn of each layer, where its scene has it.
+
+    Parameters
+    ----------
+    shown : mapping of int to Shown
+        By the ids of layers.
+    joints : ParentTransforms or None
+        Of the document; without them places are as exact as the triangles are small.
+    poses : mapping of int to Pose
+        Shown though the document does not have them.
+    earlier : ParentTransforms, optional
+        Of another document, which tell where layers that keep their places are held until `joints`
+        are there.
+    """
+    hung = {}
+    for identity, each in shown.items():
+        layer = document.layer(identity)
+        if not layer.attachments:
+            placement = transform_at(document, layer, each.frame)
+        elif joints is None:
+            chain = parent_links(document, identity, each.frame)
+            kept = partial(_earlier_transform, earlier, each.frame)
+            placement = compose_chain(
+                chain, lambda layer, place: shown[layer.id].pivot_frame_at(place), kept
+            )
+        else:
+            placement = joints.placement(identity, each.frame, poses)
+        same = placement == each.placement
+        hung[identity] = each if same else replace(each, placement=placement)
+    return hung
+
+
+def _earlier_transform(
+    earlier: ParentTransforms | None, frame: float, layer: Layer, joint: Attachment
+) -> RigidMotion:
+    """Return how a layer was held by a joint in an earlier document, if it was."""
+    known = {each.id: each for each in earlier.document.layers} if earlier else {}
+    was = known.get(layer.id)
+    if earlier is None or was is None or joint not in earlier.document.attachments_of(was):
+        return HERE
+    return earlier.kept_transform(was, joint, frame)
+
+
+def _locate(clip: Clip, mesh: DeformMesh, earlier: DisplayedFrame | None) -> MeshPoints:
+    if (
+        earlier is not None
+        and earlier.mesh is mesh
+        and earlier.clip.layer.handles == clip.layer.handles
+    ):
+        return earlier.handles
+    places = np.array([handle.position for handle in clip.layer.handles], dtype=np.complex128)
+    return mesh.locate(places, mesh.domain.mesh.vertices)

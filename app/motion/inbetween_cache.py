@@ -1,0 +1,439 @@
+"""All in-betweens of a layer on one mesh, by their content: what is there, and what is missing."""
+
+from collections.abc import Callable, Mapping, Sequence
+from copy import copy
+from dataclasses import dataclass, field
+from functools import partial
+from itertools import chain
+from typing import Literal
+
+import numpy as np
+
+from app.document import (
+    Clip,
+    Pose,
+    SegmentTime,
+    keyed_pose_at,
+    pose_segments,
+    segment_keys,
+    segment_time_at,
+)
+from app.motion.deform_mesh import DeformMesh
+from app.motion.inbetween_jobs import (
+    AnyInbetweens,
+    CachedSegment,
+    CacheUpdate,
+    SeriesBuild,
+    SingleFrame,
+    compute_frame,
+    compute_segments,
+)
+from app.motion.inbetweens import (
+    PoseSampler,
+    SecondaryCorrection,
+    SegmentKey,
+    needs_correction,
+    segment_key,
+)
+from app.motion.vertices import StreamedVertices, VertexArray, Vertices
+from engine.arrays import Complexes
+from engine.interpolation import Inbetweens, Joint
+
+BUDGET = 2**30  # bytes of one store
+SPARE = 64  # the part of it that may be taken by what no present clip needs: a 64th
+EXPECTED = 100  # bytes a vertex that a series is thought to take before one is built
+# Of what is made of a clip.
+InbetweenPart = Literal["frame", "in-betweens", "fine", "series", "correction"]
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class InbetweenCache:
+    """The in-betweens of a layer on a mesh; of the main thread alone.
+
+    They are known by their content (`SegmentKey`), so that undo, a copied key or another method that is
+    tried again find what was made for them before. Of an interval there is nothing, one frame, all
+    of it prepared, or that as series. Workers are handed frozen input; what they find is taken in
+    whenever it comes, also where nothing asks for it any more.
+
+    All is kept within the budget: first what no clip needs makes room, the longest unwanted first;
+    then that to which undo and redo lead, then series, those farthest from the playhead first. What
+    is prepared of present clips stays.
+    """
+
+    mesh: DeformMesh
+    budget: int = BUDGET  # in bytes
+    sampler: PoseSampler | None = None  # of the workers; None as long as nothing moves
+    whole: Clip | None = None  # the document's newest one all of whose in-betweens were there
+    build: SeriesBuild | None = None  # a series in the making, while no worker is at it
+    # By when they were wanted, the latest last; beside them their bytes, and the largest so far.
+    _known: dict[SegmentKey, CachedSegment] = field(init=False, default_factory=dict)
+    _sizes: dict[SegmentKey, tuple[int, int, int]] = field(init=False, default_factory=dict)
+    _largest: list[int] = field(init=False, default_factory=lambda: [0, 0, 0])
+    _present: dict[Clip, tuple[SegmentKey, ...]] = field(init=False, default_factory=dict)
+    _nearby: dict[Clip, tuple[SegmentKey, ...]] = field(init=False, default_factory=dict)
+    _failures: set[tuple[InbetweenPart, tuple[SegmentKey, ...]]] = field(
+        init=False, default_factory=set
+    )
+    _frame: float = field(init=False, default=0)
+    # By how much a correction moves the vertices: of the one that was asked for last.
+    _moved: tuple[SecondaryCorrection, Complexes] | None = field(init=False, default=None)
+
+    def segment(self, clip: Clip, number: int) -> CachedSegment | None:
+        """Return what is known of one of a clip's intervals."""
+        return self._known.get(segment_key(clip, number))
+
+    def prepared(self, clip: Clip) -> tuple[AnyInbetweens, ...] | None:
+        """Return the in-betweens of all of a clip's intervals; None where some are missing."""
+        if clip.layer.domain is not self.mesh.source:
+            return None
+        known = [self._known.get(pair) for pair in self._segment_keys(clip)]
+        every = [each.inbetweens for each in known if each is not None and each.inbetweens]
+        return tuple(every) if len(every) == len(known) else None
+
+    def has(self, clip: Clip) -> bool:
+        """Tell whether all in-betweens of a clip can be shown."""
+        if clip.layer.domain is not self.mesh.source:
+            return False
+        if self.lacks_sampler(clip):
+            return False
+        known = (self._known.get(pair) for pair in self._segment_keys(clip))
+        return all(each is not None and _shows(each, clip) for each in known)
+
+    def lacks_sampler(self, clip: Clip) -> bool:
+        """Tell whether frames of a clip cannot be corrected yet."""
+        return self.sampler is None and needs_correction(clip)
+
+    def is_exact(self, clip: Clip, frame: float) -> bool:
+        """Tell whether what belongs to a frame is there, and nothing has to stand in for it."""
+        return self._find(clip, segment_time_at(clip, frame)) is not None
+
+    def vertices(
+        self,
+        clip: Clip,
+        frame: float,
+        instead: Pose | SingleFrame | None = None,
+        correction: SecondaryCorrection | None = None,
+    ) -> Vertices | None:
+        """Return where the vertices are at a frame, or what is shown instead; None if not there.
+
+        Parameters
+        ----------
+        clip : Clip
+        frame : float
+        instead : Pose or SingleFrame, optional
+        correction : SecondaryCorrection, optional
+            Of the frame.
+        """
+        if correction is not None and instead is None:
+            return self._corrected(clip, frame, correction)
+        vertices = self._uncorrected(clip, frame, instead)
+        if vertices is None or correction is None:
+            return vertices
+        positions = vertices.positions + self._displacement(clip, frame, correction)
+        return VertexArray(positions=positions, triangles=vertices.triangles)
+
+    def _corrected(
+        self, clip: Clip, frame: float, correction: SecondaryCorrection
+    ) -> VertexArray | None:
+        moment = segment_time_at(clip, frame)
+        resting, sampler = keyed_pose_at(clip, moment), self.sampler
+        if sampler is None:
+            return None
+        if resting is not None:
+            inbetweens, time = sampler.still_inbetweens(resting, clip.layer.variant), 0.0
+        else:
+            known = self.segment(clip, moment.segment)
+            if known is None or not isinstance(known.inbetweens, Inbetweens):
+                return None
+            inbetweens, time = known.inbetweens, moment.weight
+        moved = inbetweens.corrected(correction.series, sampler.basis).frame(time)
+        triangles = self.mesh.order.triangles(clip, frame)
+        return VertexArray(positions=moved.positions, triangles=triangles)
+
+    def _displacement(self, clip: Clip, frame: float, correction: SecondaryCorrection) -> Complexes:
+        """Return by how much a correction moves the vertices of its own frame, (v,).
+
+        It stands in for that of a pose which is still under the hand.
+        """
+        if self._moved is None or self._moved[0] is not correction:
+            after, before = (self._corrected(clip, frame, correction), self.vertices(clip, frame))
+            moved = np.zeros(len(self.mesh.domain.mesh.vertices), np.complex128)
+            if after is not None and before is not None:
+                moved = after.positions - before.positions
+            self._moved = correction, moved
+        return self._moved[1]
+
+    def _uncorrected(
+        self, clip: Clip, frame: float, instead: Pose | SingleFrame | None
+    ) -> Vertices | None:
+        moment = segment_time_at(clip, frame)
+        triangles = self.mesh.order.triangles(clip, frame)
+        found = instead or self._find(clip, moment)
+        if isinstance(found, Pose):
+            positions = self.mesh.pose_vertices(found)
+        elif isinstance(found, SingleFrame):
+            positions = found.positions
+        elif found is None or not found.is_ready:
+            return None
+        elif found.series is not None and found.series.covers(moment.weight):
+            return StreamedVertices(found.series, found.distortions, moment.weight, triangles)
+        elif found.inbetweens is None:
+            return None
+        else:
+            positions = found.inbetweens.frame(moment.weight).positions
+        return VertexArray(positions=positions, triangles=triangles)
+
+    def _find(self, clip: Clip, moment: SegmentTime) -> Pose | SingleFrame | CachedSegment | None:
+        """Return what shows a moment exactly."""
+        if clip.layer.domain is not self.mesh.source:
+            return None
+        if self.lacks_sampler(clip):
+            return None
+        resting = keyed_pose_at(clip, moment)
+        known = self.segment(clip, moment.segment) if resting is None else None
+        if known is None or _shows(known, clip):
+            return known or resting
+        if needs_correction(clip):
+            return None
+        return (
+            known.single_frame
+            if known.single_frame and known.single_frame.weight == moment.weight
+            else None
+        )
+
+    def positions(
+        self, clip: Clip, frame: float, correction: SecondaryCorrection | None = None
+    ) -> Complexes | None:
+        """Return the same, worked out."""
+        vertices = self.vertices(clip, frame, correction=correction)
+        return None if vertices is None else vertices.positions
+
+    def nearest_pose(self, clip: Clip, moment: SegmentTime) -> Pose | SingleFrame:
+        """Return which known pose between two keys, theirs included, is nearest to a moment."""
+        after = moment.weight > 0.5
+        distance = 1.0 - moment.weight if after else moment.weight
+        known = self.segment(clip, moment.segment)
+        one = None if known is None else known.single_frame
+        if one is not None and abs(one.weight - moment.weight) <= distance:
+            return one
+        return clip.keys[segment_keys(clip)[moment.segment][after]].pose
+
+    def velocity_shares(self, clip: Clip) -> Mapping[int, float]:
+        """Return how much of its velocity the bounds leave to the motion at keys, by their frames.
+
+        From 0, a stop, to 1; of those that it passes through, as far as that is known.
+        """
+        found: dict[int, float] = {}
+        for number, transit in enumerate(pose_segments(clip)):
+            known = self.segment(clip, number)
+            if known is None or not known.is_ready:
+                continue
+            first = int(isinstance(transit.start, Joint))
+            ends, keys = (transit.start, transit.end), transit.keys[first : first + 2]
+            for end, key, kept in zip(ends, keys, known.velocity_shares or (1.0, 1.0), strict=True):
+                if isinstance(end, Joint):
+                    found[key.frame] = kept
+        return found
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of all that is known."""
+        return sum(map(sum, self._sizes.values()))
+
+    def snapshot(self) -> "InbetweenCache":
+        """Return what a worker may read while this goes on."""
+        copied = copy(self)
+        copied._known = dict(self._known)  # noqa: SLF001 - its own
+        return copied
+
+    def missing_segments(self, clip: Clip, frame: float, *, is_edited: bool = True) -> list[int]:
+        """Return the numbers of intervals to prepare, the nearest first, and each pair once.
+
+        Of a layer that is not edited, those of which the series leaves nothing out need not be.
+        """
+        pairs, nearest = self._segment_keys(clip), dict[SegmentKey, int]()
+        for number in _by_nearness(clip, frame):
+            known = self._known.get(pairs[number])
+            is_kept = is_edited or needs_correction(clip)
+            if known is None or not (known.inbetweens or (known.is_streamed and not is_kept)):
+                nearest.setdefault(pairs[number], number)
+        return list(nearest.values())
+
+    def segments_job(
+        self, clip: Clip, wanted: Sequence[int], sibling: PoseSampler | None = None
+    ) -> Callable[[], CacheUpdate]:
+        """Return what prepares some of a clip's intervals."""
+        sampler, keep = self.sampler or sibling, self._poses()
+        return partial(compute_segments, clip, wanted, self.mesh, sampler, keep=keep)
+
+    def frame_job(self, clip: Clip, frame: float) -> Callable[[], CacheUpdate] | None:
+        """Return what makes the in-between at a frame alone; None where it is there or cannot be.
+
+        It cannot before the first in-betweens of a layer, which take longer.
+        """
+        layer, sampler = clip.layer, self.sampler
+        if layer.domain is not self.mesh.source or self.is_exact(clip, frame):
+            return None
+        if needs_correction(clip):
+            # Its corrections need the whole interval.
+            return None
+        if sampler is None or sampler.anchor != layer.anchor:
+            return None
+        return partial(compute_frame, clip, frame, self.mesh, sampler, keep=self._poses())
+
+    def has_room(self) -> bool:
+        """Tell whether one more interval of the present clips can be prepared in the budget."""
+        return self._needed() + self._largest[0] <= self.budget
+
+    def next_build(self, clip: Clip, frame: float, *, heat: bool) -> SeriesBuild | None:
+        """Hand out the series that is in the making, or is wanted next; None where all is there.
+
+        The intervals nearest to the frame come first; those beyond the budget stay without. Those
+        of the distortions are wanted where `heat` is shown.
+        """
+        build, self.build = self.build, None
+        if not self.has(clip):
+            return None
+        pairs, used = self._segment_keys(clip), self._needed()
+        if build is not None and build.segment_key in pairs:
+            return build
+        usual = EXPECTED * len(self.mesh.domain.mesh.vertices)
+        for pair in dict.fromkeys(pairs[number] for number in _by_nearness(clip, frame)):
+            known = self._known[pair]
+            for distortions, series in enumerate((known.series, known.distortions)):
+                if series is not None:
+                    used += self._sizes[pair][1 + distortions]
+                elif known.sites and known.inbetweens and (heat or not distortions):
+                    if used + (self._largest[1 + distortions] or usual) > self.budget:
+                        return None
+                    return SeriesBuild(pair, known, distortions=bool(distortions))
+        return None
+
+    def set_needed_clips(
+        self, present: Sequence[Clip], nearby: Sequence[Clip], frame: float
+    ) -> None:
+        """Take note of the clips that are needed now, the document's first, and of the playhead.
+
+        Undo and redo lead to those nearby.
+        """
+        self._frame = frame
+        if not (self._present.keys() == set(present) and self._nearby.keys() == set(nearby)):
+            pinned = self._needed_keys()
+            for pair in [pair for pair in self._known if pair in pinned]:
+                self._known[pair] = self._known.pop(pair)
+            self._nearby = {clip: self._segment_keys(clip) for clip in nearby}
+            self._present = {clip: self._segment_keys(clip) for clip in present}
+            there = self._present.values()
+            self._failures = {each for each in self._failures if each[1] in there}
+            self._make_room()
+        if self.whole != present[0] and self.has(present[0]):
+            self.whole = present[0]
+
+    def add(self, found: CacheUpdate) -> None:
+        """Take in what a worker has found, for whichever clip that was."""
+        anchors, sampler = {clip.layer.anchor for clip in self._present}, found.sampler
+        if sampler is not None and (not anchors or sampler.anchor in anchors):
+            self.sampler = sampler
+        for pair, newer in found.segments.items():
+            older = self._known.pop(pair, None)
+            self._set(pair, newer if older is None else older.joined(newer))
+        self._make_room()
+
+    def add_build(self, build: SeriesBuild) -> None:
+        """Take a series back, finished or not."""
+        self.build = build if build.series is None else None
+        if build.series is not None:
+            positions, distortions = (
+                (None, build.series) if build.distortions else (build.series, None)
+            )
+            built = CachedSegment(build.poses, series=positions, distortions=distortions)
+            self.add(CacheUpdate(None, {build.segment_key: built}))
+
+    def releasable_bytes(self, clip: Clip) -> int:
+        """Return how many bytes `rest` lets go once series show a clip, all of which is there."""
+        if not self.has(clip) or needs_correction(clip):
+            return 0
+        passing = [
+            pair
+            for pair in dict.fromkeys(self._segment_keys(clip))
+            if (known := self._known[pair]).inbetweens
+            and known.sites
+            and (known.series is None or known.is_streamed)
+        ]
+        own = self.sampler.extension_bytes if self.sampler is not None else 0
+        return own + sum(self._sizes[pair][0] for pair in passing)
+
+    def release_intermediates(self) -> None:
+        """Let go of what is prepared where series leave nothing out."""
+        for pair, known in list(self._known.items()):
+            if known.inbetweens is not None and known.is_streamed:
+                self._set(pair, known._replace(inbetweens=None, single_frame=None))
+        if self.sampler is not None:
+            prepared = (known.poses for known in self._known.values() if known.inbetweens)
+            self.sampler.keep_only(frozenset(chain(*prepared)))
+            self.sampler.forget_extension()
+
+    def mark_failed(self, part: InbetweenPart, clip: Clip) -> None:
+        """Take note that a part of a clip cannot be made, as long as its keys are present."""
+        if self._segment_keys(clip) in self._present.values():
+            self._failures.add((part, self._segment_keys(clip)))
+
+    def has_failed(self, clip: Clip, part: InbetweenPart = "in-betweens") -> bool:
+        """Tell whether a part of a clip is known to be impossible."""
+        return (part, self._segment_keys(clip)) in self._failures
+
+    def _set(self, pair: SegmentKey, interval: CachedSegment) -> None:
+        self._known[pair], self._sizes[pair] = interval, interval.sizes
+        self._largest = list(map(max, self._largest, interval.sizes))
+
+    def _make_room(self) -> None:
+        """Drop what is needed least, until the rest is within the budget."""
+        present, pinned = self._needed_keys(self._present), self._needed_keys()
+        spare = [pair for pair in self._known if pair not in pinned]
+        excess = sum(sum(self._sizes[pair]) for pair in spare) - self.budget // SPARE
+        excess = max(excess, self.nbytes - self.budget)
+        for pair in (*spare, *(pair for pair in self._known if pair in pinned - present)):
+            if excess <= 0:
+                return
+            excess -= sum(self._sizes.pop(pair))
+            del self._known[pair]
+        for clip, pairs in reversed(self._present.items()):
+            for number in reversed(_by_nearness(clip, self._frame)):
+                known = self._known.get(pairs[number])
+                if known is not None and self.nbytes > self.budget:
+                    self._set(pairs[number], known._replace(series=None, distortions=None))
+
+    def _needed(self) -> int:
+        """Return the bytes of what the present clips need, without series."""
+        return sum(
+            self._sizes[pair][0] for pair in self._known.keys() & self._needed_keys(self._present)
+        )
+
+    def _segment_keys(self, clip: Clip) -> tuple[SegmentKey, ...]:
+        """Return the keys by which a clip's intervals are stored."""
+        known = self._present.get(clip) or self._nearby.get(clip)
+        return known or tuple(
+            segment_key(clip, number) for number in range(len(segment_keys(clip)))
+        )
+
+    def _needed_keys(self, *clips: Mapping[Clip, tuple[SegmentKey, ...]]) -> set[SegmentKey]:
+        """Return the pairs of some clips, by default of all that are present or nearby."""
+        every = clips or (self._present, self._nearby)
+        return set(chain(*(pairs for each in every for pairs in each.values())))
+
+    def _poses(self) -> frozenset[Pose]:
+        """Return the poses whose samples are of use."""
+        prepared = (known.poses for known in self._known.values() if known.inbetweens)
+        present = (key.pose for clip in self._present for key in clip.keys)
+        return frozenset(chain(*prepared, present))
+
+
+def _shows(known: CachedSegment, clip: Clip) -> bool:
+    """Tell whether frames of a clip can be shown; corrections need what is prepared."""
+    return known.inbetweens is not None if needs_correction(clip) else known.is_ready
+
+
+def _by_nearness(clip: Clip, frame: float) -> list[int]:
+    """Return the numbers of a clip's intervals, that at the frame first."""
+    current = segment_time_at(clip, frame).segment
+    return sorted(range(len(segment_keys(clip))), key=lambda i: (abs(i - current), i < current))

@@ -1,0 +1,232 @@
+"""The corrections of a clip's frames: springs and tracks over the motion from key to key.
+
+Each frame is worked out by itself, and known by all that it follows from, so that undo, a copied
+key and another window onto the same layer find what was made before.
+"""
+
+import threading
+from collections.abc import Callable, Iterable
+from copy import copy
+from typing import NamedTuple
+
+import numpy as np
+
+from app.document import Clip, DistortionRange, Variant, keyed_pose_at, segment_time_at
+from app.motion.inbetweens.auto_pins import AutoPins, firmness_at
+from app.motion.inbetweens.keyframe_motion import KeyframeMotion
+from app.motion.inbetweens.pose_sampler import PoseSampler, prepare_corrector
+from app.motion.inbetweens.secondary_correction import SecondaryCorrection
+from app.motion.inbetweens.secondary_motion import SecondaryMotion, SecondaryTargets
+from app.motion.inbetweens.segment_keys import segment_key, segment_poses
+from app.motion.inbetweens.spring_offsets import ParentMotion
+from engine.arrays import Complexes, Floats
+from engine.deform.correction import Targets
+from engine.interpolation import BaseAt, base_at, correct_frame
+
+KEPT = 2**26  # bytes of corrections of one outline that are kept
+FORCE = 8.0  # per L: the largest pull of a track; within the limits hardly anything takes more
+# Points of the outline that hold it where a track does not reach far, how firmly at most, and at
+# least: there they count for nothing.
+HELD, HELD_BY, LEAST_HELD = 64, 75.0, 1e-9
+
+
+class BaseMotionFrame(NamedTuple):
+    """What tracks are relative to at a frame.
+
+    Parameters
+    ----------
+    places, turns : complex128, shape (h,)
+        Where the handles are without them, and by what factor the shape is turned there.
+    """
+
+    positions: Complexes
+    rotations: Complexes
+
+
+def have_same_base_frames(clip: Clip, other: Clip) -> bool:
+    """Tell whether two clips of a layer differ in its tracks alone, if at all."""
+
+    def source(of: Clip) -> tuple[object, ...]:
+        layer = of.layer
+        return (
+            *(layer.id, layer.domain, layer.handles, layer.keys, layer.cycles, layer.anchor),
+            *(layer.attachments, layer.has_auto_pins, layer.springs, layer.variant, layer.bounds),
+            *(id(layer.stiffness), layer.bones),
+            *(of.frames, of.loop, of.fps, of.baseline, of.parents),
+        )
+
+    return source(clip) == source(other)
+
+
+def needs_correction(clip: Clip) -> bool:
+    """Tell whether tracks or springs may change frames of a clip."""
+    layer = clip.layer
+    own = [each.enabled for each in layer.tracks] + [each.enabled for each in layer.springs]
+    return clip.baseline is None and any(own)
+
+
+class FrameCorrector:
+    """The corrections of a clip.
+
+    Parameters
+    ----------
+    clip : Clip
+    variant : Variant
+    sampler : PoseSampler
+        Of the layer's domain, at any points; what it knows of the outline is used, and kept there.
+    carried : callable, optional
+        Where the layer hangs, at a frame; by itself without.
+
+    Attributes
+    ----------
+    clip : Clip
+    """
+
+    def __init__(
+        self,
+        clip: Clip,
+        variant: Variant,
+        sampler: PoseSampler,
+        carried: ParentMotion | None = None,
+    ) -> None:
+        layer = clip.layer
+        self.clip, self._variant = clip, variant
+        self._known, self._guard = sampler.known.corrections, sampler.known.guard
+        self._lock = threading.RLock()
+        self._is_anchored = layer.has_parent and layer.anchor is not None
+        self._points = np.array([each.position for each in layer.handles], dtype=np.complex128)
+        pins = AutoPins(clip, variant, sampler)
+        gives = any(track.enabled and track.reach < 1.0 for track in layer.tracks)
+        if gives:
+            outline = layer.domain.outline
+            held = outline[np.linspace(0, len(outline), HELD, endpoint=False).astype(np.intp)]
+            self._corrector, own = prepare_corrector(layer, sampler, held)
+        else:
+            self._corrector, own = pins.prepare()
+        stiffness = self._corrector.boundary.stiffness
+        self._of_what = self._corrector.points.tobytes(), stiffness.tobytes(), layer.bounds
+        self._motion = KeyframeMotion(clip, variant, own, pins)
+        self._own = SecondaryMotion(clip, carried)
+
+    def correction_at(self, frame: float) -> SecondaryCorrection | None:
+        """Return what is added to the motion at a frame; None where that is nothing."""
+        with self._lock:
+            if not self._own.is_active(frame):
+                return None
+            base, count = self._base(frame), len(self._points)
+            # Told only now: if it were kept, nothing of this would go away with the last one who
+            # has it.
+            wanted = self._own.targets_at(frame, base.places[:count], base.fz[:count], self._places)
+            return None if wanted is None else self._solve_correction(frame, base, wanted)
+
+    @property
+    def run_up(self) -> int:
+        """Frames before a frame from which its correction follows."""
+        return self._own.run_up
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of what frames are found with."""
+        return self._motion.nbytes + self._motion.sampler.extension_bytes
+
+    def with_tracks(self, clip: Clip) -> "FrameCorrector":
+        """Return the corrections of a clip that differs in its tracks alone."""
+        changed = copy(self)
+        changed.clip = clip
+        changed._own = self._own.with_tracks(clip)  # noqa: SLF001 - its own
+        return changed
+
+    def base_frame_at(self, frame: float) -> BaseMotionFrame:
+        """Return what tracks are relative to at a frame."""
+        with self._lock:
+            found, count = self._motion.frame(frame), len(self._points)
+            fz = found.fz[:count]
+            return BaseMotionFrame(found.positions[:count], fz / np.abs(fz))
+
+    def _places(self, frame: float) -> Complexes:
+        """Return where the handles are at a frame before springs and tracks, (h,)."""
+        return self._motion.frame(frame).positions[: len(self._points)]
+
+    def _base(self, frame: float) -> BaseAt:
+        inbetweens, time = self._motion.segment_at(frame)
+        return base_at(inbetweens, self._corrector, time)
+
+    def _solve_correction(
+        self, frame: float, base: BaseAt, wanted: SecondaryTargets
+    ) -> SecondaryCorrection:
+        """Return the correction by which handles go their own ways."""
+        targets, bounds = self._targets(base, wanted), self.clip.layer.bounds
+
+        def solve() -> SecondaryCorrection:
+            inbetweens, time = self._motion.segment_at(frame)
+            found = correct_frame(inbetweens, self._corrector, base, time, targets, bounds)
+            handles = self.clip.layer.handles
+            tracked = [i for i, handle in enumerate(handles) if handle.id in wanted.tracked]
+            reached = DistortionRange(*found.reached)
+            return SecondaryCorrection(
+                series=found.known,
+                target_errors={handles[i].id: float(found.misses[i]) for i in tracked},
+                targets={handles[i].id: complex(wanted.positions[i]) for i in tracked},
+                limits=reached.reached(bounds) if found.is_held_back else (),
+                steps=found.steps,
+            )
+
+        return self._remembered((*self._content_key(frame), *_content(wanted)), solve)
+
+    def _targets(self, base: BaseAt, wanted: SecondaryTargets) -> Targets:
+        """Return the targets of handles with tracks and springs; the others stay.
+
+        Those beside them, and those beside an anchor that stays, give way: held as firmly, they
+        would tear at it.
+        """
+        count, more = len(self._points), len(base.places) - len(self._points)
+        size = self._corrector.boundary.size
+        weights = np.where(wanted.has_target, 1.0, self._away_from(self._points[wanted.has_target]))
+        if self._is_anchored:
+            weights = weights * self._away_from(np.array([self.clip.layer.anchor]))
+        # The rest of the outline is held the more, the less far a track reaches.
+        held = HELD_BY * (1.0 - wanted.reach) ** 2
+        give = more * size**2 / max(held, LEAST_HELD)
+        return Targets(
+            moves=np.append(wanted.positions - base.places[:count], np.zeros(more)),
+            weights=np.append(weights, np.ones(more)),
+            is_anchored=self._is_anchored,
+            forces=np.append(
+                np.where(wanted.has_target, FORCE / size, np.inf), np.full(more, np.inf)
+            ),
+            turns=np.append(wanted.rotations, np.full(more, np.nan)),
+            give=np.append(np.zeros(count), np.full(more, give)),
+        )
+
+    def _away_from(self, others: Complexes) -> Floats:
+        """Return how far the handles are from some points, (h,): 0 at the nearest, 1 if far."""
+        away = np.abs(self._points[:, None] - others).min(axis=1, initial=np.inf)
+        return firmness_at(away / self._corrector.boundary.size)
+
+    def _remembered(
+        self, key: tuple[object, ...], solve: Callable[[], SecondaryCorrection]
+    ) -> SecondaryCorrection:
+        """Return the correction that is known by a key, solved where it is not."""
+        with self._guard:
+            known = self._known.pop(key, None)
+        if known is None:
+            known = solve()
+        with self._guard:
+            while len(self._known) > KEPT // max(known.nbytes, 1):
+                del self._known[next(iter(self._known))]
+            self._known[key] = known
+        return known
+
+    def _content_key(self, frame: float) -> tuple[object, ...]:
+        """Return what the motion of a frame follows from; the poses stay alive with it."""
+        clip, moment = self.clip, segment_time_at(self.clip, frame)
+        resting = keyed_pose_at(clip, moment)
+        if resting is not None:
+            return resting, *self._of_what
+        pair = segment_key(clip, moment.segment, self._variant)
+        return segment_poses(clip, moment.segment), pair, moment.weight, *self._of_what
+
+
+def _content(parts: Iterable[object]) -> tuple[object, ...]:
+    """Return values by which what follows from them is known."""
+    return tuple(each.tobytes() if isinstance(each, np.ndarray) else each for each in parts)

@@ -1,0 +1,153 @@
+"""How the springs of a clip swing: worked out in pieces, around the frames that are asked for."""
+
+from collections.abc import Callable
+from functools import partial
+from typing import Final, NamedTuple, TypeVar
+
+import numpy as np
+
+from app.document import Clip, Spring, segment_time_at, spring_root
+from engine.arrays import Complexes
+from engine.geometry import HERE, RigidMotion, diameter
+from engine.geometry.kinematics import FADE, Swing, frames_to_settle, swing, turn_arm
+
+MAX_SPRING_OFFSET: Final = 0.3  # of the layer's diameter
+PIECE: Final = 64  # frames of a swing, at least
+KEPT_PIECES: Final = 1_024
+KEPT_PLACES: Final = 2**14
+Key = TypeVar("Key")
+Value = TypeVar("Value")
+# Where a layer is that hangs on others, at a frame.
+ParentMotion = Callable[[float], RigidMotion]
+# Where the handles (h,) of a layer are, at a frame.
+PositionsAt = Callable[[float], Complexes]
+
+
+class _Piece(NamedTuple):
+    """Some frames of a spring, and those between them: as if it swung freely, and about its root.
+
+    It holds from its first frame to before its last one.
+    """
+
+    first: int
+    last: int
+    free: Swing
+    about: Swing | None  # in arcs
+
+
+class SpringOffsets:
+    """The swings of a clip's springs, which the motion in the scene drives.
+
+    A damped spring forgets: a piece is worked out from rest, so many frames before it begins as the
+    spring takes to settle. A loop that is over sooner is worked out whole, so that it closes.
+
+    Attributes
+    ----------
+    springs : tuple of Spring
+        Those that are enabled.
+    roots : dict of int to int
+        By the ids of handles, the numbers of those about which they swing.
+    run_up : int
+        Frames before a frame from which its swings follow.
+    """
+
+    def __init__(self, clip: Clip, carried: ParentMotion | None) -> None:
+        self._clip, self._carried = clip, carried
+        self.springs = tuple(spring for spring in clip.layer.springs if spring.enabled)
+        self._index = {handle.id: number for number, handle in enumerate(clip.layer.handles)}
+        roots = {spring.handle: spring_root(clip.layer, spring) for spring in self.springs}
+        self.roots = {i: self._index[root] for i, root in roots.items() if root is not None}
+        self._count = clip.frames.last - clip.frames.first + 1
+        self._settling = {
+            each.handle: int(
+                min(frames_to_settle(clip.fps, each.frequency, each.damping), self._count)
+            )
+            for each in self.springs
+        }
+        self.run_up = max(self._settling.values(), default=0)
+        self._pieces: dict[tuple[int, int], _Piece] = {}
+        self._places: dict[object, Complexes] = {}
+
+    def offset(self, spring: Spring, frame: float, places: Complexes, at: PositionsAt) -> complex:
+        """Return by how much a spring moves its handle at a frame, on the layer by itself.
+
+        Parameters
+        ----------
+        spring : Spring
+        frame : float
+        places : complex128, shape (h,)
+            Where the handles are at the frame before springs and tracks.
+        at : callable
+            Returns the same at any frame.
+        """
+        piece, time = self._piece(spring, frame, at)
+        hung = self._carried(frame) if self._carried else HERE
+        free = complex(piece.free.at(time)) * hung.factor.conjugate()
+        if piece.about is None:
+            return free
+        arm = places[self._index[spring.handle]] - places[self.roots[spring.handle]]
+        turned = turn_arm(complex(arm), float(piece.about.at(time).real))
+        return (1 - spring.stretch) * turned + spring.stretch * free
+
+    def _piece(self, spring: Spring, frame: float, at: PositionsAt) -> tuple[_Piece, float]:
+        """Return the piece of a spring that shows a frame, and the time in it."""
+        last, settling = self._count - 1, self._settling[spring.handle]
+        time = frame - self._clip.frames.first - spring.lag
+        is_loop = self._clip.loop and last > 0
+        time = time % last if is_loop else min(max(time, 0.0), last)
+        is_whole = is_loop and settling >= last
+        size = self._count if is_whole else max(PIECE, settling // 4)
+        number = int(time // size)
+        known = self._pieces.get((spring.handle, number))
+        if known is None or time >= known.last:
+            # Twice as long as before, so that whoever goes on pays for each frame twice at most.
+            length = PIECE
+            while number * size + length <= time:
+                length *= 2
+            start, end = number * size - settling, number * size + min(length, size)
+            # A fade depends on what comes after it.
+            frames = range(start, end + FADE + 1)
+            if is_whole:
+                start, end, frames = 0, self._count, range(self._count)
+            elif not is_loop:
+                start = max(start, 0)
+                frames = range(start, min(end + FADE + 1, self._count))
+            own = [i % last if is_loop and not is_whole else i for i in frames]
+            free, about = self._swung(spring, own, at, loop=is_whole)
+            known = _Piece(start, end, free, about)
+            _keep(self._pieces, (spring.handle, number), known, KEPT_PIECES)
+        return known, time - known.first
+
+    def _swung(
+        self, spring: Spring, frames: list[int], at: PositionsAt, *, loop: bool
+    ) -> tuple[Swing, Swing | None]:
+        clip, root = self._clip, self.roots.get(spring.handle)
+        places = np.array([self._driving(clip.frames.first + frame, at) for frame in frames]).T
+        swung = partial(
+            swing,
+            places[self._index[spring.handle]],
+            clip.fps,
+            frequency=spring.frequency,
+            damping=spring.damping,
+            strength=spring.strength,
+            limit=MAX_SPRING_OFFSET * diameter(clip.layer.domain.outline),
+            loop=loop,
+        )
+        return swung(), None if root is None else swung(roots=places[root])
+
+    def _driving(self, frame: int, at: PositionsAt) -> Complexes:
+        """Return where the handles (h,) are in the scene; frames that show the same do once."""
+        key = frame if self._carried else segment_time_at(self._clip, frame)
+        found = self._places.get(key)
+        if found is None:
+            found = (self._carried(frame) if self._carried else HERE).on(at(frame))
+            _keep(self._places, key, found, KEPT_PLACES)
+        return found
+
+
+def _keep(kept: dict[Key, Value], key: Key, value: Value, most: int) -> None:
+    """Keep a value, and at most so many: the oldest ones go."""
+    kept.pop(key, None)
+    kept[key] = value
+    while len(kept) > most:
+        del kept[next(iter(kept))]

@@ -1,0 +1,315 @@
+"""Where layers that hang on others are, at any time (Section 7, "a user curve for the anchor")."""
+
+from collections.abc import Iterable, Iterator, Mapping
+from functools import partial
+
+import numpy as np
+
+from app.document import Attachment, Document, Layer, Pose, clip_of
+from app.motion.inbetweens import Animation, ParentMotion, PoseSampler
+from app.motion.parenting.chain import (
+    PivotFrame,
+    blend_transforms,
+    compose_chain,
+    parent_links,
+    pivot_frame_at,
+    require_anchor,
+)
+from app.motion.tracing import PointTrails
+from engine.arrays import Complexes
+from engine.geometry import RigidMotion
+
+# Frames of layers that the worker works out before it looks for more urgent work, about a
+# millisecond each, and those that it looks at.
+BATCH, MAX_SEARCHED = 60, 5_000
+
+
+class ParentTransforms:
+    """The joints of a document, at any time.
+
+    A layer hangs by its anchor: it is turned around it and moved, and nothing else, so that it is
+    exactly as distorted as by itself and the joint never opens.
+
+    Parameters
+    ----------
+    siblings : mapping of int to PoseSampler
+        By the ids of layers; what they know of outlines is used again.
+    earlier : ParentTransforms, optional
+        Of an earlier document; what is still true of it is used again.
+
+    Attributes
+    ----------
+    document : Document
+    points : dict of int to list of complex
+        Of each layer, those by which it hangs, or others hang on it.
+    tracked : dict of int to PointTrails
+        The same over time.
+    is_whole : bool
+        Whether all frames have been gone through.
+
+    Raises
+    ------
+    EngineError
+        If a joint or an anchor lies outside its layer.
+    """
+
+    def __init__(
+        self,
+        document: Document,
+        siblings: Mapping[int, PoseSampler] | None = None,
+        earlier: "ParentTransforms | None" = None,
+    ) -> None:
+        self.document = document
+        self.points = _points(document)
+        self.is_whole = False
+        known = {} if earlier is None else earlier.tracked
+        siblings = siblings or {}
+        self.tracked: dict[int, PointTrails] = {
+            layer: PointTrails(
+                clip_of(document, layer),
+                np.array(points),
+                siblings.get(layer),
+                known.get(layer),
+                partial(self.parent_transform, layer),
+            )
+            for layer, points in self.points.items()
+            if points
+        }
+        self._siblings = siblings
+        self._placements: dict[tuple[int, float, bool], RigidMotion] = {}
+        self._kept: dict[tuple[int, Attachment, int], RigidMotion] = {}
+        self._ahead = self._through()
+
+    @property
+    def computed_count(self) -> int:
+        """How many frames of layers had to be worked out, because nothing was known of them."""
+        return sum(each.worked_out for each in self.tracked.values())
+
+    def placement(
+        self,
+        layer: int,
+        frame: float,
+        poses: Mapping[int, Pose] | None = None,
+        *,
+        before: bool = False,
+    ) -> RigidMotion:
+        """Return where a layer, by its id, is at a frame.
+
+        Parameters
+        ----------
+        layer : int
+        frame : float
+        poses : mapping of int to Pose, optional
+            Shown instead of what the layers with these ids have at the frame.
+        before : bool
+            Whether joints that begin to hold at the frame do not count yet.
+        """
+        if poses:
+            return self._compute(layer, frame, poses, before=before)
+        known = layer, frame, before
+        if known not in self._placements:
+            self._placements[known] = self._compute(layer, frame, {}, before=before)
+        return self._placements[known]
+
+    def _compute(
+        self, layer: int, frame: float, poses: Mapping[int, Pose], *, before: bool
+    ) -> RigidMotion:
+        chain = parent_links(self.document, layer, frame, before=before)
+        kept = partial(self.kept_transform, frame=frame)
+        return compose_chain(chain, partial(self._joint, frame=frame, poses=poses), kept)
+
+    def kept_transform(self, layer: Layer, joint: Attachment, frame: float) -> RigidMotion:
+        """Return how a layer is held at a frame by a joint of the document that keeps its place.
+
+        One that leads goes over to what the next joint wants, from rest and to rest.
+        """
+        begun = self._keep(layer, joint, joint.kept_from, before=True)
+        at = self.document.loop_frame(frame)
+        until = (
+            self._blends_until(layer, joint) if joint.blends_to_next and at > joint.frame else None
+        )
+        if until is None:
+            return begun
+        share = min((at - joint.frame) / (until - joint.frame), 1.0)
+        wanted = self._keep(layer, joint, self._in_scene(layer, until), before=False)
+        return blend_transforms(layer, joint, begun, wanted, share * share * (3 - 2 * share))
+
+    def _blends_until(self, layer: Layer, joint: Attachment) -> int | None:
+        """Return the frame at which the next joint begins; None where that follows from this one.
+
+        So it is where it keeps what is there then, or hangs on what hangs on the layer at times.
+        """
+        joints = self.document.attachments_of(layer)
+        after = next((each for each in joints if each.frame > joint.frame), None)
+        if after is None or (after.keep_world_transform and after.kept_from > joint.kept_from):
+            return None
+        if after.parent is not None:
+            parent = self.document.layer(after.parent)
+            if layer in (parent, *self.document.all_ancestors(parent.id)):
+                return None
+        return after.frame
+
+    def _in_scene(self, layer: Layer, until: int) -> int:
+        """Return the frame at which a repeat begins, or another such where the scene ends before.
+
+        There all is as it would be then.
+        """
+        cycle, last = layer.cycle_at(until), self.document.frames.last
+        if cycle is None or until <= last:
+            return until
+        return until - cycle.period * -(-(until - last) // cycle.period)
+
+    def _keep(self, layer: Layer, joint: Attachment, frame: int, *, before: bool) -> RigidMotion:
+        """Return how a joint holds a layer that is where it is just before a frame, or at it."""
+        known = layer.id, joint, frame
+        if known not in self._kept:
+            self._kept[known] = self._found(layer, joint, frame, before=before)
+        return self._kept[known]
+
+    def _found(self, layer: Layer, joint: Attachment, frame: int, *, before: bool) -> RigidMotion:
+        hinge = partial(self._seen_from, layer.id, frame=frame)
+        kept = partial(self.kept_transform, frame=frame)
+        here = compose_chain(
+            parent_links(self.document, layer.id, frame, before=before), hinge, kept
+        )
+        if joint.parent is None:
+            by = parent_links(self.document, layer.id, frame, before=True)[-1].transform
+            return here if before else by.inverse.after(here)
+        there = compose_chain(
+            parent_links(self.document, joint.parent, frame, before=not before), hinge, kept
+        )
+        at = hinge(self.document.layer(joint.parent), joint.parent_point)
+        own = hinge(layer, require_anchor(layer))
+        turn = there.factor * at.rotation if joint.inherits_rotation else 1.0
+        away = here.factor * own.position + here.shift - (there.factor * at.position + there.shift)
+        return RigidMotion(complex(here.factor / turn), complex(away / turn))
+
+    def parent_transform(self, layer: int, frame: float) -> RigidMotion:
+        """Return where a layer hangs, but for what is corrected of itself.
+
+        That leaves its anchor in place and does not turn it.
+        """
+        hinge = partial(self._seen_from, layer, frame=frame)
+        kept = partial(self.kept_transform, frame=frame)
+        return compose_chain(parent_links(self.document, layer, frame), hinge, kept)
+
+    def _seen_from(self, layer: int, each: Layer, place: complex, frame: float) -> PivotFrame:
+        """Return where a point of a layer is for another one that follows from it.
+
+        What is corrected does not count where it may follow from the other one in turn: of that one
+        itself, and of what hangs on it at other times.
+        """
+        others = (each, *self.document.all_ancestors(each.id))
+        if all(other.id != layer for other in others):
+            return self._joint(each, place, frame, {})
+        index = self.points[each.id].index(place)
+        found = self.tracked[each.id].base_at(frame)
+        return pivot_frame_at(found.positions[index], found.fz[index])
+
+    def animation(self, layer: int, points: Complexes) -> Animation:
+        """Return the motion of some points (m,) of a layer, by its id, by itself."""
+        carried = partial(self.parent_transform, layer)
+        return layer_animation(self.document, layer, points, self._siblings, carried)
+
+    def advance(self) -> "ParentTransforms":
+        """Go through some frames, so that asking for them takes no time."""
+        end = self.computed_count + BATCH
+        for looked_at, (frame, tracked) in enumerate(self._ahead, 1):
+            tracked.at(frame)
+            if self.computed_count >= end or looked_at == MAX_SEARCHED:
+                return self
+        self.is_whole = True
+        return self
+
+    def _through(self) -> Iterator[tuple[int, PointTrails]]:
+        """Yield all frames of one layer after the other: they are found with much."""
+        frames = self.document.frames
+        for tracked in self.tracked.values():
+            for frame in range(frames.first, frames.last + 1):
+                yield frame, tracked
+            tracked.release_intermediates()
+
+    def _joint(
+        self, layer: Layer, place: complex, frame: float, poses: Mapping[int, Pose]
+    ) -> PivotFrame:
+        if layer.id in poses:
+            return _pivot_frame_of(layer, poses[layer.id], place)
+        index = self.points[layer.id].index(place)
+        moved = self.tracked[layer.id].at(frame)
+        return pivot_frame_at(moved.positions[index], moved.fz[index])
+
+
+def find_parent_motion(
+    document: Document, layer: int, siblings: Mapping[int, PoseSampler] | None = None
+) -> ParentMotion | None:
+    """Return what tells where a layer of a document is moved; None where it is at no time."""
+    own = document.layer(layer)
+    if not (own.has_parent or own.transform_keys):
+        return None
+    return partial(ParentTransforms(document, siblings).parent_transform, layer)
+
+
+def layer_animation(
+    document: Document,
+    identity: int,
+    points: Complexes,
+    siblings: Mapping[int, PoseSampler],
+    carried: ParentMotion | None,
+) -> Animation:
+    """Return the motion of some points (m,) of a layer of a document, which may be carried."""
+    layer = document.layer(identity)
+    sampler = PoseSampler(
+        layer.domain, anchor=layer.anchor, points=points, sibling=siblings.get(identity)
+    )
+    return Animation(clip_of(document, identity), sampler=sampler, carried=carried)
+
+
+class HungAnimation:
+    """The motion of a layer by itself, brought to where the joints of its scene have it."""
+
+    def __init__(self, animation: Animation, joints: ParentTransforms) -> None:
+        self._animation = animation
+        animation.carried = partial(joints.parent_transform, animation.clip.layer.id)
+        self._joints = joints
+
+    def positions(self, frame: float) -> Complexes:
+        """Return where the points (m,) are at a frame, which may lie between two numbers."""
+        placement = self._joints.placement(self._animation.clip.layer.id, frame)
+        return placement.on(self._animation.positions(frame))
+
+
+def parenting_key(document: Document) -> tuple[object, ...]:
+    """Return all of a document that its joints depend on; empty where nothing hangs."""
+    involved = [
+        each
+        for child in document.layers
+        if child.attachments
+        for each in (child, *document.all_ancestors(child.id))
+    ]
+    return tuple(clip_of(document, each.id) for each in dict.fromkeys(involved))
+
+
+def hung_animations(
+    animations: Iterable[Animation], document: Document
+) -> dict[int, HungAnimation]:
+    """Return the animations of a document's layers where its scene has them, by their ids."""
+    own = {animation.clip.layer.id: animation for animation in animations}
+    joints = ParentTransforms(document, {identity: each.sampler for identity, each in own.items()})
+    return {identity: HungAnimation(each, joints) for identity, each in own.items()}
+
+
+def _points(document: Document) -> dict[int, list[complex]]:
+    """Return the points of each layer by which it hangs, or others hang on it."""
+    points: dict[int, list[complex]] = {layer.id: [] for layer in document.layers}
+    for layer in document.layers:
+        if layer.attachments:
+            points[layer.id].append(require_anchor(layer))
+        for joint in layer.attachments:
+            if joint.parent is not None:
+                points[joint.parent].append(joint.parent_point)
+    return points
+
+
+def _pivot_frame_of(layer: Layer, pose: Pose, place: complex) -> PivotFrame:
+    f, at = layer.map_of(pose), np.array([place])
+    return pivot_frame_at(f(at)[0], f.derivatives(at)[0][0])

@@ -1,0 +1,43 @@
+"""What of a layer is painted over what, at any frame."""
+
+from functools import lru_cache, partial
+from typing import Final
+
+import numpy as np
+
+from app.document import Clip, DepthPoint, depth_points_at
+from engine.arrays import Floats, Integers
+from engine.domain.meshing import Mesh, in_depth_order, spread_depth
+
+_KEPT: Final = 8  # of a mesh, of the points that are in front: as many as an animation goes between
+
+
+class TriangleOrder:
+    """The order in which the triangles of a mesh are painted; what was worked out last is kept."""
+
+    def __init__(self, mesh: Mesh) -> None:
+        self._mesh = mesh
+        self._ordered = lru_cache(maxsize=_KEPT)(partial(_ordered_triangles, mesh))
+        self._depths = lru_cache(maxsize=_KEPT)(partial(_depths, mesh))
+
+    def triangles(self, clip: Clip, frame: float) -> Integers:
+        """Return the triangles, int32 (m, 3), from back to front as they are at a frame.
+
+        The same array as long as nothing comes to the front or goes behind.
+        """
+        fronts = depth_points_at(clip, frame)
+        return self._ordered(fronts) if fronts else self._mesh.triangles
+
+    def depths(self, clip: Clip, frame: float) -> Floats:
+        """Return how far in front each vertex (v,) is at a frame, −1 to 1."""
+        return self._depths(depth_points_at(clip, frame))
+
+
+def _ordered_triangles(mesh: Mesh, fronts: tuple[DepthPoint, ...]) -> Integers:
+    return in_depth_order(mesh, _depths(mesh, fronts))
+
+
+def _depths(mesh: Mesh, fronts: tuple[DepthPoint, ...]) -> Floats:
+    places = np.array([front.place for front in fronts], dtype=np.complex128)
+    depths = [front.depth for front in fronts]
+    return spread_depth(mesh, places, depths, [front.extent for front in fronts])

@@ -1,0 +1,353 @@
+"""Poses from handles: drags that go on step by step, and poses to begin them with."""
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+
+from app.document import (
+    Clip,
+    Handle,
+    Layer,
+    Pose,
+    Target,
+    have_same_stiffness,
+    keyed_pose_at,
+    segment_keys,
+    segment_time_at,
+    with_stiffness,
+)
+from app.motion import Animation, PoseSampler
+from engine.arrays import Booleans, Complexes
+from engine.deform import Deformer, Hand, Handles, Link, State, Wish
+from engine.errors import EngineError
+from engine.maps import Boundary, Certificate, HarmonicMap, certify
+
+# A pose that the present bounds do not allow is the start of a drag back into them: its own
+# distortion is allowed, and this much more of what is left.
+LEEWAY = 0.02
+# How strongly a joint holds; handles usually weigh 1.
+PIN = 10.0
+# The joints of bones stay where they are with at most such a force, per the shape's diameter, when
+# a hand pulls beyond them.
+JOINT_PULL = 0.1
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Rig:
+    """What solving poses needs of a layer.
+
+    Parameters
+    ----------
+    handles : tuple of Handle
+        Those of the layer by which poses are held, in their order. What follows by a spring goes
+        where the body carries it, unless it is pulled at itself.
+    deformer : Deformer
+        For these, and for the layer's anchor where it hangs by that: a joint holds like a pin.
+    """
+
+    layer: Layer
+    handles: tuple[Handle, ...]
+    deformer: Deformer
+
+    @classmethod
+    def of(
+        cls,
+        layer: Layer,
+        earlier: "Rig | None" = None,
+        pulled: Collection[int] = (),
+    ) -> Self:
+        """Return the rig of a layer; what did not change is taken from an earlier one.
+
+        `pulled` are the ids of handles that are pulled at even where they follow.
+        """
+        domain, pins = layer.domain, _pins(layer)
+        carried = layer.sprung_handles.difference(pulled)
+        held = tuple(handle for handle in layer.handles if handle.id not in carried)
+        if earlier is not None and earlier.layer.domain is domain:
+            boundary = earlier.deformer.boundary
+            is_same = have_same_stiffness(earlier.layer, layer)
+        else:
+            boundary, is_same = Boundary.sample(domain), False
+        if not is_same:
+            boundary, earlier = with_stiffness(layer, boundary), None
+        if earlier and earlier.handles == held and earlier.pins == pins:
+            handles = earlier.deformer.handles
+        else:
+            places = [*(handle.position for handle in held), *pins]
+            pulls = [*(handle.effective_weight for handle in held), *(PIN for _ in pins)]
+            handles = Handles.place(boundary, np.array(places, dtype=np.complex128), pulls)
+        # Where it is stiff, new poses give way less.
+        bounds = layer.bounds.where_stiff(boundary)
+        deformer = Deformer(boundary=boundary, handles=handles, bounds=bounds)
+        return cls(layer=layer, handles=held, deformer=deformer)
+
+    @property
+    def pins(self) -> tuple[complex, ...]:
+        """The points of the layer that a drag holds where they are."""
+        return _pins(self.layer)
+
+    def build_targets(
+        self, targets: Mapping[int, Target], pins: tuple[Target, ...], hands: Sequence[Hand] = ()
+    ) -> Wish:
+        """Return where handles are wanted, as the deformer takes it.
+
+        Hands are told by the ids of the handles that they pull; those that are gone, or hold no
+        pose, are left out.
+        """
+        index = {handle.id: i for i, handle in enumerate(self.handles)}
+        pulling = [
+            Hand([index[i] for i in sorted(hand.handles) if i in index], hand.pull)
+            for hand in (*hands, *self.find_yielding_joints(hands))
+            if not index.keys().isdisjoint(hand.handles)
+        ]
+        wanted = [*(targets[identity] for identity in index), *pins]
+        return self.deformer.handles.wish(
+            np.array([target.position for target in wanted], dtype=np.complex128),
+            [np.nan if target.rotation is None else target.rotation for target in wanted],
+            pulling,
+            self._links(index) if pulling else (),
+        )
+
+    def _links(self, index: Mapping[int, int]) -> list[Link]:
+        """Return what keeps the ends of stiff bones in reach of each other."""
+        links = []
+        for bone in self.layer.bones:
+            if bone.stiffness > 1 and index.keys() >= set(bone.ends):
+                start, end = (self.layer.handle(identity).position for identity in bone.ends)
+                limits, rest = (
+                    self.layer.bounds.stiffened(np.array(bone.stiffness)),
+                    abs(end - start),
+                )
+                nearest, farthest = rest * float(limits.sigma_b), rest * float(limits.sigma_a)
+                links.append(Link(index[bone.ends[0]], index[bone.ends[1]], nearest, farthest))
+        return links
+
+    def find_yielding_joints(self, hands: Sequence[Hand]) -> list[Hand]:
+        """Return the joints that give in to hands that pull beyond them, each by itself.
+
+        They are those on the way along bones from a pulled handle to where the bones end or part.
+        """
+        pulled = {identity for hand in hands for identity in hand.handles}
+        locked = {handle.id for handle in self.layer.handles if handle.locked}
+        beside: dict[int, list[int]] = {}
+        for first, second in (bone.ends for bone in self.layer.bones if bone.stiffness > 1):
+            beside.setdefault(first, []).append(second)
+            beside.setdefault(second, []).append(first)
+        joints, waiting = set[int](), list(pulled)
+        while waiting:
+            for joint in beside.get(waiting.pop(), ()):
+                if len(beside[joint]) == 2 and joint not in joints | pulled | locked:
+                    joints.add(joint)
+                    waiting.append(joint)
+        return [Hand([joint], JOINT_PULL) for joint in sorted(joints)]
+
+    def make_pose(
+        self, shape: HarmonicMap, targets: Mapping[int, Target], certificate: Certificate
+    ) -> Pose:
+        """Return a map as a pose with these wishes; handles that do not hold it are where it is."""
+        held = {handle.id for handle in self.handles}
+        carried = [handle for handle in self.layer.handles if handle.id not in held]
+        places = shape(np.array([handle.position for handle in carried], dtype=np.complex128))
+        here = {
+            handle.id: replace(targets[handle.id], position=complex(place), rotation=None)
+            for handle, place in zip(carried, places, strict=True)
+        }
+        return Pose.of(shape, {**targets, **here}, certificate)
+
+    def start_at(self, shape: HarmonicMap) -> State:
+        """Return the solver's state at a map; where that folds, at rest, which leads everywhere."""
+        try:
+            return self.deformer.resume(shape)
+        except EngineError:
+            return self.deformer.start()
+
+    def allow_pose(self, pose: Pose) -> Deformer:
+        """Return a deformer that allows a pose, be it outside the layer's present bounds."""
+        return self.deformer.allowing(self.layer.map_of(pose), LEEWAY)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class DragSolver:
+    """A drag on its way, from certified map to certified map.
+
+    Parameters
+    ----------
+    deformer : Deformer
+        Its bounds are the layer's, or as much wider as the pose at the start asked for.
+    pins : tuple of Target
+        What is held still.
+    """
+
+    rig: Rig
+    deformer: Deformer
+    state: State
+    pins: tuple[Target, ...] = ()
+
+    @classmethod
+    def begin(cls, rig: Rig, pose: Pose) -> Self:
+        """Return the drag that begins with a pose.
+
+        Raises
+        ------
+        EngineError
+            If the pose folds.
+        """
+        deformer = rig.allow_pose(pose)
+        return cls(
+            rig=rig,
+            deformer=deformer,
+            state=deformer.start(rig.layer.map_of(pose)),
+            pins=pins_of(rig.layer, pose),
+        )
+
+    @property
+    def is_over(self) -> bool:
+        """Whether more steps would change nothing."""
+        return self.state.status.is_final
+
+    def step_towards(
+        self,
+        targets: Mapping[int, Target],
+        steps: int,
+        hands: Sequence[Hand] = (),
+        pulled: Collection[int] = (),
+    ) -> "DragSolver":
+        """Return the drag after some steps towards the targets, or fewer if it comes to rest.
+
+        `pulled` are the ids of handles that are pulled at even where they follow.
+        """
+        rig = Rig.of(self.rig.layer, self.rig, pulled)
+        deformer = self.deformer
+        if rig.deformer.handles is not deformer.handles:
+            deformer = replace(deformer, handles=rig.deformer.handles)
+        wish = rig.build_targets(targets, self.pins, hands)
+        state = self.state
+        for _ in range(steps):
+            state = deformer.step(state, wish)
+            if state.status.is_final:
+                break
+        return replace(self, rig=rig, deformer=deformer, state=state)
+
+    def release(
+        self, targets: Mapping[int, Target], hands: Sequence[Hand]
+    ) -> tuple["DragSolver", Mapping[int, Target]]:
+        """Return the drag after hands let go here, and the new targets of what these have pulled.
+
+        Joints that gave in are among them. A pose at rest is at rest towards the new targets, too,
+        unless a bone at its limit pulls at a handle that stays.
+        """
+        wish = self.rig.build_targets(targets, self.pins, hands)
+        at = self.deformer.positions(self.state)
+        left = wish.let_go(at, self.deformer.handles.stiffness).positions
+        giving = (*hands, *self.rig.find_yielding_joints(hands))
+        pulled = {identity for hand in giving for identity in hand.handles}
+        places = {
+            handle.id: replace(targets[handle.id], position=complex(place))
+            for handle, place in zip(self.rig.handles, left, strict=False)
+            if handle.id in pulled
+        }
+        wanted = self.rig.build_targets({**targets, **places}, self.pins)
+        return replace(self, state=self.deformer.release(self.state, wanted)), places
+
+    def make_pose(self, targets: Mapping[int, Target]) -> Pose:
+        """Return where the drag is, as a pose with these wishes."""
+        return self.rig.make_pose(self.state.map, targets, self.state.certificate)
+
+
+def pins_of(layer: Layer, pose: Pose) -> tuple[Target, ...]:
+    """Return where a pose has what a drag holds still: the anchor of a layer that hangs."""
+    places = layer.map_of(pose)(np.array(_pins(layer), dtype=np.complex128))
+    return tuple(Target(position=complex(place)) for place in places)
+
+
+def _pins(layer: Layer) -> tuple[complex, ...]:
+    """Return the points of a layer that are held where they are."""
+    anchor = layer.anchor
+    if not layer.has_parent or anchor is None:
+        return ()
+    return () if any(handle.position == anchor for handle in layer.handles) else (anchor,)
+
+
+def fit_shown_pose(rig: Rig, clip: Clip, frame: float, sibling: PoseSampler | None = None) -> Pose:
+    """Return the pose that an animation shows at a frame, as near as one map can be to it.
+
+    Of a key it is the key's own. In-betweens are no maps over the cage: their derivatives are
+    fitted on the outline, and should the fit not be certified, it is mixed with the nearer key.
+
+    Parameters
+    ----------
+    rig : Rig
+        Of the clip's layer.
+    frame : float
+    sibling : PoseSampler, optional
+        Of the layer's domain, for what it knows of the outline.
+    """
+    layer, boundary = rig.layer, rig.deformer.boundary
+    moment = segment_time_at(clip, frame)
+    resting = keyed_pose_at(clip, moment)
+    if resting is not None:
+        return resting
+    keys = clip.keys
+    after = moment.weight > 0.5
+    near = keys[segment_keys(clip)[moment.segment][after]].pose
+    sampler = PoseSampler(
+        layer.domain, anchor=layer.anchor, points=boundary.points, sibling=sibling
+    )
+    blended = Animation(clip, points=boundary.points, sampler=sampler).base.frame(frame)
+    fitted = fit_map(boundary, blended.fz, blended.fzbar, blended.positions)
+    for share in (1.0, 0.5, 0.25, 0.0):
+        own = layer.map_of(near)
+        mixed = own.changed(
+            *(share * (new - old) for new, old in zip(fitted.columns, own.columns, strict=True))
+        )
+        # What is shown may be older than what is stiff now.
+        certificate = certify(mixed, boundary, layer.bounds)
+        if certificate.certified:
+            break
+    else:
+        mixed, certificate = layer.map_of(near), near.certificate
+    places = mixed(np.array([handle.position for handle in layer.handles], dtype=np.complex128))
+    targets = {
+        handle.id: Target(position=complex(place))
+        for handle, place in zip(layer.handles, places, strict=True)
+    }
+    return Pose.of(mixed, targets, certificate)
+
+
+def fit_map(
+    boundary: Boundary,
+    fz: Complexes,
+    fzbar: Complexes,
+    positions: Complexes,
+    *,
+    inside: Booleans | None = None,
+) -> HarmonicMap:
+    """Return the map over a cage that is nearest to another one, by its derivatives on the outline.
+
+    Parameters
+    ----------
+    fz, fzbar, positions : complex128, shape (s,)
+        f_z, f_z̄ and f of the other map at the boundary's samples.
+    inside : bool, shape (m,), optional
+        Which samples they are for, by default all.
+    """
+    chosen = slice(None) if inside is None else inside
+    weights = boundary.lengths[chosen]
+    root = np.sqrt(weights)[:, None]
+    # Constants have no derivative: they are left to the places of the outline.
+    matrix = root * boundary.derivatives[chosen, 1:]
+    wanted = root * np.column_stack([fz, fzbar.conj()])
+    solved, *_ = np.linalg.lstsq(matrix, wanted, rcond=None)
+    count = len(boundary.holes)
+    logs: Complexes = np.empty(0, dtype=np.complex128)
+    if count:
+        # Those of Ψ are the conjugates of those of Φ: with their mean the rest is fitted once more.
+        logs = np.asarray(solved[-count:, 0] + solved[-count:, 1].conj(), np.complex128) / 2
+        wanted = wanted - matrix[:, -count:] @ np.column_stack([logs, logs.conj()])
+        solved, *_ = np.linalg.lstsq(matrix[:, :-count], wanted, rcond=None)
+    phi, psi = (np.concatenate([[0], column]) for column in solved.T)
+    shape = HarmonicMap(cage=boundary.cage, phi=phi, psi=psi, holes=boundary.holes, logs=logs)
+    offset = weights @ (positions - shape(boundary.points[chosen])) / weights.sum()
+    return shape.moved(1.0, complex(offset))

@@ -1,0 +1,57 @@
+"""Joints of a drawing, written as a small JSON text."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from app.errors import LissomError
+from app.storage import as_object, as_point, as_text, load_json, repr_for_error
+from engine.geometry.motions import kind_named
+
+SCHEMA = 1
+LARGEST = 1024 * 1024  # bytes
+FIELDS = ("schema", "kind", "joints")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JointsFile:
+    """What is said of the joints of a drawing."""
+
+    kind: str | None  # None leaves it to be guessed
+    joints: Mapping[str, complex]  # in pixels from the lower left corner, y up
+
+
+def load_joints(path: Path) -> JointsFile:
+    """Read the joints of a drawing.
+
+    Raises
+    ------
+    LissomError
+        If the file is missing, is not JSON, or says anything that it cannot say.
+    """
+    return load_json(path, _parsed, largest=LARGEST)
+
+
+def _parsed(content: object) -> JointsFile:
+    told = as_object(content, "the file of joints")
+    for name in told:
+        if name not in FIELDS:
+            raise LissomError(
+                f"the file of joints has an unknown field {name!r}; it may have {', '.join(FIELDS)}"
+            )
+    schema = told["schema"]
+    if schema != SCHEMA or isinstance(schema, bool):
+        raise LissomError(f"schema must be {SCHEMA}, not {repr_for_error(schema)}")
+    kind = None if told.get("kind") is None else as_text(told["kind"], "kind")
+    if kind is not None:
+        kind_named(kind)
+    joints = {
+        name: as_point(place, f"joints.{name}")
+        for name, place in as_object(told.get("joints", {}), "joints").items()
+    }
+    feet = [at.imag for name, at in joints.items() if name.startswith("foot")]
+    if feet and "head" in joints and min(feet) > joints["head"].imag:
+        raise LissomError(
+            "the feet are above the head; places are pixels from the lower left corner, y up"
+        )
+    return JointsFile(kind=kind, joints=joints)

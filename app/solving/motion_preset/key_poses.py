@@ -1,0 +1,73 @@
+"""Moments of a motion at the frames of its keys, as targets of handles."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from app.document import AppliedMotion, Layer, Spring, Target
+from app.solving.motion_preset.motion_request import MotionRequest
+from engine.geometry.motions import Body
+from engine.maps import Bounds
+
+# How firmly feet are held, so that they do not slide: the solver misses less than 1 % of a step.
+FIRM = 1000.0
+# Poses spend so much of the layer's limits: what is between them may need a little more.
+SPENT = 0.97
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JointKeyPose:
+    """Where a motion wants the joints at a frame, by the ids of their handles."""
+
+    frame: int
+    targets: Mapping[int, Target]
+
+
+def find_key_poses(
+    order: MotionRequest, body: Body, given: AppliedMotion
+) -> tuple[tuple[JointKeyPose, ...], frozenset[int]]:
+    """Return what a motion wants at its keys, and of which handles it stands at some time.
+
+    Where it loops, the end of its cycle is left out.
+    """
+    motion, parameters = order.preset, order.parameters
+    period = (given.last - given.start) // given.repeat_count
+    # Feet that go on the ground are keyed in every frame: in between they would slide.
+    steps = motion.course(order.kind).travels
+    count = period if steps else min(period, motion.keys)
+    offsets = [round(number * period / count) for number in range(count)]
+    if parameters.travel:
+        offsets = [
+            turn * period + offset for turn in range(given.repeat_count) for offset in offsets
+        ] + [given.repeat_count * period]
+    postures = motion.moments(body, parameters, [offset / period for offset in offsets])
+    standing = frozenset(given.joints[name] for each in postures for name in each.standing)
+    return tuple(
+        JointKeyPose(
+            frame=given.start + offset,
+            targets={
+                identity: Target(position=posture.places[name], rotation=posture.turns.get(name))
+                for name, identity in given.joints.items()
+            },
+        )
+        for offset, posture in zip(offsets, postures, strict=True)
+    ), standing
+
+
+def with_joint_weights(layer: Layer, joints: frozenset[int], feet: frozenset[int]) -> Layer:
+    """Return a layer that poses hold by its joints alone, most firmly by its feet.
+
+    What else has a handle goes where the body carries it, as if it followed by a spring.
+    """
+    handles = tuple(
+        replace(each, weight=FIRM) if each.id in feet else each for each in layer.handles
+    )
+    others = [each.id for each in layer.handles if each.id not in joints]
+    loose = [each for each in others if layer.spring_of(each) is None]
+    springs = (replace(each, enabled=True) for each in layer.springs)
+    carried = (Spring(handle=each, frequency=1.0, damping=1.0) for each in loose)
+    inside = Bounds(
+        k=SPENT * layer.bounds.k,
+        sigma_a=layer.bounds.sigma_a**SPENT,
+        sigma_b=layer.bounds.sigma_b**SPENT,
+    )
+    return replace(layer, handles=handles, bounds=inside, tracks=(), springs=(*springs, *carried))

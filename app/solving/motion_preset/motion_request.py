@@ -1,0 +1,181 @@
+"""What a layer is asked to do, and the joints by which it does it."""
+
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from app.document import (
+    RUBBERY,
+    Document,
+    Layer,
+    handle_commands,
+    material_commands,
+    shape_commands,
+    with_number,
+)
+from app.errors import LissomError
+from app.solving.motion_preset.rigid_points import find_rigid_points
+from engine.arrays import Complexes
+from engine.errors import EngineError
+from engine.geometry import diameter
+from engine.geometry.motions import Body, Motion, Parameters, facing_of, kind_named, motion_named
+from engine.maps import Bounds
+
+# Of the diameter of the drawing: a joint is the handle that is so near to it, and one that is so
+# little outside comes to the outline.
+SAME_JOINT, BESIDE = 0.004, 0.01
+TRUNK = ("neck", "head", "chest")
+STIFF_TRUNK, STIFF_LIMB, STIFF_HEAD = 10.0, 3.0, 20.0
+HEAD = 1.5  # times as far as the nearest outline around its joint
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MotionRequest:
+    """A motion for a layer.
+
+    Raises
+    ------
+    EngineError
+        If there is no such motion or kind, or the one does not fit the other.
+    """
+
+    motion: str
+    kind: str
+    joints: Mapping[str, complex]  # at rest, in pixels of the canvas, y up
+    parameters: Parameters = field(default_factory=Parameters)
+    first: int = 0  # the frame from which on it is given
+    repeat_count: int = 1  # how often its cycle is there
+    facing: int | None = None  # 1 looks to the right, -1 to the left; None guesses
+    # Handles that are joints already, by the joints' names; they go where these are now.
+    handles: Mapping[str, int] = field(default_factory=dict)
+    stiff: bool = True  # whether the trunk becomes stiff, so that limbs move and not all
+    bones: bool = False  # whether limbs get bones, too
+    # Limits that the layer has at least; None leaves them as they are.
+    limits: Bounds | None = RUBBERY.bounds
+
+    def __post_init__(self) -> None:
+        self.preset.course(self.kind)
+
+    @property
+    def preset(self) -> Motion:
+        """The motion itself."""
+        kind_named(self.kind)
+        return motion_named(self.motion)
+
+
+def find_facing(layer: Layer, order: MotionRequest) -> int:
+    """Return which way a layer looks: 1 to the right, -1 to the left."""
+    if order.facing is not None:
+        return order.facing
+    return facing_of(kind_named(order.kind), order.joints, layer.domain.outline)
+
+
+def find_rest_body(layer: Layer, order: MotionRequest) -> Body:
+    """Return the body of a layer at rest.
+
+    Raises
+    ------
+    LissomError, EngineError
+        If a joint is not on the drawing, or the kind has no such joint.
+    """
+    outline, kind = layer.domain.outline, kind_named(order.kind)
+    x, y = outline.real, outline.imag
+    joints = dict(order.joints) if kind.parents else find_rigid_points(layer.domain)
+    if kind.parents:
+        kind.require_joints(joints)
+        joints = _on_drawing(layer, joints)
+    return Body(
+        kind=kind,
+        joints=joints,
+        box=(complex(x.min(), y.min()), complex(x.max(), y.max())),
+        facing=find_facing(layer, order),
+    )
+
+
+def _on_drawing(layer: Layer, joints: Mapping[str, complex]) -> dict[str, complex]:
+    """Return joints on a layer; those that are hardly beside it come to its outline."""
+    tolerance = BESIDE * diameter(layer.domain.outline)
+    points: Complexes = np.array(list(joints.values()), dtype=np.complex128)
+    covered = layer.covers(points, tolerance=tolerance)
+    for (name, place), is_on_it in zip(joints.items(), covered, strict=True):
+        if not is_on_it:
+            raise LissomError(
+                f"the joint {name!r} at ({place.real:g}, {place.imag:g}) is not on the drawing"
+            )
+    nearest = layer.domain.nearest(points).tolist()
+    return dict(zip(joints, nearest, strict=True))
+
+
+def with_handles_at_joints(
+    document: Document, identity: int, body: Body, order: MotionRequest
+) -> tuple[Document, dict[str, int]]:
+    """Return a document whose layer has a handle at each joint, and bones; and which those are."""
+    joints = dict[str, int]()
+    for name, place in body.joints.items():
+        document, joints[name] = _with_handle(document, identity, name, place, order, joints)
+    if not body.kind.parents:
+        # What moves as a whole is not held still anywhere.
+        document = handle_commands.unpin_handles(identity, set(joints.values()), free=True)(
+            document
+        )
+    for name, before in body.parents.items():
+        amount = STIFF_TRUNK if name in TRUNK else STIFF_LIMB
+        if not before or not (order.stiff if name in TRUNK else order.bones):
+            continue
+        ends = joints[before], joints[name]
+        if any(bone.is_between(ends) for bone in document.layer(identity).bones):
+            continue
+        # Where the way between two joints leaves the drawing, the limb bends as it likes.
+        with suppress(EngineError):
+            document = material_commands.add_bone(identity, ends, amount)(document)
+    if order.stiff and "head" in joints:
+        document = _with_stiff_head(document, identity, body.joints["head"])
+    return document, joints
+
+
+def _with_handle(
+    document: Document,
+    identity: int,
+    name: str,
+    place: complex,
+    order: MotionRequest,
+    others: Mapping[str, int],
+) -> tuple[Document, int]:
+    """Return a document whose layer has a handle at a joint, and which that is."""
+    layer = document.layer(identity)
+    known = order.handles.get(name)
+    if known is not None and any(each.id == known for each in layer.handles):
+        return handle_commands.move_handle(identity, known, place)(document), known
+    near = SAME_JOINT * diameter(layer.domain.outline)
+    free = [each for each in layer.handles if each.id not in others.values()]
+    beside = min(free, key=lambda each: abs(each.position - place), default=None)
+    if beside is not None and abs(beside.position - place) <= near:
+        return document, beside.id
+    taken = {handle.name for handle in layer.handles}
+    new = name if name not in taken else with_number(name, taken, 2)
+    added = handle_commands.add_handle(identity, place, name=new)(document)
+    return added, layer.next_handle
+
+
+def _with_stiff_head(document: Document, identity: int, head: complex) -> Document:
+    """Return a document whose layer's head keeps its shape."""
+    outline = document.layer(identity).domain.outline
+    radius = HEAD * float(np.abs(outline - head).min())
+    return material_commands.paint_stiffness(identity, [head], radius=radius, amount=STIFF_HEAD)(
+        document
+    )
+
+
+def with_limits(document: Document, identity: int, limits: Bounds | None) -> Document:
+    """Return a document whose layer may be distorted as far as some limits, or its own, allow."""
+    own = document.layer(identity).bounds
+    if limits is None:
+        return document
+    wider = Bounds(
+        k=max(own.k, limits.k),
+        sigma_a=max(own.sigma_a, limits.sigma_a),
+        sigma_b=min(own.sigma_b, limits.sigma_b),
+    )
+    return shape_commands.set_limits(identity, wider)(document)

@@ -1,0 +1,251 @@
+"""A motion on its way to a layer, key after key, as the window would solve each."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from app.document import (
+    AppliedMotion,
+    Command,
+    Document,
+    Keyframe,
+    Layer,
+    Pose,
+    clip_of,
+    is_motion_unedited,
+    measure_target_errors,
+    rest_pose,
+    scene_commands,
+)
+from app.errors import LissomError
+from app.solving.drag_solver import DragSolver, Rig, fit_shown_pose
+from app.solving.motion_preset.key_poses import JointKeyPose, find_key_poses, with_joint_weights
+from app.solving.motion_preset.motion_request import (
+    MotionRequest,
+    find_rest_body,
+    with_handles_at_joints,
+    with_limits,
+)
+from app.solving.motion_preset.splicing import count_blend_frames, splice_motion
+from engine.geometry.motions import Body
+
+# A pose that is not at rest by then creeps along a limit.
+MOST_STEPS = 150
+SIZE_TRIES = 4  # by which the largest one is looked for
+MOST_NAMED = 3  # joints that are named
+WORST = 4  # keys that it is looked for by
+SMALLEST = 0.05  # size that parameters may have
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class MotionSolve:
+    """A motion on its way to a layer.
+
+    Parameters
+    ----------
+    document : Document
+        With handles at the joints, and bones.
+    before : Layer
+        As it was without.
+    order : MotionRequest
+    body : Body
+    given : AppliedMotion
+        Without a digest, which is of keys yet to come.
+    lead : Pose, optional
+        What is shown where the motion blends in.
+    wanted : tuple of JointKeyPose
+        Of the keys to be solved; where the last one is the first one again, it is not among them.
+    rig : Rig
+        Of the joints alone: other handles go where the body carries them.
+    poses : tuple of Pose
+        Those that are solved.
+    """
+
+    document: Document
+    before: Layer
+    request: MotionRequest
+    body: Body
+    applied: AppliedMotion
+    blend_pose: Pose | None
+    key_poses: tuple[JointKeyPose, ...]
+    rig: Rig
+    poses: tuple[Pose, ...] = ()
+    # How far some joints fall short of where the motion wants them, by their names, and at which
+    # frame most; in pixels.
+    target_errors: Mapping[str, tuple[float, int]]
+    # Between which sizes the largest is looked for that is within reach, and how often it was.
+    size_range: tuple[float, float]
+    tries: int = 0
+
+    @property
+    def is_solved(self) -> bool:
+        """Whether every key is solved."""
+        return len(self.poses) == len(self.key_poses)
+
+    @property
+    def is_over(self) -> bool:
+        """Whether every key is solved, and a smaller size is known where some are out of reach."""
+        return self.is_solved and (not self.target_errors or self.tries == SIZE_TRIES)
+
+    @property
+    def progress(self) -> float:
+        """The part of its steps that is done, 0 to 1."""
+        return 1.0 if self.is_over else len(self.poses) / (len(self.key_poses) + 1)
+
+    @property
+    def status_text(self) -> str:
+        """What the next step does, in words."""
+        if self.is_solved:
+            return "Looking for a size that is within reach"
+        return f"Solving pose {len(self.poses) + 1} of {len(self.key_poses)}"
+
+    @property
+    def reachable_size(self) -> float | None:
+        """The largest smaller size that is within reach, if one was found."""
+        return self.size_range[0] if self.tries and self.size_range[0] > 0 else None
+
+    @property
+    def notices(self) -> tuple[str, ...]:
+        """Which joints are out of reach, and at what size they are not, in words."""
+        if not self.target_errors:
+            return ()
+        worst = sorted(self.target_errors.items(), key=lambda each: -each[1][0])
+        told = ", ".join(
+            f"{name!r} by {lag:.1f} px (frame {frame})" for name, (lag, frame) in worst[:MOST_NAMED]
+        )
+        if worst[MOST_NAMED:]:
+            told += f" and {len(worst) - MOST_NAMED} more"
+        size = self.reachable_size
+        instead = "" if size is None else f"; at size {size:.2f} all is within reach"
+        return (f"Some joints fall short of the motion: {told}{instead}",)
+
+    @property
+    def posed_layer(self) -> Layer:
+        """The layer with the motion, once every key is solved."""
+        keys = [
+            Keyframe(frame=moment.frame, pose=pose)
+            for moment, pose in zip(self.key_poses, self.poses, strict=True)
+        ]
+        given = self.applied
+        if not given.parameters.travel and given.repeat_count == 1:
+            keys.append(replace(keys[0], frame=given.last))
+        if self.blend_pose is not None:
+            keys.insert(0, Keyframe(frame=given.first, pose=self.blend_pose))
+        until = max((each.last for each in self.replaced_motions), default=given.last)
+        return splice_motion(self.document, self.before.id, keys, given, until)
+
+    @property
+    def replaced_motions(self) -> tuple[AppliedMotion, ...]:
+        """The motion that it takes the place of, as it was given at the same frame."""
+        return tuple(
+            each
+            for each in self.before.motions
+            if each.first == self.applied.first and is_motion_unedited(self.before, each)
+        )
+
+    @property
+    def command(self) -> Command:
+        """What makes one step of undo of all of it."""
+        return scene_commands.apply_motion(self.posed_layer, self.applied)
+
+
+def start_motion_solve(document: Document, identity: int, order: MotionRequest) -> MotionSolve:
+    """Return a motion that is on its way to a layer; nothing of it is solved yet.
+
+    Parameters
+    ----------
+    document : Document
+    identity : int
+        The id of the layer.
+    order : MotionRequest
+
+    Raises
+    ------
+    LissomError, EngineError
+        If the layer cannot be posed, a joint is not on it, or one that the motion needs is not
+        there.
+    """
+    before = document.layer(identity)
+    if before.still:
+        raise LissomError(f"{before.name!r} stands still: there is no shape on it to be moved.")
+    body = find_rest_body(before, order)
+    document, joints = with_handles_at_joints(document, identity, body, order)
+    document = with_limits(document, identity, order.limits)
+    into = document.layer(identity)
+    lead_frames = count_blend_frames(before, order.first, document.fps)
+    start = order.first + lead_frames
+    period = order.preset.frames(order.parameters, document.fps)
+    given = AppliedMotion(
+        motion=order.motion,
+        kind=order.kind,
+        joints=joints,
+        facing=body.facing,
+        parameters=order.parameters,
+        first=order.first,
+        start=start,
+        last=start + order.repeat_count * period,
+        repeat_count=order.repeat_count,
+    )
+    lead = None
+    if lead_frames:
+        lead = fit_shown_pose(Rig.of(into), clip_of(document, identity), order.first)
+    wanted, standing = find_key_poses(order, body, given)
+    return MotionSolve(
+        document=document,
+        before=before,
+        request=order,
+        body=body,
+        applied=given,
+        blend_pose=lead,
+        key_poses=wanted,
+        rig=Rig.of(with_joint_weights(into, frozenset(joints.values()), standing)),
+        target_errors={},
+        size_range=(0.0, order.parameters.size),
+    )
+
+
+def step_motion_solve(giving: MotionSolve) -> MotionSolve:
+    """Take the next step: one key after the other, then a smaller size; on the worker thread."""
+    if giving.is_solved:
+        return _smaller(giving)
+    moment = giving.key_poses[len(giving.poses)]
+    layer = giving.rig.layer
+    begin = giving.poses[-1] if giving.poses else rest_pose(layer.domain, layer.handles)
+    pose = solve_key_pose(giving.rig, begin, moment)
+    names = {identity: name for name, identity in giving.applied.joints.items()}
+    short = dict(giving.target_errors)
+    for identity, lag in find_target_errors(giving.rig, pose).items():
+        name = names[identity]
+        short[name] = max(short.get(name, (0.0, 0)), (lag, moment.frame))
+    return replace(giving, poses=(*giving.poses, pose), target_errors=short)
+
+
+def solve_key_pose(rig: Rig, begin: Pose, moment: JointKeyPose) -> Pose:
+    """Return the pose that has the joints where a moment wants them, found from another pose."""
+    targets = {**begin.targets, **moment.targets}
+    return DragSolver.begin(rig, begin).step_towards(targets, MOST_STEPS).make_pose(targets)
+
+
+def find_target_errors(rig: Rig, pose: Pose) -> Mapping[int, float]:
+    """Return by how many pixels handles by which a pose is held fall short, if they do."""
+    return measure_target_errors(rig.layer, pose).errors
+
+
+def _smaller(giving: MotionSolve) -> MotionSolve:
+    """Try the size halfway between one that is within reach and one that is not."""
+    reached, short = giving.size_range
+    size = max(SMALLEST, (reached + short) / 2)
+    order = replace(giving.request, parameters=replace(giving.request.parameters, size=size))
+    frames = {frame for _, frame in giving.target_errors.values()}
+    worst = [
+        (moment, pose)
+        for moment, pose in zip(
+            find_key_poses(order, giving.body, giving.applied)[0], giving.poses, strict=True
+        )
+        if moment.frame in frames
+    ][:WORST]
+    fits = all(
+        not find_target_errors(giving.rig, solve_key_pose(giving.rig, pose, moment))
+        for moment, pose in worst
+    )
+    sizes = (size, short) if fits else (reached, size)
+    return replace(giving, size_range=sizes, tries=giving.tries + 1)

@@ -1,0 +1,43 @@
+"""Points of a drawing by which it moves as a whole."""
+
+import numpy as np
+
+from engine.arrays import Complexes
+from engine.domain import Domain
+
+LEVELS = (0.05, 0.35, 0.65, 0.94)  # of the height
+NARROW = 0.22  # of the wider side of the box: narrower parts have one point in their middle
+INSET = 0.15  # of a part's width, by which points are inside of it
+
+
+def find_rigid_points(domain: Domain) -> dict[str, complex]:
+    """Return points on a domain at a few heights, to its left and its right, by names."""
+    outline = domain.outline
+    low, high = float(outline.imag.min()), float(outline.imag.max())
+    most = max(high - low, float(np.ptp(outline.real)))
+    points = dict[str, complex]()
+    for number, level in enumerate(LEVELS, start=1):
+        height = low + level * (high - low)
+        first, last = _widest(domain, height)
+        if last - first < NARROW * most:
+            points[f"middle {number}"] = complex((first + last) / 2, height)
+        else:
+            points[f"left {number}"] = complex(first + INSET * (last - first), height)
+            points[f"right {number}"] = complex(last - INSET * (last - first), height)
+    return points
+
+
+def _widest(domain: Domain, height: float) -> tuple[float, float]:
+    """Return where the widest part of a domain at a height begins and ends."""
+    crossings = np.sort(np.concatenate([_crossed(loop, height) for loop in domain.loops]))
+    pairs = crossings[: len(crossings) // 2 * 2].reshape(-1, 2)
+    first, last = pairs[np.diff(pairs).argmax()]
+    return float(first), float(last)
+
+
+def _crossed(loop: Complexes, height: float) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+    """Return where a loop crosses a height."""
+    after = np.roll(loop, -1)
+    is_crossed = (loop.imag < height) != (after.imag < height)
+    a, b = loop[is_crossed], after[is_crossed]
+    return np.asarray(a.real + (height - a.imag) / (b.imag - a.imag) * (b.real - a.real))

@@ -1,0 +1,202 @@
+"""Other bounds, another domain or picture under the same animation: its keys are solved again."""
+
+from dataclasses import dataclass, replace
+from functools import reduce
+
+import numpy as np
+
+from app.document import (
+    Command,
+    Document,
+    Layer,
+    Meshing,
+    Pose,
+    Target,
+    layer_commands,
+    shape_commands,
+    transfer_painted_stiffness,
+)
+from app.solving.drag_solver import Rig, fit_map, pins_of
+from engine.arrays import Bytes
+from engine.domain import build_domain
+from engine.geometry import contains
+from engine.maps import Bounds, HarmonicMap, certify
+
+MOST_STEPS = 600  # for one key
+AT_REST = 1e-3  # pixels that coefficients of the drawing at rest may lack
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class KeyResolver:
+    """A layer on its way to other bounds, another domain or another picture.
+
+    Parameters
+    ----------
+    before : Layer
+    bounds : Bounds
+        Of the poses to come.
+    meshing : Meshing, optional
+        What the domain of its picture is built anew with; None builds none.
+    pulls : bool
+        Whether poses that are within the bounds already are pulled to their targets again, too.
+    into : Layer, optional
+        The layer with the new domain, all poses at rest, once that is built.
+    replaces : bool
+        Whether that is another picture's.
+    rig : Rig, optional
+        None before the first key.
+    poses : tuple of Pose
+        Those that are solved, in the order of `Layer.poses`.
+    outside : tuple of str
+        Those that found no way into the bounds, and stay as they were, in words.
+    notices : tuple of str
+        What was remedied, in words.
+    """
+
+    before: Layer
+    bounds: Bounds
+    meshing: Meshing | None = None
+    solves_all: bool = True
+    new_layer: Layer | None = None
+    replaces_picture: bool = False
+    rig: Rig | None = None
+    poses: tuple[Pose, ...] = ()
+    unsolved: tuple[str, ...] = ()
+    notices: tuple[str, ...] = ()
+
+    @property
+    def is_over(self) -> bool:
+        """Whether every pose is solved."""
+        return len(self.poses) == len(self.before.poses)
+
+    @property
+    def progress(self) -> float:
+        """The part of its steps that is done, 0 to 1."""
+        builds = self.meshing is not None
+        done = len(self.poses) + (builds and self.new_layer is not None)
+        return done / (len(self.before.poses) + builds)
+
+    @property
+    def status_text(self) -> str:
+        """What the next step does, in words."""
+        if self.meshing is not None and self.new_layer is None:
+            return "Building the domain"
+        return f"Solving pose {len(self.poses) + 1} of {len(self.before.poses)}"
+
+    @property
+    def command(self) -> Command:
+        """What makes one step of undo of all of it."""
+        identity, into = self.before.id, self.new_layer
+        if into is None:
+            return shape_commands.set_limits(identity, self.bounds, self.poses)
+        if self.replaces_picture:
+            posed = shape_commands.set_limits(identity, self.bounds, self.poses)
+            return _joined("Replace picture", layer_commands.replace_layer(identity, into), posed)
+        domain = shape_commands.replace_domain(identity, into.domain, into.meshing, self.poses)
+        return _joined(domain.label, domain, layer_commands.keep_attachments(identity))
+
+
+def _joined(label: str, *commands: Command) -> Command:
+    """Return commands that are done after each other, as one."""
+
+    def change(document: Document) -> Document:
+        return reduce(lambda before, command: command(before), commands, document)
+
+    return Command(label, change)
+
+
+def step_resolver(renewal: KeyResolver, picture: Bytes) -> KeyResolver:
+    """Take the next step: the domain, then one key after the other; on the worker thread.
+
+    Parameters
+    ----------
+    renewal : KeyResolver
+        One that is not over.
+    picture : uint8, shape (h, w, 4)
+        The layer's, decoded.
+    """
+    if renewal.meshing is not None and renewal.new_layer is None:
+        return _with_domain(renewal, picture, renewal.meshing)
+    rig = renewal.rig or Rig.of(replace(renewal.new_layer or renewal.before, bounds=renewal.bounds))
+    index = len(renewal.poses)
+    pose = _solved(renewal, rig, index)
+    outside = renewal.unsolved
+    if not pose.certificate.certified:
+        outside = (*outside, _in_words(renewal.before, index))
+    return replace(renewal, rig=rig, poses=(*renewal.poses, pose), unsolved=outside)
+
+
+def _in_words(layer: Layer, index: int) -> str:
+    """Return where a pose of a layer is: at a key's frame, or under a name in the library."""
+    count = len(layer.keys)
+    if index < count:
+        return f"at frame {layer.keys[index].frame}"
+    return f"“{layer.library[index - count].name}”"
+
+
+def _with_domain(renewal: KeyResolver, picture: Bytes, meshing: Meshing) -> KeyResolver:
+    domain, notices = build_domain(
+        picture,
+        triangles=meshing.triangles,
+        detail=meshing.detail,
+        cut_out=renewal.before.cut_out,
+    )
+    before = renewal.before
+    domain = domain.moved(before.corner)
+    rest = HarmonicMap.identity(domain.cage, domain.holes)
+    poses = (pose.with_map(rest) for pose in before.poses)
+    stiffness = transfer_painted_stiffness(before.stiffness, before.domain, domain)
+    into = before.with_poses(poses, domain=domain, meshing=meshing, stiffness=stiffness)
+    return replace(renewal, new_layer=into, notices=notices)
+
+
+def _solved(renewal: KeyResolver, rig: Rig, index: int) -> Pose:
+    """Return a pose over the rig's cage, within its bounds, pulled to its targets."""
+    boundary, bounds = rig.deformer.boundary, rig.deformer.bounds
+    before, into = renewal.before, renewal.new_layer
+    old = before.poses[index]
+    pose, pins, shape = old, pins_of(before, old), before.map_of(old)
+    first = shape
+    if into is not None:
+        pose, first = into.poses[index], _carried_over(before, old, rig)
+        if before.anchor is not None and into.anchor is not None:
+            pins = tuple(transfer_target(pin, shape, before.anchor, into.anchor) for pin in pins)
+    if not renewal.solves_all and certify(first, boundary, bounds).certified:
+        return pose
+    wish = rig.build_targets(pose.targets, pins)
+    state, _ = rig.deformer.settle(rig.start_at(first), wish, at_most=MOST_STEPS, throw=False)
+    certificate = certify(state.map, boundary, bounds)
+    if into is not None and not certificate.certified:
+        # Where the new shape is larger, what was carried over may have no way back into the bounds.
+        state, _ = rig.deformer.settle(rig.deformer.start(), wish, at_most=MOST_STEPS, throw=False)
+        certificate = certify(state.map, boundary, bounds)
+    if into is None and not certificate.certified:
+        return replace(pose, certificate=certify(first, boundary, bounds))
+    return rig.make_pose(state.map, pose.targets, certificate)
+
+
+def transfer_target(target: Target, shape: HarmonicMap, place: complex, to: complex) -> Target:
+    """Return the target of a point that is moved at rest, turned as a pose is around it."""
+    if to == place:
+        return target
+    fz = complex(shape.derivatives(np.array([place]))[0][0])
+    return replace(target, position=target.position + fz / abs(fz) * (to - place))
+
+
+def _carried_over(layer: Layer, pose: Pose, rig: Rig) -> HarmonicMap:
+    """Return the map over the rig's cage that is nearest to a pose over the layer's.
+
+    The pose's map goes on from the old outline up to the old cage, where the new outline may lie.
+    """
+    boundary, domain = rig.deformer.boundary, layer.domain
+    shape, rest = layer.map_of(pose), HarmonicMap.identity(domain.cage, domain.holes)
+    is_at_rest = all(
+        np.allclose(one, two, rtol=0.0, atol=AT_REST)
+        for one, two in zip(shape.columns, rest.columns, strict=True)
+    )
+    inside = contains(domain.cage, boundary.points, holes=domain.cages[1:])
+    if is_at_rest or not inside.any():
+        return HarmonicMap.identity(boundary.cage, boundary.holes)
+    points = boundary.points[inside]
+    fz, fzbar = shape.derivatives(points)
+    return fit_map(boundary, fz, fzbar, shape(points), inside=inside)

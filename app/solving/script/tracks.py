@@ -1,0 +1,209 @@
+"""Clocks of a pose script: tracks and springs of single handles, and cycles of all of a layer."""
+
+from collections.abc import Mapping, Sequence
+from math import radians
+
+from app.document import (
+    HOLD,
+    SPRING_PRESETS,
+    Cycle,
+    Spring,
+    TangentMode,
+    Track,
+    TrackKey,
+    require_no_overlap,
+    require_repeatable_cycle,
+)
+from app.errors import LissomError
+from app.solving.script.fields import (
+    build_value,
+    check_frame_order,
+    check_handle_name,
+    read_easing_and_tangent,
+    read_fields,
+    read_frame,
+)
+from app.storage import JsonObject, as_list, as_number, as_point, as_text, as_whole, repr_for_error
+
+TRACK_FIELDS = ("handle", "handles", "with", "keys", "delay", "reach")
+TRACK_KEY_FIELDS = ("frame", "offset", "at", "velocity", "turn", "ease", "passing")
+SPRING_NUMBERS = ("frequency", "damping", "lag", "strength", "stretch")
+SPRING_FIELDS = ("handle", "preset", "root", *SPRING_NUMBERS)
+CYCLE_FIELDS = ("from", "to", "until")
+# What the places of a track's keys are called, by what it goes with.
+PLACES = {"pose": "offset", "picture": "at"}
+NEEDLESS_VELOCITY = (
+    '{where} has a velocity, which is of keys that are passed through; give it "passing": '
+    '"through", or leave the velocity out'
+)
+NO_PRESET = "{where} needs a preset, one of {presets}, or a frequency and a damping"
+HANDLE_OR_HANDLES = "{where} must have either a handle or handles, which move together"
+NO_BASIS = "{where}.with must be pose or picture, not {content}"
+
+
+def parse_tracks(content: object, where: str, handles: Sequence[str]) -> tuple[Track, ...]:
+    """Return the tracks of a layer; their handles are told by their places among the names."""
+    numbers = {name: number for number, name in enumerate(handles)}
+    tracks = tuple(
+        _track(each, f"{where}[{index}]", numbers)
+        for index, each in enumerate(as_list(content, where))
+    )
+    _require_one_each([track.handles for track in tracks], where, handles)
+    return tracks
+
+
+def parse_springs(content: object, where: str, handles: Sequence[str]) -> tuple[Spring, ...]:
+    """Return the springs of a layer, likewise."""
+    numbers = {name: number for number, name in enumerate(handles)}
+    springs = tuple(
+        _spring(each, f"{where}[{index}]", numbers)
+        for index, each in enumerate(as_list(content, where))
+    )
+    _require_one_each([(spring.handle,) for spring in springs], where, handles)
+    return springs
+
+
+def parse_cycles(content: object, where: str, keys: Sequence[int]) -> tuple[Cycle, ...]:
+    """Return the cycles of a layer with keys at some frames, in the order of their own frames."""
+    cycles = [
+        _cycle(each, f"{where}[{index}]") for index, each in enumerate(as_list(content, where))
+    ]
+    cycles.sort(key=lambda cycle: cycle.first)
+    # A key at the end of a stretch may be its first one again.
+    seams = {cycle.last for cycle in cycles if cycle.until != cycle.last}
+    try:
+        require_no_overlap(cycles)
+        for cycle in cycles:
+            require_repeatable_cycle(cycle, [key for key in keys if key not in seams])
+    except LissomError as error:
+        raise LissomError(f"{where}: {error}") from error
+    return tuple(cycles)
+
+
+def check_loop_periods(
+    tracks: Sequence[Track], springs: Sequence[Spring], period: int, where: str
+) -> None:
+    """Refuse what does not come round in a loop of so many frames."""
+    for index, track in enumerate(tracks):
+        if track.delay > period:
+            raise LissomError(
+                f"{where}tracks[{index}].delay is {track.delay} frames, longer than the loop, "
+                f"which has {period}"
+            )
+    for index, spring in enumerate(springs):
+        if not spring.damping:
+            raise LissomError(
+                f"{where}springs[{index}].damping must be above 0 in a loop: without damping it "
+                "never comes round"
+            )
+
+
+def _track(content: object, where: str, handles: Mapping[str, int]) -> Track:
+    track = read_fields(content, where, TRACK_FIELDS)
+    if ("handle" in track) == ("handles" in track):
+        raise LissomError(HANDLE_OR_HANDLES.format(where=where))
+    goes_with = track.get("with", "pose")
+    if goes_with not in list(PLACES):
+        raise LissomError(NO_BASIS.format(where=where, content=repr_for_error(goes_with)))
+    keys = as_list(track["keys"], f"{where}.keys")
+    parsed = tuple(
+        _track_key(key, f"{where}.keys[{index}]", PLACES[goes_with])
+        for index, key in enumerate(keys)
+    )
+    check_frame_order([key.frame for key in parsed], f"{where}.keys are")
+    return build_value(
+        Track,
+        where,
+        handles=_numbers(track, where, handles),
+        planted=goes_with == "picture",
+        keys=parsed,
+        delay=as_whole(track.get("delay", 0), f"{where}.delay"),
+        reach=as_number(track.get("reach", 1.0), f"{where}.reach"),
+        turns=any("turn" in key for key in keys),
+    )
+
+
+def _cycle(content: object, where: str) -> Cycle:
+    cycle = read_fields(content, where, CYCLE_FIELDS)
+    first, last = (read_frame(cycle, where, name) for name in ("from", "to"))
+    until = None if cycle.get("until") is None else read_frame(cycle, where, "until")
+    return build_value(Cycle, where, first=first, last=last, until=until)
+
+
+def _track_key(content: object, where: str, place: str) -> TrackKey:
+    key = read_fields(content, where, TRACK_KEY_FIELDS)
+    (other,) = {*PLACES.values()} - {place}
+    if other in key:
+        raise LissomError(
+            f"{where} has {other!r}, but its track is with the "
+            f"{'pose' if place == 'offset' else 'picture'}, whose keys have {place!r}"
+        )
+    easing, passing = read_easing_and_tangent(key, where)
+    velocity = as_point(key["velocity"], f"{where}.velocity") if "velocity" in key else None
+    if velocity is not None and (easing == HOLD or passing is not TangentMode.SMOOTH):
+        raise LissomError(NEEDLESS_VELOCITY.format(where=where))
+    return build_value(
+        TrackKey,
+        where,
+        frame=read_frame(key, where),
+        place=as_point(key[place], f"{where}.{place}"),
+        turn=radians(as_number(key.get("turn", 0.0), f"{where}.turn")),
+        easing=easing,
+        passing=passing,
+        velocity=velocity,
+    )
+
+
+def _spring(content: object, where: str, handles: Mapping[str, int]) -> Spring:
+    spring = read_fields(content, where, SPRING_FIELDS)
+    given = {
+        name: as_number(spring[name], f"{where}.{name}")
+        for name in SPRING_NUMBERS
+        if name in spring
+    }
+    if "preset" in spring:
+        preset = as_text(spring["preset"], f"{where}.preset")
+        if preset not in SPRING_PRESETS:
+            raise LissomError(
+                f"{where}.preset must be one of {', '.join(SPRING_PRESETS)}, not {preset!r}"
+            )
+        given = dict(zip(("frequency", "damping"), SPRING_PRESETS[preset], strict=True)) | given
+    elif not {"frequency", "damping"} <= given.keys():
+        raise LissomError(NO_PRESET.format(where=where, presets=", ".join(SPRING_PRESETS)))
+    handle = _number(spring["handle"], f"{where}.handle", handles)
+    root = _number(spring["root"], f"{where}.root", handles) if "root" in spring else None
+    return build_value(Spring, where, handle=handle, root=root, **given)
+
+
+def _numbers(track: JsonObject, where: str, handles: Mapping[str, int]) -> tuple[int, ...]:
+    """Return the handles of a track."""
+    if "handle" in track:
+        return (_number(track["handle"], f"{where}.handle", handles),)
+    names = as_list(track["handles"], f"{where}.handles")
+    for index, name in enumerate(names):
+        if name in names[:index]:
+            raise LissomError(f"{where}.handles names {name!r} twice")
+    return tuple(
+        _number(name, f"{where}.handles[{index}]", handles) for index, name in enumerate(names)
+    )
+
+
+def _number(name: object, where: str, handles: Mapping[str, int]) -> int:
+    read = as_text(name, where)
+    check_handle_name(read, handles, where)
+    return handles[read]
+
+
+def _require_one_each(
+    groups: Sequence[tuple[int, ...]], where: str, handles: Sequence[str]
+) -> None:
+    """Refuse a handle that two tracks have, or two springs."""
+    seen: dict[int, int] = {}
+    for index, group in enumerate(groups):
+        for number in group:
+            if number in seen:
+                raise LissomError(
+                    f"{where}[{seen[number]}] and {where}[{index}] are both of the handle "
+                    f"{handles[number]!r}"
+                )
+            seen[number] = index

@@ -1,0 +1,233 @@
+"""From what a pose script says of its layers together to a scene."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from app.document import (
+    Attachment,
+    Document,
+    DrawOrderKey,
+    Layer,
+    OpacityKey,
+    SwitchKey,
+    TransformKey,
+    attachments_repeat,
+    choice_commands,
+    is_switch_in_cycle,
+    is_visible,
+    layer_commands,
+    repeating_cycle,
+)
+from app.errors import LissomError, join_names
+from app.motion import ParentTransforms, anchor_or_default, reparent_in_place
+from app.solving.script import LayerScript, PoseScript, ScriptAttachment
+
+
+def find_layer(document: Document, name: str) -> Layer:
+    """Return the layer with a name."""
+    names = {layer.name: layer for layer in document.layers}
+    if name not in names:
+        raise LissomError(f"there is no layer {name!r}; the layers are {join_names([*names])}")
+    return names[name]
+
+
+def with_attachments(document: Document, identity: int, part: LayerScript) -> Document:
+    """Return a document whose layer hangs on others as a script says, in the pose as drawn.
+
+    Where a joint has no point, it is the parent's point that is nearest to the layer's anchor.
+    """
+    layer = document.layer(identity)
+    if not part.attach:
+        return document
+    given = part.attach[0].at if part.anchor is None else part.anchor
+    anchor = anchor_or_default(layer) if given is None else given
+    joints = tuple(_attachment(document, joint, anchor) for joint in part.attach)
+    if part.anchor is None and not layer.covers(np.array([anchor])).all():
+        raise LissomError(
+            f"it is attached at ({anchor.real:g}, {anchor.imag:g}), which is on "
+            f"{part.attach[0].to!r} but not on itself; give it an anchor by which it hangs there, "
+            "or choose a point that is on both"
+        )
+    return document.with_layer(replace(layer, anchor=anchor, attachments=joints))
+
+
+def _attachment(document: Document, joint: ScriptAttachment, anchor: complex) -> Attachment:
+    at, parent = joint.at, None if joint.to is None else find_layer(document, joint.to)
+    if parent is not None and at is None:
+        at = complex(parent.domain.nearest(np.array([anchor]))[0])
+    elif parent is not None and at is not None and not parent.covers(np.array([at])).all():
+        raise LissomError(
+            f"it is attached at ({at.real:g}, {at.imag:g}), which is not on {parent.name!r}"
+        )
+    return Attachment(
+        parent=None if parent is None else parent.id,
+        parent_point=at or 0j,
+        inherits_rotation=joint.turns,
+        frame=joint.frame,
+        keep_world_transform=joint.keeps,
+    )
+
+
+def with_world_transforms(document: Document, script: PoseScript) -> Document:
+    """Return a posed document in which what is handed over goes on with the nearest point.
+
+    That is known only when all is posed.
+    """
+    for part in script.layers:
+        for joint in part.attach:
+            if part.layer is None or joint.to is None or joint.at is not None:
+                continue
+            child, parent = find_layer(document, part.layer), find_layer(document, joint.to)
+            nearest = reparent_in_place(
+                ParentTransforms(document), child.id, parent.id, joint.frame, turns=joint.turns
+            )
+            document = layer_commands.attach_layer(child.id, anchor_or_default(child), nearest)(
+                document
+            )
+    return document
+
+
+def with_draw_order(document: Document, script: PoseScript) -> Document:
+    """Return a document whose layers lie beside others as a script says."""
+    for part in script.layers:
+        if part.layer is None or not part.order:
+            continue
+        try:
+            layer = find_layer(document, part.layer)
+            placings = tuple(
+                DrawOrderKey(
+                    each.frame,
+                    None if each.beside is None else find_layer(document, each.beside).id,
+                    each.in_front,
+                )
+                for each in part.order
+            )
+            document = document.with_layer(replace(layer, draw_order_keys=placings))
+        except LissomError as error:
+            raise LissomError(f"layer {part.layer!r}: order: {error}") from error
+    return document
+
+
+def with_switch_groups(document: Document, script: PoseScript) -> Document:
+    """Return a document whose layers take turns as a script says, whatever is hidden in it."""
+    for given in script.choices:
+        try:
+            identities = {name: find_layer(document, name).id for name in given.layers}
+        except LissomError as error:
+            raise LissomError(f"choice {given.name!r}: {error}") from error
+        form = choice_commands.create_switch_group(given.name, tuple(identities.values()))
+        document = form(document)
+        turns = tuple(SwitchKey(frame, identities[layer]) for frame, layer in given.turns)
+        (*others, made) = document.switch_groups
+        document = replace(document, switch_groups=(*others, replace(made, keys=turns)))
+    return document
+
+
+def warn_unused_transforms(document: Document, script: PoseScript) -> list[str]:
+    """Tell of layers that a script moves as a whole, and that hang on others at all times."""
+    frames = range(document.frames.first, document.frames.last + 1)
+    notices = []
+    for part in script.layers:
+        if part.layer is None or not part.movement:
+            continue
+        layer = find_layer(document, part.layer)
+        carriers = [document.parent_chain(layer.id, frame)[1:] for frame in frames]
+        if all(carriers):
+            notices.append(
+                f"{part.layer} hangs on {carriers[0][0].name} and goes with it: its own movement "
+                "is not seen"
+            )
+    return notices
+
+
+def warn_unused_cycles(layer: Layer, part: LayerScript) -> list[str]:
+    """Tell of what a script lets repeat that has nothing to repeat, or does not come round."""
+    opacity = part.opacity if isinstance(part.opacity, tuple) else ()
+    keyed = [key.frame for key in part.keys] + [switch.frame for switch in layer.visibility_keys]
+    keyed += [key.frame for key in part.movement] + [key.frame for key in opacity]
+    keyed += [placing.frame for placing in part.order]
+    notices = [
+        f"nothing is keyed in {cycle.description}: there is nothing to repeat"
+        for cycle in part.cycles
+        if not (
+            any(map(cycle.contains, keyed))
+            or any(cycle.repeats_keys(track.keys) for track in layer.tracks)
+            or attachments_repeat(layer.attachments, cycle)
+        )
+    ]
+    rows: dict[str, tuple[TransformKey, ...] | tuple[OpacityKey, ...]]
+    rows = {"movement": part.movement, "opacity": opacity}
+    for name, row in rows.items():
+        cycle = next(
+            (each for each in part.cycles if len(row) > 1 and each.repeats_keys(row)), None
+        )
+        if cycle is not None and repeating_cycle(layer, row) is None:
+            notices.append(
+                f"its {name} ends otherwise than it begins in {cycle.description}, and does not repeat"
+            )
+    for cycle in part.cycles:
+        changes = any(cycle.first < joint.frame < cycle.last for joint in layer.attachments)
+        if changes and not attachments_repeat(layer.attachments, cycle):
+            notices.append(
+                f"what it hangs on changes in the repeats of {cycle.description}, too, or is another one "
+                "at their end than at their beginning, and does not repeat"
+            )
+    return notices
+
+
+def warn_unused_switches(document: Document) -> list[str]:
+    """Tell of choices whose turns are in a stretch that repeats for some of their layers only."""
+    notices = []
+    for choice in document.switch_groups:
+        layers = [document.layer(each) for each in choice.layers]
+        cycles = dict.fromkeys(cycle for each in layers for cycle in each.cycles)
+        cycle = next((each for each in cycles if is_switch_in_cycle(choice, each)), None)
+        others = [each.name for each in layers if cycle not in each.cycles]
+        if cycle is not None and others:
+            notices.append(
+                f"choice {choice.name!r}: its keys do not repeat, as {cycle.description} do not of "
+                f"{', '.join(others)}; give all its layers that cycle, or leave it out"
+            )
+    return notices
+
+
+def warn_invisible_layers(document: Document, script: PoseScript) -> list[str]:
+    """Tell of layers that a script poses, switches or chooses, and that are never seen so."""
+    first, last = document.frames.first, document.frames.last
+    notices = []
+    for part in script.layers:
+        if part.layer is None:
+            continue
+        layer = find_layer(document, part.layer)
+        choice = document.switch_group_of(layer.id)
+        late = [frame for frame, visible in part.visible or () if visible and frame > last]
+        if any(is_visible(document, layer, frame) for frame in range(first, last + 1)):
+            continue
+        if choice is not None:
+            notices.append(f"{part.layer} is never seen: the choice {choice.name!r} never shows it")
+        elif part.visible is None:
+            notices.append(
+                f"{part.layer} is hidden in the drawing, and so never seen; with "
+                '"visible": [[0, true]] it is'
+            )
+        elif late:
+            notices.append(
+                f"{part.layer} is never seen: it is shown from frame {late[0]} on, and the "
+                f"animation ends at frame {last}"
+            )
+        else:
+            notices.append(f"{part.layer} is never seen: its visible shows it at no frame")
+    late_changes = [
+        (f"choice {given.name!r}: {layer}", frame)
+        for given in script.choices
+        for frame, layer in given.turns
+    ]
+    for part in script.layers:
+        late_changes += [(f"what {part.layer} hangs on", joint.frame) for joint in part.attach]
+        late_changes += [(f"the order of {part.layer}", each.frame) for each in part.order]
+    return notices + [
+        f"{what} from frame {frame} on is never seen, as the animation ends at frame {last}"
+        for what, frame in late_changes
+        if frame > last
+    ]

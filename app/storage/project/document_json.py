@@ -1,0 +1,542 @@
+"""The document as `project.json`, except for its layers' pictures and arrays."""
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import astuple
+from importlib.metadata import version
+from math import inf
+from operator import attrgetter
+from types import MappingProxyType
+from typing import Any, Literal
+
+from app.document import (
+    FRAME_NAMES,
+    PAIRS,
+    AppliedMotion,
+    Attachment,
+    Bone,
+    CameraKey,
+    Cycle,
+    Document,
+    DrawOrderKey,
+    Easing,
+    ExportSettings,
+    FrameRange,
+    Group,
+    Handle,
+    Keyframe,
+    Layer,
+    LibraryPose,
+    Marker,
+    Meshing,
+    OpacityKey,
+    PictureFile,
+    PictureSettings,
+    Pose,
+    Spring,
+    SwitchGroup,
+    SwitchKey,
+    TangentMode,
+    Target,
+    Track,
+    TrackKey,
+    TransformKey,
+    UnreadMotion,
+    VisibilityKey,
+    require_motions,
+)
+from app.errors import EMPTY_IMPORT_LOG, EXPECTED_ERRORS, ImportLog, LissomError
+from app.export_formats import FormatOptions, FormatSettings
+from app.storage.json_values import (
+    ANYTHING,
+    FLAG,
+    NUMBER,
+    POINT,
+    TEXT,
+    WHOLE,
+    Codec,
+    Field,
+    JsonObject,
+    as_list,
+    as_object,
+    as_whole,
+    list_of,
+    nested_record,
+    optional,
+    pair,
+    record,
+    verbatim,
+)
+from app.storage.pictures import require_memory
+from app.storage.project.archive import Archive
+from app.storage.project.members import LayerMembers
+from engine.domain import CutOut, Domain, Slit, Stroke
+from engine.geometry.motions import Parameters
+from engine.maps import Boundary, Bounds, Certificate, HarmonicMap, certify
+
+SCHEMA = 3
+NO_LAYERS: Mapping[int, Layer] = MappingProxyType({})
+SIZE = pair(WHOLE, WHOLE, "two whole numbers")
+RANGE = pair(WHOLE, WHOLE, "two whole numbers", make=FrameRange, of=astuple)
+MARKER = record(Marker, Field("frame", WHOLE), Field("name", TEXT))
+
+
+def _counts(lines: Sequence[Stroke] | Sequence[Slit]) -> tuple[int, ...]:
+    """Return how many points each of some lines has."""
+    return tuple(len(line.points) for line in lines)
+
+
+def _read_joints(content: object, where: str) -> dict[str, int]:
+    """Return the handles of joints by their names."""
+    joints = as_object(content, where)
+    return {name: as_whole(handle, f"{where}.{name}") for name, handle in joints.items()}
+
+
+def _options(usual: FormatOptions) -> Codec:
+    """Return how the options of a format are held; of which kinds they are, the usual ones tell."""
+    kinds: dict[type, Codec] = {bool: FLAG, int: WHOLE}
+    named = {name: kinds.get(type(getattr(usual, name))) for name in usual.option_fields()}
+    fields = (Field(name, kind or optional(NUMBER)) for name, kind in named.items())
+    return nested_record(type(usual), *fields)
+
+
+EXPORT = nested_record(
+    ExportSettings,
+    Field("format", TEXT),
+    Field("size", optional(SIZE)),
+    Field("background", TEXT),
+    Field("framing", TEXT),
+    Field("frames", optional(RANGE)),
+    Field("names", TEXT, legacy_default=FRAME_NAMES),
+    Field(
+        "earlier",
+        list_of(
+            nested_record(
+                PictureSettings,
+                Field("format", TEXT),
+                Field("size", optional(SIZE)),
+                Field("background", TEXT),
+            )
+        ),
+        default=(),
+    ),
+    *(
+        Field(name, _options(usual), legacy_default=usual)
+        for name, usual in FormatSettings().options().items()
+    ),
+)
+HANDLE = record(
+    Handle,
+    Field("id", WHOLE),
+    Field("name", TEXT),
+    Field("position", POINT),
+    Field("weight", NUMBER),
+    Field("depth", NUMBER, default=0.0, legacy_name="front"),
+    Field("extent", optional(NUMBER), default=None),
+    Field("locked", FLAG, default=False),
+    Field("group", TEXT, default=""),
+    Field("is_unpinned", FLAG, default=False, legacy_name="free"),
+)
+DEPTH_POINTS = list_of(pair(WHOLE, NUMBER, "a handle and a number"))
+TARGETS = list_of(
+    record(
+        lambda handle, **target: (handle, Target(**target)),
+        Field("handle", WHOLE, lambda pair: pair[0]),
+        Field("position", POINT, lambda pair: pair[1].position),
+        Field("rotation", optional(NUMBER), lambda pair: pair[1].rotation),
+        unknown=lambda pair: pair[1].unknown,
+    )
+)
+# Keys and poses are read as their fields, which have no map yet.
+EASING = Codec(Easing.to_json, lambda content, _: Easing.parse(content))
+KEY = record(
+    dict,
+    Field("frame", WHOLE),
+    Field("easing", EASING),
+    # Before there were passings, every key had a corner.
+    Field("tangent_mode", TEXT, legacy_default=TangentMode.CORNER, legacy_name="passing"),
+    Field("revolutions", WHOLE, legacy_name="turns"),
+    Field("targets", TARGETS, lambda key: key.pose.targets.items()),
+    Field(
+        "depths",
+        DEPTH_POINTS,
+        lambda key: tuple(key.depths.items()),
+        default=(),
+        legacy_name="fronts",
+    ),
+)
+LIBRARY_POSE = record(
+    dict,
+    Field("name", TEXT),
+    Field("targets", TARGETS, lambda kept: kept.pose.targets.items()),
+)
+TRACK = record(
+    Track,
+    Field("handles", list_of(WHOLE)),
+    Field("is_scene_space", FLAG, default=False, legacy_name="planted"),
+    Field(
+        "keys",
+        list_of(
+            record(
+                TrackKey,
+                Field("frame", WHOLE),
+                Field("place", POINT),
+                Field("turn", NUMBER, default=0.0),
+                Field("easing", EASING),
+                Field("tangent_mode", TEXT, legacy_name="passing"),
+                Field("velocity", optional(POINT), default=None),
+            )
+        ),
+    ),
+    Field("delay", WHOLE, default=0),
+    Field("reach", NUMBER, default=1.0),
+    Field("keys_rotation", FLAG, default=False, legacy_name="turns"),
+    Field("enabled", FLAG, default=True),
+)
+SPRING = record(
+    Spring,
+    Field("handle", WHOLE),
+    Field("frequency", NUMBER),
+    Field("damping", NUMBER),
+    Field("lag", NUMBER, default=0.0),
+    Field("strength", NUMBER, default=1.0),
+    Field("root", optional(WHOLE), default=None),
+    # Before springs had roots, all of them swung freely.
+    Field("stretch", NUMBER, legacy_default=1.0),
+    Field("enabled", FLAG, default=True),
+)
+CYCLE = record(
+    Cycle,
+    Field("first", WHOLE),
+    Field("last", WHOLE),
+    Field("until", optional(WHOLE)),
+)
+BONE = record(
+    Bone,
+    Field("ends", pair(WHOLE, WHOLE, "two handles")),
+    Field("stiffness", NUMBER, legacy_name="amount"),
+    Field("is_shown", FLAG, default=True),
+)
+APPLIED_MOTION = record(
+    AppliedMotion,
+    Field("motion", TEXT),
+    Field("kind", TEXT),
+    Field(
+        "joints",
+        Codec(dict, _read_joints),
+    ),
+    Field("facing", WHOLE),
+    Field(
+        "parameters",
+        nested_record(
+            Parameters,
+            *(Field(name, NUMBER) for name in ("speed", "size", "energy", "start")),
+            *(Field(name, FLAG) for name in ("mirrored", "travel")),
+        ),
+    ),
+    *(Field(name, WHOLE) for name in ("first", "start", "last")),
+    Field("repeat_count", WHOLE, legacy_name="rounds"),
+    Field("digest", TEXT),
+)
+
+
+def _write_motions(layer: Layer) -> list[Any]:
+    """Return a layer's motions, with those that were not read in their places."""
+    written = [APPLIED_MOTION.write(motion) for motion in layer.motions]
+    for unread in layer.unread_motions:
+        written.insert(unread.index, unread.content)
+    return written
+
+
+def _read_motions(content: object, handles: Collection[int]) -> dict[str, Any]:
+    """Return a layer's motions, and those that are not known here, or do not fit."""
+    motions: list[AppliedMotion] = []
+    unread = []
+    for index, each in enumerate(as_list(content, "motions")):
+        try:
+            motion = APPLIED_MOTION.read(each, f"motions[{index}]")
+            require_motions([*motions[-1:], motion], handles)
+        except EXPECTED_ERRORS as error:
+            unread.append(UnreadMotion(index=index, content=each, reason=str(error)))
+        else:
+            motions.append(motion)
+    return {"motions": tuple(motions), "unread_motions": tuple(unread)}
+
+
+BACKGROUND = Codec(
+    lambda value: list(value) if isinstance(value, tuple) else value,
+    lambda content, where: (list_of(WHOLE) if isinstance(content, list) else TEXT).read(
+        content, where
+    ),
+)
+STROKE = nested_record(
+    dict,
+    Field("points", WHOLE, lambda stroke: len(stroke.points)),
+    Field("radius", NUMBER),
+    Field("keeps", FLAG),
+)
+# How a layer's domain was made, from the layer.
+DOMAIN = nested_record(
+    dict,
+    Field("detail", TEXT, attrgetter("meshing.detail")),
+    Field("triangles", WHOLE, attrgetter("meshing.triangles")),
+    Field("tolerance", WHOLE, attrgetter("cut_out.tolerance")),
+    Field("background", BACKGROUND, attrgetter("cut_out.background"), legacy_default="auto"),
+    Field("enclosed", TEXT, attrgetter("cut_out.enclosed"), legacy_default="keep"),
+    Field("mask", FLAG, lambda layer: layer.cut_out.mask is not None, legacy_default=False),
+    Field("strokes", list_of(STROKE), attrgetter("cut_out.strokes"), legacy_default=()),
+    Field("holes", TEXT, attrgetter("cut_out.holes"), legacy_default="fill"),
+    Field("swapped", list_of(POINT), attrgetter("cut_out.swapped"), legacy_default=()),
+    Field("slits", list_of(WHOLE), lambda layer: _counts(layer.cut_out.slits), default=()),
+    Field("parted", FLAG, lambda layer: layer.domain.closed is not None, default=False),
+    Field("stale", FLAG, attrgetter("is_stale"), legacy_default=False),
+)
+VISIBILITY_KEY = pair(WHOLE, FLAG, "a frame and true or false", make=VisibilityKey, of=astuple)
+ATTACHMENT = record(
+    Attachment,
+    Field("parent", optional(WHOLE), legacy_name="to"),
+    Field("parent_point", POINT, legacy_name="at"),
+    Field("inherits_rotation", FLAG, legacy_name="turns"),
+    Field("rest_rotation", NUMBER, legacy_name="rest"),
+    Field("frame", WHOLE, default=0),
+    Field("offset", POINT, default=0j),
+    Field("keep_world_transform", FLAG, default=False, legacy_name="keeps"),
+    Field("kept_since", optional(WHOLE), default=None, legacy_name="since"),
+    Field("blends_to_next", FLAG, default=False, legacy_name="leads"),
+)
+TANGENT_FIELDS = (
+    Field("frame", WHOLE),
+    Field("easing", EASING),
+    Field("tangent_mode", TEXT, legacy_name="passing"),
+)
+CAMERA = list_of(
+    record(
+        CameraKey,
+        *TANGENT_FIELDS,
+        Field("centre", POINT),
+        Field("zoom", NUMBER),
+        Field("turn", NUMBER),
+    )
+)
+TRANSFORM_KEYS = list_of(
+    record(TransformKey, *TANGENT_FIELDS, Field("shift", POINT), Field("turn", NUMBER))
+)
+OPACITY_KEYS = list_of(record(OpacityKey, *TANGENT_FIELDS, Field("opacity", NUMBER)))
+DRAW_ORDER_KEYS = list_of(
+    nested_record(
+        DrawOrderKey,
+        Field("frame", WHOLE),
+        Field("beside", optional(WHOLE)),
+        Field("in_front", FLAG),
+    )
+)
+GROUP = record(
+    Group,
+    Field("name", TEXT),
+    Field("opacity", NUMBER, default=1.0),
+    Field("hidden", FLAG, default=False),
+    Field("blend", TEXT, default="pass-through"),
+    Field("clipped", FLAG, default=False),
+)
+LAYER = record(
+    dict,
+    Field("id", WHOLE),
+    Field(
+        "picture",
+        nested_record(dict, Field("suffix", TEXT), Field("sha256", TEXT), Field("size", SIZE)),
+    ),
+    Field("domain", DOMAIN, verbatim),
+    Field("handles", list_of(HANDLE)),
+    Field("next_handle", WHOLE),
+    Field("keys", list_of(KEY)),
+    Field("anchor", optional(POINT)),
+    # Before there were auto-pins, handles moved as they liked between keys.
+    Field("has_auto_pins", FLAG, default=False, legacy_name="stillness"),
+    Field("tracks", list_of(TRACK), default=()),
+    Field("springs", list_of(SPRING), default=()),
+    Field("cycles", list_of(CYCLE), default=()),
+    Field("bones", list_of(BONE), default=()),
+    Field("motions", ANYTHING, _write_motions, default=[]),
+    Field("stiffness", FLAG, lambda layer: layer.stiffness is not None, default=False),
+    Field("variant", TEXT),
+    Field(
+        "bounds",
+        nested_record(Bounds, *(Field(name, NUMBER) for name in ("k", "sigma_a", "sigma_b"))),
+    ),
+    Field("library", list_of(LIBRARY_POSE)),
+    Field("mirror", optional(NUMBER)),
+    # What it is as a layer: a scene of one layer says none of it.
+    Field("name", TEXT, default="layer"),
+    Field("corner", POINT, default=0j),
+    Field("still", FLAG, default=False),
+    Field("reference", FLAG, default=False),
+    Field("locked", FLAG, default=False),
+    Field("hidden", FLAG, default=False),
+    Field("visibility_keys", list_of(VISIBILITY_KEY), default=(), legacy_name="switches"),
+    Field("opacity", NUMBER, default=1.0),
+    Field("opacity_keys", OPACITY_KEYS, default=(), legacy_name="opacities"),
+    Field("transform_keys", TRANSFORM_KEYS, default=(), legacy_name="movement"),
+    Field("draw_order_keys", DRAW_ORDER_KEYS, default=(), legacy_name="placings"),
+    Field("blend", TEXT, default="normal"),
+    Field("clipped", FLAG, default=False),
+    Field("group", TEXT, default=""),
+    # Its joints: the first one, and those that come later.
+    Field(
+        "attachment", optional(ATTACHMENT), lambda each: (*each.attachments, None)[0], default=None
+    ),
+    Field("handovers", list_of(ATTACHMENT), lambda each: each.attachments[1:], default=()),
+)
+IMPORT_LOG = nested_record(
+    ImportLog,
+    Field("warnings", list_of(TEXT), legacy_name="losses"),
+    Field("notes", list_of(TEXT), legacy_name="matters"),
+)
+SWITCH_GROUP = record(
+    SwitchGroup,
+    Field("name", TEXT),
+    Field("layers", list_of(WHOLE), legacy_name="figures"),
+    Field(
+        "keys",
+        list_of(pair(WHOLE, WHOLE, "a frame and a layer", make=SwitchKey, of=tuple)),
+        legacy_name="turns",
+    ),
+)
+DOCUMENT = record(
+    dict,
+    Field("schema", WHOLE, lambda _: SCHEMA),
+    Field("app_version", ANYTHING, lambda _: version("lissom"), legacy_default=None),
+    Field("layers", list_of(LAYER), legacy_name="figures"),
+    Field("frames", RANGE),
+    Field("preview", optional(RANGE)),
+    Field("markers", list_of(MARKER)),
+    Field("fps", NUMBER),
+    Field("loop", FLAG),
+    Field("export", EXPORT),
+    Field("size", optional(SIZE), default=None),
+    Field("pairs", list_of(pair(TEXT, TEXT, "two words")), default=PAIRS),
+    Field("switch_groups", list_of(SWITCH_GROUP), default=(), legacy_name="choices"),
+    Field("groups", list_of(GROUP), default=()),
+    Field("camera", CAMERA, default=()),
+    Field("import_log", IMPORT_LOG, default=EMPTY_IMPORT_LOG, legacy_name="told"),
+)
+
+
+def write_document(document: Document) -> dict[str, Any]:
+    """Return the fields of a document, those that this version does not know among them."""
+    written: dict[str, Any] = DOCUMENT.write(document)
+    return written
+
+
+def read_document(
+    content: JsonObject, archive: Archive, known: Mapping[int, Layer] = NO_LAYERS
+) -> Document:
+    """Return the document with these fields, and with the pictures and arrays of an archive.
+
+    Of an archive that was just written, layers that are `known` by their ids are not read again;
+    they come first.
+
+    Raises
+    ------
+    LissomError, EngineError
+        If a field is missing or of another kind, or the document would not be valid.
+    """
+    if as_whole(content["schema"], "schema") == 1:
+        _bring_up_to_schema_2(content)
+    if known:
+        others = [each for each in content["layers"] if each["id"] not in known]
+        content = JsonObject({**content, "layers": others}, content.where)
+    fields = DOCUMENT.read(content, "")
+    del fields["schema"], fields["app_version"]
+    layers = fields.pop("layers")
+    if len({layer["id"] for layer in layers}) < len(layers):
+        # Told before their members are read, once for each.
+        raise LissomError("two of its layers have the same id")
+    shared: dict[str, PictureFile] = {}
+    read = tuple(_read_layer(layer, archive, shared) for layer in layers)
+    if not archive.is_written:
+        require_memory(picture.size for picture in {layer.picture for layer in read})
+    return Document(layers=(*known.values(), *read), **fields)
+
+
+def _bring_up_to_schema_2(content: JsonObject) -> None:
+    """Give the fields of schema 1 those that came with schema 2, so that nothing looks different.
+
+    What played was what was exported, unless exports had frames of their own.
+    """
+    work = content.pop("work")
+    content |= {"preview": work, "markers": []}
+    export = as_object(content["export"], "export")
+    if export["frames"] is None:
+        content["export"] = {**export, "frames": work}
+    content["figures"] = [
+        {**as_object(layer, f"figures[{i}]"), "library": [], "mirror": None}
+        for i, layer in enumerate(as_list(content["figures"], "figures"))
+    ]
+
+
+def _read_layer(fields: dict[str, Any], archive: Archive, shared: dict[str, PictureFile]) -> Layer:
+    """Return the layer with these fields; what holds of its maps is proven anew.
+
+    Its picture is one of those that are `shared`, by their checksums, or becomes one.
+    """
+    members, made = LayerMembers(archive, fields["id"]), fields.pop("domain")
+    picture = members.picture(**fields["picture"])
+    same = shared.setdefault(picture.sha256, picture)
+    if (same.suffix, same.size) == (picture.suffix, picture.size):
+        picture = same
+    domain = members.domain(parted=made.pop("parted"))
+    proven = _unproven if archive.is_written else _prover(domain, fields["bounds"])
+
+    def pose(kind: Literal["keys", "poses"], index: int, given: tuple[Any, ...]) -> Pose:
+        targets, f = dict(given), members.map(domain, kind, index)
+        if len(targets) < len(given):
+            raise LissomError(f"one of its {kind} has two targets for one handle")
+        return Pose.of(f, targets, proven(f))
+
+    motions = _read_motions(fields.pop("motions"), {handle.id for handle in fields["handles"]})
+    first, later = fields.pop("attachment"), fields.pop("handovers")
+    for index, key in enumerate(fields["keys"]):
+        key["pose"] = pose("keys", index, key.pop("targets"))
+        key["depths"] = dict(key["depths"])
+    for index, kept in enumerate(fields["library"]):
+        kept["pose"] = pose("poses", index, kept.pop("targets"))
+    return Layer(
+        **fields
+        | motions
+        | {
+            "picture": picture,
+            "attachments": (*(() if first is None else (first,)), *later),
+            "domain": domain,
+            "meshing": Meshing(detail=made.pop("detail"), triangles=made.pop("triangles")),
+            "is_stale": made.pop("stale"),
+            "stiffness": members.stiffness(domain) if fields["stiffness"] else None,
+            "cut_out": _cut_out(made, members, picture.size),
+            "keys": tuple(Keyframe(**key) for key in fields["keys"]),
+            "library": tuple(LibraryPose(**kept) for kept in fields["library"]),
+        }
+    )
+
+
+def _prover(domain: Domain, bounds: Bounds) -> Callable[[HarmonicMap], Certificate]:
+    """Return what proves maps of a domain."""
+    boundary = Boundary.sample(domain)
+    return lambda f: certify(f, boundary, bounds)
+
+
+def _unproven(_: HarmonicMap) -> Certificate:
+    """Return the certificate of a map of which nothing is said."""
+    return Certificate(k=inf, sigma_a=inf, sigma_b=-inf, winding=None, certified=False)
+
+
+def _cut_out(fields: dict[str, Any], members: LayerMembers, size: tuple[int, int]) -> CutOut:
+    strokes = fields.pop("strokes")
+    ways = members.lines("strokes", [stroke.pop("points") for stroke in strokes])
+    return CutOut(
+        **fields
+        | {
+            "mask": members.mask(size) if fields["mask"] else None,
+            "strokes": tuple(
+                Stroke(points=way, **stroke) for stroke, way in zip(strokes, ways, strict=True)
+            ),
+            "slits": tuple(Slit(points=way) for way in members.lines("slits", fields["slits"])),
+        }
+    )

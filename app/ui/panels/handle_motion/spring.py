@@ -1,0 +1,132 @@
+"""What a handle follows by: a spring that swings about its place in the motion."""
+
+from dataclasses import replace
+from typing import Any
+
+from imgui_bundle import icons_fontawesome_6 as icons, imgui
+
+from app.document import SPRING_PRESETS, Handle, Layer, Spring, spring_root, track_commands
+from app.editor import Action, Project, do
+from app.editor.actions import editing, springs
+from app.ui.style import (
+    FILL,
+    Look,
+    Scale,
+    align_right,
+    draw_tooltip,
+    heading,
+    icon_button,
+    label,
+    option_buttons,
+    slider,
+    small_text,
+    text_button,
+)
+
+FREQUENCIES = Scale(left=0.2, right=12.0, logarithmic=True)
+DAMPINGS = Scale(left=0.0, right=1.5)
+LAGS = Scale(left=0.0, right=12.0)
+STRENGTHS = Scale(left=0.0, right=2.0)
+STRETCHES = Scale(left=0.0, right=1.0)
+LEAST_FREQUENCY = 0.01  # Hz
+NEAREST = "Nearest handle"
+NO_ROOT = "It swings freely: add a handle where it hangs on, and it keeps its length."
+# Each number of a spring: its field, its label, what it spans, how it is written, what it means.
+NUMBERS = (
+    ("frequency", "Frequency", FREQUENCIES, "%.2f", "How often it swings in a second, in Hz"),
+    ("damping", "Damping", DAMPINGS, "%.2f", "How soon it comes to rest: 0 never, 1 at once"),
+    ("lag", "Lag", LAGS, "%.1f", "By how many frames it notices later that its place moves"),
+    ("strength", "Strength", STRENGTHS, "%.2f", "How far it swings: 1 as a spring does"),
+    ("stretch", "Stretch", STRETCHES, "%.2f", "How far its length changes: 0 not, 1 as it likes"),
+)
+
+
+def draw_spring(look: Look, project: Project, handle: Handle) -> list[Action]:
+    """Draw how a handle follows, if it does, and what it swings like."""
+    spring, actions = project.layer.spring_of(handle.id), list[Action]()
+    heading(look, "Follows", framed=True)
+    if spring is not None:
+        align_right(1.15 * imgui.get_frame_height())
+        if icon_button(look, icons.ICON_FA_TRASH, "delete spring", "Let it follow no longer"):
+            command = track_commands.remove_springs
+            actions.append(do(editing.edit_layer, command, (handle.id,)))
+    label(look, "Like")
+    names = [(name, name.capitalize()) for name in SPRING_PRESETS]
+    taken = option_buttons(look, "preset", names, "" if spring is None else _preset(spring))
+    draw_tooltip("Let it come late and swing, like one of these")
+    if taken is not None:
+        frequency, damping = SPRING_PRESETS[taken]
+        usual = spring or Spring(handle=handle.id, frequency=frequency, damping=damping)
+        actions.append(_set(replace(usual, frequency=frequency, damping=damping)))
+    if spring is None:
+        small_text(look, "It follows the shape at once. Choose what it swings like.")
+        return actions
+    track = project.layer.track_of(handle.id)
+    if track is not None and track.enabled:
+        small_text(look, "Its track comes first: the spring waits until that is off.")
+    label(look, "Spring")
+    changed, enabled = imgui.checkbox("on##spring", spring.enabled)
+    draw_tooltip("Whether it follows so; its numbers stay")
+    if changed:
+        actions.append(_set(replace(spring, enabled=enabled)))
+    actions += _root(look, project.layer, spring)
+    for field, text, scale, written, hint in NUMBERS:
+        label(look, text)
+        entered = slider(look, field, getattr(spring, field), scale, text=written, hint=hint)
+        if entered is not None:
+            changed_field: dict[str, Any] = {field: _allowed(field, entered.value)}
+            actions.append(_set(replace(spring, **changed_field)))
+    can = spring.enabled and track is None
+    hint = (
+        "Turn the swing into a track, whose keys can be changed"
+        if can
+        else "Switch the spring on first"
+        if not spring.enabled
+        else "Its track comes before the spring: delete the track first"
+    )
+    if text_button("Make keys of it", FILL, hint, enabled=can):
+        actions.append(do(springs.make_keys, handle.id))
+    return actions
+
+
+def _allowed(field: str, value: float) -> float:
+    """Return a value that a spring can have."""
+    least = LEAST_FREQUENCY if field == "frequency" else 0.0
+    most = {
+        "frequency": 1000.0,
+        "damping": 100.0,
+        "lag": 10_000.0,
+        "strength": 10.0,
+        "stretch": 1.0,
+    }[field]
+    return min(max(round(value, 3), least), most)
+
+
+def _root(look: Look, layer: Layer, spring: Spring) -> list[Action]:
+    """Draw about which handle it swings, and what chooses another one."""
+    actions: list[Action] = []
+    nearest = spring_root(layer, replace(spring, root=None))
+    nearest_name = NEAREST if nearest is None else f"{NEAREST}: {layer.handle(nearest).name}"
+    label(look, "Swings about")
+    imgui.set_next_item_width(-1)
+    shown = nearest_name if spring.root is None else layer.handle(spring.root).name
+    if imgui.begin_combo("##root", shown):
+        names = [(handle.id, handle.name) for handle in layer.handles]
+        for root, name in [(None, nearest_name), *names]:
+            if root != spring.handle and imgui.menu_item_simple(f"{name}###about {root}"):
+                actions.append(_set(replace(spring, root=root)))
+        imgui.end_combo()
+    draw_tooltip("The handle to which it keeps its distance, as an ear's tip to the head")
+    if nearest is None and spring.root is None:
+        small_text(look, NO_ROOT)
+    return actions
+
+
+def _set(spring: Spring) -> Action:
+    return do(editing.edit_layer, track_commands.put_spring, spring)
+
+
+def _preset(spring: Spring) -> str:
+    """Return the name of the preset that a spring is, if any."""
+    own = spring.frequency, spring.damping
+    return next((name for name, numbers in SPRING_PRESETS.items() if numbers == own), "")

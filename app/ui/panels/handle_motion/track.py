@@ -1,0 +1,176 @@
+"""The track of a handle: keys of its own, beside those of whole poses."""
+
+import math
+from dataclasses import replace
+
+from imgui_bundle import icons_fontawesome_6 as icons, imgui
+
+from app.document import Handle, Track, mirrored_handles, misses_target, track_at, track_commands
+from app.editor import Action, Project, Session, do
+from app.editor.actions import editing, playback, tracks
+from app.ui.style import (
+    Look,
+    Scale,
+    align_right,
+    draw_tooltip,
+    heading,
+    icon_button,
+    label,
+    number_field,
+    option_buttons,
+    slider,
+    small_text,
+    split_line,
+    text_button,
+)
+
+REACHES = Scale(left=0.0, right=1.0)
+LONGEST = 48  # frames: the delay at the end of the slider, where nothing comes round
+KINDS = (("pose", "With the pose"), ("picture", "Planted"))
+
+
+def draw_track(session: Session, look: Look, project: Project, handle: Handle) -> list[Action]:
+    """Draw the track of a handle, if it has one."""
+    track = project.layer.track_of(handle.id)
+    if track is None:
+        return []
+    heading(look, "Own track", framed=True)
+    align_right(1.15 * imgui.get_frame_height())
+    actions: list[Action] = []
+    hint = "Delete the track: the handle moves with the whole pose again"
+    if icon_button(look, icons.ICON_FA_TRASH, "delete track", hint):
+        command = track_commands.remove_tracks
+        actions.append(do(editing.edit_layer, command, (handle.id,)))
+    _together(look, project, track)
+    actions += _here(session, look, project, track)
+    actions += _kind(look, project, handle, track) + _numbers(look, project, handle, track)
+    actions += _copies(project, handle)
+    _out_of_reach(session, look, project, handle)
+    return actions
+
+
+def _together(look: Look, project: Project, track: Track) -> None:
+    """Tell which handles a track moves, if they are several."""
+    if len(track.handles) > 1:
+        names = ", ".join(project.layer.handle(identity).name for identity in track.handles)
+        small_text(look, f"It moves {names} together.")
+
+
+def _here(session: Session, look: Look, project: Project, track: Track) -> list[Action]:
+    """Draw what the track wants in the present frame; what is entered there becomes a key."""
+    actions: list[Action] = []
+    frame = playback.current_frame(session, project)
+    at = track_at(replace(track, enabled=True), project.clip, frame)
+    if at is None:
+        small_text(look, "It acts from its first key to its last, not in this frame.")
+        return actions
+    first, height = track.handles[0], project.document.canvas[1] if track.is_scene_space else 0.0
+    name = "Place" if track.is_scene_space else "Offset"
+    hint = (
+        "Where it is wanted here, in pixels from the upper left corner: typing makes a key"
+        if track.is_scene_space
+        else "How far it is beside the pose here, in pixels right and down: typing makes a key"
+    )
+    label(look, name)
+    entered = []
+    widths = split_line(2, imgui.get_style().item_inner_spacing.x)
+    for axis, value, width in zip(
+        "xy", (at.place.real, height - at.place.imag), widths, strict=True
+    ):
+        imgui.set_next_item_width(width)
+        entered.append(number_field(f"track {axis}", value, "%.1f"))
+        draw_tooltip(hint)
+    x, y = entered
+    if x is not None or y is not None:
+        place = complex(
+            at.place.real if x is None else x, at.place.imag if y is None else height - y
+        )
+        actions.append(do(tracks.put, first, place))
+    if track.keys_rotation:
+        label(look, "Turned by")
+        turn = number_field("track turn", math.degrees(at.turn), "%.1f°")
+        draw_tooltip("Beyond what the pose turns it here, counter-clockwise: typing makes a key")
+        if turn is not None:
+            actions.append(do(tracks.put, first, at.place, math.radians(turn)))
+    return actions
+
+
+def _kind(look: Look, project: Project, handle: Handle, track: Track) -> list[Action]:
+    """Draw whether a track acts, what its keys are places in, and whether they turn the shape."""
+    actions: list[Action] = []
+    label(look, "Keys are")
+    kind = option_buttons(look, "kind", KINDS, "picture" if track.is_scene_space else "pose")
+    draw_tooltip(
+        "Beside where the pose has it, or places in the picture, as of a foot on the ground"
+    )
+    if kind is not None:
+        actions.append(do(tracks.plant, handle.id, kind == "picture"))
+    label(look, "Track")
+    changed, enabled = imgui.checkbox("on##track", track.enabled)
+    draw_tooltip("Whether the track acts; its keys stay")
+    if changed:
+        command = track_commands.enable_track(project.active, handle.id, enabled=enabled)
+        actions.append(do(editing.edit, command))
+    imgui.same_line()
+    changed, turns = imgui.checkbox("Keys turn it, too", track.keys_rotation)
+    draw_tooltip("Let its keys turn the shape at the handle; else it turns as the shape likes")
+    if changed:
+        command = track_commands.set_turning(project.active, handle.id, turns=turns)
+        actions.append(do(editing.edit, command))
+    return actions
+
+
+def _numbers(look: Look, project: Project, handle: Handle, track: Track) -> list[Action]:
+    actions: list[Action] = []
+    frames = project.document.frames
+    longest = frames.last - frames.first if project.document.loop else LONGEST
+    label(look, "Delay")
+    hint = "By how many frames the track is late; in a loop it comes round"
+    scale = Scale(left=0.0, right=float(max(longest, 1)))
+    entered = slider(look, "delay", float(track.delay), scale, text="%.0f", hint=hint)
+    if entered is not None:
+        delay = round(scale.clamp(entered.value) if project.document.loop else entered.value)
+        actions.append(do(editing.edit_layer, track_commands.set_delay, handle.id, delay))
+    label(look, "Reach")
+    hint = "How far around the handle the body gives: 0 hardly, 1 as it likes"
+    entered = slider(look, "reach", track.reach, REACHES, hint=hint)
+    if entered is not None:
+        reach = round(REACHES.clamp(entered.value), 2)
+        actions.append(do(editing.edit_layer, track_commands.set_reach, handle.id, reach))
+    return actions
+
+
+def _copies(project: Project, handle: Handle) -> list[Action]:
+    """Draw what gives another handle the same track."""
+    actions: list[Action] = []
+    widths, layer = split_line(2), project.layer
+    imgui.set_next_item_width(next(widths))
+    if imgui.begin_combo("##copy track", "Copy to…"):
+        for other in layer.handles:
+            if other.id == handle.id:
+                continue
+            mark = "" if layer.track_of(other.id) is None else "  (has one)"
+            if imgui.menu_item_simple(f"{other.name}{mark}###copy to {other.id}"):
+                command = track_commands.copy_track
+                actions.append(do(editing.edit_layer, command, handle.id, other.id))
+        imgui.end_combo()
+    draw_tooltip("Give another handle the same track, in place of its own")
+    words = project.document.pairs
+    partners = mirrored_handles(layer.handles, layer.axis, layer.domain.outline, words)
+    is_pair = partners.get(handle.id, handle.id) != handle.id
+    hint = (
+        "Give its partner on the other side the mirrored track"
+        if is_pair
+        else "Mirror its track: no partner on the other side was found by name or place"
+    )
+    if text_button("Mirror track" if not is_pair else "Copy mirrored", next(widths), hint):
+        actions.append(do(editing.edit_layer, track_commands.mirror_track, handle.id, words))
+    return actions
+
+
+def _out_of_reach(session: Session, look: Look, project: Project, handle: Handle) -> None:
+    """Tell by how much the handle misses its track in the present frame, where it does."""
+    frame, corrected = playback.current_frame(session, project), project.puppet.corrected
+    miss = corrected.misses.get(frame, {}).get(handle.id, 0.0) if corrected else 0.0
+    if misses_target(project.layer, miss):
+        small_text(look, f"{miss:.0f} px short of its track here.", look.palette.danger)

@@ -1,0 +1,169 @@
+"""Where the drawing is stiff and where it is soft: a brush, bones, and keys posed again by it."""
+
+import numpy as np
+from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
+
+from app.document import Layer
+from app.editor import Action, MaterialTool, Project, Session, do
+from app.editor.actions import cutting, material, posing, rebuilding, viewing
+from app.ui.panels.layer_setup.cut_out import BRUSHES
+from app.ui.shortcuts import BINDINGS
+from app.ui.style import (
+    Look,
+    Scale,
+    align_right,
+    draw_tooltip,
+    heading,
+    icon_button,
+    label,
+    progress_bar,
+    slider,
+    small_text,
+    split_line,
+    text_button,
+)
+
+STRENGTHS = Scale(left=material.WEAKEST, right=material.STRONGEST, logarithmic=True)
+AMOUNTS = Scale(left=1 / material.SOFTEST, right=material.STRONGEST, logarithmic=True)
+SOFTNESSES = Scale(left=0.0, right=1.0)
+TOOLS: tuple[tuple[MaterialTool, str, str, str], ...] = (
+    ("stiff", icons.ICON_FA_CUBE, "Stiff", "Brush over what is to bend and stretch less"),
+    ("soft", icons.ICON_FA_FEATHER, "Soft", "Brush over what is to give way first"),
+    ("normal", icons.ICON_FA_ERASER, "Normal", "Brush over what is to be as it was"),
+    ("bone", icons.ICON_FA_BONE, "Bone", "Drag from one handle to another: the limb is stiff"),
+)
+
+
+def draw_material_panel(session: Session, look: Look, project: Project) -> list[Action]:
+    """Draw the brush, the bones, and what brings their effect into keys that are there."""
+    layer = project.layer
+    heading(look, "Brush", framed=True)
+    align_right(1.15 * imgui.get_frame_height())
+    hint, is_painted = "Take back all that is painted; bones stay", layer.stiffness is not None
+    actions = [] if session.tint == "stiffness" else [do(viewing.tint, "stiffness")]
+    if icon_button(look, icons.ICON_FA_TRASH, "clear material", hint, enabled=is_painted):
+        actions.append(do(material.clear))
+    actions += _tools(session, look) + _brush(session, look, project)
+    heading(look, "Bones", framed=True)
+    actions += _bones(look, layer)
+    heading(look, "Whole layer")
+    actions += _whole(layer)
+    heading(look, "Keys")
+    return actions + _keys(session, look, project)
+
+
+def _tools(session: Session, look: Look) -> list[Action]:
+    actions: list[Action] = []
+    palette, widths = look.palette, split_line(len(TOOLS))
+    for (tool, icon, name, hint), width in zip(TOOLS, widths, strict=True):
+        is_chosen = session.material == tool
+        imgui.push_style_color(imgui.Col_.button, palette.accent if is_chosen else palette.raised)
+        imgui.push_style_color(imgui.Col_.text, palette.on_accent if is_chosen else palette.text)
+        if imgui.button(f"{icon}  {name}###{tool} tool", ImVec2(width, 0)):
+            actions.append(do(material.take_up, tool))
+        imgui.pop_style_color(2)
+        draw_tooltip(hint)
+    return actions
+
+
+def _brush(session: Session, look: Look, project: Project) -> list[Action]:
+    actions: list[Action] = []
+    label(look, "Size")
+    keys = " and ".join(BINDINGS[name].shown_keys for name in ("smaller brush", "larger brush"))
+    hint = f"Radius of the brush in pixels of the picture; {keys} change it"
+    radius = cutting.brush_radius(project)
+    entered = slider(look, "material brush", radius, BRUSHES, text="%.0f", hint=hint)
+    if entered is not None:
+        actions.append(do(cutting.set_brush, entered.value))
+    label(look, "Strength")
+    hint = "How many times as stiff, or as soft, it makes what it covers"
+    entered = slider(look, "strength", session.strength, STRENGTHS, text="%.1f ×", hint=hint)
+    if entered is not None:
+        actions.append(do(material.set_strength, entered.value))
+    label(look, "Soft edge")
+    hint = "Over which part of the radius that becomes less"
+    entered = slider(look, "softness", session.softness, SOFTNESSES, hint=hint)
+    if entered is not None:
+        actions.append(do(material.set_softness, entered.value))
+    small_text(
+        look, "It acts on the outline within its radius, and by that as deep as a limb is thick."
+    )
+    if session.material == "stiff":
+        small_text(look, _describe_limits(project.layer, session.strength))
+    return actions
+
+
+def _bones(look: Look, layer: Layer) -> list[Action]:
+    if not layer.bones:
+        small_text(look, "None yet. With “Bone” in hand, drag from a handle to the next one.")
+        return []
+    actions: list[Action] = []
+    is_shown = any(bone.is_shown for bone in layer.bones)
+    align_right(1.15 * imgui.get_frame_height())
+    eye = icons.ICON_FA_EYE if is_shown else icons.ICON_FA_EYE_SLASH
+    if icon_button(look, eye, "show bones", "Show the bones, or hide them: they act either way"):
+        actions.append(do(material.show_bones, shown=not is_shown))
+    for bone in layer.bones:
+        first, second = (layer.handle(identity).name for identity in bone.ends)
+        name = f"{first} – {second}"
+        imgui.push_id(str(bone.ends))
+        imgui.align_text_to_frame_padding()
+        imgui.text_unformatted(name)
+        align_right(1.15 * imgui.get_frame_height())
+        if icon_button(look, icons.ICON_FA_XMARK, "delete bone", "Take this bone away"):
+            actions.append(do(material.remove_bone, bone.ends))
+        hint = "How many times as stiff as usual the limb is"
+        entered = slider(look, "amount", bone.stiffness, AMOUNTS, text="%.1f ×", hint=hint)
+        if entered is not None:
+            actions.append(do(material.set_bone, bone.ends, entered.value))
+        small_text(look, _describe_limits(layer, bone.stiffness))
+        imgui.pop_id()
+    return actions
+
+
+def _describe_limits(layer: Layer, amount: float) -> str:
+    """Return in words what new poses keep to where a layer is so stiff all around."""
+    if amount <= 1:
+        return "It gives way first, within the limits of the layer."
+    limits = layer.bounds.stiffened(np.array([amount]))
+    fields = limits.k, limits.sigma_a, limits.sigma_b
+    shear, stretch, squeeze = (float(np.ravel(each)[0]) for each in fields)
+    return (
+        f"In new poses it bends at most {shear:.0%}, stretches at most {stretch - 1:.0%} and "
+        f"shrinks at most {1 - squeeze:.0%}."
+    )
+
+
+def _whole(layer: Layer) -> list[Action]:
+    actions: list[Action] = []
+    widths = split_line(2)
+    hint = "Heads, hands and feet stiff, tails and hair soft, by the names of the handles"
+    text = f"{icons.ICON_FA_WAND_MAGIC_SPARKLES}  By names"
+    if text_button(text, next(widths), hint, enabled=bool(layer.handles)):
+        actions.append(do(material.suggest))
+    hint = "Give both sides of the mirror axis what one of them has"
+    is_any = layer.stiffness is not None or bool(layer.bones)
+    text = f"{icons.ICON_FA_ARROWS_LEFT_RIGHT}  Mirror"
+    if text_button(text, next(widths), hint, enabled=is_any):
+        actions.append(do(material.mirror))
+    return actions
+
+
+def _keys(session: Session, look: Look, project: Project) -> list[Action]:
+    small_text(look, "Keys keep their poses until they are posed again with this material.")
+    renewal = project.renewal
+    if renewal is not None and renewal.new_layer is None:
+        return (
+            [do(rebuilding.cancel)] if progress_bar(renewal.progress, renewal.status_text) else []
+        )
+    actions: list[Action] = []
+    is_possible = renewal is None and bool(project.layer.handles)
+    is_here = is_possible and posing.pose_here(session, project) is not None
+    widths = split_line(2)
+    hint = "Pull the handles of the pose that is shown to their targets again"
+    if text_button("Pose this key again", next(widths), hint, enabled=is_here):
+        actions.append(do(material.pose_again))
+    hint = "Pull the handles of every key to their targets again"
+    if text_button("Pose all keys again", next(widths), hint, enabled=is_possible):
+        actions.append(do(rebuilding.solve_again))
+    return actions

@@ -1,0 +1,129 @@
+"""What of a layer has keys of its own: how opaque it is, where it is as a whole, and its order."""
+
+import math
+
+from imgui_bundle import imgui
+
+from app.document import (
+    Document,
+    Layer,
+    change_frame,
+    draw_order_key_at,
+    keyed_frame,
+    opacity_at,
+    transform_at,
+)
+from app.editor import Action, do, layering
+from app.ui.style import (
+    FILL,
+    Look,
+    Scale,
+    draw_tooltip,
+    label,
+    number_field,
+    slider,
+    small_text,
+    text_button,
+)
+
+PERCENT = Scale(left=0, right=100)
+HOW = {"right": "goes right", "up": "goes up", "turn": "turns, counter-clockwise"}
+
+
+def draw_opacity_channel(document: Document, look: Look, layer: Layer, frame: int) -> list[Action]:
+    """Draw how opaque a layer is at a frame, and what keys it there."""
+    actions, opacity = [], opacity_at(document, layer, frame)
+    label(look, "Opacity")
+    hint = "How much of what lies behind is covered"
+    if layer.opacity_keys:
+        hint += "; a change is a key at this frame"
+    faded = slider(look, "opacity", 100 * opacity, PERCENT, text="%.0f %%", hint=hint)
+    if faded is not None:
+        fade = layering.fade_here if layer.opacity_keys else layering.fade
+        actions.append(do(fade, layer.id, min(max(faded.value / 100, 0.0), 1.0)))
+    keyed = keyed_frame(layer, layer.opacity_keys, frame)
+    is_keyed = any(key.frame == keyed for key in layer.opacity_keys)
+    changed, _ = imgui.checkbox("Opacity keyed here", is_keyed)
+    draw_tooltip("It fades evenly from key to key")
+    if changed and is_keyed:
+        actions.append(do(layering.unfade_here, layer.id))
+    elif changed:
+        actions.append(do(layering.fade_here, layer.id, opacity))
+    return actions
+
+
+def draw_transform_channel(
+    document: Document, look: Look, layer: Layer, frame: int
+) -> list[Action]:
+    """Draw by how much a whole layer is moved and turned at a frame, which keys it there."""
+    if layer.has_parent and not layer.transform_keys:
+        return []
+    actions: list[Action] = []
+    moved = transform_at(document, layer, frame)
+    turn = math.degrees(math.atan2(moved.factor.imag, moved.factor.real))
+    shift = moved.shift - (1 - moved.factor) * layer.pivot
+    entered: dict[str, float] = {}
+    label(look, "Moved by")
+    each = (imgui.get_content_region_avail().x - 2 * imgui.get_style().item_inner_spacing.x) / 3
+    values = {
+        "right": (shift.real, "%.1f px"),
+        "up": (shift.imag, "%.1f px"),
+        "turn": (turn, "%.1f°"),
+    }
+    for name, (value, text) in values.items():
+        imgui.set_next_item_width(each)
+        found = number_field(f"moved {name}", value, text)
+        draw_tooltip(
+            f"The layer, with all that hangs on it, {HOW[name]}; a change is a key at this frame"
+        )
+        if found is not None:
+            entered[name] = found
+        imgui.same_line(0, imgui.get_style().item_inner_spacing.x)
+    imgui.new_line()
+    if entered:
+        right, up = entered.get("right", shift.real), entered.get("up", shift.imag)
+        radians = math.radians(entered.get("turn", turn))
+        actions.append(do(layering.move_here, layer.id, complex(right, up), radians))
+    keyed = keyed_frame(layer, layer.transform_keys, frame)
+    if any(key.frame == keyed for key in layer.transform_keys) and text_button(
+        f"No movement key at frame {keyed}", FILL, "It goes on between the keys around"
+    ):
+        actions.append(do(layering.unmove_here, layer.id))
+    if layer.has_parent and layer.transform_keys:
+        small_text(look, "While it hangs on another layer it is moved by that one alone.")
+    return actions
+
+
+def draw_order_channel(document: Document, look: Look, layer: Layer, frame: int) -> list[Action]:
+    """Draw beside which layer a layer is painted from the present frame on."""
+    others = [each for each in reversed(document.layers) if each is not layer]
+    if not others:
+        return []
+    actions: list[Action] = []
+    now = draw_order_key_at(document, layer, frame)
+    beside = None if now is None or now.beside is None else document.layer(now.beside)
+    words = "where it lies"
+    if now is not None and beside is not None:
+        words = f"{'in front of' if now.in_front else 'behind'} {beside.name}"
+    label(look, "Painted")
+    if imgui.begin_combo("##painted", words):
+        if imgui.selectable("where it lies", beside is None)[0] and beside is not None:
+            actions.append(do(layering.place_here, layer.id, None))
+        for in_front, word in ((True, "in front of"), (False, "behind")):
+            imgui.separator()
+            actions += [
+                do(layering.place_here, layer.id, each.id, in_front)
+                for each in others
+                if imgui.selectable(
+                    f"{word} {each.name}###{word} {each.id}",
+                    each is beside and now is not None and now.in_front == in_front,
+                )[0]
+            ]
+        imgui.end_combo()
+    draw_tooltip(f"From frame {frame} on, until it is said otherwise")
+    keyed = change_frame(layer.draw_order_keys, layer.cycles, frame)
+    if any(each.frame == keyed for each in layer.draw_order_keys) and text_button(
+        f"No change of order at frame {frame}", FILL, "What was said before it holds on"
+    ):
+        actions.append(do(layering.unplace_here, layer.id))
+    return actions

@@ -1,0 +1,241 @@
+"""The tab of ready motions: those that the layer was given, and one that is drafted for it."""
+
+from imgui_bundle import ImVec2, imgui
+
+from app.document import AppliedMotion, is_motion_unedited
+from app.editor import Action, Project, Session, do
+from app.editor.actions import drafting, giving, placing
+from app.editor.work import MotionDraft
+from app.ui.panels.motion_preset.diagram import draw_body_diagram, draw_joint_diagram
+from app.ui.shortcuts import ALT, BINDINGS, format_modified
+from app.ui.style import (
+    FILL,
+    Look,
+    Scale,
+    colour_u32,
+    draw_tooltip,
+    heading,
+    label,
+    main_button,
+    option_buttons,
+    progress_bar,
+    slider,
+    small_text,
+    split_line,
+    text_button,
+)
+from engine.geometry.motions import KINDS, MOTIONS
+
+SPEEDS = Scale(left=0.25, right=4.0, logarithmic=True)
+SIZES = Scale(left=0.1, right=2.0)
+ENERGIES = Scale(left=0.0, right=2.0)
+SHARES = Scale(left=0.0, right=0.99)
+REPEATS = Scale(left=1.0, right=20.0)
+KIND_HEIGHT, DIAGRAM_HEIGHT = 3.2, 9.5  # em
+IN_A_ROW = 5  # motions at most
+LOOKS = {None: "As it seems", -1: "Left", 1: "Right"}
+
+
+def draw_motion_panel(session: Session, look: Look, project: Project) -> list[Action]:
+    """Draw the motion that is drafted, or how far it is; else those that the layer was given."""
+    errand, draft = project.errand, project.draft
+    if errand is not None:
+        heading(look, f"Giving it “{errand.draft.ready.label}”")
+        return [do(giving.cancel)] if progress_bar(errand.progress, errand.now) else []
+    if draft is None:
+        return _draw_applied_motions(session, look, project)
+    # What ends it is seen however far the rest is scrolled.
+    lines = 1 + bool(drafting.hindrance(project)) + drafting.was_edited(project)
+    below = (2.0 + 1.5 * lines) * look.em + imgui.get_frame_height()
+    imgui.begin_child("draft", ImVec2(0, max(imgui.get_content_region_avail().y - below, 1.0)))
+    actions = _kinds(look, draft) + _motions(look, draft)
+    actions += _joints(look, draft) + _parameters(look, draft)
+    imgui.end_child()
+    return actions + _end(look, project, draft)
+
+
+def _draw_applied_motions(session: Session, look: Look, project: Project) -> list[Action]:
+    """Draw what the layer was given, and the button that gives it another motion."""
+    actions: list[Action] = []
+    binding, layer = BINDINGS["give motion"], project.layer
+    heading(look, f"Motions of {layer.name}" if layer.motions else "Ready motions")
+    if not layer.motions:
+        small_text(
+            look, "Let the drawing walk, wave, slither or breathe: say where its joints are."
+        )
+    for given in layer.motions:
+        imgui.push_id(given.first)
+        actions += _row(look, project, given)
+        imgui.pop_id()
+    imgui.dummy(ImVec2(0, 0.3 * look.em))
+    reason = binding.disabled_reason(session)
+    if main_button(look, f"{binding.icon}  {binding.label}", FILL, enabled=not reason):
+        actions.append(binding.action)
+    draw_tooltip(reason or binding.hint, binding.shown_keys)
+    return actions
+
+
+def _row(look: Look, project: Project, given: AppliedMotion) -> list[Action]:
+    """Draw a motion that was given, with what can be done with it."""
+    actions: list[Action] = []
+    name = MOTIONS[given.motion].label if given.motion in MOTIONS else given.motion
+    imgui.text_unformatted(f"{name}, frames {given.first} – {given.last}")
+    if not is_motion_unedited(project.layer, given):
+        small_text(look, "Edited by hand since: it stays as it is.")
+    widths = split_line(2)
+    if text_button("Change…", next(widths), "Give it once more, in another way"):
+        actions.append(do(drafting.begin_again, given))
+    hint = f"Let another motion follow from frame {given.last} on"
+    if text_button("Follow it by…", next(widths), hint):
+        actions.append(do(drafting.begin_after, given))
+    return actions
+
+
+def _kinds(look: Look, draft: MotionDraft) -> list[Action]:
+    """Draw a button with a diagram for each kind of body."""
+    actions: list[Action] = []
+    heading(look, "What it is")
+    palette = look.palette
+    widths = split_line(len(KINDS), 0.3 * look.em)
+    for (name, kind), width in zip(KINDS.items(), widths, strict=True):
+        is_chosen = name == draft.kind
+        low = imgui.get_cursor_screen_pos()
+        size = ImVec2(width, KIND_HEIGHT * look.em)
+        imgui.push_style_color(imgui.Col_.button, palette.accent if is_chosen else palette.raised)
+        if imgui.button(f"###{name} kind", size):
+            actions.append(do(drafting.choose_kind, name))
+        imgui.pop_style_color()
+        draw_tooltip(f"{kind.label}. {kind.hint}")
+        colour = colour_u32(palette.on_accent if is_chosen else palette.text)
+        inset = ImVec2(0.2 * look.em, 0.4 * look.em)
+        draw_body_diagram(look, kind, low + inset, size - inset * 2, colour)
+    small_text(look, f"{draft.body_kind.label}. {draft.body_kind.hint}.")
+    return actions
+
+
+def _joints(look: Look, draft: MotionDraft) -> list[Action]:
+    """Draw which joints are there."""
+    heading(look, "Joints")
+    if not draft.body_kind.parents:
+        small_text(look, "It moves as a whole: there is nothing to be dragged.")
+        return []
+    width = imgui.get_content_region_avail().x
+    actions = draw_joint_diagram(look, draft, ImVec2(width, DIAGRAM_HEIGHT * look.em))
+    small_text(
+        look,
+        "Drag the joints on the drawing to where they belong. A click on one here, or "
+        f"{format_modified(ALT, 'click')} there, leaves it out.",
+    )
+    has_sides = draft.kind == "biped-front"
+    widths = split_line(1 + has_sides)
+    if has_sides:
+        binding = BINDINGS["mirror joints"]
+        way = "left to right" if placing.mirrored_side(draft) == "L" else "right to left"
+        text = f"{binding.icon}  Mirror {way}###mirror joints"
+        hint = f"{binding.hint}: from that of the joint that was touched last"
+        if text_button(text, next(widths), hint, enabled=bool(draft.joints)):
+            actions.append(binding.action)
+    binding = BINDINGS["find joints"]
+    if text_button(f"{binding.icon}  Find again", next(widths), binding.hint):
+        actions.append(binding.action)
+    return actions
+
+
+def _motions(look: Look, draft: MotionDraft) -> list[Action]:
+    """Draw the motions that fit the kind."""
+    heading(look, "What it does")
+    actions: list[Action] = []
+    fitting = [motion for motion in MOTIONS.values() if draft.kind in motion.courses]
+    rows = -(-len(fitting) // IN_A_ROW)
+    width = -(-len(fitting) // rows)
+    for row in range(0, len(fitting), width):
+        options = [(motion.name, motion.label) for motion in fitting[row : row + width]]
+        chosen = option_buttons(look, f"motions {row}", options, draft.motion)
+        if chosen is not None:
+            actions.append(do(drafting.choose_motion, chosen))
+    small_text(look, f"{draft.ready.hint}.")
+    return actions
+
+
+def _parameters(look: Look, draft: MotionDraft) -> list[Action]:
+    """Draw how it is to be done."""
+    heading(look, "How")
+    actions: list[Action] = []
+    now = draft.parameters
+    for name, text, scale, form, hint in (
+        ("speed", "Speed", SPEEDS, "%.2f ×", "How many times as fast as usual"),
+        ("size", "Size", SIZES, "%.2f ×", "How far limbs swing, and how far steps go"),
+        ("energy", "Energy", ENERGIES, "%.2f ×", "How much it bounces and sways beside that"),
+        ("start", "Start", SHARES, "%.2f", "The share of the cycle at which it begins"),
+    ):
+        label(look, text)
+        entered = slider(look, name, getattr(now, name), scale, text=form, hint=hint)
+        if entered is not None:
+            actions.append(do(drafting.set_parameters, **{name: scale.clamp(entered.value)}))
+    label(look, "Times")
+    hint = "How often it is there, one after the other"
+    entered = slider(look, "rounds", draft.rounds, REPEATS, text="%.0f", hint=hint)
+    if entered is not None:
+        rounds = min(max(round(entered.value), 1), drafting.MOST_ROUNDS)
+        actions.append(do(drafting.set_up, rounds=rounds))
+    if draft.kind in {"biped-side", "four-legs"}:
+        label(look, "Looks")
+        options = [(str(way), text) for way, text in LOOKS.items()]
+        chosen = option_buttons(look, "facing", options, str(draft.facing))
+        if chosen is not None:
+            ways = {str(way): way for way in LOOKS}
+            actions.append(do(drafting.set_up, facing=ways[chosen]))
+    actions += _switches(look, draft)
+    return actions
+
+
+def _switches(look: Look, draft: MotionDraft) -> list[Action]:
+    """Draw what is on or off."""
+    actions: list[Action] = []
+    now = draft.parameters
+    changed, mirrored = imgui.checkbox("Mirrored", now.mirrored)
+    draw_tooltip("As in a mirror: the other arm waves, a walk goes the other way")
+    if changed:
+        actions.append(do(drafting.set_parameters, mirrored=mirrored))
+    if draft.ready.course(draft.kind).travels:
+        imgui.same_line(0, 1.2 * look.em)
+        changed, travels = imgui.checkbox("Travels", now.travel)
+        draw_tooltip("It gets on in the picture, and does not loop; else it walks on the spot")
+        if changed:
+            actions.append(do(drafting.set_parameters, travel=travels))
+    if draft.body_kind.parents:
+        imgui.same_line(0, 1.2 * look.em)
+        changed, bones = imgui.checkbox("Bones for limbs", draft.bones)
+        draw_tooltip("Limbs bend at their joints alone, and keep their lengths")
+        if changed:
+            actions.append(do(drafting.set_up, bones=bones))
+    return actions
+
+
+def _end(look: Look, project: Project, draft: MotionDraft) -> list[Action]:
+    """Draw what is replaced, and the buttons that give it or do not."""
+    actions: list[Action] = []
+    imgui.separator()
+    if draft.given is not None and drafting.was_edited(project):
+        changed, replaces = imgui.checkbox("Replace what was edited by hand", draft.replaces_edits)
+        if changed:
+            actions.append(do(drafting.set_up, replaces_edits=replaces))
+    small_text(look, _where(project, draft))
+    reason = drafting.hindrance(project)
+    if reason:
+        small_text(look, reason, look.palette.warning)
+    widths = split_line(2)
+    if main_button(look, "Give it###give", next(widths), enabled=not reason):
+        actions.append(do(giving.give))
+    draw_tooltip(reason or "Solve it key after key, and play it; it is one step of undo")
+    if text_button("Cancel###no motion", next(widths), "", BINDINGS["pose"].shown_keys):
+        actions.append(do(drafting.give_up))
+    return actions
+
+
+def _where(project: Project, draft: MotionDraft) -> str:
+    """Return in words where in time it will be."""
+    period = draft.ready.frames(draft.parameters, project.document.fps) * draft.rounds
+    if draft.given is not None:
+        return f"It takes the place of frames {draft.given.first} – {draft.given.last}."
+    return f"It begins at frame {draft.first} and takes {period} frames."

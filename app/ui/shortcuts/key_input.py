@@ -1,0 +1,84 @@
+"""What the keyboard asks for, wherever the pointer is."""
+
+from imgui_bundle import imgui
+
+from app.editor import Action, Session, do
+from app.editor.actions import playback, posing, viewing
+from app.editor.tools import moving
+from app.ui.shortcuts.keys import CTRL
+from app.ui.shortcuts.table import BINDINGS
+
+Key = imgui.Key
+ARROWS = {Key.left_arrow: -1, Key.right_arrow: 1, Key.up_arrow: 1j, Key.down_arrow: -1j}
+
+
+def collect_key_actions(session: Session) -> list[Action]:
+    """Return the actions whose keys were pressed, unless the person types into a field."""
+    if session.dialog is not None:
+        return []
+    if _close_menu() or imgui.get_io().want_text_input:
+        return []
+    # First, as what is copied or selected depends on it.
+    actions = _follow_focus(session)
+    for binding in BINDINGS.values():
+        # What is typed during a drag is for the tool in hand.
+        keys = [key for key in binding.chords() if session.pointer is None or not _is_typed(key)]
+        flags = imgui.InputFlags_.route_always
+        if binding.repeats_while_held:
+            flags |= imgui.InputFlags_.repeat
+        if not any(imgui.shortcut(chord, flags) for chord in keys):
+            continue
+        if binding.is_possible(session):
+            actions.append(binding.action)
+        elif reason := binding.disabled_reason(session):
+            actions.append(do(Session.tell, reason))
+    return actions + _nudges(session) + _space(session)
+
+
+def _follow_focus(session: Session) -> list[Action]:
+    """Note whether the timeline or the drawing has the pointer, or else the focus."""
+    context = imgui.get_current_context()
+    for window in (context.hovered_window, context.nav_window):
+        title = window.root_window.name.rpartition("###")[2] if window is not None else ""
+        if title in {"Timeline", "Viewport"}:
+            in_timeline = title == "Timeline"
+            return [do(viewing.attend, in_timeline)] if in_timeline != session.in_timeline else []
+    return []
+
+
+def _is_typed(key: int) -> bool:
+    """Tell whether a key may be part of a number, or of a word."""
+    return not int(key) & CTRL and key != Key.delete
+
+
+def _close_menu() -> bool:
+    """Close the menu or popup in front by Escape; return whether there was one."""
+    popups = imgui.get_current_context().open_popup_stack
+    # A field that is typed into has Escape for itself.
+    if not popups.size() or not imgui.shortcut(Key.escape, imgui.InputFlags_.route_global):
+        return False
+    level = popups.size() - 1
+    # With its menu: while the pointer is on its entry there, it would open again.
+    while level and popups[level].window.flags & imgui.WindowFlags_.child_menu:
+        level -= 1
+    imgui.internal.close_popup_to_level(level, restore_focus_to_window_under_popup=True)
+    return True
+
+
+def _nudges(session: Session) -> list[Action]:
+    if session.project is None or not (session.moves or session.project.selected):
+        return []
+    nudge = moving.nudge if session.moves else posing.nudge
+    step = 10.0 if imgui.get_io().key_shift else 1.0
+    return [
+        do(nudge, step * direction)
+        for key, direction in ARROWS.items()
+        if imgui.is_key_pressed(key)
+    ]
+
+
+def _space(session: Session) -> list[Action]:
+    """Return playing where Space was tapped, and not held to move the view."""
+    if session.project is None or not imgui.is_key_released(Key.space):
+        return []
+    return [do(playback.tap_space)]

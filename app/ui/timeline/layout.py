@@ -1,0 +1,297 @@
+"""Where times are on the screen, for all that is drawn in the timeline."""
+
+from bisect import bisect_left, bisect_right
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Protocol, TypeVar
+
+from imgui_bundle import ImVec2, imgui
+
+from app.document import LAST_FRAME, Layer, Track, TreeRow, memoized_on
+from app.editor import KeyRow, Project, Session, Strip, row_of, seen_at
+from app.ui.style import Look, draw_tag, tag_size
+
+PREVIEW, RULER, OVERVIEW = 0.7, 1.55, 0.75  # em: heights of the bands above and below the track
+MARKS, SMALL_MARKS = 1.25, 0.7  # em: height of the band of markers, with their names or without
+BAR, BAR_SHARE = 3.6, 0.62  # em: height of intervals at most, and as a part of the track's
+CRAMPED, CRAMPED_SHARE = 5.5, 0.85  # em: below this height bars take more, and the overview goes
+ROUNDING = 0.4  # em
+NAMES, NAMES_SHARE = 11.0, 0.25  # em: width of the layers' names at most, and as a part of all
+THIN, TALL = 1.25, 2.8  # em: height of tracks' rows, and of the row of a layer that is alone
+LEAST_MARK_GAP = 0.4  # em between two marks of a row: what is closer is drawn once
+EVEN, ROOMY = 2.0, 3.4  # em: heights of the rows of layers, at least and at most
+
+
+class HasFrame(Protocol):
+    """A key, a marker or anything else at a frame."""
+
+    @property
+    def frame(self) -> int:
+        """The frame that it is at."""
+
+
+Mark = TypeVar("Mark", bound=HasFrame)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class LayerRow:
+    """Where a layer's keys are: between two heights, in pixels of the window."""
+
+    layer: Layer
+    top: float
+    bottom: float
+    is_active: bool
+    depth: int = 0  # in how many groups and choices it is listed
+
+    @property
+    def middle(self) -> float:
+        """Half-way between them."""
+        return (self.top + self.bottom) / 2
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class TrackLane:
+    """Where the keys of a layer's track are: between two heights, in pixels of the window."""
+
+    layer: Layer
+    track: Track
+    top: float
+    bottom: float
+    is_chosen: bool
+
+    @property
+    def middle(self) -> float:
+        """Half-way between them."""
+        return (self.top + self.bottom) / 2
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class GroupRow:
+    """Where the row of a group or a choice is: between two heights, in pixels of the window."""
+
+    row: TreeRow
+    top: float
+    bottom: float
+
+    @property
+    def middle(self) -> float:
+        """Half-way between them."""
+        return (self.top + self.bottom) / 2
+
+
+class TimelineLayout:
+    """The bands of the timeline, and the way between frames and pixels."""
+
+    def __init__(self, session: Session, look: Look, project: Project) -> None:
+        self.session = session
+        self.look = look
+        self.project = project
+        self.corner = imgui.get_cursor_screen_pos()
+        room = imgui.get_content_region_avail()
+        layers = project.document.layers
+        self.has_names = len(layers) > 1 or any(layer.tracks for layer in layers)
+        self.has_names |= bool(project.document.camera)
+        names = min(NAMES * look.em, NAMES_SHARE * room.x) if self.has_names else 0.0
+        self.size = ImVec2(room.x - names, room.y)
+        self.left, self.top = self.corner.x + names, self.corner.y
+        self.right, self.bottom = self.left + self.size.x, self.top + self.size.y
+        self.ruler_top = self.top + PREVIEW * look.em
+        self.is_cramped = self.size.y < CRAMPED * look.em
+        marks = SMALL_MARKS if self.is_cramped else MARKS
+        self.markers_top = self.ruler_top + RULER * look.em
+        self.camera_top = self.markers_top + bool(project.document.markers) * marks * look.em
+        self.track_top = self.camera_top + bool(project.document.camera) * THIN * look.em
+        is_whole = self.is_cramped or project.timing.strip is None
+        self.track_bottom = self.bottom - (0 if is_whole else OVERVIEW * look.em)
+        self.rows: list[LayerRow] = []
+        self.track_rows: list[TrackLane] = []
+        self.group_rows: list[GroupRow] = []
+        self.overflow = self._lay_rows(project.tree)
+        self.row = next(row for row in self.rows if row.is_active)
+        self.middle = self.row.middle
+        share = CRAMPED_SHARE if self.is_cramped else BAR_SHARE
+        height = min(BAR * look.em, share * (self.row.bottom - self.row.top))
+        self.bar_top, self.bar_bottom = self.middle - height / 2, self.middle + height / 2
+        timing = project.timing
+        fitting = Strip.fitting(project.document.frames, self.width)
+        self.time_view = timing.gesture_strip or timing.strip or fitting
+
+    def _lay_rows(self, tree: Sequence[TreeRow]) -> float:
+        """Lay a row for each group, choice and layer, and below a layer's those of its tracks.
+
+        Which of them is active changes nothing: no row moves under the pointer that chooses it.
+        Returns for how much there is no room.
+        """
+        em, room = self.look.em, self.track_bottom - self.track_top
+        thin, shown = THIN * em, [self._shown_tracks(row.layer) for row in tree if row.layer]
+        others = (len(tree) - len(shown) + sum(map(len, shown))) * thin
+        least, most = (EVEN * em, ROOMY * em) if len(tree) > 1 else (min(TALL * em, room), room)
+        tall = min(max((room - others) / len(shown), least), most)
+        overflow = max(others + len(shown) * tall - room, 0.0)
+        top = self.track_top - min(self.project.timing.scrolled * em, overflow)
+        chosen = self.project.row
+        for row in tree:
+            layer = row.layer
+            if layer is None:
+                self.group_rows.append(GroupRow(row=row, top=top, bottom=top + thin))
+                top += thin
+                continue
+            is_active = layer.id == self.project.active
+            self.rows.append(
+                LayerRow(
+                    layer=layer,
+                    top=top,
+                    bottom=top + tall,
+                    is_active=is_active,
+                    depth=row.depth,
+                )
+            )
+            top += tall
+            for track in self._shown_tracks(layer):
+                is_chosen = row_of(layer, track) == chosen
+                lane = TrackLane(
+                    layer=layer, track=track, top=top, bottom=top + thin, is_chosen=is_chosen
+                )
+                self.track_rows.append(lane)
+                top += thin
+        return overflow
+
+    def _shown_tracks(self, layer: Layer) -> tuple[Track, ...]:
+        """Return the tracks of a layer that have rows."""
+        return layer.tracks if layer.id in self.project.timing.unfolded else ()
+
+    @property
+    def pointed_row(self) -> LayerRow | TrackLane:
+        """The row under the pointer, or the nearest one that is seen."""
+        y = min(max(imgui.get_mouse_pos().y, self.track_top), self.track_bottom - 1)
+        both: list[LayerRow | TrackLane] = [*self.rows, *self.track_rows]
+        rows = sorted(both, key=lambda row: row.bottom)
+        return next((row for row in rows if y < row.bottom), rows[-1])
+
+    @property
+    def pointed_keys(self) -> KeyRow:
+        """What tells the row under the pointer."""
+        row = self.pointed_row
+        return row_of(row.layer, row.track if isinstance(row, TrackLane) else None)
+
+    def push_track_clip(self) -> None:
+        """Let nothing be drawn and pointed at beyond the track, until the clip is popped."""
+        low, high = ImVec2(self.left, self.track_top), ImVec2(self.right, self.track_bottom)
+        imgui.push_clip_rect(low, high, intersect_with_current_clip_rect=True)
+
+    @property
+    def bounds(self) -> tuple[ImVec2, ImVec2]:
+        """The corners of all of it but the names."""
+        return ImVec2(self.left, self.top), ImVec2(self.right, self.bottom)
+
+    @property
+    def width(self) -> float:
+        """Its width in em."""
+        return self.size.x / self.look.em
+
+    @property
+    def is_usable(self) -> bool:
+        """Whether there is room to draw anything."""
+        return self.width > 4 and self.bar_bottom - self.bar_top > 0.5 * self.look.em
+
+    def x(self, frame: float) -> float:
+        """Return where a frame is, in pixels of the window."""
+        return self.left + self.time_view.place(frame) * self.look.em
+
+    def frame(self, x: float) -> float:
+        """Return the frame at a place of the window."""
+        return self.time_view.frame((x - self.left) / self.look.em)
+
+    def x_of(self, track: Track | None, frame: int) -> float:
+        """Return where a key is drawn: a track's is later by its delay."""
+        return self.x(seen_at(self.project.document, track, frame))
+
+    @property
+    def pointed(self) -> float:
+        """The frame under the pointer."""
+        return self.frame(imgui.get_mouse_pos().x)
+
+    def shows(self, low: float, high: float) -> bool:
+        """Tell whether a stretch of pixels is on the screen."""
+        return high > self.left and low < self.right
+
+    def shows_row(self, row: LayerRow | TrackLane | GroupRow) -> bool:
+        """Tell whether a row is on the screen, and not scrolled away."""
+        return row.bottom > self.track_top and row.top < self.track_bottom
+
+    def in_view(
+        self,
+        marks: Sequence[Mark],
+        *,
+        room: float = 1.0,
+        late: int = 0,
+        closest: float = LEAST_MARK_GAP,
+    ) -> Iterator[int]:
+        """Yield the indices of marks, in the order of their frames, that are on the screen.
+
+        Of those that are closer to each other than `closest`, the first one stands for all. It
+        takes no longer for many marks than for few.
+
+        Parameters
+        ----------
+        room : float
+            By how many em a mark reaches beyond its place.
+        late : int
+            Frames by which they are drawn later.
+        closest : float
+            In em.
+        """
+        beyond = room * self.look.em
+        index = bisect_left(marks, self.frame(self.left - beyond) - late, key=_frame)
+        end = bisect_right(marks, self.frame(self.right + beyond) - late, key=_frame)
+        while index < end:
+            yield index
+            apart = marks[index].frame + closest / self.time_view.scale
+            index = bisect_left(marks, apart, index + 1, end, key=_frame)
+
+    def button(self, name: str, low: ImVec2, high: ImVec2, *, right: bool = False) -> bool:
+        """Lay an invisible button over a box; return whether it was clicked.
+
+        With `right`, the right button of the mouse counts as well.
+        """
+        imgui.set_cursor_screen_pos(low)
+        imgui.set_next_item_allow_overlap()
+        flags = imgui.ButtonFlags_.mouse_button_left
+        if right:
+            flags |= imgui.ButtonFlags_.mouse_button_right
+        size = ImVec2(max(high.x - low.x, 1.0), max(high.y - low.y, 1.0))
+        return imgui.invisible_button(name, size, flags)
+
+
+def _frame(mark: HasFrame) -> int:
+    return mark.frame
+
+
+@memoized_on
+def find_least_gap(layer: Layer, handle: int | None) -> int:
+    """Return how many frames there are between the two closest keys of poses, or of a track."""
+    track = None if handle is None else layer.track_of(handle)
+    row: Sequence[HasFrame] = layer.keys if track is None else track.keys
+    return min((later.frame - key.frame for key, later in pairwise(row)), default=LAST_FRAME)
+
+
+def draw_time_tag(bands: TimelineLayout, x: float, text: str) -> None:
+    """Write something short below the ruler, over what is dragged."""
+    width = tag_size(bands.look, text).x
+    left = min(max(x - width / 2, bands.left), bands.right - width)
+    draw_tag(bands.look, ImVec2(left, bands.track_top + 0.15 * bands.look.em), text)
+
+
+def was_dragged() -> bool:
+    """Tell whether the pointer was dragged since the press, even if it has come back."""
+    io, left = imgui.get_io(), imgui.MouseButton_.left
+    # What Dear ImGui keeps of the way lacks the last part of it, before the button was let go.
+    last = imgui.get_mouse_drag_delta(left, 0.0)
+    farthest = max(io.mouse_drag_max_distance_sqr[int(left)], last.x**2 + last.y**2)
+    return bool(farthest >= io.mouse_drag_threshold**2)
+
+
+def format_seconds(frame: float, fps: float) -> str:
+    """Return the time of a frame in words."""
+    return f"{frame / fps:.2f}".rstrip("0").rstrip(".") + " s"

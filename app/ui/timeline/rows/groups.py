@@ -1,0 +1,207 @@
+"""The rows of groups and choices: keys of all that is in one, and what of the other is seen."""
+
+from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
+
+from app.document import SwitchGroup, choice_commands, turn_frame, with_repeats
+from app.editor import Action, KeysOf, TurnDrag, do, layering
+from app.editor.actions import editing, playback, timeline_pointing
+from app.ui.style import (
+    SMALL,
+    begin_tooltip,
+    colour_u32,
+    is_hovered_or_held,
+    is_pressed,
+    push_text_size,
+    shorten_text,
+)
+from app.ui.timeline.layout import GroupRow, TimelineLayout, draw_time_tag
+
+INDENT = 0.7  # em by which rows in others lie to the right
+FOLD = 1.1  # em: width of the triangle that opens and closes a row
+EDGE = 0.35  # em: half the width of what takes hold of where a turn begins
+DOT, GRIP = 0.25, 0.5  # em: half a group's key, and of the box that takes it
+
+
+def draw_group_names(bands: TimelineLayout, frame: int) -> list[Action]:
+    """Draw the names of groups and choices, and the triangles that open and close them."""
+    actions: list[Action] = []
+    document, palette, em = bands.project.document, bands.look.palette, bands.look.em
+    draw_list = imgui.get_window_draw_list()
+    for lane in bands.group_rows:
+        row = lane.row
+        low = ImVec2(bands.corner.x, lane.top)
+        high = ImVec2(bands.left - 0.3 * em, lane.bottom)
+        left = low.x + INDENT * row.depth * em
+        imgui.push_id(row.key)
+        if bands.button("name", low, high):
+            actions.append(do(layering.choose_all, *row.layers))
+        if is_hovered_or_held():
+            draw_list.add_rect_filled(low, high, colour_u32(palette.hovered), 0.2 * em)
+        if begin_tooltip():
+            imgui.text_unformatted("Click to choose all layers in it")
+            imgui.end_tooltip()
+        if bands.button("fold", ImVec2(left, lane.top), ImVec2(left + FOLD * em, lane.bottom)):
+            actions.append(do(layering.toggle, row.toggle))
+        caret = icons.ICON_FA_CARET_DOWN if row.is_open else icons.ICON_FA_CARET_RIGHT
+        icon = icons.ICON_FA_FOLDER if row.switch_group is None else icons.ICON_FA_MASKS_THEATER
+        text = row.name
+        if row.switch_group is not None:
+            seen = with_repeats(document, row.switch_group).layer_at(frame)
+            text = f"{text}: {document.layer(seen).name}"
+        with push_text_size(SMALL):
+            top = lane.middle - imgui.get_text_line_height() / 2
+            text = shorten_text(text, high.x - left - 3.0 * em)
+            draw_list.add_text(ImVec2(left + 0.3 * em, top), colour_u32(palette.dim), caret)
+            draw_list.add_text(ImVec2(left + FOLD * em, top), colour_u32(palette.text), icon)
+            draw_list.add_text(
+                ImVec2(left + (FOLD + 1.5) * em, top), colour_u32(palette.text), text
+            )
+        imgui.pop_id()
+    return actions
+
+
+def draw_group_rows(bands: TimelineLayout) -> list[Action]:
+    """Draw the keys of groups and the turns of choices, and take clicks and drags on them."""
+    actions: list[Action] = []
+    palette, draw_list = bands.look.palette, imgui.get_window_draw_list()
+    for lane in bands.group_rows:
+        low, high = ImVec2(bands.left, lane.top), ImVec2(bands.right, lane.bottom)
+        draw_list.add_rect_filled(low, high, colour_u32(palette.desk, 0.35))
+        draw_list.add_line(ImVec2(low.x, high.y), high, colour_u32(palette.line))
+        imgui.push_id(lane.row.key)
+        if lane.row.switch_group is not None:
+            actions += _draw_switch_keys(bands, lane, lane.row.switch_group)
+        else:
+            actions += _keys(bands, lane)
+        imgui.pop_id()
+    return actions
+
+
+def _keys(bands: TimelineLayout, lane: GroupRow) -> list[Action]:
+    """Draw where layers of a group have keys; a click chooses all that are at a frame."""
+    actions: list[Action] = []
+    document, em = bands.project.document, bands.look.em
+    layers = [document.layer(identity) for identity in lane.row.layers]
+    chosen_of = bands.project.chosen_of
+    at: dict[int, list[int]] = {}
+    for layer in layers:
+        for index in bands.in_view(layer.keys):
+            at.setdefault(layer.keys[index].frame, []).append(layer.id)
+    for frame in sorted(at):
+        x = bands.x(frame)
+        keys: KeysOf = {each: frozenset({frame}) for each in at[frame]}
+        box = ImVec2(GRIP * em, GRIP * em)
+        middle = ImVec2(x, lane.middle)
+        if bands.button(f"keys {frame}", middle - box, middle + box):
+            actions += [do(editing.choose_keys_of, keys), do(playback.scrub, frame)]
+        is_chosen = all(frame in chosen_of.get(row, ()) for row in keys)
+        if begin_tooltip():
+            count = f"{len(keys)} keys" if len(keys) > 1 else "A key"
+            imgui.text_unformatted(f"{count} at frame {frame}: click to choose all of them")
+            imgui.end_tooltip()
+        palette = bands.look.palette
+        colour = (
+            palette.accent if is_chosen else palette.text if is_hovered_or_held() else palette.dim
+        )
+        imgui.get_window_draw_list().add_circle_filled(middle, DOT * em, colour_u32(colour))
+    return actions
+
+
+def _draw_switch_keys(bands: TimelineLayout, lane: GroupRow, choice: SwitchGroup) -> list[Action]:
+    """Draw from where to where each layer of a choice is seen."""
+    actions: list[Action] = []
+    document, em = bands.project.document, bands.look.em
+    palette, draw_list = bands.look.palette, imgui.get_window_draw_list()
+    own, choice = choice, with_repeats(document, choice)
+    starts = _starts(bands, choice)
+    for start, end in zip(starts, [*starts[1:], document.frames.last], strict=True):
+        left, right = max(bands.x(start), bands.left), min(bands.x(max(end, start)), bands.right)
+        if right <= left:
+            continue
+        low, high = ImVec2(left + 1, lane.top + 1), ImVec2(right, lane.bottom - 1)
+        seen = choice.layer_at(start)
+        bands.button(f"turn {start}", low, high, right=True)
+        if imgui.is_item_clicked(imgui.MouseButton_.right):
+            imgui.open_popup(f"menu of turn {start}")
+        elif imgui.is_item_clicked():
+            actions.append(do(layering.choose, seen))
+        number = choice.count_keys_until(start)
+        strength = 0.34 if is_hovered_or_held() else 0.24 - 0.08 * (number % 2)
+        draw_list.add_rect_filled(low, high, colour_u32(palette.accent, strength), 0.2 * em)
+        with push_text_size(SMALL):
+            top = lane.middle - imgui.get_text_line_height() / 2
+            text = shorten_text(document.layer(seen).name, right - left - 0.9 * em)
+            draw_list.add_text(ImVec2(left + 0.45 * em, top), colour_u32(palette.text), text)
+        if begin_tooltip():
+            imgui.text_unformatted(f"{document.layer(seen).name} from frame {start} on")
+            imgui.text_disabled("Right click for another one, drag where it begins to move that")
+            imgui.end_tooltip()
+        actions += _menu(bands, choice, start)
+    for start in starts[1:]:
+        # Those of a repeat go with its stretch.
+        if own.count_keys_until(start) > own.count_keys_until(start - 1):
+            actions += _edge(bands, lane, choice, start)
+    return actions
+
+
+def _starts(bands: TimelineLayout, choice: SwitchGroup) -> list[int]:
+    """Return where the turns begin that are in view, the one that reaches into the view first."""
+    first = bands.project.document.frames.first
+    seen = list(bands.in_view(choice.keys))
+    before = seen[0] if seen else choice.count_keys_until(bands.frame(bands.left))
+    reaching = choice.keys[before - 1].frame if before else first
+    return sorted({max(reaching, first), *(max(choice.keys[i].frame, first) for i in seen)})
+
+
+def _menu(bands: TimelineLayout, choice: SwitchGroup, start: int) -> list[Action]:
+    """Draw the menu of a turn: which layer is seen in it, if any change there."""
+    actions: list[Action] = []
+    if not imgui.begin_popup(f"menu of turn {start}"):
+        return actions
+    for identity in choice.layers:
+        name = bands.project.document.layer(identity).name
+        is_seen = choice.layer_at(start) == identity
+        if imgui.menu_item(f"{name}###show {identity}", "", is_seen)[0] and not is_seen:
+            actions.append(do(editing.edit, choice_commands.choose_at(identity, start)))
+    imgui.separator()
+    keyed = turn_frame(
+        bands.project.document, bands.project.document.switch_group(choice.name), start
+    )
+    is_change = any(turn.frame == keyed for turn in choice.keys[1:])
+    if imgui.menu_item_simple("Delete", enabled=is_change):
+        actions.append(do(editing.edit, choice_commands.unchoose_at(choice.name, keyed)))
+    imgui.end_popup()
+    return actions
+
+
+def _edge(bands: TimelineLayout, lane: GroupRow, choice: SwitchGroup, start: int) -> list[Action]:
+    """Draw where a turn begins, and let it be dragged."""
+    em, x = bands.look.em, bands.x(start)
+    if not bands.shows(x - EDGE * em, x + EDGE * em):
+        return []
+    drag = bands.project.timing.gesture
+    if not isinstance(drag, TurnDrag) or (drag.choice, drag.at) != (choice.name, start):
+        drag = None
+    origin = start if drag is None else drag.turn
+    box = ImVec2(x - EDGE * em, lane.top), ImVec2(x + EDGE * em, lane.bottom)
+    bands.button(f"edge {origin}", *box)
+    is_hot = is_hovered_or_held() or drag is not None
+    colour = colour_u32(bands.look.palette.text if is_hot else bands.look.palette.anchor)
+    top, bottom = ImVec2(x, lane.top + 2), ImVec2(x, lane.bottom - 2)
+    imgui.get_window_draw_list().add_line(top, bottom, colour, 1.5)
+    if origin != start:
+        draw_time_tag(bands, x, f"{start}  ({start - origin:+d})")
+    if is_hovered_or_held():
+        imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
+    if not is_pressed():
+        return []
+    document = bands.project.document
+    begun = TurnDrag(
+        choice=choice.name,
+        turn=start,
+        at=start,
+        start=bands.pointed,
+        before=document,
+        after=document,
+    )
+    return [do(timeline_pointing.begin, begun, bands.time_view)]

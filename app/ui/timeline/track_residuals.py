@@ -1,0 +1,33 @@
+"""Where tracks want what the limits do not allow."""
+
+from collections.abc import Mapping
+
+from app.document import Layer, Track, misses_target
+from app.editor import Project
+
+
+def find_residuals(project: Project, layer: Layer, track: Track) -> Mapping[int, float]:
+    """Return by how many pixels a track is missed, by the frames in which it is out of reach."""
+    corrected = project.puppets[layer.id].corrected
+    if corrected is None or not track.enabled:
+        return {}
+    lacks = {
+        frame: max((missed.get(handle, 0.0) for handle in track.handles), default=0.0)
+        for frame, missed in corrected.misses.items()
+    }
+    return {frame: lack for frame, lack in lacks.items() if misses_target(layer, lack)}
+
+
+def describe_residual(project: Project, layer: Layer, track: Track, frame: int) -> str:
+    """Return in words that a track is out of reach at a frame; empty where it is not."""
+    miss = find_residuals(project, layer, track).get(frame)
+    if miss is None:
+        return ""
+    corrected = project.puppets[layer.id].corrected
+    correction = corrected.at(corrected.clip, frame) if corrected else None
+    limits = correction.limits if correction else ()
+    if len(limits) > 1:
+        why = f"the limits of {', '.join(limits[:-1])} and {limits[-1]} hold"
+    else:
+        why = f"the limit of {limits[0]} holds" if limits else "the shape's stiffness holds"
+    return f"Misses its track by {miss:.0f} px at frame {frame}: {why} it back"

@@ -1,0 +1,147 @@
+"""The picture at rest while it is cut out: what is removed lies under a veil.
+
+What stays although it looks like the background lies under a veil of another colour: on paper of
+that colour nobody would see it.
+"""
+
+import math
+
+import numpy as np
+from imgui_bundle import ImVec2, ImVec4, imgui
+
+from app.editor import Project, Session
+from app.editor.actions import cutting, material
+from app.render import Disc, Renderer
+from app.render.gpu import GpuMesh, GpuPicture, PosedMesh, PositionBuffer, to_float32_points
+from app.storage import CutOutResult
+from app.ui.style import Look, Palette, colour_u32, outline_strokes
+from app.ui.viewport.marks import to_rgba
+from engine.arrays import Bytes, Complexes, Integers
+
+VEIL, LEFTOVER = (214, 48, 72, 150), (40, 110, 240, 150)
+FINEST = 1024  # pixels of the veil's longer side
+HOLE = 7.0  # pixels: radius of the mark in a hole
+SQUARE: Integers = np.array([[0, 1, 2], [0, 2, 3]], dtype=np.int32)
+
+
+class _Sheet:
+    """Owner of a picture on two triangles."""
+
+    def __init__(self, renderer: Renderer, pixels: Bytes, corners: Complexes) -> None:
+        programs = renderer.programs
+        self._picture = GpuPicture(programs.context, pixels)
+        rest = _corners(*self._picture.size)
+        self._mesh = GpuMesh(programs, self._picture, rest=rest, triangles=SQUARE)
+        places = PositionBuffer(programs.context, len(rest))
+        places.write(to_float32_points(corners))
+        self.pose = PosedMesh(self._mesh, places)
+
+    def write(self, pixels: Bytes) -> None:
+        self._picture.write(pixels)
+
+    def release(self) -> None:
+        for owner in (self.pose, self._mesh, self._picture):
+            owner.release()
+
+
+class CutView:
+    """Owner of what is drawn of a layer while it is cut out.
+
+    Parameters
+    ----------
+    layer : int
+        Its id.
+
+    Attributes
+    ----------
+    puppet : Puppet
+        The layer as the window had it then.
+    """
+
+    def __init__(self, renderer: Renderer, project: Project, layer: int) -> None:
+        self.runtime = project.puppets[layer]
+        self._cut = self.runtime.cut.value
+        picture = self.runtime.picture
+        corners = project.document.layer(layer).corner + _corners(*picture.size)
+        self._sheet = _Sheet(renderer, picture.rgba, corners)
+        self._veil = _Sheet(renderer, _veil(self._cut), corners)
+
+    def meshes(self) -> tuple[PosedMesh, ...]:
+        """Return the picture, and the veil over what is removed of it now."""
+        cut = self.runtime.cut.value
+        if cut is not self._cut:
+            self._cut = cut
+            self._veil.write(_veil(cut))
+        return (self._sheet.pose, self._veil.pose)
+
+    def release(self) -> None:
+        """Let everything go."""
+        self._sheet.release()
+        self._veil.release()
+
+
+def mark_holes(project: Project, palette: Palette, scale: float) -> tuple[Disc, ...]:
+    """Return a mark for each hole: a ring in one that stays open, a disc in one that is filled."""
+    layer, holes = project.layer, project.puppet.cut.value.holes
+    if holes is None:
+        return ()
+    swapped = {holes.number_at(point) for point in layer.cut_out.swapped}
+    return tuple(
+        Disc(
+            centre=middle + layer.corner,
+            radius=HOLE * scale,
+            fill=to_rgba(
+                palette.accent
+                if (layer.cut_out.holes == "fill" or number in holes.shut) != (number in swapped)
+                else palette.panel
+            ),
+            rim=to_rgba(palette.text),
+            rim_width=2.0 * scale,
+        )
+        for number, middle in holes.middles.items()
+    )
+
+
+def draw_brush_ring(session: Session, look: Look, at: ImVec2, scale: float) -> None:
+    """Draw the ring of the brush around a place; a pixel of the picture takes `scale` pixels."""
+    keeps: bool | None
+    if session.project is None:
+        return
+    if session.cutting in {"keep", "remove"}:
+        keeps = (session.cutting == "keep") != imgui.get_io().key_alt
+    elif session.material in material.BRUSHES:
+        keeps = material.BRUSHES[session.material]
+    else:
+        return
+    radius = cutting.brush_radius(session.project) * scale
+    draw_list = imgui.get_window_draw_list()
+    colour = colour_u32(find_stroke_colour(look, keeps=keeps))
+    for tone, width in outline_strokes(look, colour, 0.1):
+        draw_list.add_circle(at, radius, tone, 64, width)
+    if keeps is None:
+        return
+    sign, width = 0.35 * look.em, 0.12 * look.em
+    draw_list.add_line(ImVec2(at.x - sign, at.y), ImVec2(at.x + sign, at.y), colour, width)
+    if keeps:
+        draw_list.add_line(ImVec2(at.x, at.y - sign), ImVec2(at.x, at.y + sign), colour, width)
+
+
+def find_stroke_colour(look: Look, *, keeps: bool | None) -> ImVec4:
+    """Return the colour of a brush that keeps, or stiffens; that does the opposite; or neither."""
+    if keeps is None:
+        return look.palette.accent
+    return look.palette.good if keeps else look.palette.danger
+
+
+def _corners(width: float, height: float) -> Complexes:
+    return np.array([0, width, width + 1j * height, 1j * height])
+
+
+def _veil(cut: CutOutResult) -> Bytes:
+    step = math.ceil(max(cut.mask.size) / FINEST)
+    kept = cut.kept[::step, ::step]
+    veil = np.zeros((*kept.shape, 4), dtype=np.uint8)
+    veil[~kept] = VEIL
+    if cut.background_like is not None:
+        veil[cut.background_like[::step, ::step]] = LEFTOVER
+    return veil

@@ -1,0 +1,180 @@
+"""What a project needs on the graphics card: the pictures and meshes of its layers."""
+
+from collections.abc import Callable, Collection
+
+import numpy as np
+
+from app.document import Layer, have_same_stiffness
+from app.editor import HeatMap, Project
+from app.motion import DeformMesh, DisplayedFrame, Vertices
+from app.render import DrawnMesh, Renderer, shader_is_faster
+from app.render.gpu import GpuMesh, GpuPicture, PosedMesh
+from app.storage import Picture, release_pages
+from app.ui.viewport.backdrop import measure_brightness
+from app.ui.viewport.cutout_overlay import CutView
+from app.ui.viewport.stiffness_overlay import measure_vertex_stiffness
+from engine.arrays import Bytes, Floats
+from engine.domain import find_seam
+from engine.maps import distortion
+
+
+def measure_distortion(shown: DisplayedFrame, heat_map: HeatMap) -> Floats:
+    """Return one of the distortions at the vertices of what is shown, (v,)."""
+    fz, fzbar = shown.derivatives
+    match heat_map:
+        case "sigma_a":
+            return distortion.sigma_a(fz, fzbar)
+        case "sigma_b":
+            return distortion.sigma_b(fz, fzbar)
+        case _:
+            return distortion.k(fz, fzbar)
+
+
+class GpuResources:
+    """Owner of the pictures and meshes of a project's layers on the graphics card."""
+
+    def __init__(self, renderer: Renderer, project: Project) -> None:
+        self.project = project
+        self._renderer = renderer
+        # By layers' ids and their pictures: a layer's may be replaced, or a new one get the id of
+        # one that is gone. Layers of which nothing is cut share them, by None.
+        self._pictures: dict[tuple[int | None, Picture], GpuPicture] = {}
+        self._meshes: dict[DeformMesh, GpuMesh] = {}
+        self._drawn_meshes: dict[tuple[DeformMesh, int], DrawnMesh] = {}
+        self._ghosts: dict[tuple[int, int], tuple[object, Vertices]] = {}
+        self._heated: dict[PosedMesh, tuple[Vertices, HeatMap]] = {}
+        self._cut_view: CutView | None = None
+        self._measured: tuple[Bytes, Floats] | None = None
+        self._stiff: tuple[Layer, DeformMesh, Floats] | None = None
+
+    @property
+    def brightness(self) -> Floats:
+        """That of the picture behind all others, as it is cut out: the backdrop must differ."""
+        (first, *_) = self.project.document.layers
+        texture = self.project.puppets[first.id].cut.value.texture
+        if self._measured is None or self._measured[0] is not texture:
+            self._measured = texture, measure_brightness(texture)
+        return self._measured[1]
+
+    def drawn_mesh(self, layer: int, mesh: DeformMesh, number: int = 0) -> DrawnMesh:
+        """Return the copy of a layer's mesh with this number, which is posed by itself."""
+        if mesh in self._meshes and self._meshes[mesh].picture is not self.picture(layer):
+            # What is cut out of the picture is its own now, or is not any more.
+            self.release_but(self._meshes.keys() - {mesh})
+        if (mesh, number) not in self._drawn_meshes:
+            by_shader = shader_is_faster(self._renderer.programs.context)
+            drawn = DrawnMesh(self._mesh(layer, mesh), by_shader=by_shader)
+            self._drawn_meshes[mesh, number] = drawn
+        return self._drawn_meshes[mesh, number]
+
+    def ghost(
+        self, layer: int, number: int, of: object, find: Callable[[], Vertices | None]
+    ) -> Vertices | None:
+        """Return where a layer's vertices are in a copy that shows another frame, if known.
+
+        They are found anew only where they are of something else: the picture changes every frame.
+        """
+        known = self._ghosts.get((layer, number))
+        if known is None or known[0] != of:
+            vertices = find()
+            if vertices is None:
+                return None
+            known = self._ghosts[layer, number] = of, vertices
+        return known[1]
+
+    def heat(self, pose: PosedMesh, shown: DisplayedFrame, heat_map: HeatMap) -> None:
+        """Colour a pose by a distortion of what is shown; uploaded only if it is another."""
+        wanted = (shown.vertices, heat_map)
+        if self._heated.get(pose) != wanted:
+            pose.write_heat(measure_distortion(shown, heat_map).astype(np.float32))
+            self._heated[pose] = wanted
+
+    def refresh(self) -> None:
+        """Bring the pictures up to what is cut out of them now."""
+        used = {self._key(layer): layer for layer in self.project.puppets}
+        for key in list(self._pictures):
+            if key in used:
+                self._pictures[key].write(self.project.puppets[used[key]].cut.value.texture)
+            else:
+                # Undo brings it back; it has no mesh any more.
+                self._pictures.pop(key).release()
+
+    def tint(self, pose: PosedMesh, values: Floats) -> None:
+        """Colour a pose by values of its vertices, (v,), that are no distortion."""
+        pose.write_heat(values.astype(np.float32))
+        self._heated.pop(pose, None)
+
+    def stiffness(self, layer: Layer, mesh: DeformMesh) -> Floats:
+        """Return by what the vertices of a layer's mesh are coloured, (v,), where it is stiff.
+
+        It is worked out anew only where that has changed: the picture changes in every frame.
+        """
+        known = self._stiff
+        if (
+            known is None
+            or known[1] is not mesh
+            or known[0].domain is not layer.domain
+            or not have_same_stiffness(known[0], layer)
+        ):
+            known = self._stiff = layer, mesh, measure_vertex_stiffness(layer, mesh)
+        return known[2]
+
+    def release_but(self, meshes: Collection[DeformMesh]) -> None:
+        """Let the buffers of other meshes go."""
+        for mesh, number in [key for key in self._drawn_meshes if key[0] not in meshes]:
+            self._drawn_meshes.pop((mesh, number)).release()
+            self._heated.clear()
+            self._ghosts.clear()
+        for mesh in [mesh for mesh in self._meshes if mesh not in meshes]:
+            self._meshes.pop(mesh).release()
+
+    def cut_view(self) -> CutView:
+        """Return what is drawn of the active layer while it is cut out."""
+        if self._cut_view is None or self._cut_view.runtime is not self.project.puppet:
+            self._forget_cut_view()
+            self._cut_view = CutView(self._renderer, self.project, self.project.active)
+        return self._cut_view
+
+    def _forget_cut_view(self) -> None:
+        if self._cut_view is not None:
+            self._cut_view.release()
+            self._cut_view = None
+
+    def release(self) -> None:
+        """Let everything go."""
+        self._forget_cut_view()
+        self.release_but(())
+        for picture in self._pictures.values():
+            picture.release()
+
+    def _mesh(self, layer: int, mesh: DeformMesh) -> GpuMesh:
+        if mesh not in self._meshes:
+            drawn = mesh.domain.mesh
+            self._meshes[mesh] = GpuMesh(
+                self._renderer.programs,
+                self.picture(layer),
+                rest=drawn.vertices - self.project.document.layer(layer).corner,
+                triangles=drawn.triangles,
+                seam=find_seam(mesh.domain),
+            )
+        return self._meshes[mesh]
+
+    @property
+    def picture_count(self) -> int:
+        """How many pictures of layers are on the graphics card."""
+        return len(self._pictures)
+
+    def picture(self, layer: int) -> GpuPicture:
+        """Return a layer's picture on the graphics card; uncut layers of one file share it."""
+        key = self._key(layer)
+        if key not in self._pictures:
+            texture = self.project.puppets[layer].cut.value.texture
+            context = self._renderer.programs.context
+            self._pictures[key] = GpuPicture(context, texture, is_for_screen=True)
+            release_pages(texture)
+        return self._pictures[key]
+
+    def _key(self, layer: int) -> tuple[int | None, Picture]:
+        puppet = self.project.puppets[layer]
+        is_whole = puppet.cut.value.texture is puppet.picture.rgba
+        return None if is_whole else layer, puppet.picture

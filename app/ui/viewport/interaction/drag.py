@@ -1,0 +1,171 @@
+"""What the pointer has begun in the viewport: what is drawn of it, and how it goes on."""
+
+from collections.abc import Iterable, Sequence
+
+import shapely
+from imgui_bundle import ImVec2, imgui
+
+from app.editor import (
+    Action,
+    BoneMark,
+    BoxMark,
+    EntryMark,
+    JointMark,
+    KnifeMark,
+    Mark,
+    Session,
+    StrokeMark,
+    SweepMark,
+    do,
+)
+from app.editor.tools import ERASE, pointing
+from app.ui.style import Look, colour_u32, draw_tag, outline_strokes, tag_size
+from app.ui.viewport.cutout_overlay import find_stroke_colour
+from app.ui.viewport.marks import transform_loops
+from app.ui.viewport.screen import ScreenMapping
+from app.ui.viewport.stiffness_overlay import draw_bone
+from engine.domain import SLIT_WIDTH
+from engine.geometry import box_diagonal
+
+DIGITS = "0123456789.,-"
+AXES = ((imgui.Key.x, "x"), (imgui.Key.y, "y"))
+STROKE = 0.45  # opacity of one that is not done yet
+HALF = 0.5  # pixels by which what is shown of one may be beside it
+
+
+def follow_pointer(session: Session, look: Look, screen: ScreenMapping) -> list[Action]:
+    """Follow the pointer in what it began; end it where the button is let go."""
+    gesture = session.pointer
+    if gesture is None:
+        return []
+    if imgui.is_key_pressed(imgui.Key.escape) or imgui.is_mouse_clicked(imgui.MouseButton_.right):
+        return [do(pointing.cancel)]
+    draw_gesture_overlays(look, screen, gesture.marks)
+    io, pointer = imgui.get_io(), screen.pointer
+    actions: list[Action] = []
+    # Only what is turned goes by steps; Ctrl let go after Ctrl+Z is not to pull once more.
+    is_turning = any(isinstance(mark, SweepMark) for mark in gesture.marks)
+    is_stepped = is_turning and io.key_ctrl != session.snaps
+    # What is recorded goes on in time while the pointer rests.
+    is_recorded = screen.project.take is not None and not screen.project.take.is_over
+    if io.mouse_delta.x or io.mouse_delta.y or is_stepped or is_recorded:
+        move = pointing.move_in_steps if io.key_ctrl else pointing.move
+        actions.append(do(move, pointer))
+    characters = _typed()
+    if characters:
+        actions.append(do(pointing.type_in, characters))
+    is_entered = any(map(imgui.is_key_pressed, (imgui.Key.enter, imgui.Key.keypad_enter)))
+    if is_entered or not imgui.is_mouse_down(imgui.MouseButton_.left):
+        end = pointing.end_insisting if io.key_alt else pointing.end
+        actions.append(do(end, pointer))
+    return actions
+
+
+def draw_gesture_overlays(look: Look, screen: ScreenMapping, marks: Iterable[Mark]) -> None:
+    """Draw what marks a gesture over the picture."""
+    for mark in marks:
+        match mark:
+            case BoxMark():
+                low, high = screen.point(mark.corner), screen.point(mark.opposite)
+                draw_list, accent = imgui.get_window_draw_list(), look.palette.accent
+                draw_list.add_rect_filled(low, high, colour_u32(accent, 0.12))
+                draw_list.add_rect(low, high, colour_u32(accent, 0.8))
+            case StrokeMark():
+                _draw_stroke(look, screen, mark)
+            case KnifeMark():
+                _draw_cut(look, screen, mark.points)
+            case JointMark():
+                _draw_joint(look, screen, mark)
+            case EntryMark():
+                _draw_entry(look, screen, mark)
+            case BoneMark():
+                colour = look.palette.danger if mark.is_refused else look.palette.accent
+                draw_bone(look, screen.point(mark.start), screen.point(mark.end), colour)
+
+
+def draw_pending_strokes(look: Look, screen: ScreenMapping) -> None:
+    """Draw the strokes of the brush that the worker has not come to yet."""
+    layer, known = screen.project.layer, screen.project.puppet.cut.source
+    done = () if known is None else known.strokes
+    for stroke in layer.cut_out.strokes[len(done) :]:
+        places = tuple(complex(place) for place in stroke.points + layer.corner)
+        mark = StrokeMark(points=places, radius=stroke.radius, keeps=stroke.keeps)
+        _draw_stroke(look, screen, mark)
+
+
+def draw_cuts(look: Look, screen: ScreenMapping) -> None:
+    """Draw the lines along which the knife has parted, or is about to."""
+    layer = screen.project.layer
+    for slit in layer.cut_out.slits:
+        _draw_cut(look, screen, (slit.points + layer.corner).tolist())
+
+
+def _draw_cut(look: Look, screen: ScreenMapping, places: Sequence[complex]) -> None:
+    """Draw a line of the knife, as wide as the slit that comes of it."""
+    width = SLIT_WIDTH * box_diagonal(screen.project.layer.domain.outline) * screen.scale
+    points = [screen.point(place) for place in places]
+    draw_list = imgui.get_window_draw_list()
+    for tone, breadth in outline_strokes(look, colour_u32(look.palette.accent), 0.1):
+        draw_list.add_polyline(list(points), tone, max(breadth, width), 0)
+
+
+def _typed() -> str:
+    """Return what was typed for a drag in this frame, in the order in which it counts."""
+    characters = [chr(code) for code in imgui.get_io().input_queue_characters]
+    text = "".join(character for character in characters if character in DIGITS)
+    # By their keys: a character is repeated while its key is held, and would let the axis go again.
+    text += "".join(axis for key, axis in AXES if imgui.is_key_pressed(key, repeat=False))
+    return text + (ERASE if imgui.is_key_pressed(imgui.Key.backspace) else "")
+
+
+def _draw_entry(look: Look, screen: ScreenMapping, mark: EntryMark) -> None:
+    """Draw the axis that a drag keeps to, and beside the pointer what was typed."""
+    corner, room = imgui.get_window_pos(), imgui.get_window_size()
+    if mark.direction is not None:
+        centre = screen.point(mark.place)
+        low, high = ImVec2(corner.x, centre.y), ImVec2(corner.x + room.x, centre.y)
+        if not mark.direction.real:
+            low, high = ImVec2(centre.x, corner.y), ImVec2(centre.x, corner.y + room.y)
+        for tone, width in outline_strokes(look, colour_u32(look.palette.accent), 0.12):
+            imgui.get_window_draw_list().add_line(low, high, tone, width)
+    mouse, last = imgui.get_mouse_pos(), corner + room - tag_size(look, mark.text)
+    left = min(max(mouse.x + look.em, corner.x), last.x)
+    top = min(max(mouse.y + look.em, corner.y), last.y)
+    draw_tag(look, ImVec2(left, top), mark.text)
+
+
+def _draw_stroke(look: Look, screen: ScreenMapping, mark: StrokeMark) -> None:
+    colour = colour_u32(find_stroke_colour(look, keeps=mark.keeps), STROKE)
+    points = [screen.point(place) for place in mark.points]
+    draw_list = imgui.get_window_draw_list()
+    # Soft edges of triangles would be seen where two meet.
+    draw_list.push_draw_flag(imgui.ImDrawFlags_.aa_fill, False)  # noqa: FBT003 - enabled or not
+    for corners in triangulate_stroke(points, mark.radius * screen.scale):
+        draw_list.add_triangle_filled(*corners, colour)
+    draw_list.pop_draw_flag()
+
+
+def triangulate_stroke(way: Sequence[ImVec2], radius: float) -> list[tuple[ImVec2, ImVec2, ImVec2]]:
+    """Return triangles that cover each place within a radius of a way once, to half a pixel."""
+    points = [(point.x, point.y) for point in way]
+    line = shapely.LineString(points) if len(points) > 1 else shapely.Point(points[0])
+    # In each frame anew: of all places of a mouse that would take up to a tenth of a second.
+    line = line.simplify(HALF)
+    parts = shapely.get_parts(shapely.constrained_delaunay_triangles(line.buffer(radius)))
+    rings = shapely.get_coordinates(parts).reshape(-1, 4, 2).tolist()
+    return [(ImVec2(*one), ImVec2(*two), ImVec2(*three)) for one, two, three, _ in rings]
+
+
+def _draw_joint(look: Look, screen: ScreenMapping, mark: JointMark) -> None:
+    """Draw the way from the anchor to the pointer, and the outline of the layer there."""
+    draw_list = imgui.get_window_draw_list()
+    colour = look.palette.danger if mark.is_refused else look.palette.accent
+    start, end = screen.point(mark.start), screen.point(mark.end)
+    parent = None if mark.parent is None else screen.project.puppets[mark.parent].shown
+    loops = [] if parent is None else map(parent.placement.on, transform_loops(parent))
+    edges = [screen.points(loop) for loop in loops]
+    for tone, width in outline_strokes(look, colour_u32(colour), 0.16):
+        for edge in edges:
+            draw_list.add_polyline(list(edge), tone, width, imgui.ImDrawFlags_.closed)
+        draw_list.add_line(start, end, tone, width)
+        draw_list.add_circle(end, 0.45 * look.em, tone, thickness=width)

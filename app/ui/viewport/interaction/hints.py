@@ -1,0 +1,139 @@
+"""What the viewport says: what can be done under the pointer and next, and what is special now."""
+
+from functools import reduce
+
+from imgui_bundle import ImVec2, imgui
+
+from app.editor import Action, Hint, Project, Session
+from app.editor.actions import guiding
+from app.editor.tools import Spot, tools_of
+from app.ui.shortcuts import ALT, BINDINGS, CTRL, SHIFT, ActionSpec, format_modified
+from app.ui.style import Look, colour_u32, draw_tooltip
+from app.ui.viewport.marks import find_auto_pinned
+from app.ui.viewport.screen import ScreenMapping
+
+HINTS = (
+    "Click on the drawing to add a handle.",
+    "Drag a handle to pose; a second one holds another part in place.",
+    "Move the playhead, then drag again: that makes the second key.",
+)
+KEYS = {"ctrl": (CTRL,), "shift": (SHIFT,), "alt": (ALT,), "ctrl+shift": (SHIFT, CTRL)}
+
+
+def find_hint(session: Session, screen: ScreenMapping, spot: Spot) -> str:
+    """Return what can be done where the pointer is."""
+    project = screen.project
+    if session.pointer is not None:
+        return _sentence([*map(_format_hint, session.pointer.ways), "Esc takes it back"])
+    if session.cutting is None and project.playhead.since is not None:
+        return "Space stops"
+    if session.poses and not session.overlays.handles:
+        return "The handles are hidden: H shows them"
+    told = [
+        _format_hint(hint)
+        for tool in tools_of(session)
+        for hint in tool.hints(session, project, spot)
+    ]
+    if not session.poses:
+        return _sentence([*told, "Esc goes back"])
+    if spot.handle is not None:
+        if spot.handle in find_auto_pinned(screen.shown):
+            told.append("the line below it tells that it stays until the next key")
+        return f"{screen.shown.clip.layer.handle(spot.handle).name}: {', '.join(told)}"
+    if not (spot.on_shape or spot.on_ring):
+        told += ["wheel to zoom", "middle drag to move the view"]
+    return _sentence(told)
+
+
+MODES = {
+    "stiff": "Making parts stiff",
+    "soft": "Making parts soft",
+    "normal": "Making parts as usual again",
+    "bone": "Bones from handle to handle",
+}
+
+
+def _sentence(parts: list[str]) -> str:
+    text = ", ".join(parts)
+    return text[:1].upper() + text[1:]
+
+
+def _format_hint(hint: Hint) -> str:
+    how = reduce(lambda told, key: format_modified(key, told), KEYS.get(hint.key, ()), hint.how)
+    return f"{how} {hint.what}"
+
+
+def draw_badges(
+    session: Session, look: Look, project: Project, corner: ImVec2, room: ImVec2
+) -> list[Action]:
+    """Tell what is special now: a pose that no key holds, a tool in hand, or what to do next."""
+    top = corner + ImVec2(room.x / 2, look.em)
+    if project.unkeyed is not None:
+        return _draw_pill(look, "Unkeyed pose", top, BINDINGS["insert key"])
+    mode = _mode(session, project)
+    if mode:
+        return draw_mode_badge(look, mode, corner, room)
+    if project.errand is not None:
+        stop = BINDINGS["no motion"].shown_keys
+        return _draw_pill(look, f"{project.errand.now}: {stop} gives the motion up", top)
+    step = find_first_step(project)
+    if step is None or guiding.is_led(session):
+        return []
+    return _draw_pill(look, HINTS[step], corner + ImVec2(room.x / 2, room.y - 3.2 * look.em))
+
+
+def _mode(session: Session, project: Project) -> str:
+    """Return in words what drags do instead of posing; empty where they pose."""
+    if session.moves:
+        return "Moving the whole layer"
+    if session.material is not None:
+        return MODES[session.material]
+    if project.draft is not None:
+        return "Putting joints where they belong"
+    return "Recording the next drag of a handle" if session.records else ""
+
+
+def draw_mode_badge(look: Look, what: str, corner: ImVec2, room: ImVec2) -> list[Action]:
+    """Tell what drags do instead of posing, and how to go back."""
+    keys = BINDINGS["pose"].shown_keys
+    place = corner + ImVec2(room.x / 2, look.em)
+    return _draw_pill(look, f"{what}: {keys} goes back to posing", place)
+
+
+def find_first_step(project: Project) -> int | None:
+    """Return which hint a new project is at; None where the person has found the way."""
+    layer = project.layer
+    if not layer.handles:
+        return 0
+    if len(layer.keys) > 1 or project.playhead.since is not None:
+        return None
+    return 2 if guiding.is_posed(layer) else 1
+
+
+def _draw_pill(
+    look: Look, text: str, place: ImVec2, remedy: ActionSpec | None = None
+) -> list[Action]:
+    """Write a text below a place; one that warns has the button of a remedy beside it."""
+    palette, draw_list = look.palette, imgui.get_window_draw_list()
+    padding, height = 0.7 * look.em, 2.1 * look.em
+    beside = imgui.calc_text_size(remedy.label).x + 1.6 * look.em if remedy else 0.0
+    size = imgui.calc_text_size(text)
+    low = place - ImVec2(size.x / 2 + padding + beside / 2, 0)
+    high = low + ImVec2(size.x + 2 * padding + beside, height)
+    draw_list.add_rect_filled(low, high, colour_u32(palette.panel, 0.92), height / 2)
+    draw_list.add_rect(
+        low, high, colour_u32(palette.warning if remedy else palette.line), height / 2, 1.2
+    )
+    text_place = low + ImVec2(padding, (height - size.y) / 2)
+    draw_list.add_text(text_place, colour_u32(palette.warning if remedy else palette.text), text)
+    if remedy is None:
+        return []
+    slim = imgui.get_frame_height() - 0.1 * look.em
+    corner = ImVec2(high.x - beside - 0.2 * look.em, low.y + (height - slim) / 2)
+    imgui.set_cursor_screen_pos(corner)
+    imgui.push_style_var(imgui.StyleVar_.frame_rounding, slim / 2)
+    imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(0, 0))
+    is_pressed = imgui.button(remedy.label, ImVec2(beside, slim))
+    imgui.pop_style_var(2)
+    draw_tooltip(remedy.hint, remedy.shown_keys)
+    return [remedy.action] if is_pressed else []

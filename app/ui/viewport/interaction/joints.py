@@ -1,0 +1,45 @@
+"""The joints of a motion that is drafted, over the drawing."""
+
+from imgui_bundle import ImVec2, ImVec4, imgui
+
+from app.editor import Session
+from app.editor.actions import placing
+from app.editor.tools import pointed
+from app.ui.style import Look, colour_u32, draw_knob, draw_tag, outline_strokes, tag_size
+from app.ui.viewport.screen import ScreenMapping
+
+DOT, LIMB = 0.42, 0.16  # em: radius of a joint, width of what is between two
+
+
+def draw_joints(session: Session, look: Look, screen: ScreenMapping) -> None:
+    """Draw joints and what is between them, each side in its own colour, with the pointed name."""
+    project = screen.project
+    draft = project.draft
+    if draft is None or project.playhead.since is not None:
+        return
+    kind, places = draft.body_kind, placing.shown_joints(project)
+    points = {name: screen.point(at) for name, at in places.items()}
+    draw_list = imgui.get_window_draw_list()
+    for name, point in points.items():
+        before = kind.parent(name, points)
+        if before:
+            for tone, width in outline_strokes(look, colour_u32(joint_colour(look, name)), LIMB):
+                draw_list.add_line(points[before], point, tone, width)
+    for name, point in points.items():
+        draw_knob(look, point, DOT, joint_colour(look, name))
+    hot = draft.chosen if session.pointer else pointed(session, project, screen.pointer)
+    for marked in dict.fromkeys((draft.chosen, hot)):
+        if marked in points:
+            radius = 1.7 * DOT * look.em
+            draw_list.add_circle(points[marked], radius, colour_u32(look.palette.text), 0, 1.5)
+    if hot is not None and hot in points:
+        low = points[hot] + ImVec2(0.8 * look.em, -0.8 * look.em - tag_size(look, hot).y)
+        draw_tag(look, low, hot)
+
+
+def joint_colour(look: Look, name: str) -> ImVec4:
+    """Return the colour of a joint: each side has its own."""
+    palette = look.palette
+    if name.endswith(".L"):
+        return palette.good
+    return palette.warning if name.endswith(".R") else palette.accent

@@ -1,0 +1,80 @@
+"""Tracks in the viewport: the keys on a path, and what to do with a drag that was recorded."""
+
+from imgui_bundle import ImVec2, imgui, imgui_ctx
+
+from app.editor import Action, Project, Session, do
+from app.editor.actions import tracking
+from app.ui.style import Look, colour_u32, draw_tooltip, is_hovered_or_held, is_pressed
+from app.ui.viewport.paths import find_path_keys
+from app.ui.viewport.screen import ScreenMapping
+
+KEY_GRIP = 0.5  # em: radius within which a key on a path is grabbed
+SLIDER, PADDING = 11.0, 0.6  # em
+
+
+def add_track_key_gizmos(
+    session: Session, look: Look, screen: ScreenMapping
+) -> tuple[int | None, bool]:
+    """Lay a button over each key on the path of the chosen track.
+
+    Returns
+    -------
+    frame : int or None
+        Of the one under the pointer.
+    pressed : bool
+        Whether one was pressed.
+    """
+    hovered, pressed = None, False
+    if not session.poses or screen.project.playhead.since is not None:
+        return hovered, pressed
+    radius = ImVec2(KEY_GRIP * look.em, KEY_GRIP * look.em)
+    for frame, place in find_path_keys(screen.project):
+        (centre,) = screen.points(place)
+        imgui.set_cursor_screen_pos(centre - radius)
+        imgui.invisible_button(f"key of track {frame}", radius * 2)
+        if is_hovered_or_held():
+            hovered = frame
+        pressed = pressed or is_pressed()
+    return hovered, pressed
+
+
+def draw_recording_bar(look: Look, project: Project, corner: ImVec2) -> list[Action]:
+    """Draw a bar with what can be done with a drag that was recorded, until that is decided."""
+    take = project.take
+    if take is None or not take.is_over:
+        return []
+    actions: list[Action] = []
+    draw_list, em = imgui.get_window_draw_list(), look.em
+    name = project.layer.handle(take.handle).name
+    track = project.layer.track_of(take.handle)
+    count = 0 if track is None or take.after is None else len(track.keys)
+    text = f"{name}: {count} {'key' if count == 1 else 'keys'}" if count else f"{name}…"
+    imgui.set_cursor_screen_pos(corner + ImVec2(1.5 * em, 1.5 * em))
+    draw_list.channels_split(2)
+    draw_list.channels_set_current(1)
+    with imgui_ctx.begin_group():
+        imgui.align_text_to_frame_padding()
+        imgui.text_unformatted(text)
+        imgui.same_line()
+        imgui.set_next_item_width(SLIDER * em)
+        changed, percent = imgui.slider_int(
+            "##smoothing", round(100 * take.smoothing), 0, 100, "Smoothing %d%%"
+        )
+        draw_tooltip("How far the motion may be beside what was recorded: the more, the fewer keys")
+        if changed:
+            actions.append(do(tracking.smooth, min(max(percent, 0), 100) / 100))
+        imgui.same_line()
+        if imgui.button("Keep"):
+            actions.append(do(tracking.keep))
+        draw_tooltip("Keep these keys, which can be changed like all others")
+        imgui.same_line()
+        if imgui.button("Again"):
+            actions.append(do(tracking.again))
+        draw_tooltip("Take this back, and record the next drag")
+    padding = ImVec2(PADDING * em, PADDING * em)
+    low, high = imgui.get_item_rect_min() - padding, imgui.get_item_rect_max() + padding
+    draw_list.channels_set_current(0)
+    draw_list.add_rect_filled(low, high, colour_u32(look.palette.panel, 0.94), PADDING * em)
+    draw_list.add_rect(low, high, colour_u32(look.palette.line), PADDING * em)
+    draw_list.channels_merge()
+    return actions

@@ -1,0 +1,72 @@
+"""Small pictures of the poses in layers' libraries."""
+
+from collections.abc import Callable
+
+from app.document import Pose
+from app.editor import Project, Session
+from app.motion import DeformMesh, VertexArray, bounding_box
+from app.render import Backdrop, DrawnMesh, Renderer, Scene, fit_view
+from app.render.gpu import RenderTarget
+from app.ui.style import PALETTES
+from app.ui.viewport.marks import to_rgba
+
+MARGIN = 0.06  # of the side, left free around the shape
+
+
+class PosePictures:
+    """Owner of one small texture for each pose of a layer, by its id, that was asked for."""
+
+    def __init__(self, renderer: Renderer) -> None:
+        self._renderer = renderer
+        self._targets: dict[tuple[int, Pose], RenderTarget] = {}
+        self._wanted: set[tuple[int, Pose]] = set()
+        # Of all that is drawn: the layers' meshes, how large, and in which theme.
+        self._kind: tuple[object, ...] = ()
+        self._side = 1
+
+    def get(self, layer: int, pose: Pose, side: int) -> int | None:
+        """Return the texture of a pose, so many pixels wide and high; None before it is drawn."""
+        self._wanted.add((layer, pose))
+        self._side = side
+        target = self._targets.get((layer, pose))
+        return None if target is None else target.texture.glo
+
+    def draw(
+        self, session: Session, project: Project, posable: Callable[[int, DeformMesh], DrawnMesh]
+    ) -> None:
+        """Draw what was asked for in this frame, and let all else go.
+
+        From `posable` comes a layer's mesh on the graphics card that can be posed.
+        """
+        meshes = {
+            layer: project.puppets[layer].store.mesh
+            for layer, _ in self._wanted
+            if layer in project.puppets
+        }
+        kind = (meshes, self._side, session.preferences.theme)
+        if kind != self._kind:
+            self.release()
+            self._kind = kind
+        for each in self._targets.keys() - self._wanted:
+            self._targets.pop(each).release()
+        desk = Backdrop(colour=to_rgba(PALETTES[session.preferences.theme].desk))
+        for layer, pose in self._wanted - self._targets.keys():
+            if layer not in meshes or pose not in project.document.layer(layer).poses:
+                continue
+            mesh = meshes[layer]
+            positions = mesh.pose_vertices(pose)
+            vertices = VertexArray(positions=positions, triangles=mesh.domain.mesh.triangles)
+            size = (self._side, self._side)
+            view = fit_view(*bounding_box(positions), size, margin=MARGIN * self._side)
+            target = RenderTarget(self._renderer.programs, size)
+            scene = Scene(background=desk, meshes=(posable(layer, mesh).pose(vertices),))
+            self._renderer.draw(target, view, scene)
+            self._targets[layer, pose] = target
+        self._wanted.clear()
+
+    def release(self) -> None:
+        """Let the textures go; poses that are asked for again are drawn again."""
+        for target in self._targets.values():
+            target.release()
+        self._targets.clear()
+        self._kind = ()

@@ -1,0 +1,58 @@
+"""What of a layer is stiff or soft, over its picture: colours, bones, and the brush."""
+
+from math import log
+
+import numpy as np
+from imgui_bundle import ImVec2, ImVec4, imgui
+from scipy.spatial import cKDTree
+
+from app.document import Layer, stiff_outline
+from app.editor.actions import material
+from app.motion import DeformMesh
+from app.ui.style import Look, colour_u32, outline_strokes
+from app.ui.viewport.screen import ScreenMapping
+from engine.arrays import Floats
+
+EXTENT = log(material.STRONGEST)  # what is so stiff has the last of the colours
+WIDEST, AT = 0.09, 0.2  # of a bone's length: how wide it is, and where
+AROUND, TINY = 128, 1e-6  # points of the outline that colour a place inside
+MOST = 0.7  # em: how wide a bone is at most, to either side
+
+
+def measure_vertex_stiffness(layer: Layer, mesh: DeformMesh) -> Floats:
+    """Return how stiff the vertices of a mesh are, (v,): −1 to 1, as the outline around them."""
+    along, stiffness = stiff_outline(layer)
+    values, vertices = np.log(stiffness) / EXTENT, mesh.domain.mesh.vertices
+    tree = cKDTree(np.column_stack([along.real, along.imag]))
+    away, nearest = tree.query(
+        np.column_stack([vertices.real, vertices.imag]), k=range(1, min(AROUND, len(along)) + 1)
+    )
+    weights = 1.0 / np.maximum(away, TINY * np.max(away)) ** 3
+    tinted: Floats = (weights * values[nearest]).sum(axis=1) / weights.sum(axis=1)
+    return tinted
+
+
+def draw_bones(look: Look, screen: ScreenMapping) -> None:
+    """Draw the bones that are shown, as thin diamonds from handle to handle."""
+    shown = screen.shown
+    handles = [handle.id for handle in shown.clip.layer.handles]
+    places = dict(zip(handles, shown.handle_positions.tolist(), strict=True))
+    for bone in screen.project.layer.bones:
+        if bone.is_shown and places.keys() >= set(bone.ends):
+            start, end = (screen.point(places[identity]) for identity in bone.ends)
+            draw_bone(look, start, end, look.palette.text)
+
+
+def draw_bone(look: Look, start: ImVec2, end: ImVec2, colour: ImVec4) -> None:
+    """Draw a bone between two points of the screen."""
+    way = complex(end.x - start.x, end.y - start.y)
+    if not way:
+        return
+    aside = 1j * way / abs(way) * min(WIDEST * abs(way), MOST * look.em)
+    middle = complex(start.x, start.y) + AT * way
+    left, right = (ImVec2(at.real, at.imag) for at in (middle + aside, middle - aside))
+    diamond = start, left, end, right
+    draw_list = imgui.get_window_draw_list()
+    draw_list.add_convex_poly_filled(list(diamond), colour_u32(colour, 0.3))
+    for tone, width in outline_strokes(look, colour_u32(colour), 0.08):
+        draw_list.add_polyline(list(diamond), tone, width, imgui.ImDrawFlags_.closed)

@@ -1,0 +1,154 @@
+"""What each step of a first animation says, and what it points at."""
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from imgui_bundle import ImVec2, imgui
+
+from app.editor import Guide, Project, Session
+from app.editor.actions import exporting, guiding
+from app.ui.panel import is_in_front
+from app.ui.shortcuts import BINDINGS
+from app.ui.style import Look
+from app.ui.viewport import ScreenMapping
+from app.ui.window.tutorial.layout import Rect
+
+Places = Mapping[str, tuple[ImVec2, ImVec2]]
+RING, REACH = 1.3, 5.0  # em: around a place of the drawing; how near a handle counts as there
+
+
+class TutorialStep(NamedTuple):
+    """What the card says, what it points at, and where that is to be dragged."""
+
+    text: str
+    at: Rect | None = None
+    to: Rect | None = None
+    is_round: bool = False
+    # Whether the card may lie over panels, too.
+    anywhere: bool = False
+
+    @property
+    def uncovered(self) -> tuple[Rect, ...]:
+        """What the card does not cover: what it points at, and the way of the hand from there."""
+        if self.at is None:
+            return ()
+        if self.to is None:
+            return (self.at,)
+        low = ImVec2(min(self.at.low.x, self.to.low.x), min(self.at.low.y, self.to.low.y))
+        high = ImVec2(max(self.at.high.x, self.to.high.x), max(self.at.high.y, self.to.high.y))
+        return self.at, Rect(low, high)
+
+
+def find_tutorial_step(
+    session: Session, look: Look, guide: Guide, screen: ScreenMapping, places: Places
+) -> TutorialStep:
+    """Return what is to be done next, and where.
+
+    `places` has where things were drawn in the frame before, by their names.
+    """
+    hindrance = _hindrance(session) if guide.step in {"handle", "pose"} else ""
+    return TutorialStep(hindrance) if hindrance else _to_step(session, look, guide, screen, places)
+
+
+def _to_step(
+    session: Session, look: Look, guide: Guide, screen: ScreenMapping, places: Places
+) -> TutorialStep:
+    match guide.step:
+        case "handle":
+            return _to_handle(look, guide, screen)
+        case "time":
+            ruler = _box(places, "ruler")
+            to = None if ruler is None else Rect(ruler.middle, ruler.middle)
+            text = "Drag the playhead along the ruler, to about the middle."
+            return TutorialStep(text, _box(places, "playhead") or ruler, to)
+        case "pose":
+            return _to_pose(look, guide, screen, places)
+        case "play":
+            keys = BINDINGS["play"].shown_keys
+            return TutorialStep(
+                f"Click here, or press {keys}: what lies between the poses fills itself in.",
+                _box(places, "play"),
+            )
+        case "export":
+            return _to_export(session, screen.project, places)
+        case "done":
+            exported = session.exported
+            name = "The GIF" if exported is None else exported.out.name
+            return TutorialStep(
+                f"{name} is there. The project is yours to go on with: add keys, drag them in "
+                "time, save it."
+            )
+
+
+def _hindrance(session: Session) -> str:
+    """Return what is to be done before handles can be added and dragged; empty where they can."""
+    if not session.poses:
+        return f"Something else than posing is in hand: {BINDINGS['pose'].shown_keys} goes back."
+    if not session.overlays.handles:
+        return f"The handles are hidden: {BINDINGS['handles'].shown_keys} shows them."
+    return ""
+
+
+def _to_handle(look: Look, guide: Guide, screen: ScreenMapping) -> TutorialStep:
+    if guide.aim is None:
+        return TutorialStep(
+            "Click on a part that is to stay where it is, then on one that is to move. Each click "
+            "adds a handle."
+        )
+    return TutorialStep(
+        "Click on the nose. The handles that are there already hold legs and body in place.",
+        _ring(look, screen, guide.aim),
+        is_round=True,
+    )
+
+
+def _to_pose(look: Look, guide: Guide, screen: ScreenMapping, places: Places) -> TutorialStep:
+    if screen.project.unkeyed is not None:
+        insert = BINDINGS["insert key"]
+        return TutorialStep(
+            f"Auto-key is off, so that no key has this pose: {insert.label} "
+            f"({insert.shown_keys}) makes one.",
+            _box(places, "insert key"),
+        )
+    layer, handles = screen.shown.clip.layer, screen.shown.handle_positions
+    if guide.aim is None or guide.goal is None:
+        newest = _ring(look, screen, complex(handles[-1])) if len(handles) else None
+        text = "Drag one of the handles. A key with the new pose makes itself."
+        return TutorialStep(text, newest, is_round=True)
+    near = {
+        abs(handle.position - guide.aim): complex(place)
+        for handle, place in zip(layer.handles, handles, strict=False)
+    }
+    reach = REACH * look.em / screen.scale
+    held = near[min(near)] if near and min(near) < reach else guide.aim
+    return TutorialStep(
+        "Drag the nose down to the ground. A key with the new pose makes itself.",
+        _ring(look, screen, held),
+        _ring(look, screen, guide.goal),
+        is_round=True,
+    )
+
+
+def _to_export(session: Session, project: Project, places: Places) -> TutorialStep:
+    if exporting.is_under_way(session):
+        return TutorialStep("The GIF is being made.")
+    if not is_in_front("Export"):
+        window = imgui.internal.find_window_by_name("###Export")
+        tab = None if window is None else window.dc.dock_tab_item_rect
+        at = None if tab is None else Rect(tab.min, tab.max)
+        return TutorialStep("Open the tab Export.", at, anywhere=True)
+    if project.document.export.format != guiding.FORMAT:
+        return TutorialStep("Choose GIF as the format.", _box(places, "format"))
+    return TutorialStep(
+        "Click Export, and choose where the GIF goes.", _box(places, "start export")
+    )
+
+
+def _box(places: Places, name: str) -> Rect | None:
+    return Rect(*places[name]) if name in places else None
+
+
+def _ring(look: Look, screen: ScreenMapping, place: complex) -> Rect:
+    """Return the box of a ring around a place of the drawing."""
+    point = screen.point(place)
+    return Rect(point, point).grown(RING * look.em)

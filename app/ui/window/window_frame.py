@@ -1,0 +1,346 @@
+"""The window's frame: layout, bars, dialogs, and the one place where actions are applied."""
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from pathlib import Path
+
+from imgui_bundle import ImVec2, hello_imgui, imgui, implot
+
+from app.editor import Action, FileDialog, Project, Session, do, failures, promises, sentence
+from app.editor.actions import (
+    close_dialog,
+    dismiss,
+    editing,
+    exporting,
+    guiding,
+    playback,
+    saving,
+    timeline_pointing,
+    upkeep,
+    viewing,
+)
+from app.editor.tools import pointing
+from app.errors import EXPECTED_ERRORS
+from app.render import Thumbnail
+from app.ui import bars, toasts, welcome
+from app.ui.dialogs import Dialogs
+from app.ui.panel import Panel, bring_to_front
+from app.ui.shortcuts import MENUS, collect_key_actions
+from app.ui.style import FONT_SIZE, PALETTES, Look, apply_theme, interface_scale, load_fonts
+from app.ui.window.docking import Docking
+from app.ui.window.guard import FrameStep, WindowPart, allow_recovery
+from app.ui.window.tutorial import Callout
+
+# Saved layouts of another number are forgotten: they name other panels.
+LAYOUT = 1
+# Input wakes the window at once, and so does all that goes on by itself.
+IDLE_FPS = 0.2
+AWAKE = 0.5  # seconds for which it goes on after that, for what it leads to
+REPEATS = 2  # frames after which the next ones would show nothing new
+LEFT = imgui.MouseButton_.left
+# What comes of itself, frame by frame, and tells nothing of what the person did.
+UNLOGGED = {
+    dismiss,
+    editing.use_widget,
+    exporting.show_frame,
+    pointing.explain,
+    pointing.hover,
+    timeline_pointing.follow,
+    viewing.attend,
+    viewing.resize,
+}
+
+
+class WindowFrame:
+    """Draws the window's contents from a session, once a frame, and applies what was asked for."""
+
+    def __init__(
+        self,
+        session: Session,
+        panels: Sequence[Panel],
+        thumbnail: Callable[[Path], Thumbnail | None],
+        moments: Callable[[Path], list[Thumbnail]],
+    ) -> None:
+        self.session = session
+        self._panels = panels
+        self._docking = Docking(panels)
+        self._bold: imgui.ImFont | None = None
+        self._themed: tuple[str, float] | None = None
+        self._dialogs = Dialogs()
+        self.callout = Callout()
+        # Where things are drawn in this frame, and were in the one before.
+        self._places: dict[str, tuple[ImVec2, ImVec2]] = {}
+        self._seen: dict[str, tuple[ImVec2, ImVec2]] = {}
+        self._actions: list[Action] = []
+        self._asked: list[Action] = []
+        self._awake_until = 0.0
+        self._idle_frames = 0
+        previews = welcome.Previews(thumbnail, moments)
+        over = (
+            # Hello ImGui draws the tabs themselves.
+            WindowPart("The names of the tabs", self._draw_tabs, place="window"),
+            WindowPart("The welcome view", partial(_welcome, previews=previews), place="window"),
+            WindowPart("The guide", self._draw_guide, place="window"),
+            WindowPart(
+                "The dialog",
+                partial(self._dialogs.draw, thumbnail=thumbnail),
+                place="window",
+                dismissal=do(close_dialog),
+            ),
+            WindowPart("The messages", toasts.draw_toasts, place="window"),
+        )
+        bars_around = (
+            WindowPart("The menu bar", self._draw_menus, place="bar"),
+            WindowPart("The status bar", bars.draw_status_bar, place="bar"),
+            WindowPart("The icon bar", _with_project(bars.draw_icon_bar), place="bar"),
+        )
+        menus = [
+            WindowPart(
+                f"The menu {title}",
+                partial(bars.draw_main_menu, title=title, panels=panels),
+                place="menu",
+            )
+            for title in MENUS
+        ]
+        docked = [
+            WindowPart(f"The panel {each.title}", _with_project(each.draw)) for each in panels
+        ]
+        grounds = [
+            WindowPart(f"The picture in {each.title}", _with_project(each.draw_background))
+            for each in panels
+            if each.draw_background is not None
+        ]
+        # Every part of the window's frame, by its name.
+        self.parts = {part.name: part for part in (*over, *bars_around, *menus, *docked, *grounds)}
+        self._over = [part.name for part in over]
+        self._follow = self._step(upkeep.follow_playhead)
+        self._update_steps = [
+            self._step(each)
+            for each in (promises.go_on, *upkeep.STEPS, saving.maintain, guiding.follow)
+        ]
+
+    def runner_params(self) -> hello_imgui.RunnerParams:
+        """Return what Hello ImGui needs to know; platform and renderer are left to the caller."""
+        params = hello_imgui.RunnerParams()
+        window = params.imgui_window_params
+        window.default_imgui_window_type = (
+            hello_imgui.DefaultImGuiWindowType.provide_full_screen_dock_space
+        )
+        window.show_menu_bar = window.show_status_bar = True
+        window.show_menu_app = window.show_menu_view = window.show_status_fps = False
+        params.docking_params = self._layout()
+        calls = params.callbacks
+        calls.load_additional_fonts = self._load_fonts
+        calls.setup_imgui_config = self._configure
+        calls.setup_imgui_style = self._apply_theme
+        calls.pre_new_frame = partial(self.run_guarded, self._begin_frame)
+        calls.show_menus = partial(self._ask, "The menu bar")
+        calls.show_status = partial(self._ask, "The status bar")
+        calls.show_gui = self._draw_over_panels
+        calls.before_imgui_render = self._apply_actions
+        calls.confirm_exit = self._may_exit
+        options = hello_imgui.EdgeToolbarOptions()
+        options.size_em = 2.7
+        options.window_padding_em = ImVec2(0.35, 0.5)
+        icons = partial(self._ask, "The icon bar")
+        calls.add_edge_toolbar(hello_imgui.EdgeToolbarType.left, icons, options)
+        params.fps_idling.fps_idle = IDLE_FPS
+        params.fps_idling.time_active_after_last_event = AWAKE
+        return params
+
+    def queue_action(self, action: Action) -> None:
+        """Do something at the end of the next frame."""
+        self._asked.append(action)
+
+    @property
+    def awaits_worker(self) -> bool:
+        """Whether frames would only repeat what is shown, and take time from the worker."""
+        return self._idle_frames >= REPEATS
+
+    def release(self) -> None:
+        """Close what is open beside the window."""
+        self._dialogs.close()
+
+    def run_guarded(self, change: Callable[[], None]) -> None:
+        """Do something; where that fails, tell it, and the window lives on."""
+        try:
+            change()
+        except Exception as error:  # noqa: BLE001 - part of the frame guard
+            self._report_error(error)
+
+    def _report_error(self, error: Exception) -> None:
+        if isinstance(error, EXPECTED_ERRORS):
+            self.session.tell(sentence(str(error)), tone="error")
+        else:
+            failures.surprise(self.session, f"That did not work: {error}", error)
+
+    def _step(self, run: Callable[[Session], None]) -> FrameStep:
+        return FrameStep(partial(run, self.session), self._report_error)
+
+    @property
+    def look(self) -> Look:
+        """What panels draw with at present."""
+        if self._bold is None:
+            raise RuntimeError("the window has no fonts before its first frame")
+        preferences = self.session.preferences
+        return Look(
+            palette=PALETTES[preferences.theme],
+            bold=self._bold,
+            em=imgui.get_font_size() or FONT_SIZE * interface_scale(preferences.scale),
+            places=self._places,
+        )
+
+    def _layout(self) -> hello_imgui.DockingParams:
+        layout = hello_imgui.DockingParams()
+        layout.layout_name = f"Layout {LAYOUT}"
+        layout.main_dock_space_node_flags = imgui.DockNodeFlags_.auto_hide_tab_bar
+        layout.dockable_windows = [self._window(panel) for panel in self._panels]
+        return layout
+
+    def _window(self, panel: Panel) -> hello_imgui.DockableWindow:
+        window = hello_imgui.DockableWindow(
+            panel.label, panel.place, partial(self._draw_panel, panel)
+        )
+        window.can_be_closed = False
+        if panel.place == "MainDockSpace":
+            window.imgui_window_flags = (
+                imgui.WindowFlags_.no_scrollbar | imgui.WindowFlags_.no_scroll_with_mouse
+            )
+        return window
+
+    def _draw_panel(self, panel: Panel) -> None:
+        if panel.draw_background is not None:
+            self._ask(f"The picture in {panel.title}")
+        self._ask(f"The panel {panel.title}")
+
+    def _ask(self, name: str) -> None:
+        """Draw a part, and collect what the person asked for."""
+        self._actions += self.parts[name].draw_guarded(self.session, self.look)
+
+    def _draw_menus(self, *_: object) -> list[Action]:
+        for title in MENUS:
+            if imgui.begin_menu(title):
+                self._ask(f"The menu {title}")
+                imgui.end_menu()
+        return []
+
+    def _draw_tabs(self, *_: object) -> list[Action]:
+        self._docking.draw_tabs()
+        return []
+
+    def _draw_guide(self, session: Session, look: Look) -> list[Action]:
+        return self.callout.draw(session, look, places=self._seen)
+
+    def _collect_key_actions(self) -> None:
+        self._actions += collect_key_actions(self.session)
+
+    def _load_fonts(self) -> None:
+        self._bold = load_fonts()
+
+    def _configure(self) -> None:
+        io = imgui.get_io()
+        io.config_flags |= imgui.ConfigFlags_.docking_enable
+        io.config_windows_move_from_title_bar_only = True
+        # One click on a number edits it: what is typed next is meant for it, and not for shortcuts.
+        io.config_drag_click_to_input_text = True
+        allow_recovery()
+        implot.create_context()
+
+    def _apply_theme(self) -> None:
+        preferences = self.session.preferences
+        self._themed = self._theme
+        palette = PALETTES[preferences.theme]
+        apply_theme(palette, preferences.scale)
+        hello_imgui.get_runner_params().imgui_window_params.background_color = palette.panel
+
+    @property
+    def _theme(self) -> tuple[str, float]:
+        """What the style depends on: the theme, and how large everything is on this screen."""
+        preferences = self.session.preferences
+        return preferences.theme, interface_scale(preferences.scale)
+
+    def _begin_frame(self) -> None:
+        session = self.session
+        self._seen, self._places = self._places, {}
+        if self._themed != self._theme:
+            self._apply_theme()
+        self._docking.begin_frame(interface_scale(session.preferences.scale))
+        # The tabs that show them ask for them in every frame.
+        session.export_frame = session.pointed_layer = None
+        playback.halt_at_end(session)
+        # Panels are to see the frame that it is by now.
+        self._follow.run_guarded(session)
+        if _is_busy(session):
+            self._awake_until = session.clock() + AWAKE
+        if session.clock() < self._awake_until:
+            hello_imgui.request_refresh()
+
+    def _draw_over_panels(self) -> None:
+        self.run_guarded(self._collect_key_actions)
+        for name in self._over:
+            self._ask(name)
+        # Where the pointer is down on no widget, that counts as one.
+        widget = imgui.internal.get_active_id() or int(imgui.is_mouse_down(LEFT))
+        self._actions.append(do(editing.use_widget, widget))
+
+    def _apply_actions(self) -> None:
+        # What panels saw of the pointer comes first: what was dropped there depends on it.
+        actions, self._actions, self._asked = self._actions + self._asked, [], []
+        for action in actions:
+            if action.verb not in UNLOGGED:
+                failures.note(self.session, action)
+            self.run_guarded(partial(action.apply, self.session))
+        if self.session.wanted_panel:
+            bring_to_front(self.session.wanted_panel)
+            self.session.wanted_panel = ""
+        # After the actions, so that a pull goes on with the newest wish; before the picture is
+        # drawn, so that it shows at once how far the solver has come.
+        self.run_guarded(self.session.jobs.deliver)
+        for step in self._update_steps:
+            step.run_guarded(self.session)
+        self._idle_frames = self._idle_frames + 1 if _awaits_in_between(self.session) else 0
+        if self.session.quitting:
+            hello_imgui.get_runner_params().app_shall_exit = True
+
+    def _may_exit(self) -> bool:
+        # The window's own close button; the answer comes as an action.
+        self._actions.append(do(saving.quit_lissom))
+        return False
+
+
+def _with_project(
+    draw: Callable[[Session, Look, Project], list[Action]],
+) -> Callable[[Session, Look], list[Action]]:
+    """Return what draws a part that there is only with a project."""
+
+    def drawn(session: Session, look: Look) -> list[Action]:
+        return draw(session, look, session.project) if session.project else []
+
+    return drawn
+
+
+def _welcome(session: Session, look: Look, previews: welcome.Previews) -> list[Action]:
+    return [] if session.project else welcome.draw_welcome(session, look, pictures=previews)
+
+
+def _is_busy(session: Session) -> bool:
+    """Tell whether something changes without the person doing anything."""
+    project = session.project
+    is_moving = project is not None and project.playhead.since is not None
+    # The system's own dialog has its own input, and is asked for its answer.
+    asks_system = session.system_dialogs and isinstance(session.dialog, FileDialog)
+    is_working = bool(session.jobs.kinds) or session.export is not None
+    is_working |= project is not None and bool(project.stale or project.afterwards)
+    return is_moving or is_working or asks_system or bool(session.toasts)
+
+
+def _awaits_in_between(session: Session) -> bool:
+    """Tell whether something stands in for an in-between, and nothing else goes on."""
+    project = session.project
+    if project is None or project.playhead.since is not None or session.pointer is not None:
+        return False
+    if session.export is not None or session.toasts or session.dialog is not None:
+        return False
+    shows = [puppet.shown for puppet in project.puppets.values()]
+    awaited = {upkeep.GLIMPSING, upkeep.SKETCHING}.intersection(session.jobs.kinds)
+    return bool(awaited) and any(shown is not None and not shown.is_current for shown in shows)
